@@ -1,0 +1,172 @@
+"""Energy, free decay, linear limit and similarity: what must hold whatever the numbers are."""
+
+from math import pi, sin
+
+import numpy as np
+import pytest
+
+from tests.physics.cases import OMEGA_N, TABLE_1, evaluated, steady
+from wedgesweep import damper, excitation, parameters, response
+from wedgesweep.solvers import radau
+from wedgesweep.solvers.trajectory import Window
+
+
+def input_work(record, run, window):
+    """Work of the base per period: - integral of (M_b + 2 M_w r cos g) u'' z' dt."""
+    p = record[0]
+    moved = p["bolster_mass"] + 2 * p["wedge_mass"] * p["column_ratio"] * p["cos_column"]
+    base = np.array([excitation.acceleration(t, p) for t in run.nodes.t])
+    return -moved * (run.nodes.weight * base) @ run.nodes.velocity / window.periods
+
+
+@pytest.mark.parametrize(
+    ("law", "beta", "amplitude"),
+    [
+        ("coulomb", 0.4, 1e-3),
+        ("coulomb", 1.472, 0.08e-3),
+        ("coulomb", 2.208, 0.1e-3),
+        ("coulomb", 0.9, 3e-3),
+        ("static-dynamic", 0.4, 1e-3),
+        ("static-dynamic", 2.208, 0.1e-3),
+        ("exponential", 1.472, 0.1e-3),
+        ("exponential", 0.6, 2e-3),
+    ],
+)
+@pytest.mark.parametrize("lean", [4.0, -4.0])
+def test_energy_balance_over_a_steady_period(law, beta, amplitude, lean):
+    record = parameters.record(
+        law, amplitude, beta * OMEGA_N, suspension={"column_angle": np.radians(lean)}
+    )
+    window = Window(beta * OMEGA_N, 150, 2, 64)
+    run = radau.solve(record, window, 1e-6, 120.0)
+    numbers = response.evaluate(run, window, record, harmonics=1).numbers
+    assert numbers["dissipated_energy"] == pytest.approx(
+        input_work(record, run, window), rel=1e-5
+    )
+
+
+def test_free_vibration_loses_4_f_over_k_per_cycle():
+    force, start = 0.21, 1e-3
+    record = parameters.record(
+        "coulomb",
+        1e-30,
+        2 * pi,
+        suspension={"column_angle": 0.0},
+        friction={"dynamic": 0.0, "static": 0.0},
+        effects={"guide_friction": {"force": force}},
+    )
+    stiffness = TABLE_1["bolster_spring"] + 2 * TABLE_1["wedge_spring"]
+    run = radau.solve(record, Window(2 * pi, 0, 1, 64), 1e-8, 60.0, start=(start, 0.0))
+    turning = run.nodes.x[np.append(np.diff(run.nodes.contact[:, 0]) != 0, False)]
+    expected, x = [], start
+    while abs(x) > force / stiffness:
+        x = -(x - np.sign(x) * 2 * force / stiffness)
+        expected.append(x)
+    np.testing.assert_allclose(turning, expected, atol=1e-7 * start)
+    assert run.nodes.x[-1] == pytest.approx(expected[-1], abs=1e-7 * start)
+
+
+@pytest.mark.parametrize("beta", [0.3, 0.9, 1.4, 3.0])
+@pytest.mark.parametrize("law", ["coulomb", "exponential"])
+def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
+    omega, amplitude = beta * OMEGA_N, 1e-4
+    record = parameters.record(law, amplitude, omega, friction={"dynamic": 0.0, "static": 0.0})
+    p = record[0]
+    ratio, resonance = p["column_ratio"], damper.resonance(p)
+    share = (p["bolster_mass"] + 2 * p["wedge_mass"] * ratio * p["cos_column"]) / (
+        p["bolster_mass"] + 2 * p["wedge_mass"] * ratio**2
+    )
+    window = Window(omega, 2, 2, 64)
+    samples = radau.solve(record, window, 1e-9, 60.0).samples
+    forced = share * amplitude * omega**2 / (resonance**2 - omega**2)
+    expected = [
+        forced * (sin(omega * t) - omega / resonance * sin(resonance * t)) for t in samples.t
+    ]
+    np.testing.assert_allclose(samples.x, expected, atol=1e-6 * np.ptp(expected))
+
+
+@pytest.mark.parametrize("factor", [0.1, 3.0])
+def test_coulomb_friction_scales_with_gravity_and_input_together(factor):
+    def ratio(scale):
+        suspension = {"gravity": 9.80665 * scale, "wedge_preload": 0.5 * scale}
+        record = parameters.record("coulomb", 5e-4 * scale, 0.6 * OMEGA_N, suspension=suspension)
+        return steady(record, settle_periods=10)["amplitude_ratio"]
+
+    assert ratio(factor) == pytest.approx(ratio(1.0), rel=1e-7)
+
+
+def test_the_regularised_laws_approach_each_other_without_decay():
+    ratios = []
+    for law in ("static-dynamic", "exponential"):
+        friction = {"velocity_exponent": 0.0}
+        record = parameters.record(law, 1e-3, 0.4 * OMEGA_N, friction=friction)
+        ratios.append(steady(record, settle_periods=5)["amplitude_ratio"])
+    assert ratios[0] == ratios[1]
+
+
+def test_a_vanishing_threshold_velocity_approaches_set_valued_friction():
+    """With one face only: two linked faces saturate one after the other, which is another limit."""
+
+    def ratio(law, threshold):
+        record = parameters.record(
+            law,
+            1e-3,
+            0.6 * OMEGA_N,
+            suspension={"column_angle": 0.0},
+            friction={"dynamic": 0.0, "static": 0.0, "threshold_velocity": threshold},
+            effects={"guide_friction": {"force": 1.5}},
+        )
+        return steady(record, settle_periods=20)["amplitude_ratio"]
+
+    exact = ratio("coulomb", 1e-3)
+    errors = [abs(ratio("static-dynamic", threshold) / exact - 1.0) for threshold in (1e-3, 1e-4)]
+    assert errors[0] > 1e-4
+    assert errors[1] < 0.2 * errors[0]
+
+
+@pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
+def test_a_finer_tolerance_converges(law):
+    record = parameters.record(law, 3e-4, 0.6 * OMEGA_N)
+    tolerances = (1e-3, 1e-4, 1e-5, 1e-6)
+    finest = steady(record, 8, rtol=1e-9)["amplitude_ratio"]
+    errors = [abs(steady(record, 8, rtol=rtol)["amplitude_ratio"] / finest - 1) for rtol in tolerances]
+    assert errors[-1] < 1e-5
+    assert errors[-1] < 0.1 * errors[0]
+
+
+def test_normal_forces_are_unknown_while_stuck_and_known_while_slipping():
+    waveforms = evaluated(parameters.record("coulomb", 1e-3, 0.4 * OMEGA_N), 10).waveforms
+    stuck = waveforms["stuck"]
+    assert 0.3 < stuck.mean() < 0.5
+    assert np.isnan(waveforms["normal_force_column"][stuck]).all()
+    assert np.isfinite(waveforms["normal_force_column"][~stuck]).all()
+    np.testing.assert_array_equal(waveforms["velocity"][stuck], 0.0)
+
+
+def test_harmonics_rebuild_the_displacement_and_its_velocity():
+    record = parameters.record("exponential", 1e-3, 0.4 * OMEGA_N)
+    result = evaluated(record, 20)
+    orders = np.arange(1, 10)
+    coefficients = result.spectra["displacement_harmonics"]
+    phase = 2 * pi * np.arange(result.waveforms["displacement"].size) / 256
+    rebuilt = (coefficients * np.exp(1j * np.outer(phase, orders))).real.sum(axis=1)
+    displacement = result.waveforms["displacement"]
+    np.testing.assert_allclose(
+        rebuilt, displacement - displacement.mean(), atol=0.02 * np.ptp(displacement)
+    )
+    omega = 0.4 * OMEGA_N
+    np.testing.assert_allclose(
+        result.spectra["velocity_harmonics"], 1j * orders * omega * coefficients,
+        atol=1e-4 * abs(omega * coefficients[0]),
+    )
+
+
+def test_displacement_turns_from_opposite_to_in_phase_with_the_input():
+    """x - y = -z: opposite to the input far below resonance, equal to it far above; never lagging."""
+    lags = []
+    for beta in (0.3, 0.9, 1.14, 1.5, 3.0):
+        record = parameters.record("static-dynamic", 2e-3, beta * OMEGA_N)
+        lags.append(steady(record, settle_periods=30)["phase_lag"])
+    assert -pi < lags[0] < -0.75 * pi
+    assert -0.1 * pi < lags[-1] < 0.0
+    assert lags == sorted(lags)

@@ -1,0 +1,67 @@
+"""Agreement with an independent code, and numbers of PHYSICS.md."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.physics.cases import OMEGA_N, steady
+from wedgesweep import damper, parameters
+from wedgesweep.contact import breakaway_acceleration
+
+ROWS = json.loads((Path(__file__).parents[1] / "data" / "steady.json").read_text())
+
+
+@pytest.mark.parametrize(
+    "row", ROWS, ids=lambda row: f"{row['friction_law']}-{row['beta']}-{row['amplitude_mm']}"
+)
+def test_steady_response(row):
+    record = parameters.record(
+        row["friction_law"], row["amplitude_mm"] * 1e-3, row["beta"] * OMEGA_N
+    )
+    numbers = steady(record, settle_periods=row["settle_periods"])
+    assert numbers["amplitude_ratio"] == pytest.approx(row["amplitude_ratio"], rel=1e-4)
+    assert numbers["stick_fraction"] == pytest.approx(row["stick_fraction"], abs=0.005)
+    assert numbers["peak_velocity"] * 1e3 == pytest.approx(row["peak_velocity_mm_per_s"], rel=1e-3)
+    assert numbers["minimum_normal_force"] == pytest.approx(row["minimum_normal_force_N"], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("column_angle", "rest", "resonance"),
+    [(0.06981317007977318, -1.0572017166e-3, 97.50648228), (-0.06981317007977318, -0.9342939466e-3, 100.61714194)],
+)
+def test_rest_position_and_resonance(column_angle, rest, resonance):
+    record = parameters.record("coulomb", 1e-3, 1.0, suspension={"column_angle": column_angle})
+    assert record["rest"][0] == pytest.approx(rest, rel=1e-9)
+    assert damper.resonance(record[0]) == pytest.approx(resonance, rel=1e-9)
+
+
+def test_linkage_ratios():
+    record = parameters.record("coulomb", 1e-3, 1.0)
+    assert record["column_ratio"][0] == pytest.approx(0.9187186996, rel=1e-9)
+    assert record["bolster_ratio"][0] == pytest.approx(-0.1052737144, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("law", "beta", "amplitude_mm", "ratio"),
+    [
+        ("coulomb", 1.472, 0.05, 0.368),
+        ("static-dynamic", 1.472, 0.05, 1.032),
+        ("exponential", 1.472, 0.05, 1.373),
+        ("static-dynamic", 1.75, 0.03, 0.444),
+        ("coulomb", 1.75, 0.03, 0.055),
+    ],
+)
+def test_laws_part_near_breakaway(law, beta, amplitude_mm, ratio):
+    record = parameters.record(law, amplitude_mm * 1e-3, beta * OMEGA_N)
+    assert steady(record)["amplitude_ratio"] == pytest.approx(ratio, abs=1e-3)
+
+
+@pytest.mark.parametrize("excess", [-1e-6, 1e-3])
+def test_motion_begins_at_the_breakaway_acceleration(excess):
+    omega = 1.5 * OMEGA_N
+    limit = breakaway_acceleration(parameters.record("coulomb", 1e-3, omega)[0])
+    record = parameters.record("coulomb", (1.0 + excess) * limit / omega**2, omega)
+    numbers = steady(record, settle_periods=3)
+    assert (numbers["stick_fraction"] < 1.0) == (excess > 0)
+    assert (numbers["amplitude_ratio"] > 0.0) == (excess > 0)

@@ -1,0 +1,143 @@
+"""The config: what it reads and how it resolves."""
+
+import subprocess
+import sys
+import tomllib
+from dataclasses import replace
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from wedgesweep import config
+from wedgesweep.config import Case
+from wedgesweep.parameters import FRICTION, SUSPENSION
+
+SWEEP = '[sweep]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.1\n'
+CASE = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 0.4\namplitude_mm = 0.3\n'
+
+
+def swept(**keys: str) -> config.Sweep:
+    """Sweep of a config whose [sweep] has the given TOML values."""
+    given = {"friction_law": '"coulomb"', "beta": "1", "amplitude_mm": "0.1"} | keys
+    if "frequency_hz" in keys:
+        del given["beta"]
+    lines = (f"{key} = {value}" for key, value in given.items())
+    return config.parse("\n".join(["[sweep]", *lines])).sweep
+
+
+def test_everything_but_the_sweep_has_the_papers_value():
+    read = config.parse(SWEEP)
+    assert read.suspension == {each.name: each.default * each.factor for each in SUSPENSION}
+    assert read.friction == {each.name: each.default * each.factor for each in FRICTION}
+    assert read.effects == {}
+    assert read.suspension["bolster_spring"] == 5100.0
+    assert read.sweep.omega_n == pytest.approx(sqrt(5100.0 / 0.7), rel=1e-15)
+    assert (read.solver.duration, read.solver.settle_periods) == (1.5, None)
+    assert (read.solver.kept_periods, read.solver.samples_per_period) == (3, 256)
+
+
+def test_a_decimal_of_a_range_is_the_float_it_reads_as():
+    sweep = swept(
+        beta="{ start = 0.1, stop = 3.0, num = 30 }",
+        amplitude_mm="{ start = 0.1, stop = 1.0, num = 10 }",
+    )
+    assert sweep.beta.tolist() == [round(0.1 * (i + 1), 12) for i in range(30)]
+    assert sweep.amplitude.tolist() == [float(f"{i + 1}e-4") for i in range(10)]
+
+
+def test_log_range_has_equal_ratios_and_exact_ends():
+    beta = swept(beta='{ start = 0.1, stop = 2.9, num = 9, spacing = "log" }').beta
+    assert (beta[0], beta[-1]) == (0.1, 2.9)
+    np.testing.assert_allclose(beta[1:] / beta[:-1], 29.0 ** (1 / 8), rtol=1e-10)
+
+
+def test_frequency_is_turned_into_beta_of_the_reference():
+    sweep = swept(frequency_hz="[20, 30]", omega_n_rad_per_s="80.0")
+    np.testing.assert_allclose(sweep.beta, [2 * pi * 20 / 80, 2 * pi * 30 / 80], rtol=1e-15)
+    assert sweep.omega_n == 80.0
+
+
+def test_grid_runs_in_c_order():
+    text = SWEEP.replace('"coulomb"', '["exponential", "coulomb"]').replace("1.0", "[1, 2]")
+    read = config.parse(text)
+    assert read.case_list() == [
+        Case(law, beta, 1e-4) for law in ("exponential", "coulomb") for beta in (1.0, 2.0)
+    ]
+    shape, coordinates = read.case_coordinates()
+    assert shape == (2, 2, 1)
+    assert [dim for dim, _, _ in coordinates.values()] == [
+        "friction_law",
+        "beta",
+        "amplitude",
+        "beta",
+    ]
+
+
+def test_list_of_cases_stands_instead_of_a_grid():
+    text = CASE + CASE.replace("beta = 0.4", "frequency_hz = 20")
+    read = config.parse(text)
+    beta = 2 * pi * 20 / read.sweep.omega_n
+    assert read.case_list() == [Case("coulomb", 0.4, 3e-4), Case("coulomb", beta, 3e-4)]
+    assert not read.sweep.beta.size
+    shape, coordinates = read.case_coordinates()
+    assert shape == (2,)
+    assert {dim for dim, _, _ in coordinates.values()} == {"case"}
+    np.testing.assert_allclose(coordinates["frequency"][1][1], 20.0, rtol=1e-14)
+    assert config.parse(read.to_toml()) == read
+
+
+def test_record_holds_the_case_in_si():
+    text = "[effects.guide_friction]\nforce_N = 2\n[suspension]\nwedge_angle_deg = 30\n" + SWEEP
+    read = config.parse(text)
+    record = read.record(read.case_list()[0])
+    assert record.shape == (1,)
+    assert record["amplitude"] == 1e-4
+    assert record["omega"] == read.sweep.omega_n
+    assert record["wedge_angle"] == pytest.approx(pi / 6)
+    assert record["guide_friction_force"] == 2.0
+
+
+def test_resolved_config_reads_back_exactly():
+    text = (
+        'title = "a \\"quoted\\" \\\\ title,\\nmu \\u03bc \\U0001F600 \\u007f"\n'
+        "[suspension]\nbolster_mass_kg = 0.1234567890123456789\n"
+        "[effects.guide_friction]\nforce_N = 1\n"
+        "[solver]\nsettle_periods = 7\nrtol = 1e-9\n"
+        '[sweep]\nfriction_law = "exponential"\nfrequency_hz = { start = 1, stop = 7, num = 4 }\n'
+        "amplitude_mm = 0.3\n"
+    )
+    read = config.parse(text)
+    again = config.parse(read.to_toml())
+    assert again == read
+    assert again.sha256 == read.sha256
+    assert again.title == 'a "quoted" \\ title,\nmu \u03bc \U0001f600 \x7f'
+    assert again.case_list() == read.case_list()
+    assert read.solver.duration is None
+
+
+def test_resolved_config_tells_whole_numbers_from_others():
+    resolved = tomllib.loads(config.parse(SWEEP.replace("1.0", "1")).to_toml())
+    assert isinstance(resolved["solver"]["kept_periods"], int)
+    assert isinstance(resolved["sweep"]["beta"][0], float)
+    assert config.parse(SWEEP).sha256 == config.parse(SWEEP.replace("1.0", "1")).sha256
+
+
+def test_digest_follows_every_number():
+    assert config.parse(SWEEP).sha256 != config.parse(SWEEP.replace("0.1", "0.11")).sha256
+
+
+def test_with_method_changes_the_solver_alone():
+    read = config.parse(SWEEP)
+    other = read.with_method("another")
+    assert other.solver == replace(read.solver, method="another")
+    assert other.case_list() == read.case_list()
+    assert read.solver.method == "radau"
+
+
+def test_importing_config_loads_neither_numba_nor_scipy_nor_xarray():
+    script = (
+        "import sys, wedgesweep.config; "
+        "sys.exit(bool({'numba', 'scipy', 'xarray'} & sys.modules.keys()))"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0

@@ -1,0 +1,188 @@
+"""The config: what it refuses, and what it says then."""
+
+from math import inf, nan
+
+import pytest
+
+from wedgesweep import config
+from wedgesweep.config import ConfigError
+from wedgesweep.config.keys import Number
+from wedgesweep.config.tables import table
+from wedgesweep.quantity import Quantity
+
+SWEEP = '[sweep]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.1\n'
+CASE = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 0.4\namplitude_mm = 0.3\n'
+
+
+def problems(text: str) -> list[str]:
+    with pytest.raises(ConfigError) as caught:
+        config.parse(text, "study.toml")
+    assert str(caught.value).splitlines() == caught.value.problems
+    return caught.value.problems
+
+
+def problem(text: str) -> str:
+    (only,) = problems(text)
+    return only
+
+
+def test_all_faults_are_reported_at_once_with_their_paths():
+    found = problems("""
+        titel = "x"
+        [suspension]
+        bolster_mas_kg = 1.0
+        wedge_mass_kg = -1
+        [effects.guide_frction]
+        [sweep]
+        friction_law = ["coulomb", "Exponental"]
+        beta = [0.3, 0.2, -0.2]
+        [solver]
+        rtol = "small"
+    """)
+    expected = [
+        ("titel", '"title"'),
+        ("suspension.bolster_mas_kg", '"bolster_mass_kg"'),
+        ("suspension.wedge_mass_kg", "at least 0"),
+        ("effects.guide_frction", '"guide_friction"'),
+        ("sweep.friction_law[1]", '"exponential"'),
+        ("sweep.beta[2]", "greater than 0"),
+        ("sweep.beta", "increasing"),
+        ("sweep.amplitude_mm", "missing"),
+        ("solver.rtol", "not a finite number"),
+    ]
+    assert len(found) == len(expected)
+    for path, hint in expected:
+        assert any(each.startswith(f"study.toml: {path}: ") and hint in each for each in found)
+
+
+@pytest.mark.parametrize(
+    ("table_name", "line", "hint"),
+    [
+        ("suspension", "bolster_mass_kg = true", "not a finite number"),
+        ("suspension", "bolster_mass_kg = nan", "not a finite number"),
+        ("suspension", "bolster_mass_kg = inf", "not a finite number"),
+        ("suspension", f"bolster_mass_kg = 1{'0' * 400}", "not a finite number"),
+        ("suspension", "bolster_mass_kg = 1979-05-27", "not a finite number"),
+        ("suspension", "wedge_angle_deg = 90", "less than 90"),
+        ("solver", "rtol = 0.1", "at most 0.01"),
+        ("solver", "rtol = 1e-14", "at least 1e-13"),
+        ("solver", "kept_periods = 1", "at least 2"),
+        ("solver", "kept_periods = 3.0", "whole number"),
+        ("solver", "kept_periods = true", "not a finite number"),
+        ("solver", "settle_periods = 0", "at least 1"),
+        ("solver", "samples_per_period = 33", "multiple of 2"),
+        ("solver", "samples_per_period = 16", "at least 32"),
+        ("solver", "duration_s = 0", "greater than 0"),
+        ("solver", "case_timeout_s = -1", "greater than 0"),
+        ("solver", 'method = "radua"', '"radau"'),
+        ("solver", 'method = ["radau"]', "unknown name"),
+    ],
+)
+def test_a_value_that_cannot_be_right(table_name, line, hint):
+    found = problem(f"[{table_name}]\n{line}\n{SWEEP}")
+    assert found.startswith(f"study.toml: {table_name}.{line.split()[0]}: ")
+    assert hint in found
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "hint"),
+    [
+        ("beta", "[]", "empty"),
+        ("beta", "[0.1, 0.1]", "repeated"),
+        ("beta", "[0.2, 0.1]", "0.1 follows 0.2"),
+        ("beta", '"1"', "not a finite number"),
+        ("beta", "[[1]]", "not a finite number"),
+        ("beta", "{ start = 1, stop = 2 }", "num: missing"),
+        ("beta", "{ start = 1, stop = 2, num = 0 }", "at least 1"),
+        ("beta", "{ start = 1, stop = 2, num = 1 }", "1 increasing values"),
+        ("beta", "{ start = 1, stop = 1, num = 2 }", "2 increasing values"),
+        ("beta", "{ start = 2, stop = 1, num = 2 }", "2 increasing values"),
+        ("beta", "{ start = 1, stop = 2, num = 2.5 }", "whole number"),
+        ("beta", "{ start = 1, stop = 2, nun = 2, num = 2 }", '"num"'),
+        ("amplitude_mm", '{ start = 0, stop = 1, num = 2, spacing = "log" }', "greater than 0"),
+        ("amplitude_mm", '{ start = 1, stop = 2, num = 2, spacing = "lin" }', '"linear"'),
+        ("amplitude_mm", "0", "greater than 0"),
+        ("friction_law", "[]", "empty"),
+        ("friction_law", '["coulomb", "coulomb"]', "repeated"),
+        ("friction_law", "1", "unknown name"),
+        ("omega_n_rad_per_s", "0.0", "greater than 0"),
+    ],
+)
+def test_a_sweep_that_cannot_be_right(key, value, hint):
+    given = {"friction_law": '"coulomb"', "beta": "1", "amplitude_mm": "1"} | {key: value}
+    found = problem("[sweep]\n" + "\n".join(f"{each} = {given[each]}" for each in given))
+    assert found.startswith(f"study.toml: sweep.{key}")
+    assert hint in found
+
+
+@pytest.mark.parametrize(
+    ("text", "path"),
+    [
+        (SWEEP + "frequency_hz = 20\n", "sweep.frequency_hz"),
+        (SWEEP + "[solver]\nduration_s = 1\nsettle_periods = 9\n", "solver.settle_periods"),
+        (SWEEP + CASE, "sweep.friction_law"),
+        (CASE + "frequency_hz = 20\n", "sweep.case[0].frequency_hz"),
+    ],
+)
+def test_settings_that_exclude_each_other(text, path):
+    assert any(
+        each.startswith(f"study.toml: {path}: ") and "exclude each other" in each
+        for each in problems(text)
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "path"),
+    [
+        ("", "sweep: missing"),
+        ("sweep = 1", "sweep: 1 is not a table"),
+        ("[sweep.case]\nbeta = 1", "sweep.case: "),
+        ("[sweep]\ncase = []", "sweep.case: [] is not a list of tables"),
+        ("[sweep]\ncase = [1]", "sweep.case[0]: 1 is not a table"),
+        (CASE + CASE, "sweep.case[1]: repeats sweep.case[0]"),
+        (CASE + "beat = 1\n", 'sweep.case[0].beat: unknown key; did you mean "beta"?'),
+    ],
+)
+def test_a_sweep_of_the_wrong_form(text, path):
+    assert problem(text).startswith(f"study.toml: {path}")
+
+
+@pytest.mark.parametrize("sweep", [SWEEP, CASE])
+def test_coulomb_without_lean_is_refused_unless_frictionless(sweep):
+    upright = "[suspension]\ncolumn_angle_deg = 0\n"
+    assert "friction.dynamic = 0" in problem(upright + sweep)
+    config.parse(upright + "[friction]\ndynamic = 0\n" + sweep)
+    config.parse(upright + sweep.replace("coulomb", "exponential"))
+
+
+def test_a_wedge_without_angle_is_refused():
+    text = "[suspension]\nwedge_angle_deg = 5\ncolumn_angle_deg = -5\n" + SWEEP
+    assert "sum of both angles" in problem(text)
+
+
+def test_a_syntax_error_names_file_and_line():
+    found = problem('title = "x"\n[sweep\n')
+    assert found.startswith("study.toml: not valid TOML")
+    assert "line 2" in found
+
+
+def test_a_file_that_cannot_be_read_is_a_config_error(tmp_path):
+    latin = tmp_path / "latin.toml"
+    latin.write_bytes('title = "Größe"'.encode("latin-1"))
+    for path in (tmp_path / "none.toml", tmp_path, latin):
+        with pytest.raises(ConfigError, match=path.name):
+            config.load(path)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path):
+    path = tmp_path / "windows.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + SWEEP.encode())
+    assert config.load(path) == config.parse(SWEEP)
+
+
+@pytest.mark.parametrize("default", [nan, inf])
+def test_a_number_whose_neutral_value_is_a_limit_must_be_given(default):
+    limit = Number.of(Quantity("stiffness_N_per_mm", default, "stiffness", above=0.0))
+    found: list[str] = []
+    table("spring", "a spring", limit).read({}, "effects.spring", found)
+    assert found == ["effects.spring.stiffness_N_per_mm: missing; write stiffness_N_per_mm = ..."]

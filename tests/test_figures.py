@@ -1,0 +1,206 @@
+"""Every figure draws the fixture, says what it shows and in which units, and fails clearly."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from tests import fixture_dataset
+from wedgesweep import figures
+from wedgesweep.figures import amplitude_ratio, bifurcation, cases, friction_laws, stick_map
+from wedgesweep.friction import LAWS
+
+KINDS = sorted(figures.DESCRIPTIONS)
+FROM_LISTS = ("friction-laws", "phase-portrait")
+FROM_WAVEFORMS = ("bifurcation", "phase-portrait", "response")
+# Words of an axis label that stand for a quantity with a dimension.
+DIMENSIONAL = ("displacement", "velocity", "time", "amplitude $a$", "peak-to-peak", "frequency [")
+
+
+@pytest.fixture(scope="module")
+def dataset():
+    return fixture_dataset.build()
+
+
+def labels(figure):
+    """Labels of all axes, also those of second axes and colour bars."""
+    axes = [*figure.axes, *(child for ax in figure.axes for child in ax.child_axes)]
+    return [text for ax in axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
+
+
+def everything_failed(ds):
+    ds = ds.copy(deep=True)
+    for variable in ds.data_vars.values():
+        if variable.dtype.kind == "f":
+            variable[:] = np.nan
+    ds["stuck"][:] = 0
+    return ds
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_draws_and_says_what_it_shows(kind, dataset):
+    figure = figures.FIGURES[kind].draw(dataset)
+    figure.draw_without_rendering()
+    assert figure.get_suptitle()
+    assert len(labels(figure)) >= 2
+    for text in labels(figure):
+        if any(word in text for word in DIMENSIONAL):
+            assert "[" in text, f"no unit in '{text}'"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "grid",
+    [
+        {"laws": ("coulomb",), "betas": (1.0,), "amplitudes": (1e-3,), "failed": None},
+        {"betas": np.linspace(0.1, 3.0, 70), "amplitudes": np.linspace(1e-5, 1e-3, 60)},
+    ],
+    ids=["one case", "fine grid"],
+)
+def test_draws_small_and_large_grids(kind, grid):
+    figures.FIGURES[kind].draw(fixture_dataset.build(**grid)).draw_without_rendering()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_draws_a_sweep_in_which_every_case_failed(kind, dataset):
+    figures.FIGURES[kind].draw(everything_failed(dataset)).draw_without_rendering()
+
+
+@pytest.mark.parametrize("kind", ["amplitude-ratio", "stick-map"])
+def test_draws_without_friction(kind, dataset):
+    ds = dataset.copy()
+    ds.attrs |= {"breakaway_acceleration": np.nan, "frictionless_resonance": np.nan}
+    figures.FIGURES[kind].draw(ds).draw_without_rendering()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_list_of_cases(kind, dataset):
+    ds = fixture_dataset.as_cases(dataset)
+    if kind in FROM_LISTS:
+        figures.FIGURES[kind].draw(ds).draw_without_rendering()
+        return
+    with pytest.raises(ValueError, match=f"^{kind}: needs a grid"):
+        figures.FIGURES[kind].draw(ds)
+
+
+@pytest.mark.parametrize("kind", FROM_WAVEFORMS)
+def test_says_that_waveforms_are_missing(kind, dataset):
+    with pytest.raises(ValueError, match=rf"^{kind}: the dataset has no displacement.*waveforms"):
+        figures.FIGURES[kind].draw(fixture_dataset.without_waveforms(dataset))
+
+
+@pytest.mark.parametrize("kind", sorted(set(KINDS) - set(FROM_WAVEFORMS)))
+def test_metrics_suffice(kind, dataset):
+    figures.FIGURES[kind].draw(fixture_dataset.without_waveforms(dataset))
+
+
+@pytest.mark.parametrize("suffix", figures.FORMATS)
+def test_saves(suffix, dataset, tmp_path):
+    path = tmp_path / f"figure{suffix}"
+    figures.save(figures.FIGURES["peak-to-peak"].draw(dataset), path)
+    start = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}[suffix]
+    assert path.read_bytes().startswith(start)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_unknown_suffix_lists_the_valid_ones(dataset, tmp_path):
+    with pytest.raises(ValueError, match=r"'\.jpeg'.*\.png, \.pdf, \.svg"):
+        figures.save(figures.FIGURES["peak-to-peak"].draw(dataset), tmp_path / "figure.jpeg")
+
+
+def test_failed_write_keeps_the_old_picture(tmp_path):
+    class Broken:
+        def savefig(self, path, **options):
+            path.write_bytes(b"half a picture")
+            raise OSError
+
+    path = tmp_path / "figure.png"
+    path.write_bytes(b"old")
+    with pytest.raises(OSError):  # noqa: PT011 - raised above
+        figures.save(Broken(), path)
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_descriptions_come_without_matplotlib():
+    code = "import sys; from wedgesweep.figures import DESCRIPTIONS; assert DESCRIPTIONS; "
+    code += "assert not {'matplotlib', 'xarray', 'numba'} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_file_is_found_under_its_name(kind):
+    module = figures.FIGURES[kind]
+    assert (kind, figures.DESCRIPTIONS[kind]) == (module.NAME, module.DESCRIPTION)
+
+
+def test_frictionless_ratio(dataset):
+    # PHYSICS.md for the paper's Table 1: 2.58 at 20 Hz, 1.20 at beta = 3; nothing at beta = 0.
+    beta = np.array([0.0, 20.0 * 2.0 * np.pi / fixture_dataset.OMEGA_N, 3.0])
+    ratio = amplitude_ratio.frictionless_ratio(dataset, beta)
+    assert ratio == pytest.approx([0.0, 2.58, 1.20], abs=0.005)
+
+
+def test_poincare_samples_are_one_per_period_at_phase_0(dataset):
+    samples = bifurcation.poincare_samples(dataset)
+    assert samples.shape == (3, 12, 6, fixture_dataset.PERIODS)
+    wave = dataset["displacement"].isel(friction_law=0, beta=5, amplitude=4)
+    whole_turns = np.isclose(np.mod(dataset["phase"] / (2.0 * np.pi) + 1e-9, 1.0), 0.0, atol=1e-6)
+    assert samples[0, 5, 4].tolist() == wave.values[whole_turns].tolist()
+
+
+def test_friction_curves(dataset):
+    from wedgesweep import config
+
+    settings = config.parse(dataset.attrs["config"])
+    parameters = settings.record(settings.case_list()[0])[0]
+    for law in LAWS:
+        velocity, coefficient = friction_laws.curve(law, parameters)
+        assert (np.diff(velocity) >= 0.0).all()
+        assert coefficient == pytest.approx(-coefficient[::-1])
+        peak = 0.29 if law == "coulomb" else 0.32
+        assert coefficient.max() == pytest.approx(peak)
+    jump = friction_laws.curve("coulomb", parameters)
+    assert sorted(jump[1][jump[0] == 0.0]) == [-0.29, 0.29]
+
+
+def test_stick_map_cells_enclose_their_centres():
+    for centres in (np.array([0.1, 0.3, 0.4, 1.75]), np.array([0.005, 0.015, 0.1, 4.75])):
+        for logarithmic in (False, True):
+            edges = stick_map.cell_edges(centres, logarithmic)
+            assert ((edges[:-1] < centres) & (centres < edges[1:])).all()
+    assert stick_map.is_logarithmic(np.geomspace(0.005, 4.75, 20))
+    assert not stick_map.is_logarithmic(np.linspace(0.01, 0.1, 19))
+
+
+def test_nearest_case_is_chosen_and_named(dataset):
+    figure = figures.FIGURES["response"].draw(dataset, beta=1.7, amplitudes=[0.9e-3, 1.1e-3])
+    assert "1.75" in figure.get_suptitle()
+    assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["1"]
+    figure = figures.FIGURES["phase-portrait"].draw(dataset, beta=0.9, law="exponential")
+    assert all("exponential" in ax.get_title() for ax in figure.axes)
+    figure = figures.FIGURES["bifurcation"].draw(dataset, amplitude=3e-3)
+    assert "4 mm" in figure.get_suptitle()
+    figure = figures.FIGURES["peak-to-peak"].draw(dataset, amplitudes=5e-4)
+    assert [ax.get_title() for ax in figure.axes] == ["$a$ = 0.5 mm"]
+
+
+def test_unknown_law_lists_those_of_the_dataset(dataset):
+    with pytest.raises(ValueError, match=r"'viscous'.*coulomb, static-dynamic, exponential"):
+        figures.FIGURES["phase-portrait"].draw(dataset, law="viscous")
+
+
+def test_failed_cases_are_marked(dataset):
+    for kind in ("amplitude-ratio", "peak-to-peak"):
+        figure = figures.FIGURES[kind].draw(dataset.isel(amplitude=[4]))
+        assert "no result" in figure.get_suptitle()
+    clean = fixture_dataset.build(failed=None)
+    assert "no result" not in figures.FIGURES["amplitude-ratio"].draw(clean).get_suptitle()
+
+
+def test_amplitudes_shown_by_default_slip(dataset):
+    chosen = cases.pick_amplitudes(dataset, None, 3)
+    fraction = dataset["stick_fraction"].isel(amplitude=chosen)
+    assert len(chosen) == 3
+    assert (fraction < cases.SLIPS).any(["friction_law", "beta"]).all()

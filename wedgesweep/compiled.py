@@ -1,0 +1,35 @@
+"""numba, set up once: compiled code is cached under a digest of the sources it was made from.
+
+numba's own cache looks only at the file of the function itself, so that an edited callee would leave
+a stale caller behind. A cache folder per state of the compiled sources rules that out.
+"""
+
+import os
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+
+import numba
+
+PACKAGE = Path(__file__).parent
+
+
+def source_digest(containing: bytes = b"") -> str:
+    """sha256 (hex) of the package's Python sources that contain the given bytes."""
+    digest = sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        source = path.read_bytes()
+        if containing in source:
+            digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + source)
+    return digest.hexdigest()
+
+
+def _cache_home() -> Path:
+    default = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(os.environ.get("NUMBA_CACHE_DIR") or Path(default) / "wedgesweep")
+
+
+CACHE_DIR = _cache_home() / source_digest(containing=b"@compiled")[:16]
+numba.config.CACHE_DIR = str(CACHE_DIR)
+
+compiled = partial(numba.njit, cache=True, error_model="numpy")

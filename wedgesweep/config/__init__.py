@@ -1,0 +1,262 @@
+"""Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from math import nan, pi, sqrt
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep.config import toml
+
+# What needs numba or scipy is imported late, so that `wedgesweep --help` does not wait for it.
+if TYPE_CHECKING:
+    from wedgesweep.quantity import Quantity
+    from wedgesweep.simulate import Settings
+
+
+class ConfigError(Exception):
+    """A config that cannot run; ``problems`` lists all that is wrong with it."""
+
+    def __init__(self, problems: list[str]) -> None:
+        super().__init__(problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        return "\n".join(self.problems)
+
+
+class Case(NamedTuple):
+    """One case of a sweep; amplitude in m."""
+
+    law: str
+    beta: float
+    amplitude: float
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The cases: a grid, or where ``cases`` is given a list (the grid is empty then).
+
+    ``beta`` and ``amplitude`` (m) have shapes (n,) and (m,); beta refers to ``omega_n`` (rad/s).
+    """
+
+    friction_law: tuple[str, ...]
+    beta: np.ndarray
+    amplitude: np.ndarray
+    omega_n: float
+    cases: tuple[Case, ...] | None
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked config. ``document`` holds every key in its own unit; the properties are SI."""
+
+    document: dict[str, Any]
+
+    @property
+    def title(self) -> str:
+        return self.document["title"]
+
+    @cached_property
+    def suspension(self) -> dict[str, float]:
+        from wedgesweep.parameters import SUSPENSION
+
+        return _si(SUSPENSION, self.document["suspension"])
+
+    @cached_property
+    def friction(self) -> dict[str, float]:
+        from wedgesweep.parameters import FRICTION
+
+        return _si(FRICTION, self.document["friction"])
+
+    @cached_property
+    def effects(self) -> dict[str, dict[str, float]]:
+        from wedgesweep.effects import EFFECTS
+
+        given = self.document["effects"]
+        return {name: _si(EFFECTS[name].quantities, values) for name, values in given.items()}
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        given = self.document["sweep"]
+        omega_n = given["omega_n_rad_per_s"]
+        cases = tuple(
+            Case(each["friction_law"], *_betas(each, omega_n), *_metres([each["amplitude_mm"]]))
+            for each in given.get("case", ())
+        )
+        return Sweep(
+            tuple(given.get("friction_law", ())),
+            np.array(_betas(given, omega_n)),
+            np.array(_metres(given.get("amplitude_mm", []))),
+            omega_n,
+            cases or None,
+        )
+
+    @cached_property
+    def solver(self) -> "Settings":
+        from wedgesweep.simulate import Settings
+
+        given = self.document["solver"]
+        return Settings(
+            method=given["method"],
+            rtol=given["rtol"],
+            duration=given.get("duration_s"),
+            settle_periods=given.get("settle_periods"),
+            kept_periods=given["kept_periods"],
+            samples_per_period=given["samples_per_period"],
+            case_timeout=given["case_timeout_s"],
+        )
+
+    def with_method(self, method: str) -> "Config":
+        """The same config with another solver."""
+        return Config(self.document | {"solver": self.document["solver"] | {"method": method}})
+
+    def case_list(self) -> list[Case]:
+        """All cases; a grid in the order law, beta, amplitude (the last varies fastest)."""
+        sweep = self.sweep
+        if sweep.cases is not None:
+            return list(sweep.cases)
+        return [
+            Case(law, beta, amplitude)
+            for law in sweep.friction_law
+            for beta in sweep.beta.tolist()
+            for amplitude in sweep.amplitude.tolist()
+        ]
+
+    def case_coordinates(
+        self,
+    ) -> tuple[tuple[int, ...], dict[str, tuple[str, Any, dict[str, str]]]]:
+        """Shape of the cases; dimension, values and attributes of the coordinates they have."""
+        sweep = self.sweep
+        if sweep.cases is None:
+            dims = ["friction_law", "beta", "amplitude"]
+            laws, betas, amplitudes = list(sweep.friction_law), sweep.beta, sweep.amplitude
+            shape: tuple[int, ...] = (len(laws), len(betas), len(amplitudes))
+        else:
+            dims = ["case"] * 3
+            laws = [case.law for case in sweep.cases]
+            betas, amplitudes = np.array([case[1:] for case in sweep.cases]).T
+            shape = (len(laws),)
+        frequencies = betas * sweep.omega_n / (2.0 * pi)
+        return shape, {
+            "friction_law": (dims[0], laws, {"long_name": "friction law"}),
+            "beta": (dims[1], betas, {"units": "1", "long_name": "input frequency over omega_n"}),
+            "amplitude": (dims[2], amplitudes, {"units": "m", "long_name": "input amplitude a"}),
+            "frequency": (dims[1], frequencies, {"units": "Hz", "long_name": "input frequency"}),
+        }
+
+    def record(self, case: Case) -> np.ndarray:
+        """Parameters of a case for the solvers, shape (1,)."""
+        from wedgesweep import parameters
+
+        return parameters.record(
+            law=case.law,
+            amplitude=case.amplitude,
+            omega=case.beta * self.sweep.omega_n,
+            suspension=self.suspension,
+            friction=self.friction,
+            effects=self.effects,
+        )
+
+    def to_toml(self) -> str:
+        """The resolved config: every key, ranges written out; ``parse`` gives the same config."""
+        return toml.dumps(self.document)
+
+    @property
+    def sha256(self) -> str:
+        return sha256(self.to_toml().encode()).hexdigest()
+
+
+def load(path: str | Path) -> Config:
+    """Read a config file; raises ConfigError."""
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        problem = f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8"
+        raise ConfigError([problem]) from error
+    except OSError as error:
+        problem = f"{path}: {error.strerror}; give the path of a TOML file"
+        raise ConfigError([problem]) from error
+    return parse(text, str(path))
+
+
+def parse(text: str, source: str = "<config>") -> Config:
+    """Read a config from TOML text; raises ConfigError with everything that is wrong with it."""
+    from wedgesweep.config.declarations import ROOT
+
+    try:
+        given = tomllib.loads(text)
+    except ValueError as error:
+        raise ConfigError([f"{source}: not valid TOML: {error}"]) from error
+    problems: list[str] = []
+    document = ROOT.read(given, "", problems)
+    problems += _contradictions(document)
+    if problems:
+        raise ConfigError([f"{source}: {problem}" for problem in problems])
+    suspension, sweep = document["suspension"], document["sweep"]
+    stiffness = suspension["bolster_spring_N_per_mm"] * 1e3
+    sweep.setdefault("omega_n_rad_per_s", sqrt(stiffness / suspension["bolster_mass_kg"]))
+    return Config(document)
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of a config (draft 2020-12), for editors."""
+    from wedgesweep.config.declarations import ROOT
+
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **ROOT.schema()}
+
+
+def template() -> str:
+    """A config with every key, commented."""
+    from wedgesweep.config import commented
+    from wedgesweep.config.declarations import ROOT
+
+    return commented.template(ROOT)
+
+
+def _contradictions(document: Mapping[str, Any]) -> Iterable[str]:
+    """Settings that are right each, but cannot run together."""
+    suspension, sweep = document.get("suspension", {}), document.get("sweep", {})
+    wedge, column = (suspension.get(f"{name}_angle_deg", nan) for name in ("wedge", "column"))
+    if wedge + column <= 0.0:
+        yield (
+            f"suspension.column_angle_deg: {column} closes a wedge of {wedge} deg; "
+            "the sum of both angles must be greater than 0"
+        )
+    laws = [
+        *sweep.get("friction_law", ()),
+        *(c.get("friction_law") for c in sweep.get("case", ()) if c),
+    ]
+    if (
+        "coulomb" in laws
+        and column == 0.0
+        and document.get("friction", {}).get("dynamic", 0.0) > 0.0
+    ):
+        yield (
+            "suspension.column_angle_deg: 0 leaves the bolster face without slip, where coulomb "
+            "does not determine the friction; use friction.dynamic = 0, another law, or a lean"
+        )
+
+
+def _si(quantities: Iterable["Quantity"], given: Mapping[str, float]) -> dict[str, float]:
+    return {each.name: given[each.key] * each.factor for each in quantities}
+
+
+def _betas(given: Mapping[str, Any], omega_n: float) -> list[float]:
+    if "frequency_hz" in given:
+        return [2.0 * pi * f / omega_n for f in _listed(given["frequency_hz"])]
+    return _listed(given.get("beta", []))
+
+
+def _metres(amplitudes: list[float]) -> list[float]:
+    """From mm, rounded so that 0.3 mm is the float 0.0003 that a reader will select by."""
+    return [float(f"{amplitude * 1e-3:.15g}") for amplitude in amplitudes]
+
+
+def _listed(value: Any) -> list[float]:
+    return value if isinstance(value, list) else [value]

@@ -1,0 +1,111 @@
+"""Every key of the config with its default, range and meaning: the one place that declares them."""
+
+from math import nan
+
+from wedgesweep.config.keys import Choice, Number, Text, Whole
+from wedgesweep.config.series import Series, Several
+from wedgesweep.config.tables import GridOrList, Table, TableList, table
+from wedgesweep.effects import EFFECTS
+from wedgesweep.effects.base import Effect
+from wedgesweep.friction.names import LAW_NAMES
+from wedgesweep.parameters import FRICTION, SUSPENSION
+from wedgesweep.quantity import Quantity
+from wedgesweep.solvers.names import SOLVERS
+
+BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
+FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
+AMPLITUDE = Quantity("amplitude_mm", nan, "input amplitude a of the side frame", above=0.0)
+OMEGA_N = Quantity(
+    "omega_n_rad_per_s", nan, "reference of beta; sqrt(k_b/M_b) unless given", above=0.0
+)
+LAW = Choice(key="friction_law", meaning="friction law", choices=LAW_NAMES, example=LAW_NAMES[0])
+
+
+def _series(quantity: Quantity, example: object) -> Series:
+    return Series(
+        key=quantity.key,
+        meaning=f"{quantity.meaning}: a number, an increasing list, or a range",
+        item=Number.of(quantity),
+        example=example,
+    )
+
+
+def _whole(
+    key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more
+) -> Whole:
+    quantity = Quantity(key, nan if default is None else default, meaning, minimum, maximum=maximum)
+    return Whole.of(quantity, **more)
+
+
+def _effect(effect: Effect) -> Table:
+    return table(effect.name, effect.meaning, *map(Number.of, effect.quantities), optional=True)
+
+
+OMEGA_N_KEY = Number.of(OMEGA_N, optional=True, example=85.3565)
+
+GRID = table(
+    "sweep",
+    "every law with every frequency and amplitude",
+    Several(key="friction_law", meaning="friction laws", item=LAW, example=list(LAW_NAMES)),
+    (
+        _series(BETA, {"start": 0.1, "stop": 3.0, "num": 30}),
+        _series(FREQUENCY, [20.0, 30.0]),
+    ),
+    _series(AMPLITUDE, [0.005, 0.015, 0.1, 0.3, 1.0]),
+    OMEGA_N_KEY,
+)
+
+LISTED = table(
+    "sweep",
+    "a list of cases",
+    OMEGA_N_KEY,
+    TableList(
+        key="case",
+        meaning="one case each",
+        item=table(
+            "case",
+            "one case",
+            LAW,
+            (Number.of(BETA, example=0.4), Number.of(FREQUENCY, example=20.0)),
+            Number.of(AMPLITUDE, example=1.0),
+        ),
+    ),
+)
+
+SOLVER = table(
+    "solver",
+    "how a case is solved",
+    Choice(key="method", meaning="integrator", choices=SOLVERS, default=SOLVERS[0]),
+    Number.of(Quantity("rtol", 1e-6, "relative tolerance", minimum=1e-13, maximum=1e-2)),
+    (
+        Number.of(
+            Quantity(
+                "duration_s",
+                1.5,
+                "simulated time, cut to whole periods and at least kept_periods + 1 of them",
+                above=0.0,
+            )
+        ),
+        _whole("settle_periods", None, "periods run before the kept ones", 1, 100_000, example=60),
+    ),
+    _whole("kept_periods", 3, "periods at the end that are evaluated and stored", 2, 1000),
+    _whole("samples_per_period", 256, "samples of the stored waveforms", 32, 65_536, step=2),
+    Number.of(Quantity("case_timeout_s", 60.0, "time limit of a case on the clock", above=0.0)),
+    default={},
+)
+
+ROOT = table(
+    "",
+    "Config of wedgesweep",
+    Text(key="title", meaning="title of the sweep", default="wedge suspension"),
+    table("suspension", "the paper's Table 1", *map(Number.of, SUSPENSION), default={}),
+    table("friction", "both faces of the wedges", *map(Number.of, FRICTION), default={}),
+    table(
+        "effects",
+        "physics beyond the paper's model; absent: off",
+        *map(_effect, EFFECTS.values()),
+        default={},
+    ),
+    GridOrList(key="sweep", meaning="the cases", grid=GRID, listed=LISTED),
+    SOLVER,
+)

@@ -1,0 +1,173 @@
+"""Kinds of config keys: how each checks what it is given and describes itself to editors.
+
+``read`` returns the value as it will stand in the resolved config, in the key's own unit. What is
+wrong, and what would be right, is appended to ``problems`` with its TOML path; the value returned
+then is None, which also stands for "absent" (TOML has no null).
+"""
+
+import sys
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import isfinite
+from typing import Any, Self
+
+from wedgesweep.config import toml
+from wedgesweep.quantity import Quantity
+
+LARGEST = sys.float_info.max
+
+
+def show(value: Any) -> str:
+    """A value of the config for an error message, cut short."""
+    text = toml.inline(value)
+    return text if len(text) <= 40 else f"{text[:37]}..."
+
+
+def hint(name: str, valid: Iterable[str]) -> str:
+    """The nearest valid name, or all of them."""
+    valid = tuple(valid)
+    close = get_close_matches(name.lower(), valid, n=1, cutoff=0.55)
+    return f'did you mean "{close[0]}"?' if close else f"valid here: {', '.join(valid)}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Key(ABC):
+    """A key of the config.
+
+    Where it is absent ``default`` is read; without a default that is an error unless it is
+    ``optional``. ``example`` stands in the template of a key without default.
+    """
+
+    key: str
+    meaning: str
+    default: Any = None
+    optional: bool = False
+    example: Any = None
+
+    @abstractmethod
+    def read(self, value: Any, path: str, problems: list[str]) -> Any:
+        """Check a value given at the TOML path."""
+
+    @abstractmethod
+    def shape(self) -> dict[str, Any]:
+        """JSON schema of the value alone."""
+
+    @property
+    def limits(self) -> list[str]:
+        """The range of the value in words."""
+        return []
+
+    @property
+    def required(self) -> bool:
+        return self.default is None and not self.optional
+
+    @property
+    def written(self) -> str:
+        """The key as a config would write it."""
+        value = self.example if self.default is None else self.default
+        return f"{self.key} = {'...' if value is None else toml.inline(value)}"
+
+    def schema(self) -> dict[str, Any]:
+        """JSON schema of the value, with the key's meaning and default."""
+        about = {"description": self.meaning}
+        if self.default is not None:
+            about["default"] = self.default
+        return about | self.shape()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Text(Key):
+    """A string."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> str | None:
+        if isinstance(value, str):
+            return value
+        problems.append(f'{path}: {show(value)} is not a string; write it in "quotes"')
+        return None
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": "string"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice(Key):
+    """One name out of a list."""
+
+    choices: tuple[str, ...]
+
+    def read(self, value: Any, path: str, problems: list[str]) -> str | None:
+        if value in self.choices:
+            return value
+        problems.append(f"{path}: unknown name {show(value)}; {hint(str(value), self.choices)}")
+        return None
+
+    def shape(self) -> dict[str, Any]:
+        return {"enum": list(self.choices)}
+
+    @property
+    def limits(self) -> list[str]:
+        return [f"one of {', '.join(self.choices)}"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number(Key):
+    """A finite number within the range of its quantity."""
+
+    quantity: Quantity
+
+    @classmethod
+    def of(cls, quantity: Quantity, **more: Any) -> Self:
+        """Key of a quantity; a default that is not finite (a limit) is no default."""
+        default = quantity.default if isfinite(quantity.default) else None
+        return cls(
+            key=quantity.key, meaning=quantity.meaning, default=default, quantity=quantity, **more
+        )
+
+    @property
+    def limits(self) -> list[str]:
+        faults = (self.quantity.fault(end) for end in (-LARGEST, LARGEST))
+        return [fault for fault in faults if fault]
+
+    def read(self, value: Any, path: str, problems: list[str]) -> float | None:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not is_number or not abs(value) <= LARGEST:
+            problems.append(f"{path}: {show(value)} is not a finite number; write one, unquoted")
+            return None
+        if fault := self.quantity.fault(value):
+            problems.append(f"{path}: {show(value)} is out of range; it {fault}")
+            return None
+        return float(value)
+
+    def shape(self) -> dict[str, Any]:
+        bounds = {
+            "minimum": self.quantity.minimum,
+            "exclusiveMinimum": self.quantity.above,
+            "maximum": self.quantity.maximum,
+            "exclusiveMaximum": self.quantity.below,
+        }
+        return {"type": "number"} | {name: end for name, end in bounds.items() if isfinite(end)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Whole(Number):
+    """A whole number, a multiple of ``step``."""
+
+    step: int = 1
+
+    def read(self, value: Any, path: str, problems: list[str]) -> int | None:
+        if isinstance(value, float):
+            problems.append(f"{path}: {show(value)} is not a whole number; write one, no point")
+            return None
+        if super().read(value, path, problems) is None:
+            return None
+        if value % self.step:
+            problems.append(
+                f"{path}: {value} is out of range; it must be a multiple of {self.step}"
+            )
+            return None
+        return value
+
+    def shape(self) -> dict[str, Any]:
+        return super().shape() | {"type": "integer", "multipleOf": self.step}

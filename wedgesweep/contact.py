@@ -1,0 +1,201 @@
+"""Contact states: on which smooth piece of the equations the system is, and when it leaves it.
+
+An integrator follows one ``Contact`` while all ``switches`` are positive. When one of them reaches
+zero it asks for the ``successor`` and goes on from there; it needs to know nothing else.
+"""
+
+from math import inf
+
+from wedgesweep import excitation, friction
+from wedgesweep.compiled import compiled
+from wedgesweep.damper import Contact, forces, loads
+
+# Places of the switches. For each face: leave the branch toward lower, toward higher slip velocity.
+COLUMN, BOLSTER, GUIDE, COLUMN_NORMAL, BOLSTER_NORMAL = 0, 2, 4, 6, 7
+SWITCHES = 8
+
+# Normal forces below this share of the loads count as zero when the consistent signs are sought.
+ROUNDING = 1e-11
+# Phase (rad) after which a normal force that has changed sign is safely away from zero.
+LOOK_AHEAD = 1e-8
+
+
+@compiled
+def stuck(contact, p):
+    """Whether set-valued friction holds the bolster."""
+    return p.set_valued and contact.column == 0
+
+
+@compiled
+def with_consistent_signs(x, velocity, base_acceleration, contact, p):
+    """The contact with the signs of its normal forces, and whether they are unique.
+
+    Friction acts with |N|, so each combination of signs is its own linear problem; one that returns
+    the signs it assumed is a solution. None, or more than one, means that the wedge locks.
+    """
+    along, into, vertical = loads(x, velocity, base_acceleration, contact.guide, p)
+    zero = ROUNDING * (abs(along) + abs(into) + abs(vertical))
+    found, certain = contact, 0
+    possible = False
+    for column_sign in (1, -1):
+        for bolster_sign in (1, -1):
+            trial = Contact(
+                contact.column, contact.bolster, contact.guide, column_sign, bolster_sign
+            )
+            now = forces(x, velocity, base_acceleration, trial, p)
+            smallest = min(column_sign * now.column, bolster_sign * now.bolster)
+            if smallest > zero:
+                certain += 1
+            if smallest >= -zero and (smallest > zero or not possible):
+                found, possible = trial, True
+    return found, possible and certain <= 1
+
+
+@compiled
+def slipping(direction, p):
+    """Contact of a set-valued law with all faces slipping as z' has the given sign."""
+    bolster = direction if p.bolster_ratio > 0.0 else -direction
+    if p.bolster_ratio == 0.0:
+        bolster = 0
+    return Contact(direction, bolster, direction, 1, 1)
+
+
+@compiled
+def breakaway(x, base_acceleration, direction, p):
+    """Acceleration z'' (m/s^2) if set-valued friction let go in a direction, and whether it is unique."""
+    contact, unique = with_consistent_signs(x, 0.0, base_acceleration, slipping(direction, p), p)
+    return forces(x, 0.0, base_acceleration, contact, p).acceleration, unique
+
+
+@compiled
+def from_rest(x, base_acceleration, p):
+    """Contact that follows z' = 0 under a set-valued law, and whether it is unique."""
+    forward, forward_unique = breakaway(x, base_acceleration, 1, p)
+    backward, backward_unique = breakaway(x, base_acceleration, -1, p)
+    unique = forward_unique and backward_unique and not (forward > 0.0 and backward < 0.0)
+    nearly_none = ROUNDING * (p.gravity + abs(base_acceleration))
+    if forward <= nearly_none and backward >= -nearly_none:
+        return Contact(0, 0, 0, 1, 1), unique
+    contact = slipping(1 if forward > 0.0 else -1, p)
+    contact, signs_unique = with_consistent_signs(x, 0.0, base_acceleration, contact, p)
+    return contact, unique and signs_unique
+
+
+@compiled
+def initial(t, x, velocity, p):
+    """Contact at the start of a run, and whether it is unique."""
+    base_acceleration = excitation.acceleration(t, p)
+    if p.set_valued:
+        if velocity == 0.0:
+            return from_rest(x, base_acceleration, p)
+        contact = slipping(1 if velocity > 0.0 else -1, p)
+    else:
+        contact = Contact(
+            friction.branch_at(p.column_ratio * velocity, p),
+            friction.branch_at(p.bolster_ratio * velocity, p),
+            friction.branch_at(velocity, p),
+            1,
+            1,
+        )
+    return with_consistent_signs(x, velocity, base_acceleration, contact, p)
+
+
+@compiled
+def _face(velocity, branch, p, out):
+    """Distances of a regularised face to the lower and the upper end of its branch."""
+    out[0] = out[1] = inf
+    if branch >= 0:
+        out[0] = velocity - p.threshold_velocity if branch else velocity + p.threshold_velocity
+    if branch <= 0:
+        out[1] = -p.threshold_velocity - velocity if branch else p.threshold_velocity - velocity
+
+
+@compiled
+def switches(t, x, velocity, contact, p, out):
+    """Write the switching functions, shape (SWITCHES,): positive while the contact holds.
+
+    Units are m/s for slip velocities, N for normal forces, m/s^2 for the release of a stuck bolster;
+    a switch that the contact does not have is inf.
+    """
+    out[:] = inf
+    base_acceleration = excitation.acceleration(t, p)
+    if stuck(contact, p):
+        out[COLUMN] = breakaway(x, base_acceleration, -1, p)[0]
+        out[COLUMN + 1] = -breakaway(x, base_acceleration, 1, p)[0]
+        return
+    if p.set_valued:
+        out[COLUMN if contact.column > 0 else COLUMN + 1] = contact.column * velocity
+    else:
+        _face(p.column_ratio * velocity, contact.column, p, out[COLUMN:BOLSTER])
+        _face(p.bolster_ratio * velocity, contact.bolster, p, out[BOLSTER:GUIDE])
+        if p.guide_friction_force > 0.0:
+            _face(velocity, contact.guide, p, out[GUIDE:COLUMN_NORMAL])
+    now = forces(x, velocity, base_acceleration, contact, p)
+    out[COLUMN_NORMAL] = contact.column_sign * now.column
+    out[BOLSTER_NORMAL] = contact.bolster_sign * now.bolster
+
+
+@compiled
+def unique(t, x, velocity, contact, p):
+    """Whether the state has exactly one pair of normal forces; if not, the wedge locks."""
+    base_acceleration = excitation.acceleration(t, p)
+    if stuck(contact, p):
+        return from_rest(x, base_acceleration, p)[1]
+    return with_consistent_signs(x, velocity, base_acceleration, contact, p)[1]
+
+
+@compiled
+def _moved(branch, switch):
+    """Branch beyond a face's lower (even) or upper (odd) switch."""
+    return branch + 1 if switch % 2 else branch - 1
+
+
+@compiled
+def _beyond(contact, switch):
+    """Contact of a regularised law with the face of the switch moved to its next branch."""
+    column, bolster, guide, column_sign, bolster_sign = contact
+    if switch < BOLSTER:
+        column = _moved(column, switch)
+    elif switch < GUIDE:
+        bolster = _moved(bolster, switch)
+    else:
+        guide = _moved(guide, switch)
+    return Contact(column, bolster, guide, column_sign, bolster_sign)
+
+
+@compiled
+def successor(t, x, velocity, contact, switch, p):
+    """Contact after a switch has reached zero, and whether it is unique (if not: locked)."""
+    base_acceleration = excitation.acceleration(t, p)
+    if switch >= COLUMN_NORMAL:
+        # Both forces may vanish at once, and their signs at zero are noise: look a moment ahead.
+        ahead = LOOK_AHEAD / p.omega
+        rate = forces(x, velocity, base_acceleration, contact, p).acceleration
+        return with_consistent_signs(
+            x + velocity * ahead,
+            velocity + rate * ahead,
+            excitation.acceleration(t + ahead, p),
+            contact,
+            p,
+        )
+    if not p.set_valued:
+        contact = _beyond(contact, switch)
+    elif stuck(contact, p):
+        contact = slipping(1 if switch == COLUMN + 1 else -1, p)
+    else:
+        return from_rest(x, base_acceleration, p)
+    return with_consistent_signs(x, velocity, base_acceleration, contact, p)
+
+
+def breakaway_acceleration(p) -> float:
+    """Smallest base acceleration (m/s^2) at which set-valued friction slips from the rest position.
+
+    0 without friction. The normal forces stay positive on the way there, so that z'' is linear in the
+    base acceleration.
+    """
+    limits = []
+    for direction in (1, -1):
+        at_rest = forces(0.0, 0.0, 0.0, slipping(direction, p), p).acceleration
+        driven = forces(0.0, 0.0, 1.0, slipping(direction, p), p).acceleration
+        limits.append(abs(at_rest / (driven - at_rest)))
+    return min(limits)

@@ -1,0 +1,159 @@
+"""The labelled dataset of a sweep: one table of every variable, and its netCDF encoding."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+STATUSES = ("ok", "locked", "time_limit", "solver_failure", "not_finite", "not_run")
+HARMONICS = 9
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the dataset; ``dims`` come after the dimensions that number the cases."""
+
+    name: str
+    units: str
+    long_name: str
+    dims: tuple[str, ...] = ()
+    dtype: str = "f8"
+
+
+PHASE = ("phase",)
+SPECTRUM = ("harmonic", "part")
+
+VARIABLES = (
+    Variable("amplitude_ratio", "1", "half peak-to-peak of x - y over the input amplitude"),
+    Variable("peak_to_peak", "m", "peak-to-peak of the relative displacement x - y"),
+    Variable("peak_velocity", "m s-1", "largest magnitude of the relative velocity x' - y'"),
+    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
+    Variable(
+        "stick_fraction",
+        "1",
+        "share of time stuck (coulomb) or with the column face below the threshold velocity",
+    ),
+    Variable("stick_phases", "1", "number of sticking phases per forcing period"),
+    Variable(
+        "displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM
+    ),
+    Variable(
+        "velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM
+    ),
+    Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
+    Variable("dissipated_energy", "J", "energy dissipated by friction per forcing period"),
+    Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
+    Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
+    Variable(
+        "periodicity",
+        "1",
+        "largest change of x - y from the last period but one to the last, over the input amplitude",
+    ),
+    Variable("status", "1", "outcome of the case", dtype="i1"),
+    Variable("message", "", "reason of a failure, empty otherwise", dtype="str"),
+    Variable("rate_evaluations", "1", "calls of the right-hand side", dtype="i8"),
+    Variable("steps", "1", "steps of the integrator", dtype="i8"),
+    Variable("switches", "1", "located switches between slip branches", dtype="i8"),
+    Variable("wall_time", "s", "wall time of the case"),
+    Variable(
+        "displacement",
+        "m",
+        "relative displacement x - y (side frame minus bolster) from the frictionless rest position",
+        PHASE,
+        "f4",
+    ),
+    Variable("velocity", "m s-1", "relative velocity x' - y'", PHASE, "f4"),
+    Variable("normal_force_column", "N", "normal force on the column face", PHASE, "f4"),
+    Variable("normal_force_bolster", "N", "normal force on the bolster face", PHASE, "f4"),
+    Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", PHASE, "i1"),
+)
+
+GRID = ("friction_law", "beta", "amplitude")
+MESSAGE_BYTES = 200
+
+
+def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
+    """Layout of one finished case: its index and every variable, dimensions from ``sizes``."""
+    fields: list[tuple[Any, ...]] = [("index", "i8")]
+    for variable in VARIABLES:
+        dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
+        fields.append((variable.name, dtype, tuple(sizes[dim] for dim in variable.dims)))
+    return np.dtype(fields)
+
+
+def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
+    """Records of cases that have no numbers: NaN, zero counts, status not_run."""
+    records = np.zeros(len(indices), dtype)
+    for name in dtype.names or ():
+        if dtype[name].base.kind == "f":
+            records[name] = np.nan
+    records["index"] = indices
+    records["status"] = STATUSES.index("not_run")
+    return records
+
+
+def assemble(
+    records: np.ndarray, coords: Mapping[str, Any], shape: tuple[int, ...], attrs: Mapping[str, Any]
+) -> xr.Dataset:
+    """Dataset from the records of all cases, in any order.
+
+    ``shape`` are the sizes of the dimensions that number the cases: three for a grid (friction_law,
+    beta, amplitude), one for a list (case).
+    """
+    case_dims = GRID if len(shape) == 3 else ("case",)
+    ordered = records[np.argsort(records["index"])]
+    variables = {}
+    for variable in VARIABLES:
+        if variable.name not in (records.dtype.names or ()):
+            continue
+        values = ordered[variable.name]
+        if variable.dtype == "str":
+            values = np.char.decode(values, "utf-8", "replace").astype(object)
+        values = values.reshape(shape + values.shape[1:])
+        variables[variable.name] = (case_dims + variable.dims, values, _attributes(variable))
+    return xr.Dataset(variables, coords, {"Conventions": "CF-1.13", **attrs})
+
+
+def coordinates(case_coords: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Any]:
+    """All coordinates: those that number the cases (see ``assemble``) and the dimensions within one."""
+    periods = sizes["phase"] / sizes["samples_per_period"]
+    phase = 2.0 * np.pi * np.arange(sizes["phase"]) / sizes["samples_per_period"]
+    return {
+        **case_coords,
+        "phase": (
+            "phase",
+            phase,
+            {"units": "rad", "long_name": f"phase omega t of the input over {periods:g} kept periods"},
+        ),
+        "harmonic": ("harmonic", np.arange(1, sizes["harmonic"] + 1), {"long_name": "harmonic h"}),
+        "part": ("part", ["real", "imaginary"], {"long_name": "part of the complex coefficient"}),
+    }
+
+
+def _attributes(variable: Variable) -> dict[str, Any]:
+    attributes: dict[str, Any] = {"long_name": variable.long_name}
+    if variable.units:
+        attributes["units"] = variable.units
+    if variable.name == "status":
+        attributes["flag_values"] = np.arange(len(STATUSES), dtype=np.int8)
+        attributes["flag_meanings"] = " ".join(STATUSES)
+    return attributes
+
+
+def write(dataset: xr.Dataset, path: Path) -> None:
+    """Write netCDF to a temporary file beside ``path`` and move it there when it is whole."""
+    compressed = {"zlib": True, "complevel": 1, "shuffle": True}
+    encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
+    for name, variable in dataset.data_vars.items():
+        if variable.dtype.kind in "fi":
+            encoding[str(name)] = compressed
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

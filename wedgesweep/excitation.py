@@ -1,0 +1,23 @@
+"""Motion of the side frame (the paper's Eq. 4): u = a sin(omega t)."""
+
+from math import cos, sin
+
+from wedgesweep.compiled import compiled
+
+
+@compiled
+def displacement(t, p):
+    """u in m."""
+    return p.amplitude * sin(p.omega * t)
+
+
+@compiled
+def acceleration(t, p):
+    """u'' in m/s^2."""
+    return -p.amplitude * p.omega**2 * sin(p.omega * t)
+
+
+@compiled
+def jerk(t, p):
+    """u''' in m/s^3."""
+    return -p.amplitude * p.omega**3 * cos(p.omega * t)

@@ -1,0 +1,73 @@
+"""Which cases of a dataset a figure draws, and what it says if they are not there."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+# Amplitudes shown by default are those at which enough cases slip instead of creeping.
+SLIPS = 0.99  # stick fraction below which a case counts as slipping
+SLIPPING_SHARE = 0.25  # of the cases at an amplitude
+
+
+def require(ds: xr.Dataset, kind: str, *names: str) -> None:
+    """Raise ValueError if a variable or attribute that the figure needs is missing."""
+    missing = [name for name in names if name not in ds.variables and name not in ds.attrs]
+    if missing:
+        message = (
+            f"{kind}: the dataset has no " + ", ".join(missing) + "; "
+            "a dataset of metrics alone cannot show waveforms, run the sweep with them kept"
+            if {"displacement", "velocity", "stuck"} & set(missing)
+            else f"{kind}: the dataset has no " + ", ".join(missing)
+        )
+        raise ValueError(message)
+
+
+def require_grid(ds: xr.Dataset, kind: str, *names: str) -> None:
+    """As ``require``; also refuse a dataset that is a list of cases."""
+    if "case" in ds.dims:
+        message = (
+            f"{kind}: needs a grid of friction_law, beta and amplitude, "
+            "but this dataset is a list of cases; phase-portrait draws such a list"
+        )
+        raise ValueError(message)
+    require(ds, kind, *names)
+
+
+def laws(ds: xr.Dataset, law: str | None = None) -> list[str]:
+    """Friction laws to draw, in the dataset's order: all of them, or the given one."""
+    present = list(dict.fromkeys(str(name) for name in np.atleast_1d(ds["friction_law"].values)))
+    if law is None:
+        return present
+    if law not in present:
+        message = f"no friction law '{law}' in the dataset; it has " + ", ".join(present)
+        raise ValueError(message)
+    return [law]
+
+
+def nearest(values, wanted) -> np.ndarray:
+    """Return indices of the values nearest to the wanted ones, each once, in order of index."""
+    values = np.atleast_1d(values)
+    return np.unique([np.abs(values - value).argmin() for value in np.atleast_1d(wanted)])
+
+
+def spread(indices: Sequence[int] | np.ndarray, count: int) -> np.ndarray:
+    """Keep at most ``count`` of the indices, first and last among them, evenly spread."""
+    indices = np.asarray(indices)
+    places = np.linspace(0, len(indices) - 1, min(count, len(indices)))
+    return indices[places.round().astype(int)]
+
+
+def pick_amplitudes(ds: xr.Dataset, amplitudes, count: int) -> np.ndarray:
+    """Return indices of the amplitudes (m) asked for; by default some at which something slips."""
+    if amplitudes is not None:
+        return nearest(ds["amplitude"], amplitudes)
+    others = [dimension for dimension in ds["stick_fraction"].dims if dimension != "amplitude"]
+    slipping = np.flatnonzero((ds["stick_fraction"] < SLIPS).mean(others) >= SLIPPING_SHARE)
+    return spread(slipping if slipping.size else np.arange(ds.sizes["amplitude"]), count)
+
+
+def samples_per_period(ds: xr.Dataset) -> int:
+    """Count the waveform samples in one forcing period."""
+    phase = ds["phase"].values
+    return round(2.0 * np.pi / (phase[1] - phase[0]))

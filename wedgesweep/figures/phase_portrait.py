@@ -1,0 +1,83 @@
+"""Steady motion in the plane of displacement and velocity, a panel per case."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from wedgesweep.figures import cases, style
+
+NAME = "phase-portrait"
+DESCRIPTION = "velocity over displacement of several cases, stuck parts marked"
+
+AMPLITUDES = 3
+MOST_PANELS = 12
+STILL = 1e-6  # swing over input amplitude below which nothing moves
+
+
+def _from_grid(ds: xr.Dataset, beta: float | None, amplitudes, law: str | None) -> list[xr.Dataset]:
+    """Take cases row by row: an amplitude per row, a law per column."""
+    ds = ds.isel(beta=cases.nearest(ds["beta"], 0.4 if beta is None else beta)[0])
+    ds = ds.isel(amplitude=cases.pick_amplitudes(ds, amplitudes, AMPLITUDES))
+    return [
+        ds.isel(amplitude=place).sel(friction_law=name)
+        for place in range(ds.sizes["amplitude"])
+        for name in cases.laws(ds, law)
+    ]
+
+
+def _from_list(ds: xr.Dataset, beta: float | None, amplitudes, law: str | None) -> list[xr.Dataset]:
+    """Keep the cases of a list that have the nearest values of what is asked for."""
+    keep = np.isin(ds["friction_law"].values, cases.laws(ds, law))
+    for name, wanted in (("beta", beta), ("amplitude", amplitudes)):
+        values = ds[name].values
+        if wanted is not None:
+            keep &= np.isin(values, values[cases.nearest(values, wanted)])
+    return [ds.isel(case=place) for place in np.flatnonzero(keep)]
+
+
+def _draw_still(ax, case: xr.Dataset, omega_n: float) -> None:
+    """Give a case that does not move, or has no result, axes of the size of its input."""
+    reach = np.array([-1.0, 1.0]) * case["amplitude"].item() * style.MM
+    middle = np.nan_to_num(case["displacement"].values[0] * style.MM)
+    ax.set(xlim=middle + reach, ylim=reach * case["beta"].item() * omega_n)
+    note = "no result" if np.isnan(case["displacement"]).all() else "no motion"
+    ax.text(0.5, 0.6, note, transform=ax.transAxes, ha="center", fontsize=8, color=style.GREY)
+
+
+def _draw_case(ax, case: xr.Dataset, omega_n: float) -> None:
+    law, amplitude = case["friction_law"].item(), case["amplitude"].item() * style.MM
+    x, v = case["displacement"].values * style.MM, case["velocity"].values * style.MM
+    stuck = case["stuck"].values == 1
+    ax.plot(x, v, color=style.law_style(law)["color"], linewidth=1.2, zorder=2)
+    ax.plot(x[stuck], v[stuck], "o", color=style.STUCK, markersize=7, markeredgewidth=0, zorder=1)
+    # Written so that NaN counts as still.
+    if not np.ptp(x) > STILL * amplitude:
+        _draw_still(ax, case, omega_n)
+    ax.locator_params(nbins=5)
+    frequency = style.frequency(case["beta"].item(), omega_n)
+    ax.set_title(f"{law}, $a$ = {amplitude:.3g} mm\n{frequency}", fontsize=9)
+
+
+def draw(
+    ds: xr.Dataset, beta: float | None = None, amplitudes=None, law: str | None = None
+) -> Figure:
+    """Draw the nearest beta (default 0.4 on a grid) and amplitudes (m), or a list of cases."""
+    cases.require(ds, NAME, "displacement", "velocity", "stuck", "stick_fraction", "omega_n")
+    choose = _from_list if "case" in ds.dims else _from_grid
+    found = choose(ds, beta, amplitudes, law)
+    if not found:
+        message = f"{NAME}: no case of the dataset has this law, beta and amplitude together"
+        raise ValueError(message)
+    shown = found[:MOST_PANELS]
+    columns = 3 if "case" in ds.dims else len(cases.laws(ds, law))
+    figure, axes = style.panels(len(shown), columns=columns, size=(2.9, 2.5), share=False)
+    for ax, case in zip(axes, shown, strict=True):
+        _draw_case(ax, case, ds.attrs["omega_n"])
+    style.label(axes, style.DISPLACEMENT, style.VELOCITY, columns)
+    left_out = f"; first {len(shown)} of {len(found)} cases" if len(found) > len(shown) else ""
+    style.title(
+        figure,
+        "Phase portraits; yellow: stuck (coulomb) or slip below $v_t$" + left_out,
+        style.SIGN,
+    )
+    return figure

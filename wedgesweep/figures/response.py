@@ -1,0 +1,90 @@
+"""Figs. 5-7: steady waveforms at one frequency, from small to large input amplitudes."""
+
+import math
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from wedgesweep.figures import cases, style
+
+NAME = "response"
+DESCRIPTION = "relative displacement over time and input amplitude at one beta (Figs. 5-7)"
+
+ROWS = 12  # waveforms per panel by default: more would overlap
+PERIODS = 3
+HEIGHT = 0.75  # swing of the largest waveform, in distances between rows
+
+
+def _normalised(ds: xr.Dataset) -> xr.DataArray:
+    """Return (x - y) / a about the middle of its swing."""
+    waves = ds["displacement"] / ds["amplitude"]
+    return waves - 0.5 * (waves.max("phase") + waves.min("phase"))
+
+
+def _even_rows(count: int) -> np.ndarray:
+    """Take every n-th index, the last one (the largest amplitude) among them."""
+    return np.arange(count)[:: -math.ceil(count / ROWS)][::-1]
+
+
+def _draw_row(ax, time, wave, stuck, row: int, color: str) -> None:
+    if np.isnan(wave).all():
+        ax.text(
+            time.mean(), row, "no result", fontsize=7, color=style.GREY, ha="center", va="center"
+        )
+        return
+    ax.plot(time, row + np.where(stuck == 1, wave, np.nan), color=style.STUCK, linewidth=5)
+    ax.plot(time, row + wave, color=color, linewidth=1.2)
+
+
+def _nice(value: float) -> float:
+    """Find the largest of 1, 2, 5 times a power of ten not above the value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return power * max(step for step in (1, 2, 5) if step * power <= value * (1 + 1e-9))
+
+
+def _draw_scale(ax, per_ratio: float, largest: float) -> None:
+    """Draw a bar beside the panel: how high a given x - y is in these rows."""
+    ratio = _nice(largest)
+    where = {"transform": ax.get_yaxis_transform(), "clip_on": False}
+    ax.plot([1.04, 1.04], [0.0, ratio * per_ratio], color="black", linewidth=2, **where)
+    ax.text(
+        1.07, 0.5 * ratio * per_ratio, f"$x-y$\n= {ratio:g} $a$", fontsize=8, va="center", **where
+    )
+
+
+def draw(ds: xr.Dataset, beta: float = 0.3, amplitudes=None) -> Figure:
+    """Draw a row per amplitude (m), each divided by it; a panel per law; the nearest beta."""
+    cases.require_grid(ds, NAME, "displacement", "stuck", "omega_n")
+    place = cases.nearest(ds["beta"], beta)[0]
+    if amplitudes is None:
+        rows = _even_rows(ds.sizes["amplitude"])
+    else:
+        rows = cases.nearest(ds["amplitude"], amplitudes)
+    shown = slice(0, PERIODS * cases.samples_per_period(ds))
+    ds = ds.isel(beta=place, amplitude=rows, phase=shown)
+    waves = _normalised(ds)
+    largest = float(np.nan_to_num(np.abs(waves).max()))
+    per_ratio = HEIGHT / largest if largest > 0.0 else 1.0
+    time = ds["phase"].values / (ds["beta"].item() * ds.attrs["omega_n"])
+    names = cases.laws(ds)
+    figure, axes = style.panels(len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
+    for ax, law in zip(axes, names, strict=True):
+        for row in range(len(rows)):
+            case = {"friction_law": law, "amplitude": ds["amplitude"].values[row]}
+            wave, stuck = waves.sel(case).values * per_ratio, ds["stuck"].sel(case).values
+            _draw_row(ax, time, wave, stuck, row, style.law_style(law)["color"])
+        ax.set_title(law, fontsize=10)
+    axes[0].set_yticks(range(len(rows)), [f"{a * style.MM:.3g}" for a in ds["amplitude"].values])
+    axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))
+    style.label(axes, "time [s]", f"{style.AMPLITUDE}, a row each")
+    if largest > 0.0:
+        _draw_scale(axes[-1], per_ratio, largest)
+    frequency = style.frequency(ds["beta"].item(), ds.attrs["omega_n"])
+    style.title(
+        figure,
+        f"Relative displacement $x-y$ (side frame minus bolster) at {frequency}",
+        "each row divided by its input amplitude, about the middle of its swing; "
+        "yellow: stuck (coulomb) or below $v_t$",
+    )
+    return figure

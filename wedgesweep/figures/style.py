@@ -1,0 +1,128 @@
+"""How every figure looks: colours, panels, and axes with their units."""
+
+from collections.abc import Sequence
+from textwrap import wrap
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+from wedgesweep.friction.names import LAW_NAMES
+
+MM = 1e3  # mm per m
+
+# Okabe and Ito's palette, told apart with any colour vision.
+BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
+PURPLE, YELLOW = "#CC79A7", "#F0E442"
+LAW_STYLES = (
+    {"color": BLUE, "linestyle": "-", "marker": "o"},
+    {"color": VERMILLION, "linestyle": "--", "marker": "s"},
+    {"color": GREEN, "linestyle": "-.", "marker": "^"},
+    {"color": PURPLE, "linestyle": ":", "marker": "D"},
+)
+STUCK = YELLOW  # as a highlighter behind the curve
+GREY = "0.45"
+# The light end of viridis is left out: yellow lines vanish on white.
+SEQUENTIAL = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
+
+CHARACTERS_PER_INCH = 13  # of a title
+
+SIGN = "$x-y$: side frame minus bolster, from the frictionless rest position"
+BETA = "frequency ratio $β = ω/ω_n$"
+AMPLITUDE = "input amplitude $a$ [mm]"
+DISPLACEMENT = "relative displacement $x-y$ [mm]"
+VELOCITY = "relative velocity $x'-y'$ [mm/s]"
+
+
+def law_style(law: str) -> dict[str, str]:
+    """Return colour, line and marker of a law: the same in every figure."""
+    place = LAW_NAMES.index(law) if law in LAW_NAMES else len(LAW_NAMES)
+    return LAW_STYLES[place % len(LAW_STYLES)]
+
+
+def frequency(beta: float, omega_n: float) -> str:
+    """Write a frequency ratio and what it is in Hz."""
+    return f"$β$ = {beta:.4g} ({beta * omega_n / (2.0 * np.pi):.4g} Hz)"
+
+
+def panels(
+    count: int, *, columns: int = 3, size=(3.4, 3.5), margin=(0.8, 0.6), share: bool = True
+) -> tuple[Figure, list[Axes]]:
+    """Make a figure with ``count`` panels of a size in inches; return it and them row by row."""
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    width = max(columns * size[0] + margin[0], 5.2)
+    figure = Figure(figsize=(width, rows * size[1] + margin[1]), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=share, sharey=share, squeeze=False).ravel()
+    for spare in grid[count:]:
+        spare.remove()
+    for ax in grid[:count]:
+        ax.tick_params(labelsize=8, color=GREY)
+        ax.grid(visible=True, color="0.9", linewidth=0.6)
+        ax.set_axisbelow(True)
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.spines[["left", "bottom"]].set_color(GREY)
+    return figure, list(grid[:count])
+
+
+def title(figure: Figure, what: str, note: str = "") -> None:
+    """Write what the figure shows; below it the sign convention or how to read it."""
+    width = int(CHARACTERS_PER_INCH * figure.get_figwidth())
+    lines = [line for text in (what, note) for line in wrap(text, width)]
+    figure.suptitle("\n".join(lines), fontsize=10.5, linespacing=1.4)
+
+
+def label(axes: Sequence[Axes], x: str, y: str, columns: int = 3) -> None:
+    """Label every x axis of the lowest panels of each column, and the y axes on the left."""
+    columns = min(columns, len(axes))
+    for place, ax in enumerate(axes):
+        lowest = place + columns >= len(axes)
+        ax.set_xlabel(x if lowest else "", fontsize=9)
+        ax.set_ylabel("" if place % columns else y, fontsize=9)
+        if lowest:
+            ax.tick_params(labelbottom=True)
+
+
+def add_hertz_axis(ax: Axes, ds: xr.Dataset) -> None:
+    """Add a second axis above: frequency in Hz for the frequency ratios below."""
+    hertz = ds.attrs["omega_n"] / (2.0 * np.pi)
+    top = ax.secondary_xaxis("top", functions=(lambda beta: beta * hertz, lambda f: f / hertz))
+    top.set_xlabel("frequency [Hz]", fontsize=8, color=GREY)
+    top.tick_params(labelsize=8, color=GREY, labelcolor=GREY)
+    top.spines["top"].set_color(GREY)
+
+
+def decimal_ticks(axis) -> None:
+    """Put 1, 2, 5, 10 ... in plain decimals on a logarithmic axis."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())
+
+
+def amplitude_norm(amplitudes: np.ndarray) -> LogNorm:
+    """Scale the colours of input amplitudes (m), in mm."""
+    low, high = amplitudes.min() * MM, amplitudes.max() * MM
+    return LogNorm(low, high) if high > low else LogNorm(0.5 * low, 2.0 * high)
+
+
+def add_amplitude_bar(figure: Figure, axes: Sequence[Axes], norm: LogNorm) -> None:
+    """Add the colour bar of input amplitudes."""
+    bar = figure.colorbar(ScalarMappable(norm, SEQUENTIAL), ax=axes, aspect=30, pad=0.02)
+    decimal_ticks(bar.ax.yaxis)
+    bar.ax.tick_params(labelsize=8)
+    bar.set_label(AMPLITUDE, fontsize=9)
+
+
+def mark_missing(ax: Axes, positions, color: str) -> bool:
+    """Mark cases without a result by crosses on the bottom; return whether there were any."""
+    if len(positions) == 0:
+        return False
+    height = [0.015] * len(positions)
+    place = {"transform": ax.get_xaxis_transform(), "clip_on": False, "zorder": 5}
+    ax.plot(positions, height, "x", color=color, markersize=6, markeredgewidth=1.8, **place)
+    return True

@@ -1,0 +1,62 @@
+"""A number of the configuration: its TOML key with the unit in it, default, range and meaning."""
+
+from dataclasses import dataclass
+from math import inf, pi
+
+# Longest suffix first, so that "_N_per_mm" is not read as "_mm".
+SI_FACTORS = {
+    "_N_per_mm3": 1e9,
+    "_N_per_mm": 1e3,
+    "_N_s_per_m": 1.0,
+    "_m_per_s2": 1.0,
+    "_rad_per_s": 1.0,
+    "_mm_per_s": 1e-3,
+    "_deg": pi / 180.0,
+    "_kg": 1.0,
+    "_mm": 1e-3,
+    "_hz": 1.0,
+    "_N": 1.0,
+    "_s": 1.0,
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number that a config may set.
+
+    ``key`` is its TOML key, whose ending names the unit; ``name`` is the key without that ending and
+    names the same number in SI. The range is in the unit of the key; ``above`` excludes its end.
+    """
+
+    key: str
+    default: float
+    meaning: str
+    minimum: float = -inf
+    above: float = -inf
+    maximum: float = inf
+    below: float = inf
+
+    @property
+    def suffix(self) -> str:
+        return next((suffix for suffix in SI_FACTORS if self.key.endswith(suffix)), "")
+
+    @property
+    def name(self) -> str:
+        return self.key.removesuffix(self.suffix)
+
+    @property
+    def factor(self) -> float:
+        """What turns a number in the key's unit into SI."""
+        return SI_FACTORS.get(self.suffix, 1.0)
+
+    def fault(self, value: float) -> str | None:
+        """Why ``value`` (in the key's unit) cannot be right, or None."""
+        if value < self.minimum:
+            return f"must be at least {self.minimum:g}"
+        if value <= self.above:
+            return f"must be greater than {self.above:g}"
+        if value > self.maximum:
+            return f"must be at most {self.maximum:g}"
+        if value >= self.below:
+            return f"must be less than {self.below:g}"
+        return None

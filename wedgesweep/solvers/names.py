@@ -1,0 +1,3 @@
+"""Config names of the solvers."""
+
+SOLVERS = ("radau",)
