@@ -45,6 +45,8 @@ def with_consistent_signs(x, velocity, base_acceleration, contact, p):
             now = forces(x, velocity, base_acceleration, trial, p)
             smallest = min(column_sign * now.column, bolster_sign * now.bolster)
             if smallest > zero:
+                if p.never_locks:
+                    return trial, True
                 certain += 1
             if smallest >= -zero and (smallest > zero or not possible):
                 found, possible = trial, True
@@ -138,6 +140,8 @@ def switches(t, x, velocity, contact, p, out):
 @compiled
 def unique(t, x, velocity, contact, p):
     """Whether the state has exactly one pair of normal forces; if not, the wedge locks."""
+    if p.never_locks:
+        return True
     base_acceleration = excitation.acceleration(t, p)
     if stuck(contact, p):
         return from_rest(x, base_acceleration, p)[1]

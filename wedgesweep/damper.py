@@ -45,6 +45,7 @@ def prepare(p) -> None:
     p["sin_included"], p["cos_included"] = sin(included), cos(included)
     p["column_ratio"] = p["sin_wedge"] / p["sin_included"]
     p["bolster_ratio"] = -p["sin_column"] / p["sin_included"]
+    p["never_locks"] = _never_locks(p)
     p["rest"] = 0.0
     p["rest"] = -frictionless(0.0, 0.0, p).acceleration / frictionless_stiffness(p)
 
@@ -62,12 +63,33 @@ def reactions(along, into, vertical, column_mu, bolster_mu, p):
               M_b z'' - 2 N_b (sin a + mu_b cos a)            = vertical
     """
     lift = p.sin_wedge + bolster_mu * p.cos_wedge
+    normal = p.cos_included - bolster_mu * p.sin_included
+    inertia = p.wedge_mass * p.column_ratio / p.bolster_mass
+    driving = along - column_mu * into - inertia * vertical
+    bolster = driving / determinant(column_mu, bolster_mu, p)
+    return Forces((vertical + 2.0 * bolster * lift) / p.bolster_mass, into + bolster * normal, bolster)
+
+
+def _never_locks(p) -> bool:
+    """Whether every load has exactly one pair of normal forces, at any slip velocity.
+
+    Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one
+    if and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They
+    are linear in each coefficient of friction, so that the extreme coefficients decide.
+    """
+    most = p["dynamic"] if p["set_valued"] else max(p["dynamic"], p["static"])
+    corners = ((most, most), (most, -most), (-most, most), (-most, -most))
+    return all(determinant(column, bolster, p) > 0.0 for column, bolster in corners)
+
+
+@compiled
+def determinant(column_mu, bolster_mu, p):
+    """Determinant of Newton's equations in ``reactions``, over that of the masses."""
+    lift = p.sin_wedge + bolster_mu * p.cos_wedge
     tangential = p.sin_included + bolster_mu * p.cos_included
     normal = p.cos_included - bolster_mu * p.sin_included
     inertia = p.wedge_mass * p.column_ratio / p.bolster_mass
-    determinant = tangential + column_mu * normal + 2.0 * inertia * lift
-    bolster = (along - column_mu * into - inertia * vertical) / determinant
-    return Forces((vertical + 2.0 * bolster * lift) / p.bolster_mass, into + bolster * normal, bolster)
+    return tangential + column_mu * normal + 2.0 * inertia * lift
 
 
 @compiled

@@ -52,6 +52,7 @@ DERIVED = (
     "cos_column",
     "sin_included",  # of alpha + gamma
     "cos_included",
+    "never_locks",  # 1 if the normal forces are unique whatever the state
     "rest",  # z of the frictionless equilibrium
 )
 

@@ -1,138 +1,143 @@
 """Numbers from the kept window of one run, with the paper's sign: displacement x - y = -z."""
 
 from dataclasses import dataclass
-from math import nan
+from math import atan2, cos, inf, nan, pi, sin
 
 import numpy as np
 
-from wedgesweep import excitation, friction
+from wedgesweep import excitation
 from wedgesweep.compiled import compiled
 from wedgesweep.contact import stuck
 from wedgesweep.damper import Contact, forces
-from wedgesweep.effects import guide_friction
-from wedgesweep.solvers.trajectory import Points, Trajectory, Window
+from wedgesweep.solvers.trajectory import Trajectory
 
+# Names of the numbers in the order in which ``reduce`` returns them (see dataset.VARIABLES).
+NUMBERS = (
+    "amplitude_ratio",
+    "peak_to_peak",
+    "peak_velocity",
+    "mean_displacement",
+    "stick_fraction",
+    "stick_phases",
+    "minimum_normal_force",
+    "lift_off_fraction",
+    "dissipated_energy",
+    "supplied_energy",
+    "phase_lag",
+    "periodicity",
+)
 # A fundamental below this share of the input amplitude has no meaningful phase.
 NO_MOTION = 1e-9
 
 
 @compiled
-def friction_power(velocity, now, contact, p):
-    """Power (W) that friction takes from the suspension on all faces."""
-    column_slip, bolster_slip = p.column_ratio * velocity, p.bolster_ratio * velocity
-    column = friction.coefficient(column_slip, contact.column, p) * abs(now.column) * column_slip
-    bolster = friction.coefficient(bolster_slip, contact.bolster, p) * abs(now.bolster) * bolster_slip
-    return 2.0 * (column + bolster) - guide_friction.force(velocity, contact.guide, p) * velocity
+def fourier(signal, periods, out):
+    """Write D_h, h = 1..n, of signal = Re sum D_h exp(i h omega t); out has shape (n, 2): real, imaginary.
+
+    ``signal`` covers whole forcing periods on an even grid; their mean is taken first.
+    """
+    samples = signal.size // periods
+    mean = np.zeros(samples)
+    for i in range(signal.size):
+        mean[i % samples] += signal[i]
+    for h in range(1, out.shape[0] + 1):
+        turn_cos, turn_sin = cos(2.0 * pi * h / samples), sin(2.0 * pi * h / samples)
+        c, s, real, imaginary = 1.0, 0.0, 0.0, 0.0
+        for i in range(samples):
+            real += mean[i] * c
+            imaginary -= mean[i] * s
+            c, s = c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin
+        out[h - 1, 0] = 2.0 * real / signal.size
+        out[h - 1, 1] = 2.0 * imaginary / signal.size
 
 
 @compiled
-def along(t, x, velocity, contacts, parameters):
-    """Normal forces on column and bolster (N; NaN while stuck) and friction power (W), shape (3, n)."""
-    p = parameters[0]
-    out = np.empty((3, t.size))
+def _phase_lag(real, imaginary, amplitude):
+    """Lag (rad, -pi to pi) of a fundamental behind u = a sin(omega t) = Re -i a exp(i omega t)."""
+    if real * real + imaginary * imaginary < (NO_MOTION * amplitude) ** 2:
+        return nan
+    # The angle of -i / (real + i imaginary).
+    return atan2(-real, -imaginary)
+
+
+@compiled
+def _change(signal, periods):
+    """Largest difference between the last period and the one before it."""
+    samples = signal.size // periods
+    largest = 0.0
+    for i in range(signal.size - samples, signal.size):
+        largest = max(largest, abs(signal[i] - signal[i - samples]))
+    return largest
+
+
+@compiled
+def reduce(tally, x, velocity, periods, p, numbers, spectra):
+    """Write the numbers, shape (len(NUMBERS),), and the spectra of displacement and velocity.
+
+    ``x`` and ``velocity`` are the samples of the kept window; ``spectra`` has shape (2, n, 2): displacement
+    or velocity, harmonic, real or imaginary part.
+    """
+    fourier(-x, periods, spectra[0])
+    fourier(-velocity, periods, spectra[1])
+    peak_to_peak = tally.highest - tally.lowest
+    slipping_time = tally.time - (tally.stuck_time if p.set_valued else 0.0)
+    # The window closes on itself: sticking that runs over its end is one phase.
+    onsets = tally.onsets - tally.began_stuck * tally.is_stuck
+    numbers[0] = 0.5 * peak_to_peak / p.amplitude
+    numbers[1] = peak_to_peak
+    numbers[2] = tally.peak_velocity
+    numbers[3] = -tally.integral / tally.time
+    numbers[4] = tally.stuck_time / tally.time
+    numbers[5] = onsets / periods
+    numbers[6] = tally.normal_force if tally.normal_force < inf else nan
+    numbers[7] = tally.lifted_time / slipping_time if slipping_time > 0.0 else nan
+    numbers[8] = tally.dissipated / periods
+    numbers[9] = tally.supplied / periods
+    numbers[10] = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], p.amplitude)
+    numbers[11] = _change(x, periods) / p.amplitude
+
+
+@compiled
+def normal_forces(t, x, velocity, contacts, p, out):
+    """Write the normal forces on column and bolster (N; NaN while stuck), shape (2, n)."""
     for i in range(t.size):
         row = contacts[i]
         contact = Contact(int(row[0]), int(row[1]), int(row[2]), int(row[3]), int(row[4]))
         now = forces(x[i], velocity[i], excitation.acceleration(t[i], p), contact, p)
         out[0, i], out[1, i] = now.column, now.bolster
-        out[2, i] = friction_power(velocity[i], now, contact, p)
         if stuck(contact, p):
-            out[0, i] = out[1, i] = nan
-            out[2, i] = 0.0
-    return out
+            out[:, i] = nan
 
 
 @dataclass(frozen=True)
 class Response:
-    """Variables of dataset.VARIABLES that follow from one trajectory, by name (SI units)."""
+    """What a run comes to: variables of dataset.VARIABLES by name (SI units).
+
+    ``spectra`` have shape (harmonics, 2), real and imaginary parts; ``waveforms`` shape (samples,).
+    """
 
     numbers: dict[str, float]
     spectra: dict[str, np.ndarray]
     waveforms: dict[str, np.ndarray]
 
 
-def evaluate(
-    trajectory: Trajectory, window: Window, parameters: np.ndarray, harmonics: int
-) -> Response:
-    """Reduce a trajectory to its numbers, spectra (shape (harmonics,), complex) and waveforms."""
-    amplitude = float(parameters["amplitude"][0])
-    nodes, samples = trajectory.nodes, trajectory.samples
-    displacement, velocity = -samples.x, -samples.velocity
-    column, bolster, _ = _along(samples, parameters)
-    spectra = {
-        "displacement_harmonics": _spectrum(displacement, window, harmonics),
-        "velocity_harmonics": _spectrum(velocity, window, harmonics),
-    }
-    numbers = {
-        **_motion(nodes, amplitude),
-        **_sticking(nodes, window),
-        **_contact_forces(nodes, parameters, window),
-        "phase_lag": _phase_lag(spectra["displacement_harmonics"][0], amplitude),
-        "periodicity": _change(displacement, window) / amplitude,
-    }
+def evaluate(trajectory: Trajectory, parameters: np.ndarray, harmonics: int) -> Response:
+    """Reduce a trajectory to its response."""
+    samples = trajectory.samples
+    numbers, spectra = np.empty(len(NUMBERS)), np.empty((2, harmonics, 2))
+    p, tally = parameters[0], trajectory.tally[0]
+    reduce(tally, samples.x, samples.velocity, trajectory.periods, p, numbers, spectra)
+    normal = np.empty((2, samples.t.size))
+    normal_forces(samples.t, samples.x, samples.velocity, samples.contact, p, normal)
     waveforms = {
-        "displacement": displacement,
-        "velocity": velocity,
-        "normal_force_column": column,
-        "normal_force_bolster": bolster,
+        "displacement": -samples.x,
+        "velocity": -samples.velocity,
+        "normal_force_column": normal[0],
+        "normal_force_bolster": normal[1],
         "stuck": samples.contact[:, 0] == 0,
     }
-    return Response(numbers, spectra, waveforms)
-
-
-def _along(points: Points, parameters: np.ndarray) -> np.ndarray:
-    return along(points.t, points.x, points.velocity, points.contact, parameters)
-
-
-def _motion(nodes: Points, amplitude: float) -> dict[str, float]:
-    peak_to_peak = float(np.ptp(nodes.x))
-    return {
-        "amplitude_ratio": 0.5 * peak_to_peak / amplitude,
-        "peak_to_peak": peak_to_peak,
-        "peak_velocity": float(np.abs(nodes.velocity).max()),
-        "mean_displacement": -float(np.average(nodes.x, weights=nodes.weight)),
-    }
-
-
-def _sticking(nodes: Points, window: Window) -> dict[str, float]:
-    lasting = nodes.weight > 0.0
-    is_stuck, weight = nodes.contact[lasting, 0] == 0, nodes.weight[lasting]
-    onsets = np.count_nonzero(is_stuck & ~np.roll(is_stuck, 1))
-    return {
-        "stick_fraction": float(weight[is_stuck].sum() / weight.sum()),
-        "stick_phases": onsets / window.periods,
-    }
-
-
-def _contact_forces(nodes: Points, parameters: np.ndarray, window: Window) -> dict[str, float]:
-    column, bolster, power = _along(nodes, parameters)
-    numbers = {
-        "dissipated_energy": float(power @ nodes.weight / window.periods),
-        "minimum_normal_force": nan,
-        "lift_off_fraction": nan,
-    }
-    slips = ~np.isnan(column)
-    if slips.any():
-        lifted = slips & (nodes.contact[:, 3:].min(axis=1) < 0)
-        share = nodes.weight[lifted].sum() / nodes.weight[slips].sum()
-        numbers["minimum_normal_force"] = float(np.minimum(column, bolster)[slips].min())
-        numbers["lift_off_fraction"] = float(share)
-    return numbers
-
-
-def _spectrum(signal: np.ndarray, window: Window, harmonics: int) -> np.ndarray:
-    """Coefficients D_h of signal = Re sum D_h exp(i h omega t), h = 1..harmonics."""
-    return 2.0 * np.fft.rfft(signal)[window.periods :: window.periods][:harmonics] / signal.size
-
-
-def _phase_lag(fundamental: complex, amplitude: float) -> float:
-    """Lag (rad, -pi to pi) behind u = a sin(omega t) = Re -i a exp(i omega t)."""
-    if abs(fundamental) < NO_MOTION * amplitude:
-        return nan
-    return float(np.angle(-1j * amplitude / fundamental))
-
-
-def _change(signal: np.ndarray, window: Window) -> float:
-    """Largest difference between the last period and the one before it."""
-    periods = signal.reshape(window.periods, window.samples_per_period)
-    return float(np.abs(periods[-1] - periods[-2]).max())
+    return Response(
+        dict(zip(NUMBERS, numbers.tolist(), strict=True)),
+        {"displacement_harmonics": spectra[0], "velocity_harmonics": spectra[1]},
+        waveforms,
+    )

@@ -18,4 +18,4 @@ def evaluated(record, settle_periods=60, periods=2, rtol=1e-6, samples_per_perio
     """Numbers, spectra and waveforms of the response after a settling time."""
     window = Window(float(record["omega"][0]), settle_periods, periods, samples_per_period)
     run = radau.solve(record, window, rtol, time_limit=120.0)
-    return response.evaluate(run, window, record, harmonics=9)
+    return response.evaluate(run, record, harmonics=9)

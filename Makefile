@@ -1,0 +1,43 @@
+# `make run` and `make test` need Python >= 3.11 and make, nothing else.
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+OUT    ?= out
+
+.DEFAULT_GOAL := help
+
+help:  ## show this list
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
+
+install: $(BIN)/.installed  ## make .venv and install wedgesweep with its test tools
+
+$(BIN)/.installed: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable '.[test]'
+	touch $@
+
+run: install  ## run configs/quick.toml: dataset and figures into out/
+	mkdir -p $(OUT)
+	$(BIN)/wedgesweep run configs/quick.toml -o $(OUT)/quick.nc
+	$(BIN)/wedgesweep plot all $(OUT)/quick.nc -o $(OUT)/quick-figures
+
+test: install  ## all tests
+	$(BIN)/python -m pytest -q
+
+check: install  ## linter, types and tests
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -q
+
+reproduce: install  ## run the paper's 1,800 cases and check its claims
+	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
+
+bench: install  ## benchmarks, as ratios in one run
+	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
+
+clean:  ## remove what the other targets made
+	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+
+.PHONY: help install run test check reproduce bench clean

@@ -1,0 +1,283 @@
+"""Slip in closed form: with constant friction coefficients the suspension is a linear oscillator.
+
+    x'' = c0 + cx x + cu u''      N = n0 + nx x + nu u''  on either face
+    x(t) = centre + forced sin(omega t) + A cos(Omega s) + B sin(Omega s),   s = t - start
+
+A scan with rotation matrices (no trigonometry) finds the interval of the first switch, a safeguarded
+Newton iteration the switch itself, to rounding error.
+"""
+
+from math import cos, inf, pi, sin, sqrt
+from typing import NamedTuple
+
+from wedgesweep import friction
+from wedgesweep.compiled import compiled
+from wedgesweep.contact import BOLSTER, COLUMN, COLUMN_NORMAL, GUIDE
+from wedgesweep.damper import forces, spring_response
+from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
+
+# Scanned intervals per period of input or free vibration, whichever is shorter.
+SCAN = 24
+# Closer to the input frequency than this the forced and the free part nearly cancel.
+RESONANT = 1e-6
+VELOCITY = 0
+
+
+class Oscillator(NamedTuple):
+    """One contact's linear equations, solved: see the module's docstring."""
+
+    linear: bool
+    frequency: float  # Omega, rad/s
+    centre: float  # m
+    forced: float  # m
+    column: float
+    column_x: float
+    column_u: float
+    bolster: float
+    bolster_x: float
+    bolster_u: float
+    threshold: float  # of |z'|, below which the contact ends
+    switch: int  # which place in contact.switches that is
+
+
+@compiled
+def _threshold(contact, p):
+    """Smallest |z'| of a contact whose faces all slip, and the switch that ends it there."""
+    if p.set_valued:
+        return 0.0, COLUMN if contact.column > 0 else COLUMN + 1
+    threshold = p.threshold_velocity / p.column_ratio
+    switch = COLUMN if contact.column > 0 else COLUMN + 1
+    if p.bolster_ratio != 0.0 and p.threshold_velocity / abs(p.bolster_ratio) > threshold:
+        threshold = p.threshold_velocity / abs(p.bolster_ratio)
+        switch = BOLSTER if contact.bolster > 0 else BOLSTER + 1
+    if p.guide_friction_force > 0.0 and p.threshold_velocity > threshold:
+        threshold = p.threshold_velocity
+        switch = GUIDE if contact.guide > 0 else GUIDE + 1
+    return threshold, switch
+
+
+@compiled
+def constant_friction(contact, p):
+    """Whether no coefficient of friction depends on velocity on this contact."""
+    if p.law == 0:
+        return True
+    bolster = contact.bolster != 0 or p.bolster_ratio == 0.0
+    guide = contact.guide != 0 or p.guide_friction_force == 0.0
+    return p.law == 1 and contact.column != 0 and bolster and guide
+
+
+@compiled
+def oscillator(contact, p):
+    """Closed form of a contact with constant friction; ``linear`` is False where there is none."""
+    at_rest = forces(0.0, 0.0, 0.0, contact, p)
+    driven = forces(0.0, 0.0, 1.0, contact, p)
+    column_mu = contact.column_sign * friction.coefficient(0.0, contact.column, p)
+    bolster_mu = contact.bolster_sign * friction.coefficient(0.0, contact.bolster, p)
+    by_x = spring_response(column_mu, bolster_mu, p)
+    square = -by_x.acceleration
+    linear = square > 0.0 and abs(square - p.omega**2) > RESONANT * p.omega**2
+    if not linear:
+        square = inf
+    by_u = driven.acceleration - at_rest.acceleration
+    threshold, switch = _threshold(contact, p)
+    return Oscillator(
+        linear,
+        sqrt(square),
+        at_rest.acceleration / square,
+        by_u * p.amplitude * p.omega**2 / (p.omega**2 - square),
+        at_rest.column,
+        by_x.column,
+        driven.column - at_rest.column,
+        at_rest.bolster,
+        by_x.bolster,
+        driven.bolster - at_rest.bolster,
+        threshold,
+        switch,
+    )
+
+
+class Phase(NamedTuple):
+    """Where the oscillator is: input (cos, sin) and the free part (m) with its quadrature."""
+
+    cosine: float
+    sine: float
+    free: float
+    quadrature: float
+
+
+@compiled
+def phase_of(t, x, velocity, o, p):
+    """Phase of a state at time t."""
+    c, s = cos(p.omega * t), sin(p.omega * t)
+    free = x - o.centre - o.forced * s
+    quadrature = (velocity - o.forced * p.omega * c) / o.frequency
+    return Phase(c, s, free, quadrature)
+
+
+@compiled
+def turned(f, input_cos, input_sin, free_cos, free_sin):
+    """Phase after both parts have turned by the given angles."""
+    return Phase(
+        f.cosine * input_cos - f.sine * input_sin,
+        f.sine * input_cos + f.cosine * input_sin,
+        f.free * free_cos + f.quadrature * free_sin,
+        f.quadrature * free_cos - f.free * free_sin,
+    )
+
+
+@compiled
+def after(f, time, o, p):
+    """Phase some time (s) later."""
+    a, b = p.omega * time, o.frequency * time
+    return turned(f, cos(a), sin(a), cos(b), sin(b))
+
+
+@compiled
+def state(f, o, p):
+    """Deflection (m) and velocity (m/s)."""
+    x = o.centre + o.forced * f.sine + f.free
+    return x, o.forced * p.omega * f.cosine + o.frequency * f.quadrature
+
+
+@compiled
+def acceleration(f, o, p):
+    """x'' in m/s^2."""
+    return -o.forced * p.omega**2 * f.sine - o.frequency**2 * f.free
+
+
+@compiled
+def switch_and_slope(which, f, o, contact, p):
+    """A switching function and its time derivative; ``which``: 0 velocity, 1 and 2 normal forces."""
+    x, velocity = state(f, o, p)
+    if which == VELOCITY:
+        return contact.column * velocity - o.threshold, contact.column * acceleration(f, o, p)
+    u2 = -p.amplitude * p.omega**2 * f.sine
+    u3 = -p.amplitude * p.omega**3 * f.cosine
+    if which == 1:
+        sign = contact.column_sign
+        return (
+            sign * (o.column + o.column_x * x + o.column_u * u2),
+            sign * (o.column_x * velocity + o.column_u * u3),
+        )
+    sign = contact.bolster_sign
+    return (
+        sign * (o.bolster + o.bolster_x * x + o.bolster_u * u2),
+        sign * (o.bolster_x * velocity + o.bolster_u * u3),
+    )
+
+
+@compiled
+def _zero(which, f, low, high, o, contact, p):
+    """Zero of a switching function that is positive at ``low`` and not at ``high`` (s after f)."""
+    time = high
+    value, slope = switch_and_slope(which, after(f, time, o, p), o, contact, p)
+    for _ in range(60):
+        if value > 0.0:
+            low = time
+        else:
+            high = time
+        newton = time - value / slope if slope != 0.0 else low
+        if not low < newton < high:
+            newton = 0.5 * (low + high)
+        if abs(newton - time) <= 4e-16 * (abs(time) + 1.0 / p.omega) or newton in (low, high):
+            return newton
+        time = newton
+        value, slope = switch_and_slope(which, after(f, time, o, p), o, contact, p)
+    return time
+
+
+@compiled
+def _lowest_slope(which, f, high, o, contact, p):
+    """Time of the minimum of a switching function whose slope turns positive before ``high``."""
+    low = 0.0
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if switch_and_slope(which, after(f, middle, o, p), o, contact, p)[1] < 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@compiled
+def _crossing(which, f, step, ends, o, contact, p, at_zero):
+    """Time of the first zero within a step, or inf; ``ends``: values and slopes at both ends."""
+    before, before_slope, value, slope = ends
+    if value > 0.0:
+        dips = before_slope < 0.0 < slope and before + before_slope * step < 0.5 * before
+        if at_zero or not dips:
+            return inf
+        step = _lowest_slope(which, f, step, o, contact, p)
+        if switch_and_slope(which, after(f, step, o, p), o, contact, p)[0] > 0.0:
+            return inf
+    low = 0.0
+    if at_zero:
+        # The step starts on the switch itself: find a place behind it where the function is positive.
+        low = 0.5 * step
+        while switch_and_slope(which, after(f, low, o, p), o, contact, p)[0] <= 0.0:
+            step = low
+            low *= 0.5
+            if low * p.omega < 1e-12:
+                return 0.0
+    return _zero(which, f, low, step, o, contact, p)
+
+
+@compiled
+def slide(t, stop, x, velocity, contact, o, p, last_switch):
+    """Follow slip until its first switch or ``stop``: time, x, velocity and the switch (-1: none)."""
+    step = 2.0 * pi / max(p.omega, o.frequency) / SCAN
+    a, b = p.omega * step, o.frequency * step
+    turns = cos(a), sin(a), cos(b), sin(b)
+    f = phase_of(t, x, velocity, o, p)
+    before = (
+        switch_and_slope(0, f, o, contact, p),
+        switch_and_slope(1, f, o, contact, p),
+        switch_and_slope(2, f, o, contact, p),
+    )
+    first, start = True, t
+    while t < stop:
+        span = min(step, stop - t)
+        g = turned(f, turns[0], turns[1], turns[2], turns[3]) if span == step else after(f, span, o, p)
+        now = (
+            switch_and_slope(0, g, o, contact, p),
+            switch_and_slope(1, g, o, contact, p),
+            switch_and_slope(2, g, o, contact, p),
+        )
+        earliest, which = inf, -1
+        for i in range(3):
+            ends = before[i][0], before[i][1], now[i][0], now[i][1]
+            if ends[2] > 0.0 and not (ends[1] < 0.0 < ends[3]):
+                continue
+            passed = last_switch == o.switch if i == 0 else last_switch == COLUMN_NORMAL - 1 + i
+            at_zero = first and (passed or (i == 0 and velocity == 0.0) or ends[0] <= 0.0)
+            crossing = _crossing(i, f, span, ends, o, contact, p, at_zero)
+            if crossing < earliest:
+                earliest, which = crossing, i
+        if which >= 0:
+            x, velocity = state(after(f, earliest, o, p), o, p)
+            place = o.switch if which == 0 else COLUMN_NORMAL - 1 + which
+            return t + earliest, x, velocity, place
+        first = False
+        t += span
+        f, before = g, now
+    x, velocity = state(f, o, p)
+    return stop, x, velocity, -1
+
+
+@compiled
+def keep(t, end, x, velocity, contact, o, recorder, p):
+    """Keep a piece that ``slide`` has followed from the state at t to ``end``."""
+    f = phase_of(t, x, velocity, o, p)
+    put_node(t, x, velocity, 0.0, contact, recorder, p)
+    parts = int((end - t) * max(p.omega, o.frequency) / (2.0 * pi) * SCAN / 2.0) + 1
+    span = (end - t) / parts
+    for part in range(parts):
+        for node in range(len(NODES)):
+            time = span * (part + NODES[node])
+            x, velocity = state(after(f, time, o, p), o, p)
+            put_node(t + time, x, velocity, span * WEIGHTS[node], contact, recorder, p)
+    x, velocity = state(after(f, end - t, o, p), o, p)
+    put_node(end, x, velocity, 0.0, contact, recorder, p)
+    for i in range(first_sample(t, recorder), first_sample(end, recorder)):
+        x, velocity = state(after(f, recorder.start + i * recorder.step - t, o, p), o, p)
+        put_sample(i, x, velocity, contact, recorder)

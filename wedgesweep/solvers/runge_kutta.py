@@ -1,0 +1,263 @@
+"""Slip under friction that varies with velocity: Dormand and Prince's 5(4) pair (1980).
+
+Adaptive steps with the first-same-as-last stage; between steps the quintic through deflection, velocity
+and acceleration at both ends. A switch is located on that quintic.
+"""
+
+from math import inf, pi, sqrt
+
+import numpy as np
+
+from wedgesweep import excitation
+from wedgesweep.compiled import compiled
+from wedgesweep.contact import (
+    BOLSTER,
+    COLUMN,
+    COLUMN_NORMAL,
+    GUIDE,
+    LOOK_AHEAD,
+    SWITCHES,
+    switches,
+    unique,
+)
+from wedgesweep.damper import forces
+from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
+from wedgesweep.solvers.sticking import LOCKED
+
+# Share of the input amplitude and velocity, times rtol, that an error may always have.
+ABSOLUTE = 1e-2
+# Steps per forcing period at the least; a longer one could step over a whole motion.
+LEAST = 12
+SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+SHORTEST = 1e-13
+FAILED = -3
+
+
+@compiled
+def rate(t, x, velocity, contact, p):
+    """x'' in m/s^2."""
+    return forces(x, velocity, excitation.acceleration(t, p), contact, p).acceleration
+
+
+@compiled
+def step(t, h, x, v, a, contact, p):
+    """One step from (x, v) with acceleration a: the new state, its acceleration, and two errors."""
+    a2 = rate(t + h / 5, x + h * v / 5, v + h * a / 5, contact, p)
+    v2 = v + h * a / 5
+    v3 = v + h * (3 / 40 * a + 9 / 40 * a2)
+    a3 = rate(t + 3 / 10 * h, x + h * (3 / 40 * v + 9 / 40 * v2), v3, contact, p)
+    v4 = v + h * (44 / 45 * a - 56 / 15 * a2 + 32 / 9 * a3)
+    x4 = x + h * (44 / 45 * v - 56 / 15 * v2 + 32 / 9 * v3)
+    a4 = rate(t + 4 / 5 * h, x4, v4, contact, p)
+    v5 = v + h * (19372 / 6561 * a - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
+    x5 = x + h * (19372 / 6561 * v - 25360 / 2187 * v2 + 64448 / 6561 * v3 - 212 / 729 * v4)
+    a5 = rate(t + 8 / 9 * h, x5, v5, contact, p)
+    v6 = v + h * (
+        9017 / 3168 * a - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
+    )
+    x6 = x + h * (
+        9017 / 3168 * v - 355 / 33 * v2 + 46732 / 5247 * v3 + 49 / 176 * v4 - 5103 / 18656 * v5
+    )
+    a6 = rate(t + h, x6, v6, contact, p)
+    v7 = v + h * (
+        35 / 384 * a + 500 / 1113 * a3 + 125 / 192 * a4 - 2187 / 6784 * a5 + 11 / 84 * a6
+    )
+    x7 = x + h * (
+        35 / 384 * v + 500 / 1113 * v3 + 125 / 192 * v4 - 2187 / 6784 * v5 + 11 / 84 * v6
+    )
+    a7 = rate(t + h, x7, v7, contact, p)
+    error_x = h * (
+        71 / 57600 * v
+        - 71 / 16695 * v3
+        + 71 / 1920 * v4
+        - 17253 / 339200 * v5
+        + 22 / 525 * v6
+        - v7 / 40
+    )
+    error_v = h * (
+        71 / 57600 * a
+        - 71 / 16695 * a3
+        + 71 / 1920 * a4
+        - 17253 / 339200 * a5
+        + 22 / 525 * a6
+        - a7 / 40
+    )
+    return x7, v7, a7, error_x, error_v
+
+
+@compiled
+def quintic(s, h, start, end):
+    """Deflection, velocity and acceleration at share s of a step, from both ends (x, v, a)."""
+    x0, v0, a0 = start[0], start[1] * h, start[2] * h * h
+    x1, v1, a1 = end[0], end[1] * h, end[2] * h * h
+    rise = x1 - x0 - v0 - 0.5 * a0
+    turn = v1 - v0 - a0
+    bend = a1 - a0
+    c3 = 10.0 * rise - 4.0 * turn + 0.5 * bend
+    c4 = -15.0 * rise + 7.0 * turn - bend
+    c5 = 6.0 * rise - 3.0 * turn + 0.5 * bend
+    x = x0 + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
+    v = v0 + s * (a0 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))
+    a = a0 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))
+    return x, v / h, a / (h * h)
+
+
+@compiled
+def _value(place, s, t, h, start, end, contact, p, out):
+    """One switching function at share s of a step."""
+    x, v, _ = quintic(s, h, start, end)
+    switches(t + s * h, x, v, contact, p, out)
+    return out[place]
+
+
+@compiled
+def _zero(place, low, high, t, h, start, end, contact, p, out):
+    """Share of a step at which a switch, positive at ``low`` and not at ``high``, is zero (ITP-like)."""
+    below = _value(place, high, t, h, start, end, contact, p, out)
+    above = _value(place, low, t, h, start, end, contact, p, out)
+    for i in range(60):
+        # Illinois with a bisection every fourth time.
+        middle = high - below * (high - low) / (below - above) if i % 4 != 3 else 0.5 * (low + high)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        value = _value(place, middle, t, h, start, end, contact, p, out)
+        if value > 0.0:
+            low, above = middle, value
+            below *= 0.5
+        else:
+            high, below = middle, value
+            above *= 0.5
+        if high - low < 4e-16 or value == 0.0:
+            break
+    return high
+
+
+@compiled
+def _peak(start, end, h):
+    """Share of a step at which the velocity is extreme, -1 where it is not."""
+    if start[2] * end[2] >= 0.0:
+        return -1.0
+    low, high = 0.0, 1.0
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        if quintic(middle, h, start, end)[2] * start[2] > 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@compiled
+def _just_passed(place, last_switch):
+    return last_switch >= 0 and place // 2 == last_switch // 2
+
+
+@compiled
+def _first_switch(t, h, share, start, end, contact, p, last_switch, out, trial):
+    """Share and place of the first switch up to ``share`` of a step, where switches are in ``out``.
+
+    The place is -1 if there is none; the share is 0 if a switch that begins at zero has no positive part
+    that this step can see.
+    """
+    earliest, first = inf, -1
+    for place in range(SWITCHES):
+        if out[place] > 0.0:
+            continue
+        low = 0.0
+        if _just_passed(place, last_switch) or _value(place, 0.0, t, h, start, end, contact, p, trial) <= 0.0:
+            low = 0.5 * share
+            while _value(place, low, t, h, start, end, contact, p, trial) <= 0.0:
+                low *= 0.5
+                if low * h * p.omega < 1e-13:
+                    return 0.0, place
+        zero = _zero(place, low, share, t, h, start, end, contact, p, trial)
+        if zero < earliest:
+            earliest, first = zero, place
+    return earliest, first
+
+
+@compiled
+def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, statistics):
+    """Follow slip until its first switch or ``stop``.
+
+    Returns time, x, velocity, the switch (-1: none, LOCKED, FAILED) and the last step (s), from which the
+    next piece may begin.
+    """
+    out, trial = np.empty(SWITCHES), np.empty(SWITCHES)
+    longest = 2.0 * pi / p.omega / LEAST
+    size_x, size_v = ABSOLUTE * p.amplitude, ABSOLUTE * p.amplitude * p.omega
+    a = rate(t, x, v, contact, p)
+    first = True
+    while t < stop:
+        h = min(h, longest)
+        taken = min(h, stop - t)
+        x1, v1, a1, error_x, error_v = step(t, taken, x, v, a, contact, p)
+        statistics[0] += 6
+        scaled_x = error_x / (rtol * (size_x + max(abs(x), abs(x1))))
+        scaled_v = error_v / (rtol * (size_v + max(abs(v), abs(v1))))
+        error = sqrt(0.5 * (scaled_x**2 + scaled_v**2))
+        if not error <= 1.0:
+            h = taken * max(SHRINK, SAFETY * error**-0.2) if error < inf else taken * SHRINK
+            if h < SHORTEST * longest:
+                return t, x, v, FAILED, h
+            continue
+        statistics[1] += 1
+        start, end = (x, v, a), (x1, v1, a1)
+        share, place = 1.0, -1
+        peak = _peak(start, end, taken)
+        if peak > 0.0:
+            _value(0, peak, t, taken, start, end, contact, p, out)
+            share, place = _first_switch(
+                t, taken, peak, start, end, contact, p, last_switch if first else -1, out, trial
+            )
+        if place < 0:
+            _value(0, 1.0, t, taken, start, end, contact, p, out)
+            share, place = _first_switch(
+                t, taken, 1.0, start, end, contact, p, last_switch if first else -1, out, trial
+            )
+        if place < 0:
+            share = 1.0
+        if keeping:
+            keep(t, taken, share, start, end, contact, recorder, p)
+        if place >= 0:
+            x, v, a = quintic(share, taken, start, end)
+            return t + share * taken, x, v, place, h
+        if not unique(t + taken, x1, v1, contact, p):
+            return t, x, v, LOCKED, h
+        t = stop if taken == stop - t else t + taken
+        x, v, a, first = x1, v1, a1, False
+        grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** -0.2)
+        h = max(h, grown) if taken < h else grown
+    return stop, x, v, -1, h
+
+
+@compiled
+def keep(t, h, share, start, end, contact, recorder, p):
+    """Keep a step up to some share of it."""
+    put_node(t, start[0], start[1], 0.0, contact, recorder, p)
+    for node in range(len(NODES)):
+        s = share * NODES[node]
+        x, v, _ = quintic(s, h, start, end)
+        put_node(t + s * h, x, v, share * h * WEIGHTS[node], contact, recorder, p)
+    x, v, _ = quintic(share, h, start, end)
+    put_node(t + share * h, x, v, 0.0, contact, recorder, p)
+    if start[1] * v < 0.0:
+        s = turning_point(share, h, start, end)
+        x, v, _ = quintic(s, h, start, end)
+        put_node(t + s * h, x, v, 0.0, contact, recorder, p)
+    for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
+        x, v, _ = quintic((recorder.start + i * recorder.step - t) / h, h, start, end)
+        put_sample(i, x, v, contact, recorder)
+
+
+@compiled
+def turning_point(share, h, start, end):
+    """Share of a step, below the given one, at which x is extreme."""
+    low, high = 0.0, share
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if quintic(middle, h, start, end)[1] * start[1] > 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
