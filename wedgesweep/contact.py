@@ -4,11 +4,11 @@ An integrator follows one ``Contact`` while all ``switches`` are positive. When 
 zero it asks for the ``successor`` and goes on from there; it needs to know nothing else.
 """
 
-from math import inf
+from math import inf, nan
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import compiled
-from wedgesweep.damper import Contact, forces, loads
+from wedgesweep.damper import Contact, Forces, forces, loads, reactions
 
 # Places of the switches. For each face: leave the branch toward lower, toward higher slip velocity.
 COLUMN, BOLSTER, GUIDE, COLUMN_NORMAL, BOLSTER_NORMAL = 0, 2, 4, 6, 7
@@ -27,30 +27,41 @@ def stuck(contact, p):
 
 
 @compiled
-def with_consistent_signs(x, velocity, base_acceleration, contact, p):
-    """The contact with the signs of its normal forces, and whether they are unique.
+def closed(x, velocity, base_acceleration, contact, p):
+    """The contact with the signs of its normal forces, these forces, and whether they are unique.
 
     Friction acts with |N|, so each combination of signs is its own linear problem; one that returns
     the signs it assumed is a solution. None, or more than one, means that the wedge locks.
     """
     along, into, vertical = loads(x, velocity, base_acceleration, contact.guide, p)
+    column_mu = friction.coefficient(p.column_ratio * velocity, contact.column, p)
+    bolster_mu = friction.coefficient(p.bolster_ratio * velocity, contact.bolster, p)
     zero = ROUNDING * (abs(along) + abs(into) + abs(vertical))
-    found, certain = contact, 0
+    found, result, certain = contact, Forces(nan, nan, nan), 0
     possible = False
     for column_sign in (1, -1):
         for bolster_sign in (1, -1):
             trial = Contact(
                 contact.column, contact.bolster, contact.guide, column_sign, bolster_sign
             )
-            now = forces(x, velocity, base_acceleration, trial, p)
+            now = reactions(
+                along, into, vertical, column_sign * column_mu, bolster_sign * bolster_mu, p
+            )
             smallest = min(column_sign * now.column, bolster_sign * now.bolster)
             if smallest > zero:
                 if p.never_locks:
-                    return trial, True
+                    return trial, now, True
                 certain += 1
             if smallest >= -zero and (smallest > zero or not possible):
-                found, possible = trial, True
-    return found, possible and certain <= 1
+                found, result, possible = trial, now, True
+    return found, result, possible and certain <= 1
+
+
+@compiled
+def with_consistent_signs(x, velocity, base_acceleration, contact, p):
+    """The contact with the signs of its normal forces, and whether they are unique."""
+    found, _, unique = closed(x, velocity, base_acceleration, contact, p)
+    return found, unique
 
 
 @compiled
@@ -65,22 +76,22 @@ def slipping(direction, p):
 @compiled
 def breakaway(x, base_acceleration, direction, p):
     """Acceleration z'' (m/s^2) if set-valued friction let go in a direction, and whether it is unique."""
-    contact, unique = with_consistent_signs(x, 0.0, base_acceleration, slipping(direction, p), p)
-    return forces(x, 0.0, base_acceleration, contact, p).acceleration, unique
+    _, now, unique = closed(x, 0.0, base_acceleration, slipping(direction, p), p)
+    return now.acceleration, unique
 
 
 @compiled
 def from_rest(x, base_acceleration, p):
     """Contact that follows z' = 0 under a set-valued law, and whether it is unique."""
-    forward, forward_unique = breakaway(x, base_acceleration, 1, p)
-    backward, backward_unique = breakaway(x, base_acceleration, -1, p)
-    unique = forward_unique and backward_unique and not (forward > 0.0 and backward < 0.0)
+    forward, now, forward_unique = closed(x, 0.0, base_acceleration, slipping(1, p), p)
+    rising = now.acceleration
+    backward, now, backward_unique = closed(x, 0.0, base_acceleration, slipping(-1, p), p)
+    falling = now.acceleration
+    unique = forward_unique and backward_unique and not (rising > 0.0 and falling < 0.0)
     nearly_none = ROUNDING * (p.gravity + abs(base_acceleration))
-    if forward <= nearly_none and backward >= -nearly_none:
+    if rising <= nearly_none and falling >= -nearly_none:
         return Contact(0, 0, 0, 1, 1), unique
-    contact = slipping(1 if forward > 0.0 else -1, p)
-    contact, signs_unique = with_consistent_signs(x, 0.0, base_acceleration, contact, p)
-    return contact, unique and signs_unique
+    return (forward if rising > 0.0 else backward), unique
 
 
 @compiled

@@ -17,7 +17,7 @@ from wedgesweep.damper import forces, spring_response
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 
 # Scanned intervals per period of input or free vibration, whichever is shorter.
-SCAN = 24
+SCAN = 16
 # Closer to the input frequency than this the forced and the free part nearly cancel.
 RESONANT = 1e-6
 VELOCITY = 0
@@ -146,53 +146,57 @@ def acceleration(f, o, p):
 
 
 @compiled
-def switch_and_slope(which, f, o, contact, p):
-    """A switching function and its time derivative; ``which``: 0 velocity, 1 and 2 normal forces."""
+def margins(f, o, contact, p):
+    """Switching functions of slip velocity and of the normal forces on column and bolster."""
     x, velocity = state(f, o, p)
-    if which == VELOCITY:
-        return contact.column * velocity - o.threshold, contact.column * acceleration(f, o, p)
     u2 = -p.amplitude * p.omega**2 * f.sine
-    u3 = -p.amplitude * p.omega**3 * f.cosine
-    if which == 1:
-        sign = contact.column_sign
-        return (
-            sign * (o.column + o.column_x * x + o.column_u * u2),
-            sign * (o.column_x * velocity + o.column_u * u3),
-        )
-    sign = contact.bolster_sign
     return (
-        sign * (o.bolster + o.bolster_x * x + o.bolster_u * u2),
-        sign * (o.bolster_x * velocity + o.bolster_u * u3),
+        contact.column * velocity - o.threshold,
+        contact.column_sign * (o.column + o.column_x * x + o.column_u * u2),
+        contact.bolster_sign * (o.bolster + o.bolster_x * x + o.bolster_u * u2),
     )
 
 
 @compiled
-def _zero(which, f, low, high, o, contact, p):
-    """Zero of a switching function that is positive at ``low`` and not at ``high`` (s after f)."""
-    time = high
-    value, slope = switch_and_slope(which, after(f, time, o, p), o, contact, p)
+def margin_and_slope(which, f, o, contact, p):
+    """One of the ``margins`` and its time derivative."""
+    if which == VELOCITY:
+        velocity = o.forced * p.omega * f.cosine + o.frequency * f.quadrature
+        return contact.column * velocity - o.threshold, contact.column * acceleration(f, o, p)
+    x, velocity = state(f, o, p)
+    u2 = -p.amplitude * p.omega**2 * f.sine
+    u3 = -p.amplitude * p.omega**3 * f.cosine
+    if which == 1:
+        sign, at_rest, by_x, by_u = contact.column_sign, o.column, o.column_x, o.column_u
+    else:
+        sign, at_rest, by_x, by_u = contact.bolster_sign, o.bolster, o.bolster_x, o.bolster_u
+    return sign * (at_rest + by_x * x + by_u * u2), sign * (by_x * velocity + by_u * u3)
+
+
+@compiled
+def _zero(which, f, low, high, guess, o, contact, p):
+    """Zero of a margin that is positive at ``low`` and not at ``high`` (s after f)."""
+    time = guess if low < guess < high else 0.5 * (low + high)
     for _ in range(60):
+        value, slope = margin_and_slope(which, after(f, time, o, p), o, contact, p)
         if value > 0.0:
             low = time
         else:
             high = time
         newton = time - value / slope if slope != 0.0 else low
-        if not low < newton < high:
-            newton = 0.5 * (low + high)
-        if abs(newton - time) <= 4e-16 * (abs(time) + 1.0 / p.omega) or newton in (low, high):
+        if abs(newton - time) * p.omega <= 1e-15:
             return newton
-        time = newton
-        value, slope = switch_and_slope(which, after(f, time, o, p), o, contact, p)
+        time = newton if low < newton < high else 0.5 * (low + high)
     return time
 
 
 @compiled
-def _lowest_slope(which, f, high, o, contact, p):
-    """Time of the minimum of a switching function whose slope turns positive before ``high``."""
-    low = 0.0
+def _dip(which, f, span, o, contact, p):
+    """Time of the minimum of a margin whose slope is negative at first and positive after ``span``."""
+    low, high = 0.0, span
     for _ in range(50):
         middle = 0.5 * (low + high)
-        if switch_and_slope(which, after(f, middle, o, p), o, contact, p)[1] < 0.0:
+        if margin_and_slope(which, after(f, middle, o, p), o, contact, p)[1] < 0.0:
             low = middle
         else:
             high = middle
@@ -200,26 +204,39 @@ def _lowest_slope(which, f, high, o, contact, p):
 
 
 @compiled
-def _crossing(which, f, step, ends, o, contact, p, at_zero):
-    """Time of the first zero within a step, or inf; ``ends``: values and slopes at both ends."""
-    before, before_slope, value, slope = ends
-    if value > 0.0:
-        dips = before_slope < 0.0 < slope and before + before_slope * step < 0.5 * before
-        if at_zero or not dips:
-            return inf
-        step = _lowest_slope(which, f, step, o, contact, p)
-        if switch_and_slope(which, after(f, step, o, p), o, contact, p)[0] > 0.0:
-            return inf
+def _crossing(which, f, span, before, now, at_zero, o, contact, p):
+    """Time of the first zero of a margin that is not positive after ``span``."""
     low = 0.0
-    if at_zero:
-        # The step starts on the switch itself: find a place behind it where the function is positive.
-        low = 0.5 * step
-        while switch_and_slope(which, after(f, low, o, p), o, contact, p)[0] <= 0.0:
-            step = low
+    if at_zero or before <= 0.0:
+        # The span starts on the switch itself: find a place behind it where the margin is positive.
+        low = 0.5 * span
+        while margin_and_slope(which, after(f, low, o, p), o, contact, p)[0] <= 0.0:
+            span = low
             low *= 0.5
             if low * p.omega < 1e-12:
                 return 0.0
-    return _zero(which, f, low, step, o, contact, p)
+    return _zero(which, f, low, span, span * before / (before - now), o, contact, p)
+
+
+@compiled
+def _may_dip(before, now, following):
+    """Whether three positive samples may hide a zero between them: the parabola through them does."""
+    if not before > now <= following:
+        return False
+    curvature = before - 2.0 * now + following
+    return now - (following - before) ** 2 / (8.0 * curvature) < 0.3 * now
+
+
+@compiled
+def _first(f, span, before, now, at_zero, o, contact, p):
+    """Time and number of the first margin to vanish within a span; inf where none does."""
+    earliest, which = inf, -1
+    for i in range(3):
+        if now[i] <= 0.0:
+            crossing = _crossing(i, f, span, before[i], now[i], at_zero == i, o, contact, p)
+            if crossing < earliest:
+                earliest, which = crossing, i
+    return earliest, which
 
 
 @compiled
@@ -227,39 +244,34 @@ def slide(t, stop, x, velocity, contact, o, p, last_switch):
     """Follow slip until its first switch or ``stop``: time, x, velocity and the switch (-1: none)."""
     step = 2.0 * pi / max(p.omega, o.frequency) / SCAN
     a, b = p.omega * step, o.frequency * step
-    turns = cos(a), sin(a), cos(b), sin(b)
-    f = phase_of(t, x, velocity, o, p)
-    before = (
-        switch_and_slope(0, f, o, contact, p),
-        switch_and_slope(1, f, o, contact, p),
-        switch_and_slope(2, f, o, contact, p),
-    )
-    first, start = True, t
+    turn_a, turn_b, turn_c, turn_d = cos(a), sin(a), cos(b), sin(b)
+    at_zero = last_switch - COLUMN_NORMAL + 1 if last_switch >= COLUMN_NORMAL else -1
+    if velocity == 0.0 or last_switch == o.switch:
+        at_zero = VELOCITY
+    f = earlier = phase_of(t, x, velocity, o, p)
+    before = now = margins(f, o, contact, p)
     while t < stop:
         span = min(step, stop - t)
-        g = turned(f, turns[0], turns[1], turns[2], turns[3]) if span == step else after(f, span, o, p)
-        now = (
-            switch_and_slope(0, g, o, contact, p),
-            switch_and_slope(1, g, o, contact, p),
-            switch_and_slope(2, g, o, contact, p),
-        )
-        earliest, which = inf, -1
+        g = turned(f, turn_a, turn_b, turn_c, turn_d) if span == step else after(f, span, o, p)
+        following = margins(g, o, contact, p)
+        found, which, base = inf, -1, t
+        if min(following[0], following[1], following[2]) <= 0.0:
+            found, which = _first(f, span, now, following, at_zero, o, contact, p)
         for i in range(3):
-            ends = before[i][0], before[i][1], now[i][0], now[i][1]
-            if ends[2] > 0.0 and not (ends[1] < 0.0 < ends[3]):
-                continue
-            passed = last_switch == o.switch if i == 0 else last_switch == COLUMN_NORMAL - 1 + i
-            at_zero = first and (passed or (i == 0 and velocity == 0.0) or ends[0] <= 0.0)
-            crossing = _crossing(i, f, span, ends, o, contact, p, at_zero)
-            if crossing < earliest:
-                earliest, which = crossing, i
+            if i != at_zero and following[i] > 0.0 and _may_dip(before[i], now[i], following[i]):
+                dip = _dip(i, earlier, step + span, o, contact, p)
+                low = margin_and_slope(i, after(earlier, dip, o, p), o, contact, p)[0]
+                if low <= 0.0:
+                    zero = _crossing(i, earlier, dip, before[i], low, False, o, contact, p) - step
+                    if zero < found:
+                        found, which = zero, i
         if which >= 0:
-            x, velocity = state(after(f, earliest, o, p), o, p)
-            place = o.switch if which == 0 else COLUMN_NORMAL - 1 + which
-            return t + earliest, x, velocity, place
-        first = False
+            x, velocity = state(after(f, found, o, p), o, p)
+            return base + found, x, velocity, o.switch if which == 0 else COLUMN_NORMAL - 1 + which
         t += span
-        f, before = g, now
+        earlier, before = f, now
+        f, now = g, following
+        at_zero = -1
     x, velocity = state(f, o, p)
     return stop, x, velocity, -1
 
@@ -269,7 +281,7 @@ def keep(t, end, x, velocity, contact, o, recorder, p):
     """Keep a piece that ``slide`` has followed from the state at t to ``end``."""
     f = phase_of(t, x, velocity, o, p)
     put_node(t, x, velocity, 0.0, contact, recorder, p)
-    parts = int((end - t) * max(p.omega, o.frequency) / (2.0 * pi) * SCAN / 2.0) + 1
+    parts = int((end - t) * max(p.omega, o.frequency) / (2.0 * pi) * 12.0) + 1
     span = (end - t) / parts
     for part in range(parts):
         for node in range(len(NODES)):

@@ -10,16 +10,7 @@ import numpy as np
 
 from wedgesweep import excitation
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import (
-    BOLSTER,
-    COLUMN,
-    COLUMN_NORMAL,
-    GUIDE,
-    LOOK_AHEAD,
-    SWITCHES,
-    switches,
-    unique,
-)
+from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, switches, unique
 from wedgesweep.damper import forces
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 from wedgesweep.solvers.sticking import LOCKED
@@ -103,32 +94,40 @@ def quintic(s, h, start, end):
 
 
 @compiled
-def _value(place, s, t, h, start, end, contact, p, out):
-    """One switching function at share s of a step."""
+def _switches_at(s, t, h, start, end, contact, p, out):
+    """Write all switching functions at share s of a step."""
     x, v, _ = quintic(s, h, start, end)
     switches(t + s * h, x, v, contact, p, out)
-    return out[place]
 
 
 @compiled
-def _zero(place, low, high, t, h, start, end, contact, p, out):
-    """Share of a step at which a switch, positive at ``low`` and not at ``high``, is zero (ITP-like)."""
-    below = _value(place, high, t, h, start, end, contact, p, out)
-    above = _value(place, low, t, h, start, end, contact, p, out)
-    for i in range(60):
-        # Illinois with a bisection every fourth time.
-        middle = high - below * (high - low) / (below - above) if i % 4 != 3 else 0.5 * (low + high)
-        if not low < middle < high:
-            middle = 0.5 * (low + high)
-        value = _value(place, middle, t, h, start, end, contact, p, out)
-        if value > 0.0:
-            low, above = middle, value
-            below *= 0.5
+def _slip_zero(target, low, high, h, start, end):
+    """Share of a step between two others at which the velocity reaches a target."""
+    at_low = quintic(low, h, start, end)[1] - target
+    share = 0.5 * (low + high)
+    for _ in range(60):
+        _, v, a = quintic(share, h, start, end)
+        if (v - target) * at_low > 0.0:
+            low = share
         else:
-            high, below = middle, value
-            above *= 0.5
-        if high - low < 4e-16 or value == 0.0:
-            break
+            high = share
+        newton = share - (v - target) / (a * h) if a != 0.0 else low
+        if abs(newton - share) <= 1e-15:
+            return share
+        share = newton if low < newton < high else 0.5 * (low + high)
+    return share
+
+
+@compiled
+def _force_zero(place, low, high, t, h, start, end, contact, p, out):
+    """Share of a step at which a normal force, positive at ``low`` and not at ``high``, is zero."""
+    for _ in range(55):
+        middle = 0.5 * (low + high)
+        _switches_at(middle, t, h, start, end, contact, p, out)
+        if out[place] > 0.0:
+            low = middle
+        else:
+            high = middle
     return high
 
 
@@ -148,31 +147,43 @@ def _peak(start, end, h):
 
 
 @compiled
-def _just_passed(place, last_switch):
-    return last_switch >= 0 and place // 2 == last_switch // 2
+def _zero(place, share, now, t, h, start, end, contact, p, last_switch, out):
+    """Share of a step at which a switch is zero, which has the value ``now`` <= 0 at the given share.
+
+    0 if a switch that begins at zero has no positive part that this step can see.
+    """
+    _switches_at(0.0, t, h, start, end, contact, p, out)
+    before, low = out[place], 0.0
+    if before <= 0.0 or (last_switch >= 0 and place // 2 == last_switch // 2):
+        low = 0.5 * share
+        while True:
+            _switches_at(low, t, h, start, end, contact, p, out)
+            if out[place] > 0.0:
+                before = out[place]
+                break
+            low *= 0.5
+            if low * h * p.omega < 1e-13:
+                return 0.0
+    if place >= COLUMN_NORMAL:
+        return _force_zero(place, low, share, t, h, start, end, contact, p, out)
+    # A switch of slip is linear in the velocity, so that its zero is a velocity.
+    at_low, at_share = quintic(low, h, start, end)[1], quintic(share, h, start, end)[1]
+    target = at_low + (at_share - at_low) * before / (before - now)
+    return _slip_zero(target, low, share, h, start, end)
 
 
 @compiled
-def _first_switch(t, h, share, start, end, contact, p, last_switch, out, trial):
-    """Share and place of the first switch up to ``share`` of a step, where switches are in ``out``.
-
-    The place is -1 if there is none; the share is 0 if a switch that begins at zero has no positive part
-    that this step can see.
-    """
+def _first_switch(share, t, h, start, end, contact, p, last_switch, out, trial):
+    """Share and place of the first switch up to a share of a step; the place is -1 if there is none."""
+    _switches_at(share, t, h, start, end, contact, p, out)
     earliest, first = inf, -1
+    if out.min() > 0.0:
+        return earliest, first
     for place in range(SWITCHES):
-        if out[place] > 0.0:
-            continue
-        low = 0.0
-        if _just_passed(place, last_switch) or _value(place, 0.0, t, h, start, end, contact, p, trial) <= 0.0:
-            low = 0.5 * share
-            while _value(place, low, t, h, start, end, contact, p, trial) <= 0.0:
-                low *= 0.5
-                if low * h * p.omega < 1e-13:
-                    return 0.0, place
-        zero = _zero(place, low, share, t, h, start, end, contact, p, trial)
-        if zero < earliest:
-            earliest, first = zero, place
+        if out[place] <= 0.0:
+            zero = _zero(place, share, out[place], t, h, start, end, contact, p, last_switch, trial)
+            if zero < earliest:
+                earliest, first = zero, place
     return earliest, first
 
 
@@ -187,7 +198,6 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
     longest = 2.0 * pi / p.omega / LEAST
     size_x, size_v = ABSOLUTE * p.amplitude, ABSOLUTE * p.amplitude * p.omega
     a = rate(t, x, v, contact, p)
-    first = True
     while t < stop:
         h = min(h, longest)
         taken = min(h, stop - t)
@@ -203,17 +213,15 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
             continue
         statistics[1] += 1
         start, end = (x, v, a), (x1, v1, a1)
-        share, place = 1.0, -1
+        share, place = inf, -1
         peak = _peak(start, end, taken)
         if peak > 0.0:
-            _value(0, peak, t, taken, start, end, contact, p, out)
             share, place = _first_switch(
-                t, taken, peak, start, end, contact, p, last_switch if first else -1, out, trial
+                peak, t, taken, start, end, contact, p, last_switch, out, trial
             )
         if place < 0:
-            _value(0, 1.0, t, taken, start, end, contact, p, out)
             share, place = _first_switch(
-                t, taken, 1.0, start, end, contact, p, last_switch if first else -1, out, trial
+                1.0, t, taken, start, end, contact, p, last_switch, out, trial
             )
         if place < 0:
             share = 1.0
@@ -225,7 +233,7 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
         if not unique(t + taken, x1, v1, contact, p):
             return t, x, v, LOCKED, h
         t = stop if taken == stop - t else t + taken
-        x, v, a, first = x1, v1, a1, False
+        x, v, a, last_switch = x1, v1, a1, -1
         grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** -0.2)
         h = max(h, grown) if taken < h else grown
     return stop, x, v, -1, h
