@@ -20,8 +20,9 @@ def force_amplitude(r):
     return M * r**2 * K / M * AMPLITUDE
 
 
-def respond(r, force_ratio, settle_periods=400, rtol=1e-5):
-    record = parameters.record(
+def driven(r, force_ratio):
+    """Record of the oscillator at a frequency ratio, with guide friction F = force_ratio P."""
+    return parameters.record(
         law="coulomb",
         amplitude=AMPLITUDE,
         omega=r * sqrt(K / M),
@@ -29,7 +30,10 @@ def respond(r, force_ratio, settle_periods=400, rtol=1e-5):
         friction={"dynamic": 0.0, "static": 0.0},
         effects={"guide_friction": {"force": force_ratio * force_amplitude(r)}},
     )
-    return steady(record, settle_periods=settle_periods, rtol=rtol)
+
+
+def respond(r, force_ratio, settle_periods=400, rtol=1e-5):
+    return steady(driven(r, force_ratio), settle_periods=settle_periods, rtol=rtol)
 
 
 def magnification(r, numbers):

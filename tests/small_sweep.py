@@ -1,0 +1,68 @@
+"""A sweep of 40 fast cases, for tests of everything around the solving."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import config
+from wedgesweep.sweep import Sweep
+
+ROOT = Path(__file__).parent.parent
+CONFIG = """\
+title = "small"
+[sweep]
+friction_law = ["coulomb", "exponential"]
+beta = [0.3, 0.8, 1.1, 1.6, 2.5]
+amplitude_mm = [0.02, 0.2, 0.6, 1.2]
+[solver]
+settle_periods = 3
+kept_periods = 2
+samples_per_period = 32
+"""
+CASES = 40
+# Both cases lock: with this lean and friction the normal forces are not unique.
+LOCKED = CONFIG.replace("beta = [0.3, 0.8, 1.1, 1.6, 2.5]", "beta = 1.1").replace(
+    "amplitude_mm = [0.02, 0.2, 0.6, 1.2]", "amplitude_mm = 2.0"
+).replace("[sweep]", "[suspension]\ncolumn_angle_deg = -4.0\n[friction]\ndynamic = 0.5\n[sweep]")
+
+
+def sweep(directory: Path, text: str = CONFIG) -> Sweep:
+    return Sweep(config.parse(text), directory / "small.nc")
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "wedgesweep", *map(str, arguments)]
+
+
+def start(*arguments: object, directory: Path) -> subprocess.Popen:
+    """Start the command line in a process group of its own."""
+    return subprocess.Popen(
+        command(*arguments),
+        cwd=directory,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def environment(**variables: str) -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT), **variables}
+
+
+def assert_same_numbers(found: xr.Dataset, expected: xr.Dataset) -> None:
+    """Every variable but the wall time, bit for bit."""
+    assert set(found.variables) == set(expected.variables)
+    for name in set(expected.variables) - {"wall_time"}:
+        here, there = found[name].values, expected[name].values
+        if there.dtype.kind == "f":
+            assert here.dtype == there.dtype
+            assert np.array_equal(here, there, equal_nan=True), name
+            assert np.array_equal(np.signbit(here), np.signbit(there)), name
+        else:
+            assert here.tolist() == there.tolist(), name

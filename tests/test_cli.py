@@ -1,0 +1,404 @@
+"""The command line: what it prints, which files it leaves, and its exit codes."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from tests import fixture_dataset, small_sweep
+from tests.small_sweep import CONFIG, LOCKED
+from wedgesweep import config, figures
+from wedgesweep.cli import cli
+from wedgesweep.cli.progress import Progress
+from wedgesweep.cli.words import duration, size
+
+FEW = CONFIG.replace("0.8, 1.1, 1.6, ", "")
+PNG = b"\x89PNG"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """Empty current directory with a small config."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "few.toml").write_text(FEW)
+    (tmp_path / "locked.toml").write_text(LOCKED)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def drawn_dataset(tmp_path_factory):
+    path = tmp_path_factory.mktemp("drawn") / "fixture.nc"
+    fixture_dataset.build().to_netcdf(path)
+    return path
+
+
+def invoke(*arguments, code=0):
+    """Output (stdout and stderr) of a command that must end with this exit code, and no traceback."""
+    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert result.exit_code == code, result.output
+    return result.output
+
+
+def run(*arguments, code=0):
+    return invoke("run", *arguments, "--n-jobs", 1, code=code)
+
+
+def test_help_and_version():
+    for arguments in ([], ["-h"], ["--help"]):
+        assert "_WEDGESWEEP_COMPLETE=bash_source" in invoke(*arguments, code=0 if arguments else 2)
+    assert "0." in invoke("--version")
+    for name in cli.commands:
+        assert "--help" in invoke(name, "-h")
+    for kind, description in figures.DESCRIPTIONS.items():
+        assert f"{kind} " in invoke("plot", "-h")
+        assert description in invoke("plot", "-h")
+
+
+def test_module_and_shell_completion_answer(here):
+    environment = small_sweep.environment(_WEDGESWEEP_COMPLETE="bash_source")
+    found = subprocess.run(
+        small_sweep.command(), env=environment, capture_output=True, text=True, check=True
+    )
+    assert "complete -o" in found.stdout
+
+
+def test_every_process_gets_one_thread():
+    code = (
+        "import os, sys; sys.argv = ['wedgesweep', '--version']\n"
+        "from wedgesweep.__main__ import THREADS, main\n"
+        "assert 'numpy' not in sys.modules\n"
+        "try: main()\n"
+        "finally: assert [os.environ[name] for name in THREADS] == ['1', '1', '1']"
+    )
+    environment = small_sweep.environment(OPENBLAS_NUM_THREADS="7")
+    subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, check=True)
+
+
+def test_init_writes_a_config_that_is_valid(here):
+    assert "wrote wedgesweep.toml" in invoke("init")
+    written = (here / "wedgesweep.toml").read_text()
+    assert config.parse(written).case_list()
+    assert invoke("init", "-") == written
+    assert "exists; --force overwrites it" in invoke("init", code=2)
+    (here / "mine.toml").write_text("mine")
+    invoke("init", "mine.toml", code=2)
+    assert (here / "mine.toml").read_text() == "mine"
+    invoke("init", "mine.toml", "--force")
+    assert (here / "mine.toml").read_text() == written
+    assert "'absent' is not a directory" in invoke("init", "absent/x.toml", code=2)
+
+
+def test_schema(here):
+    assert json.loads(invoke("schema")) == config.schema()
+    invoke("schema", "-o", "schema.json")
+    assert json.loads((here / "schema.json").read_text()) == config.schema()
+
+
+def test_check_tells_cases_time_and_size(here):
+    told = invoke("check", "few.toml")
+    assert "16 = 2 friction laws x 2 frequencies x 4 amplitudes" in told
+    assert "(from 16 cases run now)" in told
+    for quantity in ("title: small", "time: about", "memory: about", "dataset: at most"):
+        assert quantity in told
+    assert sorted(path.name for path in here.iterdir()) == ["few.toml", "locked.toml"]
+    told = invoke("check", "locked.toml")
+    assert "2 of the 2 cases failed, the first by: normal forces not unique" in told
+
+
+@pytest.mark.parametrize("command", ["check", "run", "case"])
+def test_a_wrong_config_is_reported_whole_and_nothing_is_run(here, command):
+    (here / "wrong.toml").write_text('[sweep]\nbetta = 1.0\namplitude_mm = -1.0\nfriction_law = "x"\n')
+    more = ("--beta", 1, "--amplitude", 1) if command == "case" else ()
+    told = invoke(command, "wrong.toml", *more, code=2)
+    for words in ("wrong.toml: sweep.betta", "sweep.amplitude_mm", "sweep.friction_law"):
+        assert words in told
+    assert "absent.toml: No such file" in invoke(command, "absent.toml", *more, code=2)
+    assert not list(here.glob("*.nc*"))
+
+
+def test_run_then_run_again_then_another_config(here):
+    told = run("few.toml")
+    assert "16 cases: 16 ok" in told
+    assert "16/16 cases" in told
+    assert "dataset: few.nc" in told
+    with xr.open_dataset("few.nc") as ds:
+        assert ds.attrs["history"].split(": ", 1)[1].startswith("wedgesweep")
+    before = (here / "few.nc").read_bytes()
+    assert "few.nc: complete already" in run("few.toml")
+    told = invoke("status", "few.nc")
+    assert "few.nc: complete\ntitle: small" in told
+    assert f"numpy {np.__version__}" in told
+    assert "16 cases: 16 ok" in told
+
+    (here / "few.toml").write_text(FEW.replace("2.5]", "2.6]"))
+    told = run("few.toml", code=2)
+    assert "few.nc: holds another sweep (sweep.beta: [0.3, 2.5] there, [0.3, 2.6] now)" in told
+    assert "--fresh discards it" in told
+    assert (here / "few.nc").read_bytes() == before
+    assert "16 ok" in run("few.toml", "--fresh")
+    with xr.open_dataset("few.nc") as ds:
+        assert ds["beta"].values.tolist() == [0.3, 2.6]
+    assert sorted(path.name for path in here.iterdir()) == ["few.nc", "few.toml", "locked.toml"]
+
+
+def test_failed_cases_are_counted_and_listed(here):
+    told = run("locked.toml", code=1)
+    assert "2 cases: 2 locked" in told
+    assert "coulomb, beta 1.1, amplitude 2 mm: locked: normal forces not unique" in told
+    assert "dataset: locked.nc" in told
+    assert "complete already" in run("locked.toml", code=1)
+    assert "2 locked" in invoke("status", "locked.nc", code=1)
+
+
+def test_fail_fast_keeps_what_is_finished(here):
+    told = run("locked.toml", "--fail-fast", code=1)
+    assert "stopped at coulomb, beta 1.1, amplitude 2 mm: normal forces not unique" in told
+    assert "1 cases are kept in locked.nc.partial" in told
+    assert not (here / "locked.nc").exists()
+    told = invoke("status", "locked.nc", code=1)
+    assert "locked.nc.partial: unfinished\ntitle: small" in told
+    assert "2 cases: 1 locked, 1 remaining" in told
+    told = run("locked.toml", "--keep-going", code=1)
+    assert "2 cases, 1 of them kept from an earlier run" in told
+    assert (here / "locked.nc").exists()
+
+
+def test_case_timeout(here):
+    told = run("few.toml", "--case-timeout", 0.001, code=1)
+    assert "time_limit: gave up after 0.001 s" in told
+    assert "and " in told  # no more than some are listed
+    assert told.count("gave up") == 5
+    assert "Invalid value" in run("few.toml", "--case-timeout", 0, code=2)
+
+
+def test_an_unfinished_sweep_of_another_config_is_refused(here):
+    run("locked.toml", "--fail-fast", code=1)
+    (here / "locked.toml").write_text(LOCKED.replace("2.0", "1.5"))
+    told = run("locked.toml", code=2)
+    assert "locked.nc.partial: an unfinished sweep of another set-up" in told
+    assert "sweep.amplitude_mm: [2.0] there, [1.5] now" in told
+    assert "--fresh discards it" in told
+    run("locked.toml", "--fresh", code=1)
+
+
+def test_status_of_a_sweep_that_another_version_left(here, monkeypatch):
+    run("locked.toml", "--fail-fast", code=1)
+    monkeypatch.setattr("wedgesweep.fingerprint.__version__", "99.0")
+    told = invoke("status", "locked.nc", code=1)
+    assert "cannot be continued as things are: wedgesweep: " in told
+    assert "there, 99.0 now" in told
+
+
+def test_outputs_that_cannot_be_are_refused_before_any_case(here):
+    (here / "mine.nc").write_text("mine")
+    xr.Dataset({"mine": 1}).to_netcdf("measured.nc")
+    (here / "folder").mkdir()
+    for output, words in {
+        "absent/x.nc": "'absent' is not a directory",
+        "few.toml/x.nc": "'few.toml' is not a directory",
+        "folder": "is a directory",
+        "mine.nc": "mine.nc: not a netCDF dataset",
+        "measured.nc": "measured.nc: not the dataset of a sweep",
+        "few.toml": "few.toml: not a netCDF dataset",
+        "/proc/x.nc": "/proc/x.nc.partial: No such file",
+    }.items():
+        for fresh in ((), ("--fresh",)):
+            told = run("few.toml", "-o", output, *fresh, code=2)
+            assert words in told
+            assert "16 cases" not in told
+    assert (here / "mine.nc").read_text() == "mine"
+    assert (here / "few.toml").read_text() == FEW
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_directory_without_write_permission(here):
+    (here / "folder").mkdir(mode=0o555)
+    assert "is not writable" in run("few.toml", "-o", "folder/x.nc", code=2)
+
+
+def test_status_of_nothing(here):
+    assert "absent.nc: no such file" in invoke("status", "absent.nc", code=2)
+    assert "not a netCDF dataset" in invoke("status", "few.toml", code=2)
+    (here / "x.nc.partial").write_text("text\n")
+    assert "not the journal of a sweep" in invoke("status", "x.nc", code=2)
+
+
+def test_ctrl_c_keeps_what_is_finished(here):
+    (here / "long.toml").write_text(CONFIG.replace("settle_periods = 3", "settle_periods = 40"))
+    process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=here)
+    journal = here / "long.nc.partial"
+    while process.poll() is None and not (journal.exists() and journal.stat().st_size > 5000):
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    told = process.communicate()[0]
+    assert process.returncode == 130, told
+    assert "cases are kept in long.nc.partial; the same command goes on" in told
+    assert "Traceback" not in told
+    assert "0 cases are kept" not in told.splitlines()
+    assert "remaining" in invoke("status", "long.nc")
+
+
+def numbers(told):
+    """Number and unit by name, from what ``case`` prints."""
+    lines = [line.split() for line in told.splitlines() if line.startswith("  ")]
+    split = [next(i for i, word in enumerate(line) if word[-1].isdigit()) for line in lines]
+    return {" ".join(line[:i]): line[i : i + 2] for line, i in zip(lines, split, strict=True)}
+
+
+def test_case_prints_stores_and_draws(here):
+    told = invoke("case", "few.toml", "--law", "exponential", "--beta", 0.77, "--amplitude", 0.9)
+    assert "exponential, beta 0.77 (10.46" in told
+    ds = xr.load_dataset("few-exponential-0.77-0.9mm.nc")
+    assert (here / "few-exponential-0.77-0.9mm.png").read_bytes().startswith(PNG)
+    assert ds["amplitude"].item() == 0.0009
+    assert ds.sizes["phase"] == 64
+    found = numbers(told)
+    assert found["peak to peak"] == [f"{ds['peak_to_peak'].item() * 1e3:.6g}", "mm"]
+    assert found["phase lag"] == [f"{np.degrees(ds['phase_lag'].item()):.6g}", "deg"]
+    assert found["dissipated energy"] == [f"{ds['dissipated_energy'].item() * 1e3:.6g}", "mJ"]
+
+
+def test_case_agrees_with_the_sweep(here):
+    run("few.toml")
+    sweep = xr.load_dataset("few.nc").sel(friction_law="coulomb", beta=2.5, amplitude=0.0012)
+    hertz = repr(sweep["frequency"].item())
+    invoke("case", "few.toml", "--frequency", hertz, "--amplitude", 1.2, "-o", "one")
+    one = xr.load_dataset("one.nc").squeeze()
+    assert one["friction_law"] == "coulomb"
+    assert one["amplitude_ratio"].item() == pytest.approx(sweep["amplitude_ratio"].item(), rel=1e-6)
+    assert (here / "one.png").exists()
+    told = invoke("case", "few.toml", "--beta", 1, "--amplitude", 1, "-o", "few", code=2)
+    assert "few.nc: holds a sweep" in told
+
+
+def test_case_that_fails(here):
+    told = invoke("case", "locked.toml", "--beta", 1.1, "--amplitude", 2, code=1)
+    assert "failed: normal forces not unique" in told
+    assert not list(here.glob("*.nc"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--amplitude", 1], "either --beta or --frequency"),
+        (["--amplitude", 1, "--beta", 1, "--frequency", 20], "either --beta or --frequency"),
+        (["--beta", 1], "Missing option '--amplitude'"),
+        (["--amplitude", -1, "--beta", 1], "sweep.amplitude_mm"),
+        (["--amplitude", "nan", "--beta", 1], "sweep.amplitude_mm"),
+        (["--amplitude", 1, "--beta", 0], "sweep.beta"),
+        (["--amplitude", 1, "--frequency", -2], "sweep.frequency_hz"),
+        (["--amplitude", 1, "--beta", 1, "--law", "coulom"], 'did you mean "coulomb"?'),
+        (["--amplitude", 1, "--beta", 1, "-o", "absent/x"], "is not a directory"),
+    ],
+)
+def test_case_faults(here, arguments, words):
+    assert words in invoke("case", "few.toml", *arguments, code=2)
+
+
+def test_plot_one_kind(here, drawn_dataset):
+    told = invoke("plot", "response", drawn_dataset, "--beta", 1.7, "--amplitude", 1, "-o", "r.svg")
+    assert told == "wrote r.svg\n"
+    assert (here / "r.svg").read_text().startswith("<?xml")
+    assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke("plot", "stick-map", drawn_dataset)
+    invoke("plot", "stick-map", drawn_dataset, "--format", "pdf")
+    assert (drawn_dataset.parent / "stick-map.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
+    given = {}
+
+    def draw(ds, beta=None, amplitudes=None, law=None):
+        given.update(beta=beta, amplitudes=amplitudes, law=law)
+        return figures.FIGURES["friction-laws"].draw(ds)
+
+    monkeypatch.setattr(figures.FIGURES["phase-portrait"], "draw", draw)
+    options = ("--beta", 0.4, "--amplitude", 0.2, "--amplitude", 1, "--law", "coulomb", "-o", "x.png")
+    invoke("plot", "phase-portrait", drawn_dataset, *options)
+    assert given == {"beta": 0.4, "amplitudes": pytest.approx([2e-4, 1e-3]), "law": "coulomb"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["stick-map", "OUT", "--beta", 1], "stick-map: takes no --beta"),
+        (["bifurcation", "OUT", "--amplitude", 1, "--amplitude", 2], "takes a single --amplitude"),
+        (["phase-portrait", "OUT", "--law", "viscous"], "no friction law 'viscous'"),
+        (["stick-map", "OUT", "-o", "x.jpeg"], ".png, .pdf, .svg"),
+        (["stick-map", "OUT", "-o", "absent/x.png"], "absent: not a directory"),
+        (["stick-map", "absent.nc"], "absent.nc: no such file"),
+        (["stick-map", "few.toml"], "few.toml: not a netCDF dataset"),
+        (["stickmap", "OUT"], "is not one of"),
+        (["all", "OUT", "-o", "few.toml"], "few.toml: File exists"),
+    ],
+)
+def test_plot_faults(here, drawn_dataset, arguments, words):
+    replaced = [drawn_dataset if argument == "OUT" else argument for argument in arguments]
+    assert words in invoke("plot", *replaced, code=2)
+
+
+def test_plot_all(here, drawn_dataset):
+    invoke("plot", "all", drawn_dataset, "-o", "new/figures", "--beta", 0.4)
+    made = {path.name for path in (here / "new" / "figures").iterdir()}
+    assert made == {f"{kind}.png" for kind in figures.DESCRIPTIONS}
+
+
+def test_plot_all_says_what_does_not_suit(here):
+    fixture_dataset.as_cases(fixture_dataset.build()).to_netcdf("cases.nc")
+    told = invoke("plot", "all", "cases.nc")
+    assert "skipped stick-map: needs a grid" in told
+    assert (here / "phase-portrait.png").exists()
+    xr.Dataset({"mine": 1}).to_netcdf("measured.nc")
+    assert "no figure suits" in invoke("plot", "all", "measured.nc", code=2)
+
+
+def test_reproduce_exit_code(here, monkeypatch):
+    from wedgesweep import reproduce
+
+    def fake(as_recorded):
+        def run_all(directory, n_jobs, report, progress):
+            report(f"{directory.name} on {n_jobs}")
+            return as_recorded
+
+        return run_all
+
+    for as_recorded, code in ((True, 0), (False, 1)):
+        monkeypatch.setattr(reproduce, "reproduce", fake(as_recorded), raising=False)
+        told = invoke("reproduce", "-o", "new/folder", "--n-jobs", 3, code=code)
+        assert told.endswith("folder on 3\n")
+
+
+def records(*statuses):
+    return np.array([(status,) for status in statuses], [("status", "i1")])
+
+
+def test_log_lines_tell_counts_failures_and_time_left(capfd):
+    progress = Progress()
+    for total, kept in ((40, 10), (20, 0)):
+        progress(records(*[0] * kept), total)
+        for done in range(kept + 1, total + 1):
+            progress(records(int(done == kept + 1)), total)
+    lines = capfd.readouterr().err.splitlines()
+    assert lines[0] == "40 cases, 10 of them kept from an earlier run"
+    assert lines[1].startswith("14/40 cases, 1 failed, ")
+    assert lines[1].endswith(" left")
+    assert lines[8].startswith("40/40 cases, 1 failed, ")
+    assert lines[9] == "20 cases"
+    assert len(lines) == 10 + 10
+
+
+def test_words():
+    assert [duration(seconds) for seconds in (0.34, 59.6, 119, 600, 7500)] == [
+        *("0.3 s", "60 s", "119 s", "10 min", "2 h 5 min")
+    ]
+    assert [size(count) for count in (3, 24.6e6, 999.7e3, 1.23e9)] == [
+        *("3 B", "25 MB", "1 MB", "1.2 GB")
+    ]

@@ -1,0 +1,76 @@
+"""Imports run one way (table below), and only the command line prints or exits."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parent.parent / "wedgesweep"
+FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+NUMERICS = (
+    *("quantity.py", "parameters.py", "excitation.py", "damper.py", "contact.py", "tally.py"),
+    *("friction/", "effects/", "solvers/", "response.py", "simulate.py"),
+)
+ABOVE = (
+    *("dataset", "sweep", "journal", "cases", "outcomes", "provenance", "fingerprint", "estimate"),
+    *("config", "figures", "reproduce", "cli"),
+)
+FORBIDDEN = {
+    NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
+    ("config/",): ("xarray", "joblib", "wedgesweep.sweep", "wedgesweep.dataset"),
+    ("dataset.py", "journal.py", "cases.py"): ("wedgesweep.sweep", "wedgesweep.figures"),
+    ("figures/",): ("wedgesweep.sweep", "wedgesweep.journal", "wedgesweep.cli"),
+}
+ONLY_IN = {
+    "click": ("cli/",),
+    "matplotlib": ("figures/",),
+    "joblib": ("sweep.py", "cli/"),
+    "wedgesweep.cli": ("cli/", "__main__.py"),
+}
+
+
+def imports(path):
+    """Full names of all that a file imports, at its top or inside functions."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def imports_any(path, modules):
+    return sorted({name for name in imports(path) for m in modules if f"{name}.".startswith(f"{m}.")})
+
+
+@pytest.mark.parametrize("files", FORBIDDEN, ids=lambda files: files[0])
+def test_nothing_imports_what_is_above_it(files):
+    checked = [name for name in FILES if name.startswith(files)]
+    assert checked
+    assert {name: imports_any(FILES[name], FORBIDDEN[files]) for name in checked} == {
+        name: [] for name in checked
+    }
+
+
+@pytest.mark.parametrize("module", ONLY_IN)
+def test_imported_in_its_own_place_only(module):
+    users = [name for name, path in FILES.items() if imports_any(path, [module])]
+    assert users
+    assert [name for name in users if not name.startswith(ONLY_IN[module])] == []
+
+
+def test_only_the_command_line_prints_or_exits():
+    words = {"print", "exit", "quit", "_exit", "SystemExit"}
+    for name, path in FILES.items():
+        nodes = ast.walk(ast.parse(path.read_text()))
+        used = {getattr(node, "id", getattr(node, "attr", "")) for node in nodes} & words
+        assert name.startswith("cli/") or not used, f"{name}: {used}"
+
+
+def test_the_command_line_answers_before_anything_heavy_is_loaded():
+    heavy = "{'numpy', 'scipy', 'xarray', 'matplotlib', 'numba', 'joblib'}"
+    code = f"import sys, wedgesweep.cli; print(*{heavy} & set(sys.modules))"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.split() == []

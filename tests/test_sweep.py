@@ -1,0 +1,277 @@
+"""A sweep's numbers depend on its config alone: not on jobs, threads, kills or earlier runs."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests import small_sweep
+from tests.small_sweep import CASES, CONFIG, LOCKED, assert_same_numbers
+from wedgesweep import cases, config, journal
+from wedgesweep.dataset import STATUSES
+from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep import CaseFailedError
+
+TIMED_OUT = STATUSES.index("time_limit")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """Sweep that was run undisturbed in this process, and its dataset as stored."""
+    sweep = small_sweep.sweep(tmp_path_factory.mktemp("undisturbed"))
+    sweep.run(n_jobs=1)
+    return sweep, xr.load_dataset(sweep.out)
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Count how often each case is solved in this process, by its amplitude and frequency."""
+    counts = Counter()
+    original = cases.simulate.respond
+
+    def counting(case, *arguments):
+        counts[case["law"][0], case["omega"][0], case["amplitude"][0]] += 1
+        return original(case, *arguments)
+
+    monkeypatch.setattr(cases.simulate, "respond", counting)
+    return counts
+
+
+def test_all_cases_are_solved_and_labelled(finished):
+    sweep, ds = finished
+    assert ds["status"].shape == (2, 5, 4)
+    assert (ds["status"] == 0).all()
+    for index, case in enumerate(sweep.config.case_list()):
+        if index % 7 == 0:
+            alone = sweep.solve(np.array([index]))[0]
+            at = {"friction_law": case.law, "beta": case.beta, "amplitude": case.amplitude}
+            assert ds["amplitude_ratio"].sel(at).item() == alone["amplitude_ratio"]
+            assert ds["displacement"].sel(at).values.tolist() == alone["displacement"].tolist()
+    assert not sweep.journal_path.exists()
+    assert list(sweep.out.parent.iterdir()) == [sweep.out]
+
+
+def test_two_jobs_give_the_same_bits(finished, tmp_path):
+    assert_same_numbers(small_sweep.sweep(tmp_path).run(n_jobs=2), finished[1])
+
+
+def test_threads_of_numpys_libraries_change_no_bit(finished, tmp_path):
+    code = (
+        "from pathlib import Path; from tests import small_sweep; import numpy as np;"
+        "records = small_sweep.sweep(Path()).solve(np.arange(0, 40, 3));"
+        "records['wall_time'] = 0; Path('records').write_bytes(records.tobytes())"
+    )
+    found = set()
+    for threads in ("1", "2", "4"):
+        names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+        environment = small_sweep.environment(**dict.fromkeys(names, threads))
+        subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True)
+        found.add((tmp_path / "records").read_bytes())
+    assert len(found) == 1
+    records = np.frombuffer(found.pop(), finished[0].dtype)
+    ratios = finished[1]["amplitude_ratio"].values.ravel()
+    assert records["amplitude_ratio"].tolist() == ratios[::3].tolist()
+
+
+def killed_at_a_random_moment(directory, n_jobs, random_numbers) -> bool:
+    """Run the sweep and kill it, workers and all, some records later; False if it was faster."""
+    path = directory / "small.nc.partial"
+    stride = small_sweep.sweep(directory).dtype.itemsize + 4
+    size = path.stat().st_size if path.exists() else 0
+    target = size + stride * random_numbers.uniform(0.1, 7.0)
+    process = small_sweep.start("run", "c.toml", "-o", "small.nc", "--n-jobs", n_jobs, directory=directory)
+    while process.poll() is None and not (path.exists() and path.stat().st_size >= target):
+        time.sleep(0.002)
+    time.sleep(random_numbers.uniform(0.0, 0.03))
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    return process.returncode == -signal.SIGKILL
+
+
+def test_killed_at_random_moments_it_goes_on_and_ends_with_the_same_bits(finished, tmp_path):
+    (tmp_path / "c.toml").write_text(CONFIG)
+    sweep, kept, random_numbers = small_sweep.sweep(tmp_path), {}, random.Random(20)
+    for n_jobs in (1, 2, 1):
+        if not killed_at_a_random_moment(tmp_path, n_jobs, random_numbers):
+            break
+        records = journal.read(sweep.journal_path, sweep.dtype)
+        times = dict(zip(records["index"].tolist(), records["wall_time"].tolist(), strict=True))
+        assert times.items() >= kept.items()
+        kept = times
+    assert 0 < len(kept) < CASES
+    told = []
+    ds = sweep.run(n_jobs=1, progress=lambda records, total: told.append((len(records), total)))
+    assert told[0] == (len(kept), CASES)
+    assert sum(count for count, _ in told) == CASES
+    # Not computed again: even the wall times are those of the first time.
+    assert [ds["wall_time"].values.ravel()[index] for index in kept] == list(kept.values())
+    assert_same_numbers(xr.load_dataset(sweep.out), finished[1])
+    assert {path.name for path in tmp_path.iterdir()} <= {"c.toml", "small.nc"}
+
+
+def interrupted(sweep, after):
+    """Run the sweep and stop it as ctrl-C would when some cases are finished."""
+    done = []
+
+    def stop(records, total):
+        done.append(len(records))
+        if sum(done) >= after:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sweep.run(n_jobs=1, progress=stop)
+    return sum(done)
+
+
+def test_no_case_is_solved_twice(tmp_path, solved):
+    sweep = small_sweep.sweep(tmp_path)
+    assert interrupted(sweep, 11) == 11
+    assert interrupted(sweep, 25) == 25
+    sweep.run(n_jobs=1)
+    assert solved == Counter(dict.fromkeys(solved, 1))
+    assert len(solved) == CASES
+
+
+def test_a_torn_record_is_solved_again(tmp_path, finished, solved):
+    sweep = small_sweep.sweep(tmp_path)
+    interrupted(sweep, 12)
+    sweep.journal_path.write_bytes(sweep.journal_path.read_bytes()[:-100])
+    assert_same_numbers(sweep.run(n_jobs=1), finished[1])
+    assert sorted(solved.values()) == [1] * (CASES - 1) + [2]
+
+
+def test_finished_all_but_the_dataset(tmp_path, finished, solved):
+    sweep = small_sweep.sweep(tmp_path)
+    interrupted(sweep, CASES)
+    assert_same_numbers(sweep.run(n_jobs=1), finished[1])
+    assert sum(solved.values()) == CASES
+
+
+@pytest.mark.parametrize("change", [("[0.02", "[0.03"), ("settle_periods = 3", "settle_periods = 4")])
+def test_another_config_is_not_mixed_in(tmp_path, change):
+    interrupted(small_sweep.sweep(tmp_path), 3)
+    changed = small_sweep.sweep(tmp_path, CONFIG.replace(*change))
+    with pytest.raises(MismatchError, match="small.nc.partial.* there, .* now"):
+        changed.run(n_jobs=1)
+    changed.discard()
+    assert interrupted(changed, 4) == 4
+
+
+def test_another_version_is_not_mixed_in(tmp_path, monkeypatch):
+    sweep = small_sweep.sweep(tmp_path)
+    interrupted(sweep, 3)
+    monkeypatch.setattr("wedgesweep.fingerprint.__version__", "99.0")
+    with pytest.raises(MismatchError, match=r"wedgesweep: .* there, 99\.0 now"):
+        sweep.run(n_jobs=1)
+
+
+def test_stored_tells_a_complete_dataset_from_everything_else(finished, tmp_path):
+    sweep, ds = finished
+    assert_same_numbers(sweep.stored(), ds)
+    other = small_sweep.sweep(sweep.out.parent, CONFIG.replace("[0.3, ", "["))
+    with pytest.raises(MismatchError, match=r"sweep\.beta: \[0\.3, .* there, \[0\.8, .* now"):
+        other.stored()
+    absent = small_sweep.sweep(tmp_path)
+    assert absent.stored() is None
+    absent.out.write_text("mine")
+    with pytest.raises(SweepError, match="not a netCDF dataset"):
+        absent.stored()
+    with pytest.raises(SweepError, match="not a netCDF dataset"):
+        absent.discard()
+    xr.Dataset({"mine": 1}).to_netcdf(absent.out)
+    with pytest.raises(SweepError, match="not the dataset of a sweep"):
+        absent.discard()
+    assert absent.out.exists()
+
+
+def test_a_locked_case_is_a_status_without_numbers(tmp_path):
+    ds = small_sweep.sweep(tmp_path, LOCKED).run(n_jobs=1)
+    locked = ds.sel(friction_law="coulomb").squeeze()
+    assert STATUSES[locked["status"].item()] == "locked"
+    assert "not unique" in locked["message"].item()
+    for name, variable in locked.data_vars.items():
+        if variable.dtype.kind == "f" and name != "wall_time":
+            assert np.isnan(variable).all(), name
+
+
+def test_fail_fast_stops_and_keeps_what_is_finished(tmp_path):
+    sweep = small_sweep.sweep(tmp_path, LOCKED)
+    for _ in range(2):  # going on does not make it forget the failure
+        with pytest.raises(CaseFailedError, match="coulomb, beta 1.1, amplitude 2 mm: .*not unique"):
+            sweep.run(n_jobs=1, fail_fast=True)
+        assert not sweep.out.exists()
+    assert journal.read(sweep.journal_path, sweep.dtype)["index"].tolist() == [0]
+    assert sweep.run(n_jobs=1)["status"].size == 2
+
+
+def test_cases_out_of_time_are_tried_again(tmp_path, finished):
+    sweep = small_sweep.sweep(tmp_path)
+    hurried = interrupted_when_all_timed_out(sweep)
+    assert_same_numbers(sweep.run(n_jobs=1), finished[1])
+    assert hurried["message"][hurried["status"] == TIMED_OUT][0].startswith(b"gave up after")
+
+
+def interrupted_when_all_timed_out(sweep):
+    told = []
+
+    def stop(records, total):
+        told.append(records)
+        if sum(map(len, told)) == total:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sweep.run(n_jobs=1, case_timeout=1e-6, progress=stop)
+    records = np.concatenate(told)
+    assert set(records["status"]) <= {0, TIMED_OUT}  # what never slips needs no time
+    assert (records["status"] == TIMED_OUT).sum() > CASES / 2
+    return records
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "words"),
+    [
+        (CaseError("not_finite", "state not finite"), "not_finite", "state not finite"),
+        (ZeroDivisionError("by zero"), "solver_failure", "ZeroDivisionError: by zero"),
+        (CaseError("solver_failure", "ü" * 300), "solver_failure", "üüü"),
+    ],
+)
+def test_whatever_a_case_raises_is_data(tmp_path, monkeypatch, error, status, words):
+    def fails(*arguments):
+        raise error
+
+    monkeypatch.setattr(cases.simulate, "respond", fails)
+    sweep = small_sweep.sweep(tmp_path, LOCKED)
+    ds = sweep.run_here()
+    assert {STATUSES[value] for value in ds["status"].values.ravel()} == {status}
+    assert ds["message"].values.ravel()[0].startswith(words)
+    ds.to_netcdf(tmp_path / "messages.nc")
+
+
+def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):
+    monkeypatch.setattr(cases, "CACHE_DIR", tmp_path)
+    assert not cases.is_compiled("radau")
+    for _ in range(2):
+        cases.compile_once("radau")
+        assert cases.is_compiled("radau")
+    assert sum(solved.values()) == 1
+
+
+def test_list_of_cases(tmp_path):
+    text = CONFIG[CONFIG.index("[solver]") :] + "".join(
+        f'[[sweep.case]]\nfriction_law = "{law}"\nbeta = {beta}\namplitude_mm = {a}\n'
+        for law, beta, a in (("exponential", 1.1, 0.6), ("coulomb", 0.8, 1.2))
+    )
+    ds = small_sweep.sweep(tmp_path, text).run(n_jobs=1)
+    assert ds["amplitude_ratio"].dims == ("case",)
+    assert ds["friction_law"].values.tolist() == ["exponential", "coulomb"]
+    assert ds["beta"].values.tolist() == [1.1, 0.8]
+    assert config.parse(ds.attrs["config"]).case_list()[1].amplitude == ds["amplitude"][1]

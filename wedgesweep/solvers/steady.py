@@ -1,0 +1,128 @@
+"""Settling on purpose: march until the state at phase 0 of the input repeats, or jump there by Newton.
+
+The Poincare map takes the state (x, x') at the start of a forcing period to the one at its end. A state
+that comes back after n periods is a response of period n.
+"""
+
+from math import pi
+
+import numpy as np
+
+from wedgesweep import contact as contacts
+from wedgesweep.compiled import compiled
+from wedgesweep.solvers.march import OK, march
+
+# Periods that are told apart from a response that does not repeat.
+LONGEST = 8
+# Marching comes first; then Newton's method is tried this often (periods).
+PATIENCE = 12
+# States of a longer period differ by this many tolerances from one period to the next.
+APART = 1e4
+# Perturbation of the state for the derivative of the map, and where Newton is not to be trusted.
+PERTURBATION, SINGULAR, UNSTABLE = 1e-6, 1e-3, 0.9999
+
+
+@compiled
+def _distance(a, b, p):
+    """Largest difference of two states, in input amplitudes and input velocities."""
+    return max(abs(a[0] - b[0]) / p.amplitude, abs(a[1] - b[1]) / (p.amplitude * p.omega))
+
+
+@compiled
+def poincare(k, x, velocity, parameters, rtol, recorder, statistics):
+    """State after one forcing period from a state at phase 0, and the outcome."""
+    p = parameters[0]
+    period = 2.0 * pi / p.omega
+    contact, unique = contacts.initial(k * period, x, velocity, p)
+    end = march(
+        k * period,
+        (k + 1) * period,
+        x,
+        velocity,
+        contact,
+        -1,
+        parameters,
+        rtol,
+        period / 1000.0,
+        False,
+        recorder,
+        statistics,
+    )
+    return end[2], end[3], end[0]
+
+
+@compiled
+def newton(k, x, velocity, parameters, rtol, recorder, statistics):
+    """One Newton step towards a fixed point of the map; the state itself where that cannot be trusted.
+
+    The slopes of the map come from differences; a response that they call unstable, or whose mean
+    position is free, is left to marching.
+    """
+    p = parameters[0]
+    size = np.array([p.amplitude, p.amplitude * p.omega])
+    x1, v1, outcome = poincare(k, x, velocity, parameters, rtol, recorder, statistics)
+    matrix = np.empty((2, 2))
+    for column in range(2):
+        shift = PERTURBATION * size * (np.arange(2) == column)
+        x2, v2, status = poincare(
+            k, x + shift[0], velocity + shift[1], parameters, rtol, recorder, statistics
+        )
+        outcome = min(outcome, status)
+        matrix[0, column] = (x2 - x1) / size[0] / PERTURBATION
+        matrix[1, column] = (v2 - v1) / size[1] / PERTURBATION
+    trace, determinant = matrix[0, 0] + matrix[1, 1], np.linalg.det(matrix)
+    margin = 1.0 - trace + determinant  # of (I - J)
+    stable = abs(trace) < 1.0 + determinant and determinant < UNSTABLE
+    if outcome != OK or not stable or margin < SINGULAR:
+        return x, velocity
+    rx, rv = (x1 - x) / size[0], (v1 - velocity) / size[1]
+    dx = ((1.0 - matrix[1, 1]) * rx + matrix[0, 1] * rv) / margin
+    dv = (matrix[1, 0] * rx + (1.0 - matrix[0, 0]) * rv) / margin
+    return x + dx * size[0], velocity + dv * size[1]
+
+
+@compiled
+def _repeats(k, state, past, tolerance, p):
+    """Number of periods after which the state came back, 0 if it did not.
+
+    A spiral into a fixed point comes close to itself every few turns: a longer period counts only where
+    the state is far from that of one period before.
+    """
+    last = _distance(state, past[(k - 1) % LONGEST], p)
+    if last <= tolerance:
+        return 1
+    if last < APART * tolerance:
+        return 0
+    for n in range(2, min(k, LONGEST) + 1):
+        if _distance(state, past[(k - n) % LONGEST], p) <= tolerance:
+            return n
+    return 0
+
+
+@compiled
+def settle(x, velocity, parameters, rtol, tolerance, most, recorder, statistics):
+    """March from a state at phase 0 until it repeats.
+
+    Returns the outcome, the number of periods, x, velocity, and the period of the response in forcing
+    periods (0: it did not repeat within ``most`` periods).
+    """
+    p = parameters[0]
+    past = np.full((LONGEST, 2), np.inf)
+    k = 0
+    while k < most:
+        past[k % LONGEST, 0], past[k % LONGEST, 1] = x, velocity
+        x, velocity, outcome = poincare(k, x, velocity, parameters, rtol, recorder, statistics)
+        k += 1
+        if outcome != OK:
+            return outcome, k, x, velocity, 0
+        state = (x, velocity)
+        n = _repeats(k, state, past, tolerance, p)
+        if n:
+            return OK, k, x, velocity, n
+        if k % PATIENCE == 0 and velocity != 0.0:
+            before = _distance(state, past[(k - 1) % LONGEST], p)
+            trial = newton(k, x, velocity, parameters, rtol, recorder, statistics)
+            x1, v1, outcome = poincare(k, trial[0], trial[1], parameters, rtol, recorder, statistics)
+            if outcome == OK and _distance((x1, v1), trial, p) < 0.1 * before:
+                x, velocity = trial
+    return OK, k, x, velocity, 0
