@@ -25,9 +25,22 @@ samples_per_period = 32
 """
 CASES = 40
 # Both cases lock: with this lean and friction the normal forces are not unique.
-LOCKED = CONFIG.replace("beta = [0.3, 0.8, 1.1, 1.6, 2.5]", "beta = 1.1").replace(
-    "amplitude_mm = [0.02, 0.2, 0.6, 1.2]", "amplitude_mm = 2.0"
-).replace("[sweep]", "[suspension]\ncolumn_angle_deg = -4.0\n[friction]\ndynamic = 0.5\n[sweep]")
+LOCKED = """\
+title = "small"
+[suspension]
+column_angle_deg = -4.0
+[friction]
+dynamic = 0.5
+static = 0.5
+[sweep]
+friction_law = ["coulomb", "exponential"]
+beta = 1.1
+amplitude_mm = 2.0
+[solver]
+settle_periods = 3
+kept_periods = 2
+samples_per_period = 32
+"""
 
 
 def sweep(directory: Path, text: str = CONFIG) -> Sweep:

@@ -40,7 +40,7 @@ def drawn_dataset(tmp_path_factory):
 
 
 def invoke(*arguments, code=0):
-    """Output (stdout and stderr) of a command that must end with this exit code, and no traceback."""
+    """Output (stdout and stderr) of a command, which must end with this exit code."""
     result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
@@ -116,7 +116,9 @@ def test_check_tells_cases_time_and_size(here):
 
 @pytest.mark.parametrize("command", ["check", "run", "case"])
 def test_a_wrong_config_is_reported_whole_and_nothing_is_run(here, command):
-    (here / "wrong.toml").write_text('[sweep]\nbetta = 1.0\namplitude_mm = -1.0\nfriction_law = "x"\n')
+    (here / "wrong.toml").write_text(
+        '[sweep]\nbetta = 1.0\namplitude_mm = -1.0\nfriction_law = "x"\n'
+    )
     more = ("--beta", 1, "--amplitude", 1) if command == "case" else ()
     told = invoke(command, "wrong.toml", *more, code=2)
     for words in ("wrong.toml: sweep.betta", "sweep.amplitude_mm", "sweep.friction_law"):
@@ -232,18 +234,21 @@ def test_status_of_nothing(here):
     assert "not the journal of a sweep" in invoke("status", "x.nc", code=2)
 
 
-def test_ctrl_c_keeps_what_is_finished(here):
+@pytest.mark.parametrize("bytes_written", [0, 5000], ids=["jobs are starting", "jobs are at work"])
+def test_ctrl_c_keeps_what_is_finished(here, bytes_written):
     (here / "long.toml").write_text(CONFIG.replace("settle_periods = 3", "settle_periods = 40"))
     process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=here)
+    while process.stdout.readline().strip() != "40 cases":
+        assert process.poll() is None
     journal = here / "long.nc.partial"
-    while process.poll() is None and not (journal.exists() and journal.stat().st_size > 5000):
+    while process.poll() is None and journal.stat().st_size <= bytes_written:
         time.sleep(0.01)
+    time.sleep(0.3)  # by then jobs that do not ignore it are importing: they would print tracebacks
     os.killpg(process.pid, signal.SIGINT)
     told = process.communicate()[0]
     assert process.returncode == 130, told
     assert "cases are kept in long.nc.partial; the same command goes on" in told
     assert "Traceback" not in told
-    assert "0 cases are kept" not in told.splitlines()
     assert "remaining" in invoke("status", "long.nc")
 
 
@@ -256,7 +261,7 @@ def numbers(told):
 
 def test_case_prints_stores_and_draws(here):
     told = invoke("case", "few.toml", "--law", "exponential", "--beta", 0.77, "--amplitude", 0.9)
-    assert "exponential, beta 0.77 (10.46" in told
+    assert "exponential, beta 0.77, amplitude 0.9 mm, 10.46" in told
     ds = xr.load_dataset("few-exponential-0.77-0.9mm.nc")
     assert (here / "few-exponential-0.77-0.9mm.png").read_bytes().startswith(PNG)
     assert ds["amplitude"].item() == 0.0009
@@ -308,7 +313,9 @@ def test_plot_one_kind(here, drawn_dataset):
     told = invoke("plot", "response", drawn_dataset, "--beta", 1.7, "--amplitude", 1, "-o", "r.svg")
     assert told == "wrote r.svg\n"
     assert (here / "r.svg").read_text().startswith("<?xml")
-    assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke("plot", "stick-map", drawn_dataset)
+    assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke(
+        "plot", "stick-map", drawn_dataset
+    )
     invoke("plot", "stick-map", drawn_dataset, "--format", "pdf")
     assert (drawn_dataset.parent / "stick-map.pdf").read_bytes().startswith(b"%PDF")
 
@@ -321,7 +328,18 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         return figures.FIGURES["friction-laws"].draw(ds)
 
     monkeypatch.setattr(figures.FIGURES["phase-portrait"], "draw", draw)
-    options = ("--beta", 0.4, "--amplitude", 0.2, "--amplitude", 1, "--law", "coulomb", "-o", "x.png")
+    options = (
+        "--beta",
+        0.4,
+        "--amplitude",
+        0.2,
+        "--amplitude",
+        1,
+        "--law",
+        "coulomb",
+        "-o",
+        "x.png",
+    )
     invoke("plot", "phase-portrait", drawn_dataset, *options)
     assert given == {"beta": 0.4, "amplitudes": pytest.approx([2e-4, 1e-3]), "law": "coulomb"}
 

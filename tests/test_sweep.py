@@ -17,6 +17,7 @@ from tests.small_sweep import CASES, CONFIG, LOCKED, assert_same_numbers
 from wedgesweep import cases, config, journal
 from wedgesweep.dataset import STATUSES
 from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.response import Response
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import CaseFailedError
 
@@ -87,7 +88,9 @@ def killed_at_a_random_moment(directory, n_jobs, random_numbers) -> bool:
     stride = small_sweep.sweep(directory).dtype.itemsize + 4
     size = path.stat().st_size if path.exists() else 0
     target = size + stride * random_numbers.uniform(0.1, 7.0)
-    process = small_sweep.start("run", "c.toml", "-o", "small.nc", "--n-jobs", n_jobs, directory=directory)
+    process = small_sweep.start(
+        "run", "c.toml", "-o", "small.nc", "--n-jobs", n_jobs, directory=directory
+    )
     while process.poll() is None and not (path.exists() and path.stat().st_size >= target):
         time.sleep(0.002)
     time.sleep(random_numbers.uniform(0.0, 0.03))
@@ -156,11 +159,13 @@ def test_finished_all_but_the_dataset(tmp_path, finished, solved):
     assert sum(solved.values()) == CASES
 
 
-@pytest.mark.parametrize("change", [("[0.02", "[0.03"), ("settle_periods = 3", "settle_periods = 4")])
+@pytest.mark.parametrize(
+    "change", [("[0.02", "[0.03"), ("settle_periods = 3", "settle_periods = 4")]
+)
 def test_another_config_is_not_mixed_in(tmp_path, change):
     interrupted(small_sweep.sweep(tmp_path), 3)
     changed = small_sweep.sweep(tmp_path, CONFIG.replace(*change))
-    with pytest.raises(MismatchError, match="small.nc.partial.* there, .* now"):
+    with pytest.raises(MismatchError, match=r"small\.nc\.partial.* there, .* now"):
         changed.run(n_jobs=1)
     changed.discard()
     assert interrupted(changed, 4) == 4
@@ -206,7 +211,9 @@ def test_a_locked_case_is_a_status_without_numbers(tmp_path):
 def test_fail_fast_stops_and_keeps_what_is_finished(tmp_path):
     sweep = small_sweep.sweep(tmp_path, LOCKED)
     for _ in range(2):  # going on does not make it forget the failure
-        with pytest.raises(CaseFailedError, match="coulomb, beta 1.1, amplitude 2 mm: .*not unique"):
+        with pytest.raises(
+            CaseFailedError, match=r"coulomb, beta 1\.1, amplitude 2 mm: .*not unique"
+        ):
             sweep.run(n_jobs=1, fail_fast=True)
         assert not sweep.out.exists()
     assert journal.read(sweep.journal_path, sweep.dtype)["index"].tolist() == [0]
@@ -254,6 +261,18 @@ def test_whatever_a_case_raises_is_data(tmp_path, monkeypatch, error, status, wo
     assert {STATUSES[value] for value in ds["status"].values.ravel()} == {status}
     assert ds["message"].values.ravel()[0].startswith(words)
     ds.to_netcdf(tmp_path / "messages.nc")
+
+
+def test_a_failure_half_way_leaves_no_numbers(tmp_path, monkeypatch):
+    half = Response({"amplitude_ratio": 1.0}, {"displacement_harmonics": np.zeros(5)}, {})
+    monkeypatch.setattr(cases.simulate, "respond", lambda *arguments: (half, {"steps": 3}))
+    record = small_sweep.sweep(tmp_path).solve(np.array([0]))[0]
+    assert STATUSES[record["status"]] == "solver_failure"
+    assert np.isnan(record["amplitude_ratio"])
+
+    half.numbers["amplitude_ratio"] = np.nan
+    record = small_sweep.sweep(tmp_path).solve(np.array([0]))[0]
+    assert STATUSES[record["status"]] == "not_finite"
 
 
 def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from wedgesweep.errors import SweepError
+
 STATUSES = ("ok", "locked", "time_limit", "solver_failure", "not_finite", "not_run")
 HARMONICS = 9
 
@@ -31,28 +33,36 @@ VARIABLES = (
     Variable("amplitude_ratio", "1", "half peak-to-peak of x - y over the input amplitude"),
     Variable("peak_to_peak", "m", "peak-to-peak of the relative displacement x - y"),
     Variable("peak_velocity", "m s-1", "largest magnitude of the relative velocity x' - y'"),
-    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
+    Variable(
+        "mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"
+    ),
     Variable(
         "stick_fraction",
         "1",
         "share of time stuck (coulomb) or with the column face below the threshold velocity",
     ),
     Variable("stick_phases", "1", "number of sticking phases per forcing period"),
-    Variable(
-        "displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM
-    ),
+    Variable("displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM),
     Variable(
         "velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM
     ),
     Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
     Variable("dissipated_energy", "J", "energy dissipated by friction per forcing period"),
+    Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
     Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
     Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
     Variable(
         "periodicity",
         "1",
-        "largest change of x - y from the last period but one to the last, over the input amplitude",
+        "largest change of x - y from the last period but one to the last, over input amplitude",
     ),
+    Variable(
+        "period",
+        "1",
+        "period of the response in forcing periods; 0: it did not repeat, -1: not looked for",
+        dtype="i2",
+    ),
+    Variable("settled_periods", "1", "forcing periods run before the kept ones", dtype="i8"),
     Variable("status", "1", "outcome of the case", dtype="i1"),
     Variable("message", "", "reason of a failure, empty otherwise", dtype="str"),
     Variable("rate_evaluations", "1", "calls of the right-hand side", dtype="i8"),
@@ -62,7 +72,7 @@ VARIABLES = (
     Variable(
         "displacement",
         "m",
-        "relative displacement x - y (side frame minus bolster) from the frictionless rest position",
+        "relative displacement x - y (side frame minus bolster) from frictionless rest",
         PHASE,
         "f4",
     ),
@@ -77,9 +87,14 @@ MESSAGE_BYTES = 200
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
-    """Layout of one finished case: its index and every variable, dimensions from ``sizes``."""
+    """Layout of one finished case: its index and every variable, dimensions from ``sizes``.
+
+    Without samples (``sizes["phase"]`` = 0) there are no waveforms.
+    """
     fields: list[tuple[Any, ...]] = [("index", "i8")]
     for variable in VARIABLES:
+        if variable.dims == PHASE and not sizes["phase"]:
+            continue
         dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
         fields.append((variable.name, dtype, tuple(sizes[dim] for dim in variable.dims)))
     return np.dtype(fields)
@@ -92,6 +107,7 @@ def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
         if dtype[name].base.kind == "f":
             records[name] = np.nan
     records["index"] = indices
+    records["period"] = -1
     records["status"] = STATUSES.index("not_run")
     return records
 
@@ -119,19 +135,18 @@ def assemble(
 
 
 def coordinates(case_coords: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Any]:
-    """All coordinates: those that number the cases (see ``assemble``) and the dimensions within one."""
-    periods = sizes["phase"] / sizes["samples_per_period"]
-    phase = 2.0 * np.pi * np.arange(sizes["phase"]) / sizes["samples_per_period"]
-    return {
+    """All coordinates: those that number the cases (see ``assemble``) and those within one."""
+    coords = {
         **case_coords,
-        "phase": (
-            "phase",
-            phase,
-            {"units": "rad", "long_name": f"phase omega t of the input over {periods:g} kept periods"},
-        ),
         "harmonic": ("harmonic", np.arange(1, sizes["harmonic"] + 1), {"long_name": "harmonic h"}),
         "part": ("part", ["real", "imaginary"], {"long_name": "part of the complex coefficient"}),
     }
+    if sizes["phase"]:
+        periods = sizes["phase"] / sizes["samples_per_period"]
+        phase = 2.0 * np.pi * np.arange(sizes["phase"]) / sizes["samples_per_period"]
+        about = f"phase omega t of the input over {periods:g} kept periods"
+        coords["phase"] = ("phase", phase, {"units": "rad", "long_name": about})
+    return coords
 
 
 def _attributes(variable: Variable) -> dict[str, Any]:
@@ -147,7 +162,9 @@ def _attributes(variable: Variable) -> dict[str, Any]:
 def write(dataset: xr.Dataset, path: Path) -> None:
     """Write netCDF to a temporary file beside ``path`` and move it there when it is whole."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
-    encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
+    encoding: dict[str, dict[str, Any]] = {
+        str(name): {"_FillValue": None} for name in dataset.coords
+    }
     for name, variable in dataset.data_vars.items():
         if variable.dtype.kind in "fi":
             encoding[str(name)] = compressed
@@ -157,3 +174,15 @@ def write(dataset: xr.Dataset, path: Path) -> None:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def read(path: Path) -> xr.Dataset:
+    """Whole dataset from a netCDF file; raises SweepError if there is none."""
+    if not path.is_file():
+        message = f"{path}: no such file"
+        raise SweepError(message)
+    try:
+        return xr.load_dataset(path, engine="netcdf4")
+    except (OSError, RuntimeError, ValueError) as error:  # netCDF4 raises any of them
+        message = f"{path}: not a netCDF dataset, or damaged ({error})"
+        raise SweepError(message) from error

@@ -1,7 +1,7 @@
 """Finished cases on disk while a sweep runs: an append-only file that survives a kill.
 
-The first line is a fingerprint of what is computed. Then come records of fixed size, each followed by
-its checksum, so that a record torn by a kill is recognised and dropped.
+The first line tells what is computed. Then come records of fixed size, each followed by its
+checksum, so that a record torn by a kill is recognised and dropped.
 """
 
 import json
@@ -12,28 +12,33 @@ from zlib import crc32
 
 import numpy as np
 
+from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.fingerprint import differences
 
-class JournalMismatchError(Exception):
-    """The journal on disk belongs to another config, version or machine set-up."""
+try:
+    import fcntl
+except ImportError:  # not on Windows; there two runs at once are not told apart
+    fcntl = None  # type: ignore[assignment]
 
 
 class Journal:
-    """Open journal of one sweep; ``records`` holds what earlier runs finished."""
+    """Open journal of one sweep; ``records`` holds what earlier runs finished.
 
-    def __init__(self, path: Path, dtype: np.dtype, fingerprint: dict[str, str]) -> None:
-        self.path, self.dtype = path, dtype
-        header = json.dumps(fingerprint, sort_keys=True).encode() + b"\n"
-        content = path.read_bytes() if path.exists() else b""
-        if content.endswith(b"\n") or b"\n" in content:
-            _require_same(path, content, fingerprint)
-            whole, self.records = _whole_records(content, len(header), dtype)
-        else:
-            whole, self.records = 0, np.zeros(0, dtype)
-        self._file = os.open(path, os.O_WRONLY | os.O_CREAT, 0o644)
-        os.ftruncate(self._file, whole)
-        os.lseek(self._file, 0, os.SEEK_END)
-        if not whole:
-            self._write(header)
+    ``header`` is the fingerprint and whatever else a reader of the journal needs. Raises
+    MismatchError, or SweepError if another run has it open or it is no journal.
+    """
+
+    def __init__(self, path: Path, dtype: np.dtype, header: dict[str, str]) -> None:
+        self._file = _locked(path)
+        try:
+            whole, self.records = _kept(path, dtype, header)
+            os.ftruncate(self._file, whole)
+            os.lseek(self._file, 0, os.SEEK_END)
+            if not whole:
+                self._write(json.dumps(header, sort_keys=True).encode() + b"\n")
+        except BaseException:
+            self.close()
+            raise
 
     def append(self, records: np.ndarray) -> None:
         """Add finished cases, a structured array of the journal's dtype."""
@@ -59,25 +64,63 @@ class Journal:
         self.close()
 
 
+def discard(path: Path) -> None:
+    """Delete a journal, if there is one and no run has it open."""
+    if path.exists():
+        file = _locked(path)
+        path.unlink()
+        os.close(file)
+
+
+def header(path: Path) -> dict[str, str]:
+    """First line of a journal that may be in use."""
+    return _header(path, path.read_bytes())
+
+
 def read(path: Path, dtype: np.dtype) -> np.ndarray:
-    """Whole records of a journal that may be in use."""
+    """Whole records of a journal that may be in use, the last one of each case."""
     content = path.read_bytes()
-    return _whole_records(content, content.index(b"\n") + 1, dtype)[1]
+    return _latest(_whole_records(content, content.index(b"\n") + 1, dtype)[1])
 
 
-def fingerprint(path: Path) -> dict[str, str]:
-    """First line of a journal."""
-    with path.open("rb") as file:
-        return dict(json.loads(file.readline()))
+def _locked(path: Path) -> int:
+    """Open file, held by this process alone until it is closed or the process ends."""
+    file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    try:
+        if fcntl:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        os.close(file)
+        message = f"{path}: another run is writing it; wait for its end or stop it"
+        raise SweepError(message) from error
+    return file
 
 
-def _require_same(path: Path, content: bytes, expected: dict[str, str]) -> None:
-    found = json.loads(content[: content.index(b"\n")])
-    differing = [key for key in expected if found.get(key) != expected[key]]
+def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:
+    """Length of what is whole in the file, and its records; 0 if even the first line is torn."""
+    content = path.read_bytes()
+    if b"\n" not in content:
+        return 0, np.zeros(0, dtype)
+    differing = differences(_header(path, content), expected)
     if differing:
-        details = "; ".join(f"{key}: {found.get(key)} there, {expected[key]} now" for key in differing)
-        message = f"{path}: unfinished sweep of another set-up ({details})"
-        raise JournalMismatchError(message)
+        message = f"{path}: an unfinished sweep of another set-up ({'; '.join(differing)})"
+        raise MismatchError(message)
+    whole, records = _whole_records(content, content.index(b"\n") + 1, dtype)
+    return whole, _latest(records)
+
+
+def _header(path: Path, content: bytes) -> dict[str, str]:
+    try:
+        return dict(json.loads(content[: content.index(b"\n")]))
+    except (ValueError, TypeError) as error:
+        message = f"{path}: not the journal of a sweep, or broken in its first line"
+        raise SweepError(message) from error
+
+
+def _latest(records: np.ndarray) -> np.ndarray:
+    """Drop records of cases that were run again."""
+    last = {int(index): place for place, index in enumerate(records["index"])}
+    return records[sorted(last.values())]
 
 
 def _checksum(payload: bytes) -> bytes:

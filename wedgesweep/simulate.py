@@ -7,15 +7,15 @@ import numpy as np
 
 from wedgesweep import response
 from wedgesweep.response import Response
-from wedgesweep.solvers import radau
+from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Trajectory, Window
 
-SOLVERS = {"radau": radau.solve}
+SOLVERS = {"radau": radau.solve, "event-driven": event_driven.solve}
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How a case is run; either ``duration`` (s) or ``settle_periods`` is given."""
+    """How a case is run; either ``duration`` (s) or ``settle_periods`` is given, or it is ``steady``."""
 
     method: str = "radau"
     rtol: float = 1e-6
@@ -24,6 +24,10 @@ class Settings:
     kept_periods: int = 3
     samples_per_period: int = 256
     case_timeout: float = 60.0
+    steady: bool = False
+    steady_tolerance: float = 1e-8
+    max_periods: int = 5000
+    keep_waveforms: bool = True
 
     def window(self, omega: float) -> Window:
         """Time span of a case: whole forcing periods, at least one more than are kept."""
@@ -35,16 +39,16 @@ class Settings:
         return Window(omega, settle, self.kept_periods, self.samples_per_period)
 
 
-def trajectory(parameters: np.ndarray, settings: Settings) -> tuple[Trajectory, Window]:
+def trajectory(parameters: np.ndarray, settings: Settings) -> Trajectory:
     """Run one case; parameters as from parameters.record. Raises CaseError."""
     window = settings.window(float(parameters["omega"][0]))
     solve = SOLVERS[settings.method]
-    return solve(parameters, window, settings.rtol, settings.case_timeout), window
+    return solve(parameters, window, settings.rtol, settings.case_timeout)
 
 
 def respond(
     parameters: np.ndarray, settings: Settings, harmonics: int
 ) -> tuple[Response, dict[str, int]]:
     """Run one case to its response and the solver's statistics. Raises CaseError."""
-    run, window = trajectory(parameters, settings)
-    return response.evaluate(run, window, parameters, harmonics), run.statistics
+    run = trajectory(parameters, settings)
+    return response.evaluate(run, parameters, harmonics), run.statistics

@@ -1,41 +1,37 @@
 """A sweep: config -> cases -> joblib -> dataset, with every finished case safe on disk at once."""
 
 import json
-import platform
-import subprocess
+import signal
+import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
-from importlib.metadata import version
 from pathlib import Path
-from time import perf_counter
-from typing import Any
 
 import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep import __version__, contact, damper, dataset, simulate
-from wedgesweep.compiled import CACHE_DIR, PACKAGE, source_digest
+from wedgesweep import contact, damper, dataset, journal, provenance
+from wedgesweep.cases import compile_once, describe, solve_cases
 from wedgesweep.config import Case, Config
+from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.fingerprint import differences, fingerprint
 from wedgesweep.journal import Journal
 from wedgesweep.simulate import Settings
-from wedgesweep.solvers.trajectory import CaseError
 
-PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "joblib")
-SAME_RESULTS = ("numpy", "scipy", "numba")
-SOURCE = "wedgesweep: friction wedge suspension of a three-piece bogie, half model"
-REFERENCES = (
-    "Numerical investigation on the friction wedge damper dynamics - a comparative study; "
-    "Den Hartog (1930), Forced vibrations with combined Coulomb and viscous friction"
-)
-
-Progress = Callable[[np.ndarray], None]
+# Called with the records of cases as they finish and the number of all cases of the sweep.
+Progress = Callable[[np.ndarray, int], None]
 
 
-class SweepError(Exception):
-    """A sweep that cannot start, go on or be stored."""
+# Cases of the event-driven solver that go to a worker, and into the journal, together.
+CHUNK = 200
+
+
+class CaseFailedError(SweepError):
+    """A case failed in a sweep that is to stop at the first failure."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +46,7 @@ class Sweep:
         """Parameter records of all cases, shape (n,)."""
         return np.concatenate([self.config.record(case) for case in self.config.case_list()])
 
-    @cached_property
+    @property
     def settings(self) -> Settings:
         return self.config.solver
 
@@ -59,7 +55,7 @@ class Sweep:
         """Sizes of the dataset's dimensions within a case."""
         samples = self.settings.samples_per_period
         return {
-            "phase": self.settings.kept_periods * samples,
+            "phase": self.settings.kept_periods * samples if self.settings.keep_waveforms else 0,
             "samples_per_period": samples,
             "harmonic": dataset.HARMONICS,
             "part": 2,
@@ -76,63 +72,113 @@ class Sweep:
     @property
     def fingerprint(self) -> dict[str, str]:
         """What the numbers depend on: runs that differ in it are not mixed."""
-        return {
-            "config_sha256": self.config.sha256,
-            "wedgesweep": __version__,
-            "source_sha256": source_digest(),
-            "python": platform.python_version(),
-            **{name: version(name) for name in SAME_RESULTS},
-        }
+        return fingerprint(self.config)
+
+    @property
+    def journal_header(self) -> dict[str, str]:
+        return {**self.fingerprint, "config": self.config.to_toml()}
+
+    def stored(self) -> xr.Dataset | None:
+        """Dataset of an earlier run, if it is complete.
+
+        Raises MismatchError if ``out`` holds another sweep, SweepError if it is no sweep's dataset.
+        """
+        if self.journal_path.exists() or not self.out.exists():
+            return None
+        found = _read_sweep(self.out)
+        there = {**json.loads(found.attrs["fingerprint"]), "config": found.attrs["config"]}
+        differing = differences(there, self.journal_header)
+        if differing:
+            message = f"{self.out}: holds another sweep ({'; '.join(differing)})"
+            raise MismatchError(message)
+        return found
+
+    def discard(self) -> None:
+        """Delete what earlier runs finished; raises SweepError if ``out`` is no sweep's dataset."""
+        if self.out.exists():
+            _read_sweep(self.out)
+        journal.discard(self.journal_path)
+        self.out.unlink(missing_ok=True)
 
     def run(
         self,
         n_jobs: int = 2,
         case_timeout: float | None = None,
         fail_fast: bool = False,
-        progress: Progress = lambda records: None,
+        progress: Progress = lambda records, total: None,
         command: str = "",
     ) -> xr.Dataset:
         """Run what is not finished yet and write the dataset.
 
-        ``progress`` is called in this process with the records of cases as they finish, first with those
-        of earlier runs. Raises SweepError at the first failed case if ``fail_fast``; what is finished
-        stays in the journal.
+        ``progress`` is called in this process, first with the records that earlier runs finished.
+        Raises CaseFailedError at the first failed case if ``fail_fast``; what is finished stays in
+        the journal.
         """
         started = datetime.now(UTC)
-        header = {**self.fingerprint, "cases": str(len(self.parameters)), "sizes": json.dumps(self.sizes)}
-        with Journal(self.journal_path, self.dtype, header) as journal:
-            kept = journal.records[journal.records["status"] != dataset.STATUSES.index("time_limit")]
-            progress(kept)
-            finished = [kept]
-            todo = np.setdiff1d(np.arange(len(self.parameters)), kept["index"])
-            for records in self._solve(todo, n_jobs, case_timeout):
-                journal.append(records)
-                progress(records)
+        finished = []
+        with Journal(self.journal_path, self.dtype, self.journal_header) as kept:
+            for records in self._all_records(kept, n_jobs, case_timeout):
+                progress(records, len(self.parameters))
                 finished.append(records)
-                if fail_fast and records["status"].any():
-                    failed = records[records["status"] != 0][0]
-                    message = f"case {failed['index']}: {failed['message'].decode()}"
-                    raise SweepError(message)
-        result = self.assembled(np.concatenate(finished), started, command)
-        dataset.write(result, self.out)
-        self.journal_path.unlink()
+                if fail_fast:
+                    self._require_ok(records)
+            result = self.assembled(np.concatenate(finished), started, command)
+            dataset.write(result, self.out)
+            self.journal_path.unlink()
         return result
 
-    def _solve(
-        self, todo: np.ndarray, n_jobs: int, case_timeout: float | None
+    def run_here(self, case_timeout: float | None = None, command: str = "") -> xr.Dataset:
+        """Run all cases in this process, one after the other; nothing is stored."""
+        started = datetime.now(UTC)
+        indices = np.arange(len(self.parameters))
+        return self.assembled(self.solve(indices, case_timeout), started, command)
+
+    def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
+        """Records of the cases of these indices, solved in this process."""
+        limit = self._limit(case_timeout)
+        return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
+
+    def _all_records(
+        self, kept: Journal, n_jobs: int, case_timeout: float | None
     ) -> Iterator[np.ndarray]:
-        settings = self.settings
-        limit = settings.case_timeout if case_timeout is None else case_timeout
-        if not todo.size:
+        # A time limit depends on the machine and its load: those cases are tried again.
+        whole = kept.records[kept.records["status"] != dataset.STATUSES.index("time_limit")]
+        todo = np.setdiff1d(np.arange(len(self.parameters)), whole["index"])
+        if todo.size:
+            compile_once(self.settings.method)
+        yield whole
+        for records in self._solve_parallel(todo, n_jobs, self._limit(case_timeout)):
+            kept.append(records)
+            yield records
+
+    def _solve_parallel(
+        self, indices: np.ndarray, n_jobs: int, case_timeout: float
+    ) -> Iterator[np.ndarray]:
+        if not indices.size:
             return
-        compile_once(self.parameters[todo[:1]], settings)
         pool = joblib.Parallel(n_jobs=n_jobs, return_as="generator_unordered")
-        yield from pool(
-            joblib.delayed(solve_cases)(
-                self.parameters[[index]], np.array([index]), settings, limit, self.dtype
+        with _interrupts_ignored():
+            results = pool(
+                joblib.delayed(solve_cases)(
+                    self.parameters[[index]],
+                    np.array([index]),
+                    self.settings,
+                    case_timeout,
+                    self.dtype,
+                )
+                for index in indices
             )
-            for index in todo
-        )
+        yield from results
+
+    def _limit(self, case_timeout: float | None) -> float:
+        return self.settings.case_timeout if case_timeout is None else case_timeout
+
+    def _require_ok(self, records: np.ndarray) -> None:
+        failed = records[records["status"] != 0]
+        if failed.size:
+            case = self.config.case_list()[failed[0]["index"]]
+            message = f"{describe(*case)}: {failed[0]['message'].decode()}"
+            raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime, command: str) -> xr.Dataset:
         """Dataset of all cases from their records."""
@@ -141,7 +187,7 @@ class Sweep:
             records,
             dataset.coordinates(coords, self.sizes),
             shape,
-            {**self._physics(), **self._provenance(started, command)},
+            {**self._physics(), **provenance.attributes(self.config, started, command)},
         )
 
     def _physics(self) -> dict[str, float]:
@@ -155,80 +201,23 @@ class Sweep:
             "breakaway_acceleration": contact.breakaway_acceleration(coulomb),
         }
 
-    def _provenance(self, started: datetime, command: str) -> dict[str, str]:
-        stamp = started.strftime("%Y-%m-%dT%H:%M:%SZ")
-        commit = git_commit()
-        return {
-            "title": self.config.title,
-            "source": f"{SOURCE}, version {__version__}",
-            "references": REFERENCES,
-            "history": f"{stamp}: {command}",
-            "start_time": stamp,
-            "config": self.config.to_toml(),
-            "config_sha256": self.config.sha256,
-            "fingerprint": json.dumps(self.fingerprint),
-            "wedgesweep_version": __version__,
-            "package_versions": json.dumps({name: version(name) for name in PACKAGES}),
-            **({"git_commit": commit} if commit else {}),
-        }
+
+def _read_sweep(path: Path) -> xr.Dataset:
+    found = dataset.read(path)
+    if "fingerprint" not in found.attrs:
+        message = f"{path}: not the dataset of a sweep, and will not be overwritten"
+        raise SweepError(message)
+    return found
 
 
-def compile_once(parameters: np.ndarray, settings: Settings) -> None:
-    """Fill numba's cache here, so that the workers of a first run do not all compile the same."""
-    if CACHE_DIR.exists():
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Jobs that start meanwhile ignore ctrl-C for good: this process ends them, quietly."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
         return
-    short = Settings(method=settings.method, settle_periods=1, kept_periods=2)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        simulate.respond(parameters, short, dataset.HARMONICS)
-    except CaseError:
-        pass
-
-
-def solve_cases(
-    parameters: np.ndarray,
-    indices: np.ndarray,
-    settings: Settings,
-    case_timeout: float,
-    dtype: np.dtype,
-) -> np.ndarray:
-    """Records of some cases; a case that fails is a status and a message, never an exception."""
-    records = dataset.blank(dtype, indices)
-    for case in range(len(indices)):
-        started = perf_counter()
-        try:
-            _solve_case(parameters[case : case + 1], settings, case_timeout, records[case])
-            status, message = "ok", ""
-        except CaseError as error:
-            status, message = error.status, str(error)
-        except Exception as error:  # noqa: BLE001  one bad case must not take the sweep with it
-            status, message = "solver_failure", f"{type(error).__name__}: {error}"
-        if status != "ok":
-            records[case] = dataset.blank(dtype, indices[case : case + 1])[0]
-        records[case]["status"] = dataset.STATUSES.index(status)
-        records[case]["message"] = message.encode()[: dataset.MESSAGE_BYTES]
-        records[case]["wall_time"] = perf_counter() - started
-    return records
-
-
-def _solve_case(
-    parameters: np.ndarray, settings: Settings, case_timeout: float, record: np.void
-) -> None:
-    limited = replace(settings, case_timeout=case_timeout)
-    result, statistics = simulate.respond(parameters, limited, dataset.HARMONICS)
-    if not np.isfinite(result.numbers["amplitude_ratio"]):
-        message = "the response is not finite"
-        raise CaseError("not_finite", message)
-    for name, spectrum in result.spectra.items():
-        record[name] = np.stack([spectrum.real, spectrum.imag], axis=-1)
-    for name, value in {**result.numbers, **result.waveforms, **statistics}.items():
-        record[name] = value
-
-
-def git_commit() -> str | None:
-    """Commit of the checkout that the package runs from, if it is one."""
-    command = ["git", "-C", str(PACKAGE), "rev-parse", "HEAD"]
-    try:
-        result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=5)
-    except (OSError, subprocess.TimeoutExpired):
-        return None
-    return result.stdout.strip() or None
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -110,6 +110,10 @@ class Config:
             kept_periods=given["kept_periods"],
             samples_per_period=given["samples_per_period"],
             case_timeout=given["case_timeout_s"],
+            steady="settle" in given,
+            steady_tolerance=given["steady_tolerance"],
+            max_periods=given["max_periods"],
+            keep_waveforms=given["keep_waveforms"],
         )
 
     def with_method(self, method: str) -> "Config":
@@ -232,11 +236,16 @@ def _contradictions(document: Mapping[str, Any]) -> Iterable[str]:
         *sweep.get("friction_law", ()),
         *(c.get("friction_law") for c in sweep.get("case", ()) if c),
     ]
-    if (
-        "coulomb" in laws
-        and column == 0.0
-        and document.get("friction", {}).get("dynamic", 0.0) > 0.0
-    ):
+    friction, solver = document.get("friction", {}), document.get("solver", {})
+    dynamic, static = friction.get("dynamic", nan), friction.get("static", nan)
+    if {"static-dynamic", "exponential"} & set(laws) and static < dynamic:
+        yield (
+            f"friction.static: {static} is less than friction.dynamic = {dynamic}, and a law that "
+            "jumps up at its threshold velocity holds the faces there; make it at least as large"
+        )
+    if "settle" in solver and solver.get("method") != "event-driven":
+        yield 'solver.settle: "steady" needs solver.method = "event-driven"; or give settle_periods'
+    if "coulomb" in laws and column == 0.0 and dynamic > 0.0:
         yield (
             "suspension.column_angle_deg: 0 leaves the bolster face without slip, where coulomb "
             "does not determine the friction; use friction.dynamic = 0, another law, or a lean"

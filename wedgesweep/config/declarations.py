@@ -2,7 +2,7 @@
 
 from math import nan
 
-from wedgesweep.config.keys import Choice, Number, Text, Whole
+from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
 from wedgesweep.config.series import Series, Several
 from wedgesweep.config.tables import GridOrList, Table, TableList, table
 from wedgesweep.effects import EFFECTS
@@ -87,9 +87,27 @@ SOLVER = table(
             )
         ),
         _whole("settle_periods", None, "periods run before the kept ones", 1, 100_000, example=60),
+        Choice(
+            key="settle",
+            meaning="run until the response repeats (event-driven only)",
+            choices=("steady",),
+            optional=True,
+            example="steady",
+        ),
     ),
+    Number.of(
+        Quantity(
+            "steady_tolerance",
+            1e-8,
+            "change per repetition, over input amplitude and velocity, that counts as steady",
+            minimum=1e-13,
+            maximum=1e-2,
+        )
+    ),
+    _whole("max_periods", 5000, "periods after which a response counts as not periodic", 10, 10**7),
     _whole("kept_periods", 3, "periods at the end that are evaluated and stored", 2, 1000),
     _whole("samples_per_period", 256, "samples of the stored waveforms", 32, 65_536, step=2),
+    Flag(key="keep_waveforms", meaning="store the kept periods, not only numbers", default=True),
     Number.of(Quantity("case_timeout_s", 60.0, "time limit of a case on the clock", above=0.0)),
     default={},
 )

@@ -92,6 +92,20 @@ class Text(Key):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Flag(Key):
+    """true or false."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> bool | None:
+        if isinstance(value, bool):
+            return value
+        problems.append(f"{path}: {show(value)} is neither true nor false; write one, unquoted")
+        return None
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": "boolean"}
+
+
+@dataclass(frozen=True, kw_only=True)
 class Choice(Key):
     """One name out of a list."""
 

@@ -1,3 +1,3 @@
 """Config names of the solvers."""
 
-SOLVERS = ("radau",)
+SOLVERS = ("radau", "event-driven")

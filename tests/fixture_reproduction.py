@@ -1,0 +1,84 @@
+"""Runs for tests of the reproduction, made without solving anything, and the schema of its data."""
+
+from math import pi
+
+from tests import fixture_dataset
+from wedgesweep.reproduce import integration, sticking, suspension
+from wedgesweep.reproduce.findings import VERDICTS
+from wedgesweep.reproduce.runs import Run, Runs
+
+BETAS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.1, 1.472, 1.75, 2.2, 3.0)
+AMPLITUDES = (5e-6, 1.5e-5, 3e-5, 5e-5, 1e-4, 3e-4, 1e-3, 4.75e-3)
+HERTZ = (20.0, 30.0, 32.0, 35.0, 38.0, 40.0)
+SMALL_AMPLITUDES = (1e-5, 1.5e-5, 3e-5, 4e-5, 5e-5, 1e-4)
+ATTRIBUTES = {
+    "rest_position": -1.0572017166e-3,
+    "start_time": "2026-01-01T00:00:00Z",
+    "config_sha256": "0" * 64,
+    "wedgesweep_version": "0",
+    "package_versions": '{"numpy": "0"}',
+}
+NUMBER = {"type": ["number", "null"]}
+CHECK = {
+    "type": "object",
+    "properties": {
+        "statement": {"type": "string"},
+        "here": NUMBER,
+        "criterion": {"type": "string"},
+        "holds": {"type": ["boolean", "null"]},
+    },
+    "required": ["statement", "here", "criterion", "holds"],
+    "additionalProperties": False,
+}
+CLAIM = {
+    "type": "object",
+    "properties": {
+        "number": {"type": "integer"},
+        **{
+            name: {"type": "string", "minLength": 1}
+            for name in ("claim", "paper", "here", "reason")
+        },
+        **{name: {"enum": list(VERDICTS)} for name in ("verdict", "recorded")},
+        "checks": {"type": "array", "items": CHECK, "minItems": 1},
+        "numbers": {"type": "object", "additionalProperties": NUMBER},
+    },
+    "required": ["number", "claim", "paper", "here", "verdict", "recorded", "reason", "checks"],
+    "additionalProperties": False,
+}
+SCHEMA = {
+    "type": "object",
+    "properties": {
+        "agrees": {"type": "boolean"},
+        "verdicts": {"type": "object", "propertyNames": {"enum": list(VERDICTS)}},
+        "claims": {"type": "array", "items": CLAIM, "minItems": 17, "maxItems": 17},
+        "laws": {"type": "array", "minItems": 12},
+        "cases": {"type": "array", "minItems": 9},
+        "failed": {"type": "array", "items": {"type": "string"}},
+        "runs": {"type": "object", "required": ["paper", "paper-y0", "breakaway"]},
+    },
+    "required": ["agrees", "verdicts", "claims", "laws", "cases", "failed", "runs"],
+    "additionalProperties": False,
+}
+
+
+def run_of(betas, amplitudes, **attributes):
+    """A run that was not solved: crests cut off below breakaway, a pure sine otherwise."""
+    ds = fixture_dataset.build(betas=betas, amplitudes=amplitudes, failed=None)
+    ds["displacement_harmonics"][..., 0, 0] = ds["peak_to_peak"].values / 2.0
+    ds["periodicity"][:] = 0.0
+    ds.attrs |= ATTRIBUTES | attributes
+    return Run(ds)
+
+
+def build(monkeypatch):
+    """Three runs, and single cases that are not solved either."""
+
+    def not_solved(*arguments, **changes):
+        return {"amplitude_ratio": 1.0, "stick_fraction": 0.5}
+
+    for module in (suspension, sticking, integration):
+        monkeypatch.setattr(module, "single", not_solved)
+    small = [2.0 * pi * hertz / fixture_dataset.OMEGA_N for hertz in HERTZ]
+    return Runs(
+        run_of(BETAS, AMPLITUDES), run_of(BETAS, AMPLITUDES), run_of(small, SMALL_AMPLITUDES)
+    )

@@ -1,0 +1,196 @@
+"""Claims of the paper: verdicts follow the numbers, and the numbers those of the model."""
+
+import numpy as np
+import pytest
+
+from tests import fixture_reproduction
+from tests.fixture_reproduction import AMPLITUDES
+from wedgesweep.reproduce import claims, suspension
+from wedgesweep.reproduce import runs as running
+from wedgesweep.reproduce.comparison import laws as compared_laws
+from wedgesweep.reproduce.findings import (
+    CONTRADICTED,
+    HOLDS,
+    NOT_TESTABLE,
+    PARTLY,
+    VERDICTS,
+    Finding,
+    above,
+    below,
+    near,
+    untested,
+)
+from wedgesweep.reproduce.runs import Run, Runs
+from wedgesweep.reproduce.singles import single
+
+BY_NUMBER = {claim.number: claim for claim in claims.CLAIMS}
+
+
+@pytest.fixture
+def runs(monkeypatch):
+    return fixture_reproduction.build(monkeypatch)
+
+
+def verdict(number, runs):
+    return BY_NUMBER[number].find(runs).verdict
+
+
+def test_the_claims_are_the_seventeen_and_each_has_a_recorded_verdict():
+    assert [claim.number for claim in claims.CLAIMS] == list(range(1, 18))
+    assert set(claims.RECORDED) == set(BY_NUMBER)
+    assert set(claims.RECORDED.values()) <= set(VERDICTS)
+
+
+@pytest.mark.parametrize(
+    ("checks", "expected"),
+    [
+        ((True, True), HOLDS),
+        ((True, False), PARTLY),
+        ((False, False), CONTRADICTED),
+        ((None, None), NOT_TESTABLE),
+        ((None, True), HOLDS),
+        ((None, False), CONTRADICTED),
+    ],
+)
+def test_the_verdict_follows_from_the_checks(checks, expected):
+    made = [untested("x", "y") if holds is None else above("x", holds, 0.5) for holds in checks]
+    assert Finding(tuple(made), {}).verdict == expected
+
+
+def test_criteria_hold_up_to_their_limits_and_never_for_nan():
+    assert near("x", -2.0, -2.1, 0.05).holds
+    assert not near("x", -1.9, -2.1, 0.05).holds
+    assert near("x", 1800, 1800, 0.0).holds
+    assert below("x", 1.0, 1.0).holds
+    assert not above("x", 1.0, 1.0).holds
+    assert not any(check.holds for check in (near("x", np.nan, 1.0, 1.0), below("x", np.nan, 1.0)))
+
+
+@pytest.mark.parametrize("number", BY_NUMBER)
+def test_every_claim_says_what_it_found(runs, number):
+    outcome = claims.Outcome(BY_NUMBER[number], BY_NUMBER[number].find(runs), HOLDS)
+    assert outcome.verdict in VERDICTS
+    assert outcome.here
+    assert "{" not in outcome.here + outcome.reason
+    assert all(check.criterion for check in outcome.finding.checks)
+
+
+def test_rest_position_and_resonance_decide_their_claims(runs):
+    assert [verdict(number, runs) for number in (2, 3)] == [CONTRADICTED, CONTRADICTED]
+    ds = runs.paper.ds
+    ds.attrs |= {"rest_position": -2.1941e-3, "frictionless_resonance": 0.8 * runs.paper.omega_n}
+    assert verdict(2, runs) == HOLDS
+    assert verdict(3, runs) == PARTLY  # the largest ratios still lie at 1.1
+    ds["amplitude_ratio"].loc[{"beta": 0.8}] = 50.0
+    assert verdict(3, runs) == HOLDS
+
+
+def test_laws_that_part_contradict_the_claims_that_they_are_alike(runs):
+    ratio = runs.paper.ds["amplitude_ratio"]
+    ratio[:] = 1.0
+    assert [verdict(number, runs) for number in (5, 9)] == [HOLDS, HOLDS]
+    ratio.loc[{"friction_law": "exponential"}] = 2.0
+    assert [verdict(number, runs) for number in (5, 9)] == [CONTRADICTED, CONTRADICTED]
+
+
+def test_cases_that_have_not_settled_do_not_count_for_the_laws(runs):
+    ratio, periodicity = runs.paper.ds["amplitude_ratio"], runs.paper.ds["periodicity"]
+    ratio[:] = 1.0
+    last = {"friction_law": "exponential", "beta": 3.0}
+    ratio.loc[last] = 9.0
+    assert verdict(9, runs) == PARTLY
+    periodicity.loc[last] = 0.5
+    assert verdict(9, runs) == HOLDS
+
+
+def test_stick_slip_above_the_last_beta_contradicts(runs):
+    for run in (runs.paper, runs.breakaway):
+        run.ds["stick_fraction"][:] = 0.0
+    assert verdict(6, runs) == HOLDS
+    runs.paper.ds["stick_fraction"].loc[{"friction_law": "coulomb", "beta": 0.4}] = 0.5
+    assert verdict(6, runs) == HOLDS
+    runs.paper.ds["stick_fraction"].loc[{"friction_law": "coulomb", "beta": 0.6}] = 0.5
+    assert verdict(6, runs) == PARTLY
+    runs.breakaway.ds["stick_fraction"].loc[{"friction_law": "coulomb"}] = 0.5
+    assert verdict(6, runs) == CONTRADICTED
+
+
+def test_an_onset_at_one_input_holds_and_one_at_one_acceleration_does_not(runs):
+    found = BY_NUMBER[7].find(runs)
+    assert found.verdict == CONTRADICTED
+    assert found.numbers["slope"] == pytest.approx(-2.0, abs=0.15)
+    moves = runs.paper.ds["amplitude"] > 2e-4
+    ds = runs.paper.ds
+    ds["stick_fraction"] = (ds["stick_fraction"] * 0.0 + 1.0).where(~moves, 0.0)
+    ds["amplitude_ratio"] = (ds["amplitude_ratio"] * 0.0 + 1.0).where(moves, 0.0)
+    assert verdict(7, runs) == HOLDS
+
+
+def test_lift_off_is_counted_on_the_grid_and_evenly(runs):
+    lifted = runs.paper.ds["lift_off_fraction"]
+    lifted[:] = 0.0
+    assert verdict(15, runs) == HOLDS
+    lifted[{"amplitude": -1}] = 0.4
+    found = BY_NUMBER[15].find(runs)
+    assert found.verdict == CONTRADICTED
+    assert found.numbers["cases"] == pytest.approx(1 / len(AMPLITUDES))
+    assert found.numbers["even"] > 0.5
+
+
+def test_a_failed_case_makes_no_number(runs):
+    for name, variable in runs.paper.ds.data_vars.items():
+        if variable.dtype.kind == "f":
+            runs.paper.ds[name][{"friction_law": 1, "beta": 3, "amplitude": 2}] = np.nan
+    for outcome in claims.check(runs):
+        assert outcome.verdict in VERDICTS
+    rows = compared_laws(runs.paper)
+    assert [row["cases"] for row in rows if row["inputs"] == "all"] == [79, 80, 79]
+
+
+def test_frictionless_ratios_and_other_lean_are_those_of_table_1(runs):
+    run = runs.paper
+    found = [suspension.frictionless_ratio(run, beta) for beta in (run.beta_of(20.0), 3.0)]
+    assert found == pytest.approx([2.58, 1.20], abs=0.005)
+    assert BY_NUMBER[2].find(runs).numbers["other_lean"] == pytest.approx(-0.9342939466)
+
+
+def test_single_cases_follow_what_is_changed(runs):
+    run = runs.paper
+    coulomb = single(run, "coulomb", 1.472, 0.05, settle_periods=60)
+    assert coulomb["amplitude_ratio"] == pytest.approx(0.368, abs=5e-4)
+    static_dynamic = single(run, "static-dynamic", 1.472, 0.05, settle_periods=60)
+    assert static_dynamic["amplitude_ratio"] == pytest.approx(1.032, abs=1e-3)
+    mirrored = {"column_angle": -run.config.suspension["column_angle"]}
+    stuck = single(run, "coulomb", 1.472, 0.04, settle_periods=60, suspension=mirrored)
+    assert 0.92 < stuck["stick_fraction"] < 0.96
+
+
+def test_a_single_case_that_locks_is_nan(runs):
+    locking = {
+        "suspension": {"column_angle": -runs.paper.config.suspension["column_angle"]},
+        "friction": {"dynamic": 0.5},
+    }
+    assert np.isnan(single(runs.paper, "coulomb", 1.1, 2.0, **locking)["amplitude_ratio"])
+
+
+def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):
+    small = """
+        title = "20 Hz"
+        [sweep]
+        friction_law = "coulomb"
+        frequency_hz = 20.0
+        amplitude_mm = [0.04, 0.045, 0.05]
+        [solver]
+        settle_periods = 60
+        """
+    ds = running.Sweep(running.config.parse(small), tmp_path / "20.nc").run(n_jobs=1)
+    found = BY_NUMBER[13].find(Runs(Run(ds), Run(ds), Run(ds)))
+    assert found.verdict == HOLDS
+    assert found.numbers["longest"] == pytest.approx(0.5827 / 2, abs=0.003)
+    assert found.numbers["shortest"] == pytest.approx(0.1470 / 2, abs=0.003)
+    assert 0.045 < found.numbers["input"] < 0.05
+
+
+def test_a_case_that_a_run_lacks_is_named(runs):
+    with pytest.raises(KeyError, match="no amplitude"):
+        runs.paper.case("coulomb", 0.4, 0.2)

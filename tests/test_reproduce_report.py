@@ -1,0 +1,121 @@
+"""Reproduction as a whole: what is run, what is written, and when it disagrees with the record."""
+
+import json
+from math import pi
+
+import pytest
+
+from tests import fixture_reproduction
+from tests.fixture_reproduction import HERTZ, SCHEMA
+from wedgesweep import reproduce as reproduction
+from wedgesweep.config import ConfigError
+from wedgesweep.reproduce import claims, page
+from wedgesweep.reproduce import runs as running
+from wedgesweep.reproduce.findings import HOLDS
+
+
+@pytest.fixture
+def runs(monkeypatch):
+    return fixture_reproduction.build(monkeypatch)
+
+
+@pytest.fixture
+def reproduced(runs, monkeypatch, tmp_path):
+    """Reproduce with these runs; returns the outcome, the lines told and the folder."""
+    monkeypatch.setattr(reproduction, "obtain", lambda *arguments: runs)
+
+    def run():
+        told = []
+        return reproduction.reproduce(tmp_path, 1, told.append), told, tmp_path
+
+    return run
+
+
+def test_recorded_verdicts_decide_the_outcome(runs, reproduced, monkeypatch):
+    found = {each.claim.number: each.verdict for each in claims.check(runs)}
+    monkeypatch.setattr(claims, "RECORDED", found)
+    assert reproduced()[0] is True
+    monkeypatch.setattr(claims, "RECORDED", found | {2: HOLDS})
+    agrees, told, directory = reproduced()
+    assert agrees is False
+    assert "on record: holds" in told[1]
+    text = (directory / "reproduction.md").read_text()
+    assert "**Claim 2 is recorded as holds, these runs say contradicted.**" in text
+
+
+def test_the_report_has_every_claim_and_the_pictures(reproduced):
+    _, _, directory = reproduced()
+    content = json.loads((directory / "reproduction.json").read_text())
+    assert sum(content["verdicts"].values()) == 17
+    text = (directory / "reproduction.md").read_text()
+    for claim in content["claims"]:
+        assert f"| {claim['number']} | {claim['claim']} | {claim['paper']} |" in text
+        assert f"### {claim['number']}. {claim['claim']}: {claim['verdict']}" in text
+    for kind in page.PICTURES:
+        assert (directory / f"paper-{kind}.png").stat().st_size > 10_000
+        assert f"](paper-{kind}.png)" in text
+
+
+def test_the_data_keep_to_the_schema(reproduced):
+    jsonschema = pytest.importorskip("jsonschema")
+    text = (reproduced()[2] / "reproduction.json").read_text()
+    jsonschema.validate(json.loads(text, parse_constant=pytest.fail), SCHEMA)
+
+
+TINY = """
+title = "tiny"
+[sweep]
+friction_law = "coulomb"
+beta = 1.0
+amplitude_mm = 0.5
+[solver]
+settle_periods = 1
+kept_periods = 2
+"""
+
+
+@pytest.fixture
+def configs(tmp_path):
+    folder = tmp_path / "configs"
+    folder.mkdir()
+    for name in running.CONFIG_NAMES:
+        (folder / f"{name}.toml").write_text(TINY)
+    return folder
+
+
+def obtain(tmp_path, configs):
+    told = []
+    runs = running.obtain(tmp_path / "out", configs, 1, told.append, lambda records, total: None)
+    return runs, told
+
+
+def test_finished_runs_are_kept_and_others_made_again(tmp_path, configs):
+    first, told = obtain(tmp_path, configs)
+    assert ["tiny" in line for line in told] == [True] * 3
+    again, told = obtain(tmp_path, configs)
+    assert ["kept" in line for line in told] == [True] * 3
+    assert again.scaled.ds["amplitude_ratio"].equals(first.scaled.ds["amplitude_ratio"])
+    (configs / "breakaway.toml").write_text(TINY.replace("0.5", "0.6"))
+    changed, told = obtain(tmp_path, configs)
+    assert ["kept" in line for line in told[:2]] == [True] * 2
+    assert "amplitude" in told[2]
+    assert "again" in told[2]
+    assert changed.breakaway.ds["amplitude"].values.tolist() == [6e-4]
+
+
+def test_missing_configs_are_named(tmp_path):
+    with pytest.raises(ConfigError, match="nowhere: no such folder"):
+        obtain(tmp_path, tmp_path / "nowhere")
+
+
+def test_the_checkout_has_the_configs_with_the_cases_that_the_claims_need():
+    loaded = {
+        name: running.config.load(reproduction.CONFIGS / f"{name}.toml")
+        for name in running.CONFIG_NAMES
+    }
+    assert len(loaded["paper"].case_list()) == 1800
+    assert {0.1, 0.4, 1.75, 3.0} <= set(loaded["paper"].sweep.beta.tolist())
+    assert {3e-4, 1e-3} <= set(loaded["paper"].sweep.amplitude.tolist())
+    hertz = loaded["breakaway"].sweep.beta * loaded["breakaway"].sweep.omega_n / (2.0 * pi)
+    assert set(HERTZ) <= set(hertz.round(9).tolist())
+    assert {1.5e-5, 3e-5, 5e-5, 1e-4} <= set(loaded["breakaway"].sweep.amplitude.tolist())

@@ -1,0 +1,86 @@
+"""Cases to records: whatever becomes of a case, it is data."""
+
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from wedgesweep import dataset, parameters, simulate
+from wedgesweep.batch import solve_batch
+from wedgesweep.compiled import CACHE_DIR
+from wedgesweep.simulate import Settings
+from wedgesweep.solvers.trajectory import CaseError
+
+
+def describe(law: str, beta: float, amplitude: float) -> str:
+    """A case in words; amplitude in m."""
+    return f"{law}, beta {beta:.6g}, amplitude {amplitude * 1e3:.6g} mm"
+
+
+def is_compiled(method: str) -> bool:
+    """Whether a solver's compiled code is cached."""
+    return _compiled_mark(method).exists()
+
+
+def compile_once(method: str) -> None:
+    """Fill numba's cache here, so that the jobs of a first run do not all compile the same."""
+    if is_compiled(method):
+        return
+    short = Settings(method=method, settle_periods=1, kept_periods=2, samples_per_period=32)
+    # This case sticks and slips, so that nothing is left to compile.
+    case = parameters.record("coulomb", 5e-3, 85.0)
+    dtype = dataset.record_dtype({"phase": 64, "harmonic": dataset.HARMONICS, "part": 2})
+    solve_cases(case, np.array([0]), short, short.case_timeout, dtype)
+    _compiled_mark(method).touch()
+
+
+def _compiled_mark(method: str) -> Path:
+    # That the folder exists says little: reading parameters compiles a first few functions.
+    return CACHE_DIR / f"{method}.complete"
+
+
+def solve_cases(
+    cases: np.ndarray,
+    indices: np.ndarray,
+    settings: Settings,
+    case_timeout: float,
+    dtype: np.dtype,
+) -> np.ndarray:
+    """Records of some cases; a case that fails is a status and a message, never an exception."""
+    if settings.method == "event-driven":
+        return solve_batch(cases, indices, settings, dtype)[0]
+    records = dataset.blank(dtype, indices)
+    for case in range(len(indices)):
+        started = perf_counter()
+        try:
+            _solve_case(cases[case : case + 1], settings, case_timeout, records[case])
+            status, message = "ok", ""
+        except CaseError as error:
+            status, message = error.status, str(error)
+        except Exception as error:  # one bad case must not take the sweep with it
+            status, message = "solver_failure", f"{type(error).__name__}: {error}"
+        if status != "ok":
+            records[case] = dataset.blank(dtype, indices[case : case + 1])[0]
+        records[case]["status"] = dataset.STATUSES.index(status)
+        records[case]["message"] = message.encode()[: dataset.MESSAGE_BYTES]
+        records[case]["wall_time"] = perf_counter() - started
+    return records
+
+
+def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, record: np.void) -> None:
+    limited = replace(settings, case_timeout=case_timeout)
+    result, statistics = simulate.respond(case, limited, dataset.HARMONICS)
+    if not np.isfinite(result.numbers["amplitude_ratio"]):
+        status, message = "not_finite", "the response is not finite"
+        raise CaseError(status, message)
+    variables: dict[str, Any] = {
+        **result.numbers,
+        **result.spectra,
+        **result.waveforms,
+        **statistics,
+    }
+    for name in variables.keys() & set(record.dtype.names or ()):
+        record[name] = variables[name]
+    record["settled_periods"] = settings.window(float(case["omega"][0])).settle_periods

@@ -1,0 +1,33 @@
+"""The command line: parse, call, print. Nothing outside this package prints or exits.
+
+Heavy modules are imported inside the commands that need them, so that ``--help`` answers at once.
+"""
+
+import click
+
+from wedgesweep import __version__
+from wedgesweep.cli.case import case
+from wedgesweep.cli.configs import check, init, schema
+from wedgesweep.cli.failure import Commands
+from wedgesweep.cli.plot import plot
+from wedgesweep.cli.reproduce import reproduce
+from wedgesweep.cli.run import run
+from wedgesweep.cli.status import status
+
+EPILOG = """\
+Exit codes: 0 all cases fine, 1 some failed, 2 bad input, 130 interrupted.
+
+Completion in bash: eval "$(_WEDGESWEEP_COMPLETE=bash_source wedgesweep)" in ~/.bashrc; there are
+zsh_source and fish_source, too.
+"""
+
+
+@click.group(
+    cls=Commands,
+    commands=[init, schema, check, run, status, case, plot, reproduce],
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=EPILOG,
+)
+@click.version_option(__version__, prog_name="wedgesweep")
+def cli() -> None:
+    """Batch sweeps of a friction wedge suspension: from a config to a dataset and figures."""

@@ -1,0 +1,87 @@
+"""init, schema, check: everything about a config but running it."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from wedgesweep.cli.failure import Failure
+from wedgesweep.cli.options import CONFIG, OutputPath, jobs
+from wedgesweep.cli.words import duration, size
+
+if TYPE_CHECKING:
+    from wedgesweep.config import Config
+    from wedgesweep.estimate import Estimate
+
+STANDARD_OUTPUT = Path("-")
+
+
+@click.command()
+@click.argument("path", default="wedgesweep.toml", type=OutputPath(allow_dash=True))
+@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+def init(path: Path, force: bool) -> None:
+    """Write a config with every key, commented, to PATH (wedgesweep.toml; - prints it)."""
+    from wedgesweep import config
+
+    if path.exists() and not force:
+        message = f"{path}: exists; --force overwrites it"
+        raise Failure(message)
+    _put(config.template(), path)
+
+
+@click.command()
+@click.option(
+    "-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File; default: print."
+)
+def schema(output: Path) -> None:
+    """Write the JSON schema of a config, by which editors check and complete it."""
+    from wedgesweep import config
+
+    _put(json.dumps(config.schema(), indent=2) + "\n", output)
+
+
+@click.command()
+@CONFIG
+def check(config_path: Path) -> None:
+    """Check a config, and estimate what its run takes from a few timed cases."""
+    from wedgesweep import config
+
+    settings = config.load(config_path)
+    click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
+    from wedgesweep.estimate import estimate
+    from wedgesweep.sweep import Sweep
+
+    _print_estimate(estimate(Sweep(settings, Path(f"{config_path.stem}.nc"))))
+
+
+def _grid(settings: "Config") -> str:
+    """Number of cases and how it comes about."""
+    sweep, count = settings.sweep, len(settings.case_list())
+    if sweep.cases is not None:
+        return f"{count}, listed one by one"
+    laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
+    return f"{count} = {laws} friction laws x {betas} frequencies x {amplitudes} amplitudes"
+
+
+def _print_estimate(cost: "Estimate") -> None:
+    n_jobs = jobs(None)
+    memory = cost.process_bytes * (n_jobs + 1) + 2 * cost.dataset_bytes
+    click.echo(
+        f"time: about {duration(cost.seconds_on_one_job / n_jobs)} on {n_jobs} jobs "
+        f"(from {cost.sampled.size} cases run now)\n"
+        f"memory: about {size(memory)} on {n_jobs} jobs\n"
+        f"dataset: at most {size(cost.dataset_bytes)}, less after compression"
+    )
+    failed = cost.sampled[cost.sampled["status"] != 0]
+    if failed.size:
+        reason = failed[0]["message"].decode()
+        click.echo(f"{failed.size} of the {cost.sampled.size} cases failed, the first by: {reason}")
+
+
+def _put(text: str, path: Path) -> None:
+    if path == STANDARD_OUTPUT:
+        click.echo(text, nl=False)
+        return
+    path.write_text(text, encoding="utf-8")
+    click.echo(f"wrote {path}")

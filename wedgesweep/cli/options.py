@@ -1,0 +1,46 @@
+"""Arguments and options that several commands take."""
+
+import os
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
+DATASET = click.argument("path", metavar="OUT", type=click.Path(path_type=Path))
+
+N_JOBS = click.option(
+    "--n-jobs",
+    type=click.IntRange(min=1),
+    default=None,
+    help="Processes that solve cases; default: one per processor.",
+)
+
+
+class OutputPath(click.Path):
+    """A file to write: what would go wrong is said before any work is done."""
+
+    def __init__(self, **options: bool) -> None:
+        super().__init__(dir_okay=False, writable=True, path_type=Path, **options)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        if not path.parent.is_dir():
+            self.fail(f"'{path.parent}' is not a directory.", param, ctx)
+        if not os.access(path.parent, os.W_OK):
+            self.fail(f"Directory '{path.parent}' is not writable.", param, ctx)
+        return path
+
+
+def jobs(n_jobs: int | None) -> int:
+    """Number of jobs: as given, or one for each processor that this process may use."""
+    import joblib
+
+    return n_jobs or joblib.cpu_count()
+
+
+def command_line() -> str:
+    """The command as it was typed, for the history of a dataset."""
+    return shlex.join(["wedgesweep", *sys.argv[1:]])

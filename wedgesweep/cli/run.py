@@ -1,0 +1,101 @@
+"""run: all cases of a config into a dataset."""
+
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import click
+
+from wedgesweep.cli.failure import INTERRUPTED, SOME_FAILED, Failure
+from wedgesweep.cli.options import CONFIG, N_JOBS, OutputPath, command_line, jobs
+from wedgesweep.cli.progress import Progress
+from wedgesweep.cli.summary import print_summary
+from wedgesweep.cli.words import duration
+from wedgesweep.solvers.names import SOLVERS
+
+if TYPE_CHECKING:
+    from wedgesweep.sweep import Sweep
+
+
+@click.command()
+@CONFIG
+@click.option("-o", "--output", type=OutputPath(), help="Dataset; default: CONFIG's name, here.")
+@N_JOBS
+@click.option("--solver", type=click.Choice(SOLVERS), help="Instead of the config's solver.method.")
+@click.option(
+    "--keep-going/--fail-fast", default=True, help="After a failed case; default: keep going."
+)
+@click.option(
+    "--case-timeout",
+    type=click.FloatRange(min=0.0, min_open=True),
+    metavar="SECONDS",
+    help="Time limit of a case, instead of the config's.",
+)
+@click.option("--fresh", is_flag=True, help="Discard what earlier runs of this output finished.")
+@click.pass_context
+def run(
+    ctx: click.Context,
+    config_path: Path,
+    output: Path | None,
+    n_jobs: int | None,
+    solver: str | None,
+    keep_going: bool,
+    case_timeout: float | None,
+    fresh: bool,
+) -> None:
+    """Run all cases of CONFIG and store them as netCDF.
+
+    After an interruption or a kill the same command goes on where it stopped.
+    """
+    from wedgesweep import config
+
+    settings = config.load(config_path)
+    settings = settings.with_method(solver) if solver else settings
+    from wedgesweep.errors import MismatchError
+    from wedgesweep.sweep import CaseFailedError, Sweep
+
+    sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"))
+    progress = Progress()
+    try:
+        if fresh:
+            sweep.discard()
+        ctx.exit(_run(sweep, progress, jobs(n_jobs), case_timeout, not keep_going))
+    except KeyboardInterrupt:
+        _stopped(progress, sweep, "interrupted", "the same command goes on from there")
+        ctx.exit(INTERRUPTED)
+    except CaseFailedError as error:
+        _stopped(progress, sweep, f"stopped at {error}", "without --fail-fast the rest is run")
+        ctx.exit(SOME_FAILED)
+    except MismatchError as error:
+        message = f"{error}; another -o keeps it, --fresh discards it"
+        raise Failure(message) from error
+
+
+def _run(
+    sweep: "Sweep", progress: Progress, n_jobs: int, case_timeout: float | None, fail_fast: bool
+) -> int:
+    """Run the sweep unless it is complete; the exit code."""
+    stored = sweep.stored()
+    if stored is not None:
+        click.echo(f"{sweep.out}: complete already; --fresh runs it again")
+        return print_summary(stored)
+    tell_of_compiling(sweep.settings.method)
+    started = perf_counter()
+    result = sweep.run(n_jobs, case_timeout, fail_fast, progress, command_line())
+    code = print_summary(result)
+    click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
+    return code
+
+
+def tell_of_compiling(method: str) -> None:
+    """Say why nothing seems to happen at first."""
+    from wedgesweep.cases import is_compiled
+
+    if not is_compiled(method):
+        click.echo("compiling once, for up to a minute; later runs start at once", err=True)
+
+
+def _stopped(progress: Progress, sweep: "Sweep", reason: str, advice: str) -> None:
+    progress.stop()
+    kept = f"{progress.done} cases are kept in {sweep.journal_path}"
+    click.echo(f"{reason}\n{kept}; {advice}", err=True)

@@ -1,0 +1,50 @@
+"""status: what is finished, of a dataset or of a sweep that was interrupted or still runs."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import click
+
+from wedgesweep.cli.options import DATASET
+from wedgesweep.cli.summary import print_outcomes, print_summary
+
+VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
+
+
+@click.command()
+@DATASET
+@click.pass_context
+def status(ctx: click.Context, path: Path) -> None:
+    """Tell what is finished of the sweep whose dataset is, or will be, OUT."""
+    partial = path.with_name(path.name + ".partial")
+    ctx.exit(_unfinished(partial) if partial.exists() else _finished(path))
+
+
+def _finished(path: Path) -> int:
+    from wedgesweep import dataset
+
+    ds = dataset.read(path)
+    click.echo(f"{path}: complete\ntitle: {ds.attrs.get('title', 'none')}")
+    if "start_time" in ds.attrs:
+        click.echo(f"started: {ds.attrs['start_time']}")
+    _print_versions(json.loads(ds.attrs.get("fingerprint", "{}")))
+    return print_summary(ds)
+
+
+def _unfinished(partial: Path) -> int:
+    from wedgesweep import config, journal, outcomes
+    from wedgesweep.fingerprint import differences, fingerprint
+
+    header = journal.header(partial)
+    settings = config.parse(header["config"], str(partial))
+    click.echo(f"{partial}: unfinished\ntitle: {settings.title}")
+    _print_versions(header)
+    for difference in differences(header, fingerprint(settings)):
+        click.echo(f"cannot be continued as things are: {difference}")
+    return print_outcomes(outcomes.of_journal(partial), total=len(settings.case_list()))
+
+
+def _print_versions(found: Mapping[str, str]) -> None:
+    versions = (f"{name} {found[name]}" for name in VERSIONS if name in found)
+    click.echo(f"versions: {', '.join(versions)}")

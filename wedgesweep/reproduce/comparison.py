@@ -1,0 +1,104 @@
+"""The three laws on the same cases, and what the runs themselves leave open."""
+
+from collections.abc import Iterable
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import outcomes
+from wedgesweep.dataset import STATUSES
+from wedgesweep.reproduce.runs import LAWS, Run, Runs
+
+# Inputs over the amplitude at which set-valued slip begins: stuck, near breakaway, beyond it.
+NEAR = 5.0
+ZONES = {"below breakaway": (0.0, 1.0), "near breakaway": (1.0, NEAR), "beyond": (NEAR, np.inf)}
+# A case has settled if its last two periods differ by less than this share of the input amplitude.
+SETTLED, FAR_FROM_SETTLED = 1e-3, 0.1
+
+
+def spread(run: Run, laws: Iterable[str] = LAWS) -> xr.DataArray:
+    """Largest difference of the amplitude ratios of some laws over the largest of them."""
+    ratios = run.ds["amplitude_ratio"].sel(friction_law=list(laws))
+    largest = ratios.max("friction_law", skipna=False)
+    smallest = ratios.min("friction_law", skipna=False)
+    return (
+        ((largest - smallest) / largest.where(largest != 0.0))
+        .where(largest != 0.0, 0.0)
+        .where(largest.notnull())
+    )
+
+
+def zone(run: Run, name: str) -> xr.DataArray:
+    """Whether a case lies in a zone of ``ZONES``, over beta and amplitude."""
+    low, high = ZONES[name]
+    level = run.ds["amplitude"] / run.onset
+    return (level >= low) & (level < high)
+
+
+def settled(run: Run) -> xr.DataArray:
+    """Whether a case has settled under every law, over beta and amplitude."""
+    return (run.ds["periodicity"] <= SETTLED).all("friction_law")
+
+
+def _summary(values: xr.DataArray) -> dict[str, float]:
+    stacked = values.stack(case=("beta", "amplitude")).dropna("case")
+    if not stacked.size:
+        return {"cases": 0}
+    largest = stacked[int(stacked.values.argmax())]
+    return {
+        "cases": int(stacked.size),
+        "median": float(stacked.median()),
+        "largest": float(largest),
+        "largest_at_beta": float(largest["beta"]),
+        "largest_at_amplitude_mm": 1e3 * float(largest["amplitude"]),
+    }
+
+
+def laws(run: Run) -> list[dict[str, Any]]:
+    """Difference of the amplitude ratio of each pair of laws: all cases, then zone by zone."""
+    return [
+        {"laws": list(pair), "inputs": name, **_summary(values)}
+        for pair in combinations(LAWS, 2)
+        for name, values in _zones(run, spread(run, pair))
+    ]
+
+
+def _zones(run: Run, values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
+    parts = [(name, values.where(zone(run, name))) for name in ZONES]
+    return [("all", values), *parts]
+
+
+def caveats(runs: Runs) -> list[dict[str, Any]]:
+    """Per run and law: cases, failures, cases that had not settled, cases that lift off."""
+    return [_caveat(name, run, law) for name, run in runs.named.items() for law in LAWS]
+
+
+def failed_cases(runs: Runs) -> list[str]:
+    """Each failed case in words."""
+    return [
+        f"{name}: {outcome}"
+        for name, run in runs.named.items()
+        for outcome in outcomes.failures(outcomes.of_dataset(run.ds))
+    ]
+
+
+def _caveat(name: str, run: Run, law: str) -> dict[str, Any]:
+    ds = run.law(law)
+    status = ds["status"].values
+    lifted = ds["lift_off_fraction"]
+    return {
+        "run": name,
+        "law": law,
+        "cases": int(status.size),
+        "failed": {
+            word: int((status == number).sum())
+            for number, word in enumerate(STATUSES)
+            if number and (status == number).any()
+        },
+        "not_settled": int((ds["periodicity"] > SETTLED).sum()),
+        "far_from_settled": int((ds["periodicity"] > FAR_FROM_SETTLED).sum()),
+        "lift_off": int((lifted > 0.0).sum()),
+        "largest_lift_off_fraction": float(lifted.max()),
+    }

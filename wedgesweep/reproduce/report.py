@@ -1,0 +1,76 @@
+"""The outcome of a reproduction as data (reproduction.json) and as a page (reproduction.md)."""
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from wedgesweep.reproduce import comparison, page
+from wedgesweep.reproduce.claims import Outcome
+from wedgesweep.reproduce.findings import VERDICTS
+from wedgesweep.reproduce.runs import Run, Runs
+
+
+def write(directory: Path, runs: Runs, outcomes: Sequence[Outcome]) -> None:
+    """Write both files."""
+    content = document(runs, outcomes)
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
+    (directory / "reproduction.json").write_text(text + "\n", encoding="utf-8")
+    (directory / "reproduction.md").write_text(page.render(content), encoding="utf-8")
+
+
+def document(runs: Runs, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Everything that both files say."""
+    verdicts = Counter(outcome.verdict for outcome in outcomes)
+    return _plain(
+        {
+            "agrees": all(outcome.agrees for outcome in outcomes),
+            "verdicts": {verdict: n for verdict in VERDICTS if (n := verdicts[verdict])},
+            "claims": [_claim(outcome) for outcome in outcomes],
+            "laws": comparison.laws(runs.paper),
+            "cases": comparison.caveats(runs),
+            "failed": comparison.failed_cases(runs),
+            "runs": {name: _run(run) for name, run in runs.named.items()},
+        }
+    )
+
+
+def _claim(outcome: Outcome) -> dict[str, Any]:
+    return {
+        "number": outcome.claim.number,
+        "claim": outcome.claim.words,
+        "paper": outcome.claim.paper,
+        "here": outcome.here,
+        "verdict": outcome.verdict,
+        "recorded": outcome.recorded,
+        "reason": outcome.reason,
+        "checks": [vars(check) for check in outcome.finding.checks],
+        "numbers": outcome.finding.numbers,
+    }
+
+
+def _run(run: Run) -> dict[str, Any]:
+    attributes = run.ds.attrs
+    return {
+        "title": attributes["title"],
+        "cases": run.ds["status"].size,
+        "solving_time_s": round(float(run.ds["wall_time"].sum()), 1),
+        **{
+            name: attributes[name]
+            for name in ("start_time", "config_sha256", "wedgesweep_version", "git_commit")
+            if name in attributes
+        },
+        "package_versions": json.loads(attributes["package_versions"]),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Lists, dicts and Python numbers only; what is not finite becomes None."""
+    if isinstance(value, dict):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    value = value.item() if hasattr(value, "item") else value
+    return None if isinstance(value, float) and not isfinite(value) else value
