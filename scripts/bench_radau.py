@@ -56,9 +56,7 @@ def plain_rate(t, y, law, p):
             [0.0, 1.0, mb * sin_i - cos_i],
             [p["bolster_mass"], 0.0, -2.0 * (sin_a + mb * cos_a)],
         ]
-        acceleration, n_column, n_bolster = np.linalg.solve(
-            matrix, [wedge * cos_g, wedge * sin_g, bolster]
-        )
+        acceleration, n_column, n_bolster = np.linalg.solve(matrix, [wedge * cos_g, wedge * sin_g, bolster])
         if column_sign * n_column >= 0.0 and bolster_sign * n_bolster >= 0.0:
             break
     return [velocity, acceleration]
@@ -72,7 +70,14 @@ def plain_ratio(record, law, rtol):
     times = end - period * np.linspace(PERIODS_KEPT, 0.0, PERIODS_KEPT * 256)
     atol = rtol * 1e-2 * np.array([p["amplitude"], p["amplitude"] * p["omega"]])
     run = solve_ivp(
-        plain_rate, (0.0, end), [p["rest"], 0.0], "Radau", times, args=(law, p), rtol=rtol, atol=atol
+        plain_rate,
+        (0.0, end),
+        [p["rest"], 0.0],
+        "Radau",
+        times,
+        args=(law, p),
+        rtol=rtol,
+        atol=atol,
     )
     return np.ptp(run.y[0]) / 2.0 / p["amplitude"]
 
@@ -122,8 +127,10 @@ def main():
         )
         if law == "coulomb":
             shift = np.abs(plain_exact / exact - 1.0)
-            print(f"{'':15} smoothing changes the ratio by {np.median(shift):.1e} (median),"
-                  f" {shift.max():.1e} (largest)")
+            print(
+                f"{'':15} smoothing changes the ratio by {np.median(shift):.1e} (median),"
+                f" {shift.max():.1e} (largest)"
+            )
     print(f"geometric mean of plain / ours over all cases: {np.exp(np.mean(np.log(gains))):.2f}")
 
 

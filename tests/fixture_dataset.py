@@ -71,9 +71,7 @@ def as_cases(ds: xr.Dataset, count: int = 4) -> xr.Dataset:
     """Take some cases of a grid dataset as a list of cases."""
     places = np.linspace(0, ds["status"].size - 1, count).astype(int)
     index = np.unravel_index(places, ds["status"].shape)
-    at = {
-        name: xr.DataArray(i, dims="case") for name, i in zip(ds["status"].dims, index, strict=True)
-    }
+    at = {name: xr.DataArray(i, dims="case") for name, i in zip(ds["status"].dims, index, strict=True)}
     return ds.isel(at)
 
 

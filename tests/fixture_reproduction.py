@@ -34,10 +34,7 @@ CLAIM = {
     "type": "object",
     "properties": {
         "number": {"type": "integer"},
-        **{
-            name: {"type": "string", "minLength": 1}
-            for name in ("claim", "paper", "here", "reason")
-        },
+        **{name: {"type": "string", "minLength": 1} for name in ("claim", "paper", "here", "reason")},
         **{name: {"enum": list(VERDICTS)} for name in ("verdict", "recorded")},
         "checks": {"type": "array", "items": CHECK, "minItems": 1},
         "numbers": {"type": "object", "additionalProperties": NUMBER},
@@ -79,6 +76,4 @@ def build(monkeypatch):
     for module in (suspension, sticking, integration):
         monkeypatch.setattr(module, "single", not_solved)
     small = [2.0 * pi * hertz / fixture_dataset.OMEGA_N for hertz in HERTZ]
-    return Runs(
-        run_of(BETAS, AMPLITUDES), run_of(BETAS, AMPLITUDES), run_of(small, SMALL_AMPLITUDES)
-    )
+    return Runs(run_of(BETAS, AMPLITUDES), run_of(BETAS, AMPLITUDES), run_of(small, SMALL_AMPLITUDES))

@@ -65,9 +65,7 @@ def test_help_and_version():
 
 def test_module_and_shell_completion_answer(here):
     environment = small_sweep.environment(_WEDGESWEEP_COMPLETE="bash_source")
-    found = subprocess.run(
-        small_sweep.command(), env=environment, capture_output=True, text=True, check=True
-    )
+    found = subprocess.run(small_sweep.command(), env=environment, capture_output=True, text=True, check=True)
     assert "complete -o" in found.stdout
 
 
@@ -116,9 +114,7 @@ def test_check_tells_cases_time_and_size(here):
 
 @pytest.mark.parametrize("command", ["check", "run", "case"])
 def test_a_wrong_config_is_reported_whole_and_nothing_is_run(here, command):
-    (here / "wrong.toml").write_text(
-        '[sweep]\nbetta = 1.0\namplitude_mm = -1.0\nfriction_law = "x"\n'
-    )
+    (here / "wrong.toml").write_text('[sweep]\nbetta = 1.0\namplitude_mm = -1.0\nfriction_law = "x"\n')
     more = ("--beta", 1, "--amplitude", 1) if command == "case" else ()
     told = invoke(command, "wrong.toml", *more, code=2)
     for words in ("wrong.toml: sweep.betta", "sweep.amplitude_mm", "sweep.friction_law"):
@@ -313,9 +309,7 @@ def test_plot_one_kind(here, drawn_dataset):
     told = invoke("plot", "response", drawn_dataset, "--beta", 1.7, "--amplitude", 1, "-o", "r.svg")
     assert told == "wrote r.svg\n"
     assert (here / "r.svg").read_text().startswith("<?xml")
-    assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke(
-        "plot", "stick-map", drawn_dataset
-    )
+    assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke("plot", "stick-map", drawn_dataset)
     invoke("plot", "stick-map", drawn_dataset, "--format", "pdf")
     assert (drawn_dataset.parent / "stick-map.pdf").read_bytes().startswith(b"%PDF")
 
@@ -417,6 +411,4 @@ def test_words():
     assert [duration(seconds) for seconds in (0.34, 59.6, 119, 600, 7500)] == [
         *("0.3 s", "60 s", "119 s", "10 min", "2 h 5 min")
     ]
-    assert [size(count) for count in (3, 24.6e6, 999.7e3, 1.23e9)] == [
-        *("3 B", "25 MB", "1 MB", "1.2 GB")
-    ]
+    assert [size(count) for count in (3, 24.6e6, 999.7e3, 1.23e9)] == [*("3 B", "25 MB", "1 MB", "1.2 GB")]

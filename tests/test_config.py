@@ -137,7 +137,6 @@ def test_with_method_changes_the_solver_alone():
 
 def test_importing_config_loads_neither_numba_nor_scipy_nor_xarray():
     script = (
-        "import sys, wedgesweep.config; "
-        "sys.exit(bool({'numba', 'scipy', 'xarray'} & sys.modules.keys()))"
+        "import sys, wedgesweep.config; sys.exit(bool({'numba', 'scipy', 'xarray'} & sys.modules.keys()))"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0

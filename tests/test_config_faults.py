@@ -126,8 +126,7 @@ def test_a_sweep_that_cannot_be_right(key, value, hint):
 )
 def test_settings_that_exclude_each_other(text, path):
     assert any(
-        each.startswith(f"study.toml: {path}: ") and "exclude each other" in each
-        for each in problems(text)
+        each.startswith(f"study.toml: {path}: ") and "exclude each other" in each for each in problems(text)
     )
 
 

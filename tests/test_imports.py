@@ -42,9 +42,7 @@ def imports(path):
 
 
 def imports_any(path, modules):
-    return sorted(
-        {name for name in imports(path) for m in modules if f"{name}.".startswith(f"{m}.")}
-    )
+    return sorted({name for name in imports(path) for m in modules if f"{name}.".startswith(f"{m}.")})
 
 
 @pytest.mark.parametrize("files", FORBIDDEN, ids=lambda files: files[0])

@@ -110,8 +110,7 @@ def test_missing_configs_are_named(tmp_path):
 
 def test_the_checkout_has_the_configs_with_the_cases_that_the_claims_need():
     loaded = {
-        name: running.config.load(reproduction.CONFIGS / f"{name}.toml")
-        for name in running.CONFIG_NAMES
+        name: running.config.load(reproduction.CONFIGS / f"{name}.toml") for name in running.CONFIG_NAMES
     }
     assert len(loaded["paper"].case_list()) == 1800
     assert {0.1, 0.4, 1.75, 3.0} <= set(loaded["paper"].sweep.beta.tolist())

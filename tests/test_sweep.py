@@ -88,9 +88,7 @@ def killed_at_a_random_moment(directory, n_jobs, random_numbers) -> bool:
     stride = small_sweep.sweep(directory).dtype.itemsize + 4
     size = path.stat().st_size if path.exists() else 0
     target = size + stride * random_numbers.uniform(0.1, 7.0)
-    process = small_sweep.start(
-        "run", "c.toml", "-o", "small.nc", "--n-jobs", n_jobs, directory=directory
-    )
+    process = small_sweep.start("run", "c.toml", "-o", "small.nc", "--n-jobs", n_jobs, directory=directory)
     while process.poll() is None and not (path.exists() and path.stat().st_size >= target):
         time.sleep(0.002)
     time.sleep(random_numbers.uniform(0.0, 0.03))
@@ -159,9 +157,7 @@ def test_finished_all_but_the_dataset(tmp_path, finished, solved):
     assert sum(solved.values()) == CASES
 
 
-@pytest.mark.parametrize(
-    "change", [("[0.02", "[0.03"), ("settle_periods = 3", "settle_periods = 4")]
-)
+@pytest.mark.parametrize("change", [("[0.02", "[0.03"), ("settle_periods = 3", "settle_periods = 4")])
 def test_another_config_is_not_mixed_in(tmp_path, change):
     interrupted(small_sweep.sweep(tmp_path), 3)
     changed = small_sweep.sweep(tmp_path, CONFIG.replace(*change))
@@ -211,9 +207,7 @@ def test_a_locked_case_is_a_status_without_numbers(tmp_path):
 def test_fail_fast_stops_and_keeps_what_is_finished(tmp_path):
     sweep = small_sweep.sweep(tmp_path, LOCKED)
     for _ in range(2):  # going on does not make it forget the failure
-        with pytest.raises(
-            CaseFailedError, match=r"coulomb, beta 1\.1, amplitude 2 mm: .*not unique"
-        ):
+        with pytest.raises(CaseFailedError, match=r"coulomb, beta 1\.1, amplitude 2 mm: .*not unique"):
             sweep.run(n_jobs=1, fail_fast=True)
         assert not sweep.out.exists()
     assert journal.read(sweep.journal_path, sweep.dtype)["index"].tolist() == [0]
@@ -246,9 +240,9 @@ def interrupted_when_all_timed_out(sweep):
 @pytest.mark.parametrize(
     ("error", "status", "words"),
     [
-        (CaseError("not_finite", "state not finite"), "not_finite", "state not finite"),
+        (CaseError("state not finite", "not_finite"), "not_finite", "state not finite"),
         (ZeroDivisionError("by zero"), "solver_failure", "ZeroDivisionError: by zero"),
-        (CaseError("solver_failure", "ü" * 300), "solver_failure", "üüü"),
+        (CaseError("ü" * 300, "solver_failure"), "solver_failure", "üüü"),
     ],
 )
 def test_whatever_a_case_raises_is_data(tmp_path, monkeypatch, error, status, words):

@@ -69,7 +69,7 @@ def _fill(records: np.ndarray, batch: Batch, settings: Settings) -> None:
     for name, values in columns.items():
         records[name][fine] = values[fine]
     records["status"][fine] = dataset.STATUSES.index("ok")
-    for case in np.flatnonzero(~fine):
+    for case in np.flatnonzero(~fine).tolist():
         status, message = _failure(batch, case)
         records[case]["status"] = dataset.STATUSES.index(status)
         records[case]["message"] = message.encode()[: dataset.MESSAGE_BYTES]

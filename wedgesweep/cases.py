@@ -74,7 +74,7 @@ def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, recor
     result, statistics = simulate.respond(case, limited, dataset.HARMONICS)
     if not np.isfinite(result.numbers["amplitude_ratio"]):
         status, message = "not_finite", "the response is not finite"
-        raise CaseError(status, message)
+        raise CaseError(message, status)
     variables: dict[str, Any] = {
         **result.numbers,
         **result.spectra,

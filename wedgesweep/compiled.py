@@ -5,9 +5,10 @@ a stale caller behind. A cache folder per state of the compiled sources rules th
 """
 
 import os
-from functools import partial
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
+from typing import TypeVar
 
 import numba
 
@@ -32,4 +33,9 @@ def _cache_home() -> Path:
 CACHE_DIR = _cache_home() / source_digest(containing=b"@compiled")[:16]
 numba.config.CACHE_DIR = str(CACHE_DIR)
 
-compiled = partial(numba.njit, cache=True, error_model="numpy")
+Function = TypeVar("Function", bound=Callable)
+
+
+def compiled(function: Function) -> Function:
+    """Compile with numba; a division by zero gives inf or NaN, as in numpy."""
+    return numba.njit(cache=True, error_model="numpy")(function)

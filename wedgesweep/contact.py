@@ -2,6 +2,10 @@
 
 An integrator follows one ``Contact`` while all ``switches`` are positive. When one of them reaches
 zero it asks for the ``successor`` and goes on from there; it needs to know nothing else.
+
+A regularised law jumps from mu_s to mu_d at v_t. Where the acceleration points to the jump from both
+sides it holds the slip velocity there, as static friction holds a face at rest (Filippov, 1988): the
+face is then on a branch of its own, and the acceleration is zero.
 """
 
 from math import inf, nan
@@ -14,6 +18,9 @@ from wedgesweep.damper import Contact, Forces, forces, loads, reactions
 COLUMN, BOLSTER, GUIDE, COLUMN_NORMAL, BOLSTER_NORMAL = 0, 2, 4, 6, 7
 SWITCHES = 8
 
+# Branch of a face whose slip velocity a jump at +-v_t holds, with the sign of that velocity.
+AT_JUMP = 2
+
 # Normal forces below this share of the loads count as zero when the consistent signs are sought.
 ROUNDING = 1e-11
 # Phase (rad) after which a normal force that has changed sign is safely away from zero.
@@ -24,6 +31,54 @@ LOOK_AHEAD = 1e-8
 def stuck(contact, p):
     """Whether set-valued friction holds the bolster."""
     return p.set_valued and contact.column == 0
+
+
+@compiled
+def held(contact):
+    """Whether the jump of a regularised law holds the slip velocity of a face."""
+    return abs(contact.column) == AT_JUMP or abs(contact.bolster) == AT_JUMP or abs(contact.guide) == AT_JUMP
+
+
+@compiled
+def _side(branch, higher):
+    """Branch on the lower or the higher side of a jump; any other branch is itself."""
+    if abs(branch) != AT_JUMP:
+        return branch
+    return (0 if branch > 0 else -1) + higher
+
+
+@compiled
+def beside_jump(contact, higher):
+    """Contact on the lower (0) or higher (1) side of the jump that holds a face."""
+    return Contact(
+        _side(contact.column, higher),
+        _side(contact.bolster, higher),
+        _side(contact.guide, higher),
+        1,
+        1,
+    )
+
+
+@compiled
+def held_between(x, velocity, base_acceleration, contact, p):
+    """Contacts and forces on both sides of a jump, and the share of the lower one at which z'' = 0."""
+    low, below, low_unique = closed(x, velocity, base_acceleration, beside_jump(contact, 0), p)
+    high, above, high_unique = closed(x, velocity, base_acceleration, beside_jump(contact, 1), p)
+    share = above.acceleration / (above.acceleration - below.acceleration)
+    return low, below, high, above, share, low_unique and high_unique
+
+
+@compiled
+def acting(x, velocity, base_acceleration, contact, p):
+    """Acceleration and normal forces on any contact."""
+    if not held(contact):
+        return forces(x, velocity, base_acceleration, contact, p)
+    _, below, _, above, share, _ = held_between(x, velocity, base_acceleration, contact, p)
+    return Forces(
+        0.0,
+        share * below.column + (1.0 - share) * above.column,
+        share * below.bolster + (1.0 - share) * above.bolster,
+    )
 
 
 @compiled
@@ -41,12 +96,8 @@ def closed(x, velocity, base_acceleration, contact, p):
     possible = False
     for column_sign in (1, -1):
         for bolster_sign in (1, -1):
-            trial = Contact(
-                contact.column, contact.bolster, contact.guide, column_sign, bolster_sign
-            )
-            now = reactions(
-                along, into, vertical, column_sign * column_mu, bolster_sign * bolster_mu, p
-            )
+            trial = Contact(contact.column, contact.bolster, contact.guide, column_sign, bolster_sign)
+            now = reactions(along, into, vertical, column_sign * column_mu, bolster_sign * bolster_mu, p)
             smallest = min(column_sign * now.column, bolster_sign * now.bolster)
             if smallest > zero:
                 if p.never_locks:
@@ -124,6 +175,16 @@ def _face(velocity, branch, p, out):
 
 
 @compiled
+def _held_face(contact, p):
+    """Place of the switches of the face that a jump holds, and its slip velocity per z'."""
+    if abs(contact.column) == AT_JUMP:
+        return COLUMN, p.column_ratio
+    if abs(contact.bolster) == AT_JUMP:
+        return BOLSTER, p.bolster_ratio
+    return GUIDE, 1.0
+
+
+@compiled
 def switches(t, x, velocity, contact, p, out):
     """Write the switching functions, shape (SWITCHES,): positive while the contact holds.
 
@@ -135,6 +196,11 @@ def switches(t, x, velocity, contact, p, out):
     if stuck(contact, p):
         out[COLUMN] = breakaway(x, base_acceleration, -1, p)[0]
         out[COLUMN + 1] = -breakaway(x, base_acceleration, 1, p)[0]
+        return
+    if held(contact):
+        place, ratio = _held_face(contact, p)
+        _, below, _, above, _, _ = held_between(x, velocity, base_acceleration, contact, p)
+        out[place], out[place + 1] = ratio * below.acceleration, -ratio * above.acceleration
         return
     if p.set_valued:
         out[COLUMN if contact.column > 0 else COLUMN + 1] = contact.column * velocity
@@ -156,26 +222,47 @@ def unique(t, x, velocity, contact, p):
     base_acceleration = excitation.acceleration(t, p)
     if stuck(contact, p):
         return from_rest(x, base_acceleration, p)[1]
+    if held(contact):
+        return held_between(x, velocity, base_acceleration, contact, p)[5]
     return with_consistent_signs(x, velocity, base_acceleration, contact, p)[1]
 
 
 @compiled
-def _moved(branch, switch):
-    """Branch beyond a face's lower (even) or upper (odd) switch."""
-    return branch + 1 if switch % 2 else branch - 1
+def _beyond(contact, switch, to_jump):
+    """Contact of a regularised law with the face of a switch on its next branch, or at the jump."""
+    column, bolster, guide, column_sign, bolster_sign = contact
+    if switch < BOLSTER:
+        column = _next_branch(column, switch, to_jump)
+    elif switch < GUIDE:
+        bolster = _next_branch(bolster, switch, to_jump)
+    else:
+        guide = _next_branch(guide, switch, to_jump)
+    return Contact(column, bolster, guide, column_sign, bolster_sign)
 
 
 @compiled
-def _beyond(contact, switch):
-    """Contact of a regularised law with the face of the switch moved to its next branch."""
-    column, bolster, guide, column_sign, bolster_sign = contact
-    if switch < BOLSTER:
-        column = _moved(column, switch)
-    elif switch < GUIDE:
-        bolster = _moved(bolster, switch)
-    else:
-        guide = _moved(guide, switch)
-    return Contact(column, bolster, guide, column_sign, bolster_sign)
+def _next_branch(branch, switch, to_jump):
+    """Branch beyond the lower (even) or upper (odd) switch of a face, or the jump between both."""
+    upward = switch % 2
+    if to_jump:
+        return AT_JUMP if branch + upward > 0 else -AT_JUMP
+    return _side(branch, upward) if abs(branch) == AT_JUMP else branch + 2 * upward - 1
+
+
+@compiled
+def _over_jump(x, velocity, base_acceleration, contact, switch, p):
+    """Contact after a regularised face has reached the end of its branch, and whether it is unique.
+
+    Behind the jump the acceleration may point back to it: then the jump holds the face.
+    """
+    if held(contact):
+        return with_consistent_signs(x, velocity, base_acceleration, _beyond(contact, switch, False), p)
+    across, now, unique = closed(x, velocity, base_acceleration, _beyond(contact, switch, False), p)
+    ratio = p.column_ratio if switch < BOLSTER else p.bolster_ratio if switch < GUIDE else 1.0
+    onward = ratio * now.acceleration if switch % 2 else -ratio * now.acceleration
+    if onward < 0.0:
+        return _beyond(contact, switch, True), unique
+    return across, unique
 
 
 @compiled
@@ -194,8 +281,8 @@ def successor(t, x, velocity, contact, switch, p):
             p,
         )
     if not p.set_valued:
-        contact = _beyond(contact, switch)
-    elif stuck(contact, p):
+        return _over_jump(x, velocity, base_acceleration, contact, switch, p)
+    if stuck(contact, p):
         contact = slipping(1 if switch == COLUMN + 1 else -1, p)
     else:
         return from_rest(x, base_acceleration, p)

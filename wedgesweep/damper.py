@@ -119,9 +119,7 @@ def forces(x, velocity, base_acceleration, contact, p):
 def spring_response(column_mu, bolster_mu, p):
     """Derivatives of z'' and the normal forces with respect to x at fixed friction coefficients."""
     wedge = -p.wedge_spring * p.column_ratio * p.cos_column
-    return reactions(
-        wedge * p.cos_column, wedge * p.sin_column, -p.bolster_spring, column_mu, bolster_mu, p
-    )
+    return reactions(wedge * p.cos_column, wedge * p.sin_column, -p.bolster_spring, column_mu, bolster_mu, p)
 
 
 @compiled
@@ -135,12 +133,8 @@ def stiffness_and_damping(x, velocity, base_acceleration, contact, p):
     column_mu = contact.column_sign * friction.coefficient(column_slip, contact.column, p)
     bolster_mu = contact.bolster_sign * friction.coefficient(bolster_slip, contact.bolster, p)
     by_x = spring_response(column_mu, bolster_mu, p)
-    column_slope = (
-        contact.column_sign * p.column_ratio * friction.slope(column_slip, contact.column, p)
-    )
-    bolster_slope = (
-        contact.bolster_sign * p.bolster_ratio * friction.slope(bolster_slip, contact.bolster, p)
-    )
+    column_slope = contact.column_sign * p.column_ratio * friction.slope(column_slip, contact.column, p)
+    bolster_slope = contact.bolster_sign * p.bolster_ratio * friction.slope(bolster_slip, contact.bolster, p)
     now = forces(x, velocity, base_acceleration, contact, p)
     by_velocity = reactions(
         -column_slope * now.column - bolster_slope * now.bolster * p.cos_included,

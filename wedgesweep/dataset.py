@@ -33,9 +33,7 @@ VARIABLES = (
     Variable("amplitude_ratio", "1", "half peak-to-peak of x - y over the input amplitude"),
     Variable("peak_to_peak", "m", "peak-to-peak of the relative displacement x - y"),
     Variable("peak_velocity", "m s-1", "largest magnitude of the relative velocity x' - y'"),
-    Variable(
-        "mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"
-    ),
+    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
     Variable(
         "stick_fraction",
         "1",
@@ -43,9 +41,7 @@ VARIABLES = (
     ),
     Variable("stick_phases", "1", "number of sticking phases per forcing period"),
     Variable("displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM),
-    Variable(
-        "velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM
-    ),
+    Variable("velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM),
     Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
     Variable("dissipated_energy", "J", "energy dissipated by friction per forcing period"),
     Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
@@ -162,9 +158,7 @@ def _attributes(variable: Variable) -> dict[str, Any]:
 def write(dataset: xr.Dataset, path: Path) -> None:
     """Write netCDF to a temporary file beside ``path`` and move it there when it is whole."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
-    encoding: dict[str, dict[str, Any]] = {
-        str(name): {"_FillValue": None} for name in dataset.coords
-    }
+    encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
     for name, variable in dataset.data_vars.items():
         if variable.dtype.kind in "fi":
             encoding[str(name)] = compressed

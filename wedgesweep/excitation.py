@@ -7,17 +7,17 @@ from wedgesweep.compiled import compiled
 
 @compiled
 def displacement(t, p):
-    """u in m."""
+    """U in m."""
     return p.amplitude * sin(p.omega * t)
 
 
 @compiled
 def acceleration(t, p):
-    """u'' in m/s^2."""
+    """U'' in m/s^2."""
     return -p.amplitude * p.omega**2 * sin(p.omega * t)
 
 
 @compiled
 def jerk(t, p):
-    """u''' in m/s^3."""
+    """U''' in m/s^3."""
     return -p.amplitude * p.omega**3 * cos(p.omega * t)

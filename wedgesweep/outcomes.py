@@ -33,8 +33,7 @@ def of_dataset(ds: xr.Dataset) -> list[Outcome]:
     columns = ("friction_law", "beta", "amplitude", "status", "message")
     rows = zip(*(frame[name].tolist() for name in columns), strict=True)
     return [
-        Outcome(law, beta, amplitude, STATUSES[code], message)
-        for law, beta, amplitude, code, message in rows
+        Outcome(law, beta, amplitude, STATUSES[code], message) for law, beta, amplitude, code, message in rows
     ]
 
 

@@ -35,7 +35,11 @@ FRICTION = (
     Quantity("static", 0.32, "coefficient of static friction, mu_s", minimum=0.0),
     Quantity("threshold_velocity_mm_per_s", 1.0, "end of the sticking branch, v_t", above=0.0),
     Quantity(
-        "velocity_exponent", -0.1, "decay of the exponential law above v_t", minimum=-1.0, maximum=1.0
+        "velocity_exponent",
+        -0.1,
+        "decay of the exponential law above v_t",
+        minimum=-1.0,
+        maximum=1.0,
     ),
 )
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from wedgesweep import excitation
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import stuck
-from wedgesweep.damper import Contact, forces
+from wedgesweep.contact import acting, stuck
+from wedgesweep.damper import Contact
 from wedgesweep.solvers.trajectory import Trajectory
 
 # Names of the numbers in the order in which ``reduce`` returns them (see dataset.VARIABLES).
@@ -103,7 +103,7 @@ def normal_forces(t, x, velocity, contacts, p, out):
     for i in range(t.size):
         row = contacts[i]
         contact = Contact(int(row[0]), int(row[1]), int(row[2]), int(row[3]), int(row[4]))
-        now = forces(x[i], velocity[i], excitation.acceleration(t[i], p), contact, p)
+        now = acting(x[i], velocity[i], excitation.acceleration(t[i], p), contact, p)
         out[0, i], out[1, i] = now.column, now.bolster
         if stuck(contact, p):
             out[:, i] = nan
@@ -134,7 +134,7 @@ def evaluate(trajectory: Trajectory, parameters: np.ndarray, harmonics: int) -> 
         "velocity": -samples.velocity,
         "normal_force_column": normal[0],
         "normal_force_bolster": normal[1],
-        "stuck": samples.contact[:, 0] == 0,
+        "stuck": np.abs(samples.contact[:, 0]) != 1,
     }
     return Response(
         dict(zip(NUMBERS, numbers.tolist(), strict=True)),

@@ -30,9 +30,12 @@ class Settings:
     keep_waveforms: bool = True
 
     def window(self, omega: float) -> Window:
-        """Time span of a case: whole forcing periods, at least one more than are kept."""
-        settle = self.settle_periods
-        if settle is None:
+        """Time span of a case: whole forcing periods, at least one more than are kept.
+
+        If ``steady`` the solver finds the settling time itself, and the one here is 0.
+        """
+        settle = self.settle_periods or 0
+        if not settle and self.duration is not None:
             # The paper's 1.5 s are cut to whole periods, so that phase 0 is phase 0 of the input.
             whole = floor(self.duration * omega / (2.0 * pi) * (1.0 + 1e-12))
             settle = max(whole - self.kept_periods, 1)
@@ -46,9 +49,7 @@ def trajectory(parameters: np.ndarray, settings: Settings) -> Trajectory:
     return solve(parameters, window, settings.rtol, settings.case_timeout)
 
 
-def respond(
-    parameters: np.ndarray, settings: Settings, harmonics: int
-) -> tuple[Response, dict[str, int]]:
+def respond(parameters: np.ndarray, settings: Settings, harmonics: int) -> tuple[Response, dict[str, int]]:
     """Run one case to its response and the solver's statistics. Raises CaseError."""
     run = trajectory(parameters, settings)
     return response.evaluate(run, parameters, harmonics), run.statistics

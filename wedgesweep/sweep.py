@@ -138,9 +138,7 @@ class Sweep:
         limit = self._limit(case_timeout)
         return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
 
-    def _all_records(
-        self, kept: Journal, n_jobs: int, case_timeout: float | None
-    ) -> Iterator[np.ndarray]:
+    def _all_records(self, kept: Journal, n_jobs: int, case_timeout: float | None) -> Iterator[np.ndarray]:
         # A time limit depends on the machine and its load: those cases are tried again.
         whole = kept.records[kept.records["status"] != dataset.STATUSES.index("time_limit")]
         todo = np.setdiff1d(np.arange(len(self.parameters)), whole["index"])
@@ -151,9 +149,7 @@ class Sweep:
             kept.append(records)
             yield records
 
-    def _solve_parallel(
-        self, indices: np.ndarray, n_jobs: int, case_timeout: float
-    ) -> Iterator[np.ndarray]:
+    def _solve_parallel(self, indices: np.ndarray, n_jobs: int, case_timeout: float) -> Iterator[np.ndarray]:
         if not indices.size:
             return
         pool = joblib.Parallel(n_jobs=n_jobs, return_as="generator_unordered")

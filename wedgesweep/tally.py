@@ -10,8 +10,7 @@ import numpy as np
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import stuck
-from wedgesweep.damper import forces
+from wedgesweep.contact import acting, held, held_between, stuck
 from wedgesweep.effects import guide_friction
 
 TALLY = np.dtype(
@@ -54,6 +53,14 @@ def friction_power(velocity, now, contact, p):
 
 
 @compiled
+def _power_at_jump(x, velocity, base_acceleration, contact, p):
+    """Power (W) of friction while a jump of the law holds the slip velocity."""
+    low, below, high, above, share, _ = held_between(x, velocity, base_acceleration, contact, p)
+    lower = friction_power(velocity, below, low, p)
+    return share * lower + (1.0 - share) * friction_power(velocity, above, high, p)
+
+
+@compiled
 def _count_onset(tally, is_stuck):
     """Follow the sequence of sticking and slipping spans."""
     if tally.time == 0.0:
@@ -69,22 +76,27 @@ def add(tally, t, x, velocity, weight, contact, p):
     tally.lowest = min(tally.lowest, x)
     tally.highest = max(tally.highest, x)
     tally.peak_velocity = max(tally.peak_velocity, abs(velocity))
+    sticks = abs(contact.column) != 1
     if weight > 0.0:
-        _count_onset(tally, 1.0 if contact.column == 0 else 0.0)
+        _count_onset(tally, 1.0 if sticks else 0.0)
     tally.time += weight
     tally.integral += weight * x
-    if contact.column == 0:
+    if sticks:
         tally.stuck_time += weight
     if stuck(contact, p):
         return
     base_acceleration = excitation.acceleration(t, p)
-    now = forces(x, velocity, base_acceleration, contact, p)
+    now = acting(x, velocity, base_acceleration, contact, p)
     tally.normal_force = min(tally.normal_force, now.column, now.bolster)
-    if contact.column_sign < 0 or contact.bolster_sign < 0:
+    if now.column < 0.0 or now.bolster < 0.0:
         tally.lifted_time += weight
     moved = p.bolster_mass + 2.0 * p.wedge_mass * p.column_ratio * p.cos_column
     tally.supplied -= weight * moved * base_acceleration * velocity
-    tally.dissipated += weight * friction_power(velocity, now, contact, p)
+    if held(contact):
+        power = _power_at_jump(x, velocity, base_acceleration, contact, p)
+    else:
+        power = friction_power(velocity, now, contact, p)
+    tally.dissipated += weight * power
 
 
 @compiled

@@ -37,7 +37,7 @@ def respond(r, force_ratio, settle_periods=400, rtol=1e-5):
 
 
 def magnification(r, numbers):
-    """k Z / P."""
+    """K Z / P."""
     return numbers["amplitude_ratio"] * AMPLITUDE * K / force_amplitude(r)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.physics.cases import OMEGA_N, TABLE_1, evaluated, steady
-from wedgesweep import damper, excitation, parameters, response
+from wedgesweep import damper, parameters
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 
@@ -27,9 +27,7 @@ from wedgesweep.solvers.trajectory import Window
 @pytest.mark.parametrize("lean", [4.0, -4.0])
 def test_energy_balance_over_a_steady_period(law, beta, amplitude, lean):
     amplitude *= 1.0 if lean > 0 else 2.5  # the other lean holds the bolster much longer
-    record = parameters.record(
-        law, amplitude, beta * OMEGA_N, suspension={"column_angle": np.radians(lean)}
-    )
+    record = parameters.record(law, amplitude, beta * OMEGA_N, suspension={"column_angle": np.radians(lean)})
     numbers = steady(record, settle_periods=150)
     assert numbers["dissipated_energy"] > 0.0
     assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-5)
@@ -70,9 +68,7 @@ def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
     window = Window(omega, 2, 2, 64)
     samples = radau.solve(record, window, 1e-9, 60.0).samples
     forced = share * amplitude * omega**2 / (resonance**2 - omega**2)
-    expected = [
-        forced * (sin(omega * t) - omega / resonance * sin(resonance * t)) for t in samples.t
-    ]
+    expected = [forced * (sin(omega * t) - omega / resonance * sin(resonance * t)) for t in samples.t]
     np.testing.assert_allclose(samples.x, expected, atol=1e-6 * np.ptp(expected))
 
 
@@ -142,9 +138,7 @@ def test_harmonics_rebuild_the_displacement_and_its_velocity():
     phase = 2 * pi * np.arange(result.waveforms["displacement"].size) / 256
     rebuilt = (coefficients * np.exp(1j * np.outer(phase, orders))).real.sum(axis=1)
     displacement = result.waveforms["displacement"]
-    np.testing.assert_allclose(
-        rebuilt, displacement - displacement.mean(), atol=0.02 * np.ptp(displacement)
-    )
+    np.testing.assert_allclose(rebuilt, displacement - displacement.mean(), atol=0.02 * np.ptp(displacement))
     omega = 0.4 * OMEGA_N
     np.testing.assert_allclose(
         result.spectra["velocity_harmonics"] @ (1, 1j),
@@ -154,7 +148,7 @@ def test_harmonics_rebuild_the_displacement_and_its_velocity():
 
 
 def test_displacement_turns_from_opposite_to_in_phase_with_the_input():
-    """x - y = -z: opposite to the input far below resonance, equal to it far above; never lagging."""
+    """X - y = -z: opposite to the input far below resonance, equal to it far above; never lagging."""
     lags = {}
     for beta in (0.9, 1.14, 1.5, 3.0):
         record = parameters.record("static-dynamic", 0.5e-3, beta * OMEGA_N)

@@ -18,9 +18,7 @@ def respond(record, settle_periods=60, periods=2, rtol=1e-9, solve=event_driven.
 
 @pytest.mark.parametrize("row", ROWS)
 def test_reference(row):
-    record = parameters.record(
-        row["friction_law"], row["amplitude_mm"] * 1e-3, row["beta"] * OMEGA_N
-    )
+    record = parameters.record(row["friction_law"], row["amplitude_mm"] * 1e-3, row["beta"] * OMEGA_N)
     numbers = respond(record).numbers
     assert numbers["amplitude_ratio"] == pytest.approx(row["amplitude_ratio"], abs=3e-6)
     assert numbers["stick_fraction"] == pytest.approx(row["stick_fraction"], abs=3e-4)

@@ -58,9 +58,7 @@ def newton_residual(t, x, velocity, now, p, result):
         - on_bolster
     )
     threshold = p["threshold_velocity"]
-    guide = p["guide_friction_force"] * (
-        now.guide if now.guide or p["set_valued"] else velocity / threshold
-    )
+    guide = p["guide_friction_force"] * (now.guide if now.guide or p["set_valued"] else velocity / threshold)
     bolster = (
         p["bolster_mass"] * (base + result.acceleration)
         + p["bolster_spring"] * z
@@ -82,9 +80,7 @@ def test_forces_solve_newtons_equations_with_exactly_one_pair_of_signs(law, lean
         assert now.bolster_sign * result.bolster >= 0.0
         scale = p["bolster_mass"] * (p["gravity"] + abs(excitation.acceleration(t, p)))
         scale += p["bolster_spring"] * abs(x)
-        np.testing.assert_allclose(
-            newton_residual(t, x, velocity, now, p, result), 0.0, atol=1e-11 * scale
-        )
+        np.testing.assert_allclose(newton_residual(t, x, velocity, now, p, result), 0.0, atol=1e-11 * scale)
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
@@ -97,9 +93,7 @@ def test_jacobian_is_the_derivative_of_the_rate(law):
             shift[column] = step
             ahead = rate(t, np.array([x, velocity]) + shift, now, record)
             behind = rate(t, np.array([x, velocity]) - shift, now, record)
-            np.testing.assert_allclose(
-                exact[:, column], (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-3
-            )
+            np.testing.assert_allclose(exact[:, column], (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-3)
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)

@@ -16,9 +16,7 @@ ROWS = json.loads((Path(__file__).parents[1] / "data" / "steady.json").read_text
     "row", ROWS, ids=lambda row: f"{row['friction_law']}-{row['beta']}-{row['amplitude_mm']}"
 )
 def test_steady_response(row):
-    record = parameters.record(
-        row["friction_law"], row["amplitude_mm"] * 1e-3, row["beta"] * OMEGA_N
-    )
+    record = parameters.record(row["friction_law"], row["amplitude_mm"] * 1e-3, row["beta"] * OMEGA_N)
     numbers = steady(record, settle_periods=row["settle_periods"])
     assert numbers["amplitude_ratio"] == pytest.approx(row["amplitude_ratio"], rel=1e-4)
     assert numbers["stick_fraction"] == pytest.approx(row["stick_fraction"], abs=0.005)
@@ -28,7 +26,10 @@ def test_steady_response(row):
 
 @pytest.mark.parametrize(
     ("column_angle", "rest", "resonance"),
-    [(0.06981317007977318, -1.0572017166e-3, 97.50648228), (-0.06981317007977318, -0.9342939466e-3, 100.61714194)],
+    [
+        (0.06981317007977318, -1.0572017166e-3, 97.50648228),
+        (-0.06981317007977318, -0.9342939466e-3, 100.61714194),
+    ],
 )
 def test_rest_position_and_resonance(column_angle, rest, resonance):
     record = parameters.record("coulomb", 1e-3, 1.0, suspension={"column_angle": column_angle})

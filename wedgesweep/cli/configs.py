@@ -31,9 +31,7 @@ def init(path: Path, force: bool) -> None:
 
 
 @click.command()
-@click.option(
-    "-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File; default: print."
-)
+@click.option("-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File; default: print.")
 def schema(output: Path) -> None:
     """Write the JSON schema of a config, by which editors check and complete it."""
     from wedgesweep import config

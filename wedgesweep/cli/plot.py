@@ -98,9 +98,7 @@ def _draw_all(ds: "xr.Dataset", directory: Path, suffix: str, options: dict[str,
         raise Failure(message)
 
 
-def _draw(
-    kind: str, ds: "xr.Dataset", file: Path, options: dict[str, Any], strict: bool = True
-) -> None:
+def _draw(kind: str, ds: "xr.Dataset", file: Path, options: dict[str, Any], strict: bool = True) -> None:
     from wedgesweep import figures
 
     draw = figures.FIGURES[kind].draw
@@ -108,9 +106,7 @@ def _draw(
     click.echo(f"wrote {file}")
 
 
-def _accepted(
-    kind: str, draw: Callable[..., Any], options: dict[str, Any], strict: bool
-) -> dict[str, Any]:
+def _accepted(kind: str, draw: Callable[..., Any], options: dict[str, Any], strict: bool) -> dict[str, Any]:
     """Options by the figure's names for them; one that it lacks is an error if strict."""
     names = signature(draw).parameters
     accepted = {}

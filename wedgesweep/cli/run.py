@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", type=OutputPath(), help="Dataset; default: CONFIG's name, here.")
 @N_JOBS
 @click.option("--solver", type=click.Choice(SOLVERS), help="Instead of the config's solver.method.")
-@click.option(
-    "--keep-going/--fail-fast", default=True, help="After a failed case; default: keep going."
-)
+@click.option("--keep-going/--fail-fast", default=True, help="After a failed case; default: keep going.")
 @click.option(
     "--case-timeout",
     type=click.FloatRange(min=0.0, min_open=True),
@@ -71,9 +69,7 @@ def run(
         raise Failure(message) from error
 
 
-def _run(
-    sweep: "Sweep", progress: Progress, n_jobs: int, case_timeout: float | None, fail_fast: bool
-) -> int:
+def _run(sweep: "Sweep", progress: Progress, n_jobs: int, case_timeout: float | None, fail_fast: bool) -> int:
     """Run the sweep unless it is complete; the exit code."""
     stored = sweep.stored()
     if stored is not None:

@@ -26,9 +26,7 @@ def print_outcomes(found: Sequence["Outcome"], total: int | None = None) -> int:
     """As print_summary, of the finished cases of ``total``."""
     from wedgesweep import outcomes
 
-    counts = ", ".join(
-        f"{count} {status}" for status, count in outcomes.counts(found).most_common()
-    )
+    counts = ", ".join(f"{count} {status}" for status, count in outcomes.counts(found).most_common())
     remaining = "" if total is None else f", {total - len(found)} remaining"
     click.echo(f"{total or len(found)} cases: {counts or 'none finished'}{remaining}")
     failed = outcomes.failures(found)

@@ -15,9 +15,7 @@ from wedgesweep.solvers.names import SOLVERS
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "input amplitude a of the side frame", above=0.0)
-OMEGA_N = Quantity(
-    "omega_n_rad_per_s", nan, "reference of beta; sqrt(k_b/M_b) unless given", above=0.0
-)
+OMEGA_N = Quantity("omega_n_rad_per_s", nan, "reference of beta; sqrt(k_b/M_b) unless given", above=0.0)
 LAW = Choice(key="friction_law", meaning="friction law", choices=LAW_NAMES, example=LAW_NAMES[0])
 
 
@@ -30,9 +28,7 @@ def _series(quantity: Quantity, example: object) -> Series:
     )
 
 
-def _whole(
-    key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more
-) -> Whole:
+def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more) -> Whole:
     quantity = Quantity(key, nan if default is None else default, meaning, minimum, maximum=maximum)
     return Whole.of(quantity, **more)
 

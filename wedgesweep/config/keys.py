@@ -135,9 +135,7 @@ class Number(Key):
     def of(cls, quantity: Quantity, **more: Any) -> Self:
         """Key of a quantity; a default that is not finite (a limit) is no default."""
         default = quantity.default if isfinite(quantity.default) else None
-        return cls(
-            key=quantity.key, meaning=quantity.meaning, default=default, quantity=quantity, **more
-        )
+        return cls(key=quantity.key, meaning=quantity.meaning, default=default, quantity=quantity, **more)
 
     @property
     def limits(self) -> list[str]:
@@ -177,9 +175,7 @@ class Whole(Number):
         if super().read(value, path, problems) is None:
             return None
         if value % self.step:
-            problems.append(
-                f"{path}: {value} is out of range; it must be a multiple of {self.step}"
-            )
+            problems.append(f"{path}: {value} is out of range; it must be a multiple of {self.step}")
             return None
         return value
 

@@ -30,9 +30,7 @@ class Several(Key):
         if not given:
             problems.append(f"{path}: the list is empty; write at least one value")
         places = [f"{path}[{i}]" for i in range(len(given))] if given is value else [path]
-        values = [
-            self.item.read(each, place, problems) for each, place in zip(given, places, strict=True)
-        ]
+        values = [self.item.read(each, place, problems) for each, place in zip(given, places, strict=True)]
         faults = self._faults([each for each in values if each is not None])
         problems.extend(f"{path}: {fault}" for fault in faults)
         return None if faults or not values or None in values else values

@@ -80,9 +80,7 @@ class TableList(Key):
 
     def read(self, value: Any, path: str, problems: list[str]) -> list[dict[str, Any]] | None:
         if not isinstance(value, list) or not value:
-            problems.append(
-                f"{path}: {show(value)} is not a list of tables; write [[{path}]] for each"
-            )
+            problems.append(f"{path}: {show(value)} is not a list of tables; write [[{path}]] for each")
             return None
         read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(value)]
         for i, each in enumerate(read):

@@ -50,9 +50,7 @@ def _draw_law(ax, law: xr.Dataset, norm) -> bool:
         ratio = law["amplitude_ratio"].sel(amplitude=amplitude)
         color = style.SEQUENTIAL(norm(amplitude * style.MM))
         ax.plot(law["beta"], ratio, color=color, linewidth=1.1, marker=marker, markersize=3)
-        missing |= style.mark_missing(
-            ax, law["beta"].values[np.isnan(ratio.values)], style.VERMILLION
-        )
+        missing |= style.mark_missing(ax, law["beta"].values[np.isnan(ratio.values)], style.VERMILLION)
     return missing
 
 

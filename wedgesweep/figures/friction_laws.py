@@ -14,9 +14,9 @@ REACH = 4.0  # the slip velocities shown, in threshold velocities
 POINTS = 200
 
 
-def curve(law: str, parameters) -> tuple[np.ndarray, np.ndarray]:
+def curve(name: str, parameters) -> tuple[np.ndarray, np.ndarray]:
     """Trace slip velocity (m/s) and signed coefficient, vertical where the law jumps."""
-    law = LAWS[law]
+    law = LAWS[name]
     threshold = float(parameters["threshold_velocity"])
     start = 0.0 if law.SET_VALUED else threshold
     pieces = {1: np.linspace(start, REACH * threshold, POINTS)}
@@ -24,9 +24,7 @@ def curve(law: str, parameters) -> tuple[np.ndarray, np.ndarray]:
     if not law.SET_VALUED:
         pieces[0] = np.array([-threshold, threshold])
     order = [branch for branch in (-1, 0, 1) if branch in pieces]
-    coefficients = [
-        law.coefficient(v, branch, parameters) for branch in order for v in pieces[branch]
-    ]
+    coefficients = [law.coefficient(v, branch, parameters) for branch in order for v in pieces[branch]]
     return np.concatenate([pieces[branch] for branch in order]), np.array(coefficients)
 
 
@@ -39,9 +37,7 @@ def _annotate(ax, law: str, friction: dict[str, float]) -> None:
     threshold = friction["threshold_velocity"] * style.MM
     ramp = f"ramp up to $v_t$ = {threshold:g} mm/s"
     note = "set-valued at rest" if LAWS[law].SET_VALUED else ramp
-    ax.annotate(
-        note, (0.97, 0.06), xycoords="axes fraction", ha="right", fontsize=8, color=style.GREY
-    )
+    ax.annotate(note, (0.97, 0.06), xycoords="axes fraction", ha="right", fontsize=8, color=style.GREY)
 
 
 def draw(ds: xr.Dataset) -> Figure:
@@ -58,9 +54,7 @@ def draw(ds: xr.Dataset) -> Figure:
         for velocity, coefficient in curves.values():
             ax.plot(velocity * style.MM, coefficient, color="0.8", linewidth=1)
         velocity, coefficient = curves[law]
-        ax.plot(
-            velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7
-        )
+        ax.plot(velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7)
         ax.set_title(law, fontsize=10)
         _annotate(ax, law, settings.friction)
     style.label(axes, "slip velocity [mm/s]", "friction coefficient μ (signed)")

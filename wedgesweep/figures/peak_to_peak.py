@@ -33,9 +33,7 @@ def draw(ds: xr.Dataset, amplitudes=None) -> Figure:
     cases.require_grid(ds, NAME, "peak_to_peak", "stick_fraction", "frequency")
     places = cases.pick_amplitudes(ds, amplitudes, PANELS)
     figure, axes = style.panels(len(places), size=(3.2, 3.2), share=False)
-    missing = [
-        _draw_amplitude(ax, ds.isel(amplitude=at)) for ax, at in zip(axes, places, strict=True)
-    ]
+    missing = [_draw_amplitude(ax, ds.isel(amplitude=at)) for ax, at in zip(axes, places, strict=True)]
     style.label(axes, "frequency [Hz]", "peak-to-peak of $x-y$ [mm]")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9, frameon=False)

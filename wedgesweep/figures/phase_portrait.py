@@ -58,9 +58,7 @@ def _draw_case(ax, case: xr.Dataset, omega_n: float) -> None:
     ax.set_title(f"{law}, $a$ = {amplitude:.3g} mm\n{frequency}", fontsize=9)
 
 
-def draw(
-    ds: xr.Dataset, beta: float | None = None, amplitudes=None, law: str | None = None
-) -> Figure:
+def draw(ds: xr.Dataset, beta: float | None = None, amplitudes=None, law: str | None = None) -> Figure:
     """Draw the nearest beta (default 0.4 on a grid) and amplitudes (m), or a list of cases."""
     cases.require(ds, NAME, "displacement", "velocity", "stuck", "stick_fraction", "omega_n")
     choose = _from_list if "case" in ds.dims else _from_grid

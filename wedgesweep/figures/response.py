@@ -29,9 +29,7 @@ def _even_rows(count: int) -> np.ndarray:
 
 def _draw_row(ax, time, wave, stuck, row: int, color: str) -> None:
     if np.isnan(wave).all():
-        ax.text(
-            time.mean(), row, "no result", fontsize=7, color=style.GREY, ha="center", va="center"
-        )
+        ax.text(time.mean(), row, "no result", fontsize=7, color=style.GREY, ha="center", va="center")
         return
     ax.plot(time, row + np.where(stuck == 1, wave, np.nan), color=style.STUCK, linewidth=5)
     ax.plot(time, row + wave, color=color, linewidth=1.2)
@@ -48,9 +46,7 @@ def _draw_scale(ax, per_ratio: float, largest: float) -> None:
     ratio = _nice(largest)
     where = {"transform": ax.get_yaxis_transform(), "clip_on": False}
     ax.plot([1.04, 1.04], [0.0, ratio * per_ratio], color="black", linewidth=2, **where)
-    ax.text(
-        1.07, 0.5 * ratio * per_ratio, f"$x-y$\n= {ratio:g} $a$", fontsize=8, va="center", **where
-    )
+    ax.text(1.07, 0.5 * ratio * per_ratio, f"$x-y$\n= {ratio:g} $a$", fontsize=8, va="center", **where)
 
 
 def draw(ds: xr.Dataset, beta: float = 0.3, amplitudes=None) -> Figure:

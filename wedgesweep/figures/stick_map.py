@@ -28,9 +28,7 @@ def cell_edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
     """Put edges half way between the centres, n + 1 of them."""
     x = np.log(centres) if logarithmic else centres.astype(float)
     steps = np.diff(x) if len(x) > 1 else np.array([0.1 if logarithmic else 0.1 * abs(x[0])])
-    edges = np.concatenate(
-        [[x[0] - steps[0] / 2], x[:-1] + np.diff(x) / 2, [x[-1] + steps[-1] / 2]]
-    )
+    edges = np.concatenate([[x[0] - steps[0] / 2], x[:-1] + np.diff(x) / 2, [x[-1] + steps[-1] / 2]])
     return np.exp(edges) if logarithmic else np.maximum(edges, 0.0)
 
 
@@ -106,7 +104,5 @@ def draw(ds: xr.Dataset) -> Figure:
     bar.ax.tick_params(labelsize=8)
     style.label(axes, style.BETA, style.AMPLITUDE)
     _legend(figure, ds)
-    style.title(
-        figure, "Share of time stuck (coulomb) or with the column slip below $v_t$ (other laws)"
-    )
+    style.title(figure, "Share of time stuck (coulomb) or with the column slip below $v_t$ (other laws)")
     return figure

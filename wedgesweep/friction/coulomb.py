@@ -1,7 +1,7 @@
 """Coulomb's law (the paper's Eq. 1), set-valued at rest.
 
-    mu = mu_d sign(v)             for v != 0
-    mu in [-mu_d, mu_d]           for v = 0: the face sticks, see contact.py
+mu = mu_d sign(v)             for v != 0
+mu in [-mu_d, mu_d]           for v = 0: the face sticks, see contact.py
 """
 
 from wedgesweep.compiled import compiled

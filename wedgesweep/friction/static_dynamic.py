@@ -1,7 +1,7 @@
 """Static-dynamic friction (the paper's Eq. 2): a steep ramp up to mu_s, then a drop to mu_d.
 
-    mu = mu_s v / v_t             for |v| <= v_t  (branch 0)
-    mu = mu_d sign(v)             for |v| >  v_t  (branch -1 or 1)
+mu = mu_s v / v_t             for |v| <= v_t  (branch 0)
+mu = mu_d sign(v)             for |v| >  v_t  (branch -1 or 1)
 """
 
 from wedgesweep.compiled import compiled

@@ -56,8 +56,7 @@ def shown_cases(runs: Runs) -> Finding:
     12,
     "The measured peak-to-peak jumps near 35 Hz, the computed one does not",
     paper="no jump from 20 to 40 Hz",
-    here="x {shown:.2f} from 32 to 38 Hz at 0.1 mm, up to x {largest:.3g} at {input:g} mm "
-    "(coulomb)",
+    here="x {shown:.2f} from 32 to 38 Hz at 0.1 mm, up to x {largest:.3g} at {input:g} mm (coulomb)",
     reason="Set-valued friction at a constant small input breaks away in this range: with 0.015 "
     "mm the peak-to-peak is {at_32:.4f}, {at_35:.4f} and {at_40:.4f} mm at 32, 35 and 40 Hz. That "
     "is still far below the {level:.2f} mm of claim 11, and inputs that move as far do not jump: "
@@ -91,9 +90,7 @@ def _growth(runs: Runs) -> tuple[np.ndarray, np.ndarray]:
     cases = [run.cases("coulomb", run.beta_of(hertz)) for hertz in JUMP_HERTZ]
     before, after = (each["peak_to_peak"].values for each in cases)
     moves = cases[0]["amplitude_ratio"].values > MOVES
-    return cases[0]["amplitude"].values * MM, np.where(
-        moves, after / np.where(moves, before, 1.0), nan
-    )
+    return cases[0]["amplitude"].values * MM, np.where(moves, after / np.where(moves, before, 1.0), nan)
 
 
 def _peak_to_peak(runs: Runs, hertz: float, millimetres: float) -> float:

@@ -39,9 +39,7 @@ def method(runs: Runs) -> Finding:
     )
     rtol = runs.paper.config.solver.rtol
     numbers = {"rtol": rtol, "fine_rtol": rtol * FINER, "beta": beta, "input": a}
-    return Finding(
-        checks, {"change": change, "shift": shift, "sharp": sharp, "soft": soft, **numbers}
-    )
+    return Finding(checks, {"change": change, "shift": shift, "sharp": sharp, "soft": soft, **numbers})
 
 
 def _refined(runs: Runs, law: str, beta: float, a: float) -> float:

@@ -37,13 +37,10 @@ def same_trend(runs: Runs) -> Finding:
     """Compare the ratios of the three laws near breakaway and far beyond it."""
     values = spread(runs.paper).where(settled(runs.paper))
     near, beyond = (
-        float(values.where(zone(runs.paper, name)).median())
-        for name in ("near breakaway", "beyond")
+        float(values.where(zone(runs.paper, name)).median()) for name in ("near breakaway", "beyond")
     )
     checks = (
-        below(
-            "median difference of the three ratios, settled, far beyond breakaway", beyond, ALIKE
-        ),
+        below("median difference of the three ratios, settled, far beyond breakaway", beyond, ALIKE),
         below("median difference of the three ratios, settled, near breakaway", near, ALIKE),
     )
     return Finding(checks, {"near": near, "beyond": beyond, **_next_to_breakaway(runs)})
@@ -53,8 +50,7 @@ def same_trend(runs: Runs) -> Finding:
     8,
     "At beta = 0.1 Coulomb is distorted, the other two show no stick-slip",
     paper="Fig. 5",
-    here="coulomb ratio {coulomb:.2g} at every input; the others smooth, harmonics up to "
-    "{smooth:.3f}",
+    here="coulomb ratio {coulomb:.2g} at every input; the others smooth, harmonics up to {smooth:.3f}",
     reason="Set-valued slip begins at {onset:.2f} mm at this frequency, above the paper's largest "
     "input of {largest:g} mm: coulomb stays stuck. The other two have no stick-slip because they "
     "never stick: they creep with a ratio of {creep:.4f}, the column face below the threshold "
@@ -134,9 +130,7 @@ def nearer_to_coulomb(runs: Runs) -> Finding:
     static_jump, exponential_jump = (_jump(runs.paper, law) for law in REGULARISED)
     differ, share = _exponential_nearer(runs.paper)
     checks = (
-        above(
-            "jump of static-dynamic less that of exponential", static_jump - exponential_jump, 0.0
-        ),
+        above("jump of static-dynamic less that of exponential", static_jump - exponential_jump, 0.0),
         above("share of the cases in which exponential is nearer to coulomb", share, 0.5),
     )
     low = runs.paper.ratios(0.4, 1.0)

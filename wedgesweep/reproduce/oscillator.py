@@ -43,9 +43,7 @@ def sinusoidal(runs: Runs) -> Finding:
     checks = (
         below("harmonics over the fundamental, from 0.3 mm", numbers["large_harmonics"], DISTORTED),
         below("share of time stuck, coulomb, from 0.3 mm", numbers["large_stuck"], LEAST),
-        below(
-            "harmonics over the fundamental, below 0.3 mm", numbers["small_harmonics"], DISTORTED
-        ),
+        below("harmonics over the fundamental, below 0.3 mm", numbers["small_harmonics"], DISTORTED),
         below("share of time stuck, coulomb, below 0.3 mm", numbers["small_stuck"], LEAST),
     )
     return Finding(checks, numbers)
@@ -74,9 +72,7 @@ def lift_off(runs: Runs) -> Finding:
     )
     numbers = {"low": float(large.min()), "high": float(large.max()), "longest": longest}
     force = float(ds["minimum_normal_force"].min())
-    return Finding(
-        checks, {"cases": cases, "even": _evenly(share > 0.0), "force": force, **numbers}
-    )
+    return Finding(checks, {"cases": cases, "even": _evenly(share > 0.0), "force": force, **numbers})
 
 
 def _evenly(lifts: xr.DataArray) -> float:

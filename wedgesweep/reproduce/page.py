@@ -62,8 +62,7 @@ def _as_predicate(verdict: str, count: int) -> str:
 
 def _mismatches(claims: Sequence[dict[str, Any]]) -> list[str]:
     return [
-        f"**Claim {claim['number']} is recorded as {claim['recorded']}, these runs say "
-        f"{claim['verdict']}.**"
+        f"**Claim {claim['number']} is recorded as {claim['recorded']}, these runs say {claim['verdict']}.**"
         for claim in claims
         if claim["verdict"] != claim["recorded"]
     ]

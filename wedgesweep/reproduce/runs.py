@@ -71,9 +71,7 @@ class Run:
 
     def ratios(self, beta: float, millimetres: float) -> dict[str, float]:
         """Amplitude ratio of one case under each law, by the law's identifier."""
-        return {
-            identifier(law): self.number("amplitude_ratio", law, beta, millimetres) for law in LAWS
-        }
+        return {identifier(law): self.number("amplitude_ratio", law, beta, millimetres) for law in LAWS}
 
     def number(self, variable: str, name: str, beta: float, millimetres: float) -> float:
         """One number of one case, SI."""
@@ -119,10 +117,7 @@ def obtain(
         message = f"{configs}: no such folder; reproduce needs the configs of a wedgesweep checkout"
         raise ConfigError([message])
     directory.mkdir(parents=True, exist_ok=True)
-    sweeps = [
-        Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc")
-        for name in CONFIG_NAMES
-    ]
+    sweeps = [Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc") for name in CONFIG_NAMES]
     return Runs(*(_obtain(sweep, n_jobs, report, progress) for sweep in sweeps))
 
 

@@ -101,9 +101,7 @@ def onset_of_motion(runs: Runs) -> Finding:
     sustained = float(np.median(slip / MM * (beta * run.omega_n) ** 2))
     agree = float(np.mean(np.abs(np.log2(moving / ONSET_MM)) <= 1.0))
     checks = (
-        above(
-            "share of frequencies at which the ratio passes 0.1 between 0.15 and 0.6 mm", agree, 0.9
-        ),
+        above("share of frequencies at which the ratio passes 0.1 between 0.15 and 0.6 mm", agree, 0.9),
         below("largest over smallest input of these", float(moving.max() / moving.min()), 2.0),
     )
     return Finding(

@@ -33,9 +33,7 @@ def parameters_and_cases(runs: Runs) -> Finding:
         near("highest frequency (Hz)", highest, 40.76, DIGITS),
         near("number of cases", size, 1800, 0.0),
     )
-    return Finding(
-        checks, {"omega_n": omega_n, "lowest": lowest, "highest": highest, "cases": size}
-    )
+    return Finding(checks, {"omega_n": omega_n, "lowest": lowest, "highest": highest, "cases": size})
 
 
 @claim(
@@ -96,10 +94,7 @@ def resonance(runs: Runs) -> Finding:
         **peaks,
         **{f"scaled_{law}": peak for law, peak in scaled_peaks.items()},
     }
-    by_law = (
-        near(f"beta of the largest ratio, {law}", peak, 0.8, READ_OFF)
-        for law, peak in peaks.items()
-    )
+    by_law = (near(f"beta of the largest ratio, {law}", peak, 0.8, READ_OFF) for law, peak in peaks.items())
     free = near("resonance over omega_n, frictionless", here, 0.8, READ_OFF)
     return Finding((free, near("the same (Hz)", hertz, 11.0, READ_OFF), *by_law), numbers)
 
@@ -127,9 +122,7 @@ def unit_ratio(runs: Runs) -> Finding:
     betas = {"at_20": run.beta_of(20.0), "at_end": float(run.ds["beta"][-1])}
     settled = {name: _settled_ratio(run, beta) for name, beta in betas.items()}
     free = {f"free_{name}": frictionless_ratio(run, beta) for name, beta in betas.items()}
-    scaled = {
-        f"scaled_{name}": frictionless_ratio(runs.scaled, beta) for name, beta in betas.items()
-    }
+    scaled = {f"scaled_{name}": frictionless_ratio(runs.scaled, beta) for name, beta in betas.items()}
     limit, end = frictionless_ratio(run, FAR), betas["at_end"]
     checks = (
         near("frictionless ratio far above resonance", limit, 1.0, REACHED),
@@ -137,9 +130,7 @@ def unit_ratio(runs: Runs) -> Finding:
         near("ratio at 20 Hz, coulomb, 1 mm", settled["at_20"], 1.0, REACHED),
         near(f"ratio at beta = {end:g}, coulomb, 1 mm", settled["at_end"], 1.0, REACHED),
     )
-    return Finding(
-        checks, {"limit": limit, "end": end, "periods": LONG, **settled, **free, **scaled}
-    )
+    return Finding(checks, {"limit": limit, "end": end, "periods": LONG, **settled, **free, **scaled})
 
 
 def _settled_ratio(run: Run, beta: float) -> float:

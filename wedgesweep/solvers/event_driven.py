@@ -54,17 +54,11 @@ def solve(
 ) -> Trajectory:
     """Run one case; arguments and errors as for ``radau.solve``."""
     times = window.sample_times
-    samples = Samples(
-        times, np.empty(times.size), np.empty(times.size), np.empty((times.size, 5), np.int8)
-    )
+    samples = Samples(times, np.empty(times.size), np.empty(times.size), np.empty((times.size, 5), np.int8))
     sums = tally.empty()
-    recorder = Recorder(
-        window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact
-    )
+    recorder = Recorder(window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact)
     statistics = np.zeros(3, np.int64)
-    outcome, t, _, _ = follow(
-        parameters, 0.0, window.keep, window.end, *start, rtol, recorder, statistics
-    )
+    outcome, t, _, _ = follow(parameters, 0.0, window.keep, window.end, *start, rtol, recorder, statistics)
     if outcome != OK:
         status, message = MESSAGES[outcome]
         raise CaseError(status, f"{message} (at t = {t:.6g} s)")
@@ -141,7 +135,7 @@ def _keep_waveforms(recorder, parameters, out):
     out[0], out[1] = x, velocity
     response.normal_forces(times, x, velocity, contact, parameters[0], out[2:4])
     for i in range(samples):
-        out[4, i] = 1.0 if contact[i, 0] == 0 else 0.0
+        out[4, i] = 1.0 if abs(contact[i, 0]) != 1 else 0.0
 
 
 @compiled
@@ -196,8 +190,6 @@ def run_batch(parameters, settle_periods, starts, plan, sums, batch):
         batch.state[i, 0], batch.state[i, 1] = end_x, end_velocity
         if outcome != OK:
             continue
-        response.reduce(
-            sums[0], x[:n], velocity[:n], periods, case[0], batch.numbers[i], batch.spectra[i]
-        )
+        response.reduce(sums[0], x[:n], velocity[:n], periods, case[0], batch.numbers[i], batch.spectra[i])
         if batch.waveforms.shape[0]:
             _keep_waveforms(recorder, case, batch.waveforms[i])

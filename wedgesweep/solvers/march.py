@@ -32,14 +32,23 @@ def march(t, stop, x, velocity, contact, last_switch, parameters, rtol, h, keepi
             o = oscillator.oscillator(contact, p)
             if constant and o.linear and p.never_locks:
                 x0, velocity0 = x, velocity
-                t, x, velocity, switch = oscillator.slide(
-                    t, stop, x, velocity, contact, o, p, last_switch
-                )
+                t, x, velocity, switch = oscillator.slide(t, stop, x, velocity, contact, o, p, last_switch)
                 if keeping:
                     oscillator.keep(began, t, x0, velocity0, contact, o, recorder, p)
             else:
                 t, x, velocity, switch, h = runge_kutta.slide(
-                    t, stop, x, velocity, contact, p, rtol, h, last_switch, keeping, recorder, statistics
+                    t,
+                    stop,
+                    x,
+                    velocity,
+                    contact,
+                    p,
+                    rtol,
+                    h,
+                    last_switch,
+                    keeping,
+                    recorder,
+                    statistics,
                 )
         if switch == -1:
             continue

@@ -61,9 +61,9 @@ def constant_friction(contact, p):
     """Whether no coefficient of friction depends on velocity on this contact."""
     if p.law == 0:
         return True
-    bolster = contact.bolster != 0 or p.bolster_ratio == 0.0
-    guide = contact.guide != 0 or p.guide_friction_force == 0.0
-    return p.law == 1 and contact.column != 0 and bolster and guide
+    bolster = abs(contact.bolster) == 1 or p.bolster_ratio == 0.0
+    guide = abs(contact.guide) == 1 or p.guide_friction_force == 0.0
+    return p.law == 1 and abs(contact.column) == 1 and bolster and guide
 
 
 @compiled
@@ -141,7 +141,7 @@ def state(f, o, p):
 
 @compiled
 def acceleration(f, o, p):
-    """x'' in m/s^2."""
+    """X'' in m/s^2."""
     return -o.forced * p.omega**2 * f.sine - o.frequency**2 * f.free
 
 

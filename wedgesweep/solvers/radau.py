@@ -16,7 +16,7 @@ from scipy.integrate import Radau, solve_ivp
 from wedgesweep import contact as contacts
 from wedgesweep import excitation, tally
 from wedgesweep.compiled import compiled
-from wedgesweep.damper import Contact, forces, stiffness_and_damping
+from wedgesweep.damper import Contact, stiffness_and_damping
 from wedgesweep.solvers.sticking import LOCKED, release
 from wedgesweep.solvers.trajectory import CaseError, Samples, Trajectory, Window
 
@@ -35,7 +35,7 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 def rate(t, y, contact, parameters):
     """Derivative of the state (x, x'), shape (2,)."""
     p = parameters[0]
-    now = forces(y[0], y[1], excitation.acceleration(t, p), contact, p)
+    now = contacts.acting(y[0], y[1], excitation.acceleration(t, p), contact, p)
     return np.array([y[1], now.acceleration])
 
 
@@ -44,7 +44,9 @@ def jacobian(t, y, contact, parameters):
     """Derivative of ``rate`` with respect to the state, shape (2, 2)."""
     p = parameters[0]
     base_acceleration = excitation.acceleration(t, p)
-    by_x, by_velocity = stiffness_and_damping(y[0], y[1], base_acceleration, contact, p)
+    by_x = by_velocity = 0.0
+    if not contacts.held(contact):
+        by_x, by_velocity = stiffness_and_damping(y[0], y[1], base_acceleration, contact, p)
     return np.array([[0.0, 1.0], [by_x, by_velocity]])
 
 
@@ -141,9 +143,7 @@ def solve(
 class _Run:
     """One case on its way: the current state, and what is kept so far."""
 
-    def __init__(
-        self, parameters: np.ndarray, window: Window, rtol: float, time_limit: float
-    ) -> None:
+    def __init__(self, parameters: np.ndarray, window: Window, rtol: float, time_limit: float) -> None:
         self.parameters, self.window, self.rtol = parameters, window, rtol
         self.p = parameters[0]
         self.deadline = perf_counter() + time_limit
@@ -172,17 +172,13 @@ class _Run:
                     contact, y = self._switched(t, y, contact, switch)
         return Trajectory(self.samples, self.tally, self.window.periods, dict(self.statistics))
 
-    def _piece(
-        self, t: float, stop: float, y: np.ndarray, contact: Contact
-    ) -> tuple[float, np.ndarray, int]:
+    def _piece(self, t: float, stop: float, y: np.ndarray, contact: Contact) -> tuple[float, np.ndarray, int]:
         """Follow one contact; the time and state where it ends, and the switch (-1 at ``stop``)."""
         if contacts.stuck(contact, self.p):
             return self._wait(t, stop, y, contact)
         return self._slide(t, stop, y, contact)
 
-    def _wait(
-        self, t: float, stop: float, y: np.ndarray, contact: Contact
-    ) -> tuple[float, np.ndarray, int]:
+    def _wait(self, t: float, stop: float, y: np.ndarray, contact: Contact) -> tuple[float, np.ndarray, int]:
         end, switch = release(t, stop, y[0], contact, self.parameters)
         self._require(switch != LOCKED, end)
         if t >= self.window.keep:
@@ -190,14 +186,12 @@ class _Run:
             self._add(np.array([t]), y[:, None], contact, np.array([end - t]))
         return end, y, switch
 
-    def _slide(
-        self, t: float, stop: float, y: np.ndarray, contact: Contact
-    ) -> tuple[float, np.ndarray, int]:
+    def _slide(self, t: float, stop: float, y: np.ndarray, contact: Contact) -> tuple[float, np.ndarray, int]:
         ahead = self._switches_ahead(t, y, contact)
-        for place in np.flatnonzero(ahead < 0.0):
+        for place in np.flatnonzero(ahead < 0.0).tolist():
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the switch before
-        places = np.flatnonzero(np.isfinite(ahead))
+        places = np.flatnonzero(np.isfinite(ahead)).tolist()
         result = self._integrate(t, stop, y, contact, places)
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
         if reached and result.t[-1] == t and self._just_passed(reached[0]):
@@ -206,7 +200,7 @@ class _Run:
         self._require(first_locked(result.t, result.y, contact, self.parameters) < 0, result.t[-1])
         if missed_switch(result.t, result.y, contact, self.parameters):
             message = f"a switch was missed between t = {t:.6g} s and {result.t[-1]:.6g} s"
-            raise CaseError("solver_failure", message)
+            raise CaseError(message, "solver_failure")
         if result.t.size > 2:
             self.first_step = result.t[-2] - result.t[-3]
         if t >= self.window.keep:
@@ -228,18 +222,16 @@ class _Run:
         self.first_step = (self.first_step or self.period) / SHORTER
         if self.first_step < SHORTEST * self.period:
             message = f"no progress at t = {t:.6g} s"
-            raise CaseError("solver_failure", message)
+            raise CaseError(message, "solver_failure")
 
-    def _integrate(
-        self, t: float, stop: float, y: np.ndarray, contact: Contact, places: np.ndarray
-    ) -> Any:
+    def _integrate(self, t: float, stop: float, y: np.ndarray, contact: Contact, places: list[int]) -> Any:
         result = solve_ivp(
             self._rate(contact),
             (t, stop),
             y,
             method=SmallRadau,
             jac=lambda t, y: jacobian(t, y, contact, self.parameters),
-            events=[*(self._event(contact, place) for place in places), _turn],
+            events=[*(self._event(t, contact, place) for place in places), _turn],
             dense_output=t >= self.window.keep,
             rtol=self.rtol,
             atol=self.atol,
@@ -255,28 +247,29 @@ class _Run:
         def limited_rate(t: float, y: np.ndarray) -> np.ndarray:
             if perf_counter() > deadline:
                 message = f"gave up after {self.time_limit:g} s at t = {t:.6g} s"
-                raise CaseError("time_limit", message)
+                raise CaseError(message, "time_limit")
             return rate(t, y, contact, parameters)
 
         return limited_rate
 
-    def _event(self, contact: Contact, place: int) -> Callable[[float, np.ndarray], float]:
+    def _event(self, start: float, contact: Contact, place: int) -> Callable[[float, np.ndarray], float]:
         parameters = self.parameters
 
         def event(t: float, y: np.ndarray) -> float:
-            return switch_value(t, y, contact, place, parameters)
+            value = switch_value(t, y, contact, place, parameters)
+            # A switch that begins at zero may be negative there by rounding, which would hide its return.
+            return max(value, 0.0) if t == start else value
 
-        event.terminal, event.direction = True, -1
+        # scipy reads these two from the function.
+        event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
         return event
 
-    def _switched(
-        self, t: float, y: np.ndarray, contact: Contact, switch: int
-    ) -> tuple[Contact, np.ndarray]:
+    def _switched(self, t: float, y: np.ndarray, contact: Contact, switch: int) -> tuple[Contact, np.ndarray]:
         self.statistics["switches"] += 1
         self.last_switch = switch
         if self.statistics["switches"] > SWITCHES_PER_PERIOD * (1.0 + t / self.period):
             message = f"more than {SWITCHES_PER_PERIOD} switches per period at t = {t:.6g} s"
-            raise CaseError("solver_failure", message)
+            raise CaseError(message, "solver_failure")
         if self.p["set_valued"] and switch < contacts.COLUMN_NORMAL:
             y = np.array([y[0], 0.0])
         contact, unique = contacts.successor(t, y[0], y[1], contact, switch, self.p)
@@ -288,15 +281,15 @@ class _Run:
         self.statistics["steps"] += result.t.size - 1
         if not np.isfinite(result.y).all():
             message = f"state not finite at t = {result.t[-1]:.6g} s"
-            raise CaseError("not_finite", message)
+            raise CaseError(message, "not_finite")
         if result.status < 0:
             message = f"{result.message} (at t = {result.t[-1]:.6g} s)"
-            raise CaseError("solver_failure", message)
+            raise CaseError(message, "solver_failure")
 
     def _require(self, unique: bool, t: float) -> None:
         if not unique:
             message = f"normal forces not unique at t = {t:.6g} s: the wedge locks"
-            raise CaseError("locked", message)
+            raise CaseError(message, "locked")
 
     def _keep(self, result: Any, contact: Contact) -> None:
         half = 0.5 * np.diff(result.t)
@@ -306,9 +299,7 @@ class _Run:
         self._add(result.t_events[-1], result.y_events[-1].reshape(-1, 2).T, contact)
         self._sample(result.t[0], result.t[-1], result.sol, contact)
 
-    def _add(
-        self, t: np.ndarray, y: np.ndarray, contact: Contact, weight: np.ndarray | None = None
-    ) -> None:
+    def _add(self, t: np.ndarray, y: np.ndarray, contact: Contact, weight: np.ndarray | None = None) -> None:
         weight = np.zeros(t.size) if weight is None else weight
         tally.add_all(self.tally, t, y[0], y[1], weight, contact, self.parameters)
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from wedgesweep import excitation
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, switches, unique
-from wedgesweep.damper import forces
+from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, acting, held, switches, unique
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 from wedgesweep.solvers.sticking import LOCKED
 
@@ -26,8 +25,8 @@ FAILED = -3
 
 @compiled
 def rate(t, x, velocity, contact, p):
-    """x'' in m/s^2."""
-    return forces(x, velocity, excitation.acceleration(t, p), contact, p).acceleration
+    """X'' in m/s^2."""
+    return acting(x, velocity, excitation.acceleration(t, p), contact, p).acceleration
 
 
 @compiled
@@ -43,35 +42,17 @@ def step(t, h, x, v, a, contact, p):
     v5 = v + h * (19372 / 6561 * a - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
     x5 = x + h * (19372 / 6561 * v - 25360 / 2187 * v2 + 64448 / 6561 * v3 - 212 / 729 * v4)
     a5 = rate(t + 8 / 9 * h, x5, v5, contact, p)
-    v6 = v + h * (
-        9017 / 3168 * a - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
-    )
-    x6 = x + h * (
-        9017 / 3168 * v - 355 / 33 * v2 + 46732 / 5247 * v3 + 49 / 176 * v4 - 5103 / 18656 * v5
-    )
+    v6 = v + h * (9017 / 3168 * a - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5)
+    x6 = x + h * (9017 / 3168 * v - 355 / 33 * v2 + 46732 / 5247 * v3 + 49 / 176 * v4 - 5103 / 18656 * v5)
     a6 = rate(t + h, x6, v6, contact, p)
-    v7 = v + h * (
-        35 / 384 * a + 500 / 1113 * a3 + 125 / 192 * a4 - 2187 / 6784 * a5 + 11 / 84 * a6
-    )
-    x7 = x + h * (
-        35 / 384 * v + 500 / 1113 * v3 + 125 / 192 * v4 - 2187 / 6784 * v5 + 11 / 84 * v6
-    )
+    v7 = v + h * (35 / 384 * a + 500 / 1113 * a3 + 125 / 192 * a4 - 2187 / 6784 * a5 + 11 / 84 * a6)
+    x7 = x + h * (35 / 384 * v + 500 / 1113 * v3 + 125 / 192 * v4 - 2187 / 6784 * v5 + 11 / 84 * v6)
     a7 = rate(t + h, x7, v7, contact, p)
     error_x = h * (
-        71 / 57600 * v
-        - 71 / 16695 * v3
-        + 71 / 1920 * v4
-        - 17253 / 339200 * v5
-        + 22 / 525 * v6
-        - v7 / 40
+        71 / 57600 * v - 71 / 16695 * v3 + 71 / 1920 * v4 - 17253 / 339200 * v5 + 22 / 525 * v6 - v7 / 40
     )
     error_v = h * (
-        71 / 57600 * a
-        - 71 / 16695 * a3
-        + 71 / 1920 * a4
-        - 17253 / 339200 * a5
-        + 22 / 525 * a6
-        - a7 / 40
+        71 / 57600 * a - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6 - a7 / 40
     )
     return x7, v7, a7, error_x, error_v
 
@@ -120,7 +101,7 @@ def _slip_zero(target, low, high, h, start, end):
 
 @compiled
 def _force_zero(place, low, high, t, h, start, end, contact, p, out):
-    """Share of a step at which a normal force, positive at ``low`` and not at ``high``, is zero."""
+    """Share of a step at which a switch of forces, positive at ``low`` and not at ``high``, is zero."""
     for _ in range(55):
         middle = 0.5 * (low + high)
         _switches_at(middle, t, h, start, end, contact, p, out)
@@ -164,7 +145,7 @@ def _zero(place, share, now, t, h, start, end, contact, p, last_switch, out):
             low *= 0.5
             if low * h * p.omega < 1e-13:
                 return 0.0
-    if place >= COLUMN_NORMAL:
+    if place >= COLUMN_NORMAL or held(contact):
         return _force_zero(place, low, share, t, h, start, end, contact, p, out)
     # A switch of slip is linear in the velocity, so that its zero is a velocity.
     at_low, at_share = quintic(low, h, start, end)[1], quintic(share, h, start, end)[1]
@@ -216,13 +197,9 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
         share, place = inf, -1
         peak = _peak(start, end, taken)
         if peak > 0.0:
-            share, place = _first_switch(
-                peak, t, taken, start, end, contact, p, last_switch, out, trial
-            )
+            share, place = _first_switch(peak, t, taken, start, end, contact, p, last_switch, out, trial)
         if place < 0:
-            share, place = _first_switch(
-                1.0, t, taken, start, end, contact, p, last_switch, out, trial
-            )
+            share, place = _first_switch(1.0, t, taken, start, end, contact, p, last_switch, out, trial)
         if place < 0:
             share = 1.0
         if keeping:

@@ -33,7 +33,7 @@ def poincare(k, x, velocity, parameters, rtol, recorder, statistics):
     """State after one forcing period from a state at phase 0, and the outcome."""
     p = parameters[0]
     period = 2.0 * pi / p.omega
-    contact, unique = contacts.initial(k * period, x, velocity, p)
+    contact, _ = contacts.initial(k * period, x, velocity, p)
     end = march(
         k * period,
         (k + 1) * period,

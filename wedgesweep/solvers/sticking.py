@@ -97,7 +97,7 @@ def release(t, stop, x, contact, parameters):
 
 @compiled
 def scanned_release(t, stop, x, contact, parameters):
-    """``release`` for any base motion and for normal forces of either sign: samples, then bisection."""
+    """``release`` for any base motion and for normal forces of either sign: sampled, then bisected."""
     p = parameters[0]
     out = np.empty(SWITCHES)
     step = 2.0 * np.pi / p.omega / SAMPLES_PER_PERIOD

@@ -60,6 +60,6 @@ class Trajectory:
 class CaseError(Exception):
     """A case that has no answer; ``status`` is one of dataset.STATUSES."""
 
-    def __init__(self, status: str, message: str) -> None:
+    def __init__(self, message: str, status: str) -> None:
         super().__init__(message)
         self.status = status
