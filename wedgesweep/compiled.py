@@ -37,5 +37,5 @@ Function = TypeVar("Function", bound=Callable)
 
 
 def compiled(function: Function) -> Function:
-    """Compile with numba; a division by zero gives inf or NaN, as in numpy."""
-    return numba.njit(cache=True, error_model="numpy")(function)
+    """Compile with numba; a division by zero gives inf or NaN, as in numpy, and threads run at once."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)

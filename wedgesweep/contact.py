@@ -165,13 +165,12 @@ def initial(t, x, velocity, p):
 
 
 @compiled
-def _face(velocity, branch, p, out):
-    """Distances of a regularised face to the lower and the upper end of its branch."""
-    out[0] = out[1] = inf
+def _face(velocity, branch, p, place, out):
+    """Write the distances of a regularised face to the lower and the upper end of its branch."""
     if branch >= 0:
-        out[0] = velocity - p.threshold_velocity if branch else velocity + p.threshold_velocity
+        out[place] = velocity - p.threshold_velocity if branch else velocity + p.threshold_velocity
     if branch <= 0:
-        out[1] = -p.threshold_velocity - velocity if branch else p.threshold_velocity - velocity
+        out[place + 1] = -p.threshold_velocity - velocity if branch else p.threshold_velocity - velocity
 
 
 @compiled
@@ -191,25 +190,31 @@ def switches(t, x, velocity, contact, p, out):
     Units are m/s for slip velocities, N for normal forces, m/s^2 for the release of a stuck bolster;
     a switch that the contact does not have is inf.
     """
-    out[:] = inf
     base_acceleration = excitation.acceleration(t, p)
     if stuck(contact, p):
+        out[:] = inf
         out[COLUMN] = breakaway(x, base_acceleration, -1, p)[0]
         out[COLUMN + 1] = -breakaway(x, base_acceleration, 1, p)[0]
-        return
-    if held(contact):
+    elif held(contact):
+        out[:] = inf
         place, ratio = _held_face(contact, p)
         _, below, _, above, _, _ = held_between(x, velocity, base_acceleration, contact, p)
         out[place], out[place + 1] = ratio * below.acceleration, -ratio * above.acceleration
-        return
+    else:
+        slip_switches(velocity, forces(x, velocity, base_acceleration, contact, p), contact, p, out)
+
+
+@compiled
+def slip_switches(velocity, now, contact, p, out):
+    """``switches`` of a bolster that slips, from the forces ``now`` on it."""
+    out[:] = inf
     if p.set_valued:
         out[COLUMN if contact.column > 0 else COLUMN + 1] = contact.column * velocity
     else:
-        _face(p.column_ratio * velocity, contact.column, p, out[COLUMN:BOLSTER])
-        _face(p.bolster_ratio * velocity, contact.bolster, p, out[BOLSTER:GUIDE])
+        _face(p.column_ratio * velocity, contact.column, p, COLUMN, out)
+        _face(p.bolster_ratio * velocity, contact.bolster, p, BOLSTER, out)
         if p.guide_friction_force > 0.0:
-            _face(velocity, contact.guide, p, out[GUIDE:COLUMN_NORMAL])
-    now = forces(x, velocity, base_acceleration, contact, p)
+            _face(velocity, contact.guide, p, GUIDE, out)
     out[COLUMN_NORMAL] = contact.column_sign * now.column
     out[BOLSTER_NORMAL] = contact.bolster_sign * now.bolster
 

@@ -71,6 +71,7 @@ class Plan(NamedTuple):
 
     ``steady``: settle until the response repeats within ``tolerance`` (of input amplitude and velocity),
     for at most ``most`` periods; else each case has its own number of settling periods.
+    ``chain``: a case starts where the one before it ended, unless that failed.
     """
 
     periods: int
@@ -79,6 +80,7 @@ class Plan(NamedTuple):
     steady: bool
     tolerance: float
     most: int
+    chain: bool = False
 
 
 class Batch(NamedTuple):
@@ -150,6 +152,8 @@ def run_batch(parameters, settle_periods, starts, plan, sums, batch):
         cycle = 2.0 * pi / case[0].omega
         step = cycle / plan.samples_per_period
         start_x, start_velocity = starts[i]
+        if plan.chain and i > 0 and batch.outcome[i - 1] == OK:
+            start_x, start_velocity = batch.state[i - 1]
         settled, periods, begin = settle_periods[i], plan.periods, 0.0
         if plan.steady:
             nothing = Recorder(0.0, step, sums, x[:0], velocity[:0], contact[:0])

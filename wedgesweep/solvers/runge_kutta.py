@@ -10,7 +10,7 @@ import numpy as np
 
 from wedgesweep import excitation
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, acting, held, switches, unique
+from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, acting, held, slip_switches, switches, unique
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 from wedgesweep.solvers.sticking import LOCKED
 
@@ -20,6 +20,8 @@ ABSOLUTE = 1e-2
 LEAST = 12
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 SHORTEST = 1e-13
+# A piece that needs more steps than this will not end.
+MOST_STEPS = 1_000_000
 FAILED = -3
 
 
@@ -31,7 +33,7 @@ def rate(t, x, velocity, contact, p):
 
 @compiled
 def step(t, h, x, v, a, contact, p):
-    """One step from (x, v) with acceleration a: the new state, its acceleration, and two errors."""
+    """One step from (x, v) with acceleration a: the new state, the forces there, and two errors."""
     a2 = rate(t + h / 5, x + h * v / 5, v + h * a / 5, contact, p)
     v2 = v + h * a / 5
     v3 = v + h * (3 / 40 * a + 9 / 40 * a2)
@@ -47,14 +49,15 @@ def step(t, h, x, v, a, contact, p):
     a6 = rate(t + h, x6, v6, contact, p)
     v7 = v + h * (35 / 384 * a + 500 / 1113 * a3 + 125 / 192 * a4 - 2187 / 6784 * a5 + 11 / 84 * a6)
     x7 = x + h * (35 / 384 * v + 500 / 1113 * v3 + 125 / 192 * v4 - 2187 / 6784 * v5 + 11 / 84 * v6)
-    a7 = rate(t + h, x7, v7, contact, p)
+    now = acting(x7, v7, excitation.acceleration(t + h, p), contact, p)
+    a7 = now.acceleration
     error_x = h * (
         71 / 57600 * v - 71 / 16695 * v3 + 71 / 1920 * v4 - 17253 / 339200 * v5 + 22 / 525 * v6 - v7 / 40
     )
     error_v = h * (
         71 / 57600 * a - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6 - a7 / 40
     )
-    return x7, v7, a7, error_x, error_v
+    return x7, v7, now, error_x, error_v
 
 
 @compiled
@@ -155,11 +158,11 @@ def _zero(place, share, now, t, h, start, end, contact, p, last_switch, out):
 
 @compiled
 def _first_switch(share, t, h, start, end, contact, p, last_switch, out, trial):
-    """Share and place of the first switch up to a share of a step; the place is -1 if there is none."""
-    _switches_at(share, t, h, start, end, contact, p, out)
+    """Share and place of the first switch up to a share of a step, where the switches are ``out``.
+
+    The place is -1 if all of them are positive.
+    """
     earliest, first = inf, -1
-    if out.min() > 0.0:
-        return earliest, first
     for place in range(SWITCHES):
         if out[place] <= 0.0:
             zero = _zero(place, share, out[place], t, h, start, end, contact, p, last_switch, trial)
@@ -178,11 +181,12 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
     out, trial = np.empty(SWITCHES), np.empty(SWITCHES)
     longest = 2.0 * pi / p.omega / LEAST
     size_x, size_v = ABSOLUTE * p.amplitude, ABSOLUTE * p.amplitude * p.omega
-    a = rate(t, x, v, contact, p)
+    a, jump = rate(t, x, v, contact, p), held(contact)
+    most = statistics[1] + MOST_STEPS
     while t < stop:
         h = min(h, longest)
         taken = min(h, stop - t)
-        x1, v1, a1, error_x, error_v = step(t, taken, x, v, a, contact, p)
+        x1, v1, forces, error_x, error_v = step(t, taken, x, v, a, contact, p)
         statistics[0] += 6
         scaled_x = error_x / (rtol * (size_x + max(abs(x), abs(x1))))
         scaled_v = error_v / (rtol * (size_v + max(abs(v), abs(v1))))
@@ -193,13 +197,24 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
                 return t, x, v, FAILED, h
             continue
         statistics[1] += 1
-        start, end = (x, v, a), (x1, v1, a1)
+        if statistics[1] > most:
+            return t, x, v, FAILED, h
+        start, end = (x, v, a), (x1, v1, forces.acceleration)
         share, place = inf, -1
         peak = _peak(start, end, taken)
         if peak > 0.0:
-            share, place = _first_switch(peak, t, taken, start, end, contact, p, last_switch, out, trial)
+            _switches_at(peak, t, taken, start, end, contact, p, out)
+            share, place = _first_switch(
+                peak, t, taken, start, end, contact, p, last_switch, out, trial
+            )
         if place < 0:
-            share, place = _first_switch(1.0, t, taken, start, end, contact, p, last_switch, out, trial)
+            if jump:
+                switches(t + taken, x1, v1, contact, p, out)
+            else:
+                slip_switches(v1, forces, contact, p, out)
+            share, place = _first_switch(
+                1.0, t, taken, start, end, contact, p, last_switch, out, trial
+            )
         if place < 0:
             share = 1.0
         if keeping:
@@ -210,7 +225,7 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
         if not unique(t + taken, x1, v1, contact, p):
             return t, x, v, LOCKED, h
         t = stop if taken == stop - t else t + taken
-        x, v, a, last_switch = x1, v1, a1, -1
+        x, v, a, last_switch = x1, v1, forces.acceleration, -1
         grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** -0.2)
         h = max(h, grown) if taken < h else grown
     return stop, x, v, -1, h
