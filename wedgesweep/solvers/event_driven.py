@@ -61,7 +61,7 @@ def solve(
     outcome, t, _, _ = follow(parameters, 0.0, window.keep, window.end, *start, rtol, recorder, statistics)
     if outcome != OK:
         status, message = MESSAGES[outcome]
-        raise CaseError(status, f"{message} (at t = {t:.6g} s)")
+        raise CaseError(f"{message} (at t = {t:.6g} s)", status)
     counts = dict(zip(STATISTICS, statistics.tolist(), strict=True))
     return Trajectory(samples, sums, window.periods, counts)
 
