@@ -8,7 +8,7 @@ from wedgesweep import dataset, response, tally
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.event_driven import Batch, Plan
-from wedgesweep.solvers.march import OK
+from wedgesweep.solvers.march import OK, workspace
 
 WAVEFORMS = ("normal_force_column", "normal_force_bolster", "stuck")
 
@@ -33,7 +33,7 @@ def solve_batch(
         len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
     starts = np.zeros((len(cases), 2)) if starts is None else starts
-    event_driven.run_batch(cases, settle, starts, _plan(settings), tally.empty(), batch)
+    event_driven.run_batch(cases, settle, starts, _plan(settings), tally.empty(), workspace(settings.rtol), batch)
     records = dataset.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)
@@ -44,7 +44,6 @@ def _plan(settings: Settings) -> Plan:
     return Plan(
         settings.kept_periods,
         settings.samples_per_period,
-        settings.rtol,
         settings.steady,
         settings.steady_tolerance,
         settings.max_periods,

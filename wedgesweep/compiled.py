@@ -30,7 +30,7 @@ def _cache_home() -> Path:
     return Path(os.environ.get("NUMBA_CACHE_DIR") or Path(default) / "wedgesweep")
 
 
-CACHE_DIR = _cache_home() / source_digest(containing=b"@compiled")[:16]
+CACHE_DIR = _cache_home() / source_digest(containing=b"from wedgesweep.compiled")[:16]
 numba.config.CACHE_DIR = str(CACHE_DIR)
 
 Function = TypeVar("Function", bound=Callable)
@@ -39,3 +39,8 @@ Function = TypeVar("Function", bound=Callable)
 def compiled(function: Function) -> Function:
     """Compile with numba; a division by zero gives inf or NaN, as in numpy, and threads run at once."""
     return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+
+
+def inlined(function: Function) -> Function:
+    """``compiled``, and copied into its callers: for what is short and called in the innermost loops."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True, forceinline=True)(function)

@@ -11,7 +11,7 @@ face is then on a branch of its own, and the acceleration is zero.
 from math import inf, nan
 
 from wedgesweep import excitation, friction
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.damper import Contact, Forces, forces, loads, reactions
 
 # Places of the switches. For each face: leave the branch toward lower, toward higher slip velocity.
@@ -27,13 +27,13 @@ ROUNDING = 1e-11
 LOOK_AHEAD = 1e-8
 
 
-@compiled
+@inlined
 def stuck(contact, p):
     """Whether set-valued friction holds the bolster."""
     return p.set_valued and contact.column == 0
 
 
-@compiled
+@inlined
 def held(contact):
     """Whether the jump of a regularised law holds the slip velocity of a face."""
     return abs(contact.column) == AT_JUMP or abs(contact.bolster) == AT_JUMP or abs(contact.guide) == AT_JUMP
@@ -68,7 +68,7 @@ def held_between(x, velocity, base_acceleration, contact, p):
     return low, below, high, above, share, low_unique and high_unique
 
 
-@compiled
+@inlined
 def acting(x, velocity, base_acceleration, contact, p):
     """Acceleration and normal forces on any contact."""
     if not held(contact):
@@ -164,7 +164,7 @@ def initial(t, x, velocity, p):
     return with_consistent_signs(x, velocity, base_acceleration, contact, p)
 
 
-@compiled
+@inlined
 def _face(velocity, branch, p, place, out):
     """Write the distances of a regularised face to the lower and the upper end of its branch."""
     if branch >= 0:
@@ -204,7 +204,7 @@ def switches(t, x, velocity, contact, p, out):
         slip_switches(velocity, forces(x, velocity, base_acceleration, contact, p), contact, p, out)
 
 
-@compiled
+@inlined
 def slip_switches(velocity, now, contact, p, out):
     """``switches`` of a bolster that slips, from the forces ``now`` on it."""
     out[:] = inf

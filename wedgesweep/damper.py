@@ -10,7 +10,7 @@ from math import cos, sin, sqrt
 from typing import NamedTuple
 
 from wedgesweep import friction
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.effects import guide_friction
 
 
@@ -50,7 +50,7 @@ def prepare(p) -> None:
     p["rest"] = -frictionless(0.0, 0.0, p).acceleration / frictionless_stiffness(p)
 
 
-@compiled
+@inlined
 def reactions(along, into, vertical, column_mu, bolster_mu, p):
     """Solve Newton's three equations for z'' and the normal forces.
 
@@ -82,7 +82,7 @@ def _never_locks(p) -> bool:
     return all(determinant(column, bolster, p) > 0.0 for column, bolster in corners)
 
 
-@compiled
+@inlined
 def determinant(column_mu, bolster_mu, p):
     """Determinant of Newton's equations in ``reactions``, over that of the masses."""
     lift = p.sin_wedge + bolster_mu * p.cos_wedge
@@ -92,7 +92,7 @@ def determinant(column_mu, bolster_mu, p):
     return tangential + column_mu * normal + 2.0 * inertia * lift
 
 
-@compiled
+@inlined
 def loads(x, velocity, base_acceleration, guide_branch, p):
     """Loads on wedge (along and into the column) and bolster for ``reactions``."""
     z = p.rest + x
@@ -104,7 +104,7 @@ def loads(x, velocity, base_acceleration, guide_branch, p):
     return wedge * p.cos_column, wedge * p.sin_column, bolster
 
 
-@compiled
+@inlined
 def forces(x, velocity, base_acceleration, contact, p):
     """Acceleration and normal forces on the given smooth piece of the equations."""
     along, into, vertical = loads(x, velocity, base_acceleration, contact.guide, p)

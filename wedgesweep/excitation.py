@@ -2,7 +2,7 @@
 
 from math import cos, sin
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 
 
 @compiled
@@ -11,7 +11,7 @@ def displacement(t, p):
     return p.amplitude * sin(p.omega * t)
 
 
-@compiled
+@inlined
 def acceleration(t, p):
     """U'' in m/s^2."""
     return -p.amplitude * p.omega**2 * sin(p.omega * t)

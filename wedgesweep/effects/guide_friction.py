@@ -6,7 +6,7 @@ set-valued at z' = 0 under the Coulomb law; under the regularised laws R = -forc
 Neutral: force = 0. With frictionless wedges this is Den Hartog's oscillator (1930).
 """
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.effects.base import Effect
 from wedgesweep.quantity import Quantity
 
@@ -18,7 +18,7 @@ EFFECT = Effect(
 )
 
 
-@compiled
+@inlined
 def force(velocity, branch, p):
     """Force on the bolster (N, up positive) at z' = ``velocity`` on the given slip branch."""
     if branch == 0 and not p.set_valued:

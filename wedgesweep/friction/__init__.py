@@ -5,14 +5,14 @@ sliding forward. Which branch holds is decided outside (contact.py), so that no 
 across a corner. Under a set-valued law branch 0 means stuck, and no coefficient is defined there.
 """
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.friction import coulomb, exponential, static_dynamic
 from wedgesweep.friction.names import LAW_NAMES
 
 LAWS = dict(zip(LAW_NAMES, (coulomb, static_dynamic, exponential), strict=True))
 
 
-@compiled
+@inlined
 def coefficient(velocity, branch, p):
     """Signed coefficient of friction of the case's law; velocity in m/s."""
     if p.law == 0:

@@ -4,12 +4,12 @@ mu = mu_d sign(v)             for v != 0
 mu in [-mu_d, mu_d]           for v = 0: the face sticks, see contact.py
 """
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 
 SET_VALUED = True
 
 
-@compiled
+@inlined
 def coefficient(velocity, branch, p):
     """Signed coefficient of friction on slip branch -1 or 1."""
     return branch * p.dynamic

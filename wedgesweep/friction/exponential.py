@@ -6,7 +6,7 @@
 The paper prints v^(-0.1), which has a meaning only for v in units of v_t.
 """
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 
 SET_VALUED = False
 
@@ -15,7 +15,7 @@ SET_VALUED = False
 FLAT_BELOW = 0.5
 
 
-@compiled
+@inlined
 def coefficient(velocity, branch, p):
     """Signed coefficient of friction on a branch of the law."""
     if branch == 0:

@@ -4,12 +4,12 @@ mu = mu_s v / v_t             for |v| <= v_t  (branch 0)
 mu = mu_d sign(v)             for |v| >  v_t  (branch -1 or 1)
 """
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 
 SET_VALUED = False
 
 
-@compiled
+@inlined
 def coefficient(velocity, branch, p):
     """Signed coefficient of friction on a branch of the law."""
     if branch == 0:

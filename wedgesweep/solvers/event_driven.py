@@ -9,10 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep import contact as contacts
 from wedgesweep import response, tally
 from wedgesweep.compiled import compiled
-from wedgesweep.solvers.march import CHATTERING, OK, SWITCHES_PER_PERIOD, march
+from wedgesweep.solvers.march import CHATTERING, OK, SWITCHES_PER_PERIOD, begin, march, workspace
 from wedgesweep.solvers.recorder import Recorder
 from wedgesweep.solvers.runge_kutta import FAILED
 from wedgesweep.solvers.steady import LONGEST, settle
@@ -28,21 +27,21 @@ STATISTICS = ("rate_evaluations", "steps", "switches")
 
 
 @compiled
-def follow(parameters, start, keep, end, x, velocity, rtol, recorder, statistics):
-    """One case from a state at ``start`` to the end of its window: outcome, time, x and velocity."""
-    p = parameters[0]
-    contact, unique = contacts.initial(start, x, velocity, p)
-    if not unique:
-        return LOCKED, start, x, velocity
-    h, last = 2.0 * pi / p.omega / 1000.0, -1
-    outcome, t, x, velocity, contact, last, h = march(
-        start, keep, x, velocity, contact, last, parameters, rtol, h, False, recorder, statistics
-    )
+def follow(state, keep, end, parameters, recorder, work):
+    """One case from a state to the end of its window: the outcome and the state reached."""
+    outcome, state = march(state, keep, parameters, False, recorder, work)
     if outcome == OK:
-        outcome, t, x, velocity, contact, last, h = march(
-            keep, end, x, velocity, contact, last, parameters, rtol, h, True, recorder, statistics
-        )
-    return outcome, t, x, velocity
+        outcome, state = march(state, end, parameters, True, recorder, work)
+    return outcome, state
+
+
+@compiled
+def follow_from(t, x, velocity, keep, end, parameters, recorder, work):
+    """``follow`` from a time, deflection and velocity."""
+    state, unique = begin(t, x, velocity, parameters[0])
+    if not unique:
+        return LOCKED, state
+    return follow(state, keep, end, parameters, recorder, work)
 
 
 def solve(
@@ -52,17 +51,21 @@ def solve(
     time_limit: float,
     start: tuple[float, float] = (0.0, 0.0),
 ) -> Trajectory:
-    """Run one case; arguments and errors as for ``radau.solve``."""
+    """Run one case; arguments and errors as for ``radau.solve``.
+
+    The compiled loop cannot be interrupted: in place of the time limit it counts steps and switches.
+    """
     times = window.sample_times
     samples = Samples(times, np.empty(times.size), np.empty(times.size), np.empty((times.size, 5), np.int8))
-    sums = tally.empty()
-    recorder = Recorder(window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact)
-    statistics = np.zeros(3, np.int64)
-    outcome, t, _, _ = follow(parameters, 0.0, window.keep, window.end, *start, rtol, recorder, statistics)
+    sums, work = tally.empty(), workspace(rtol)
+    recorder = Recorder(
+        window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact
+    )
+    outcome, state = follow_from(0.0, *start, window.keep, window.end, parameters, recorder, work)
     if outcome != OK:
         status, message = MESSAGES[outcome]
-        raise CaseError(f"{message} (at t = {t:.6g} s)", status)
-    counts = dict(zip(STATISTICS, statistics.tolist(), strict=True))
+        raise CaseError(f"{message} (at t = {state.t:.6g} s)", status)
+    counts = dict(zip(STATISTICS, work.counts.tolist(), strict=True))
     return Trajectory(samples, sums, window.periods, counts)
 
 
@@ -76,7 +79,6 @@ class Plan(NamedTuple):
 
     periods: int
     samples_per_period: int
-    rtol: float
     steady: bool
     tolerance: float
     most: int
@@ -141,7 +143,20 @@ def _keep_waveforms(recorder, parameters, out):
 
 
 @compiled
-def run_batch(parameters, settle_periods, starts, plan, sums, batch):
+def _settled(start, settle_periods, case, plan, sums, work):
+    """Where a case's window may begin: outcome, settled periods, start of ``follow``, period, state."""
+    if not plan.steady:
+        return OK, settle_periods, 0.0, -1, start[0], start[1]
+    empty = np.empty(0)
+    nothing = Recorder(0.0, 1.0, sums, empty, empty, np.empty((0, 5), np.int8))
+    outcome, settled, x, velocity, period = settle(
+        start[0], start[1], case, plan.tolerance, plan.most, nothing, work
+    )
+    return outcome, settled, settled * 2.0 * pi / case[0].omega, period, x, velocity
+
+
+@compiled
+def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
     """Run all cases of a batch, from ``starts`` (n, 2), into ``batch``."""
     longest = plan.periods + LONGEST
     x = np.empty(longest * plan.samples_per_period)
@@ -150,50 +165,29 @@ def run_batch(parameters, settle_periods, starts, plan, sums, batch):
     for i in range(parameters.size):
         case = parameters[i : i + 1]
         cycle = 2.0 * pi / case[0].omega
-        step = cycle / plan.samples_per_period
-        start_x, start_velocity = starts[i]
+        start = (starts[i, 0], starts[i, 1])
         if plan.chain and i > 0 and batch.outcome[i - 1] == OK:
-            start_x, start_velocity = batch.state[i - 1]
-        settled, periods, begin = settle_periods[i], plan.periods, 0.0
-        if plan.steady:
-            nothing = Recorder(0.0, step, sums, x[:0], velocity[:0], contact[:0])
-            outcome, settled, start_x, start_velocity, period = settle(
-                start_x,
-                start_velocity,
-                case,
-                plan.rtol,
-                plan.tolerance,
-                plan.most,
-                nothing,
-                batch.statistics[i],
+            start = (batch.state[i - 1, 0], batch.state[i - 1, 1])
+        work.counts[:] = 0
+        outcome, settled, first, period, x0, v0 = _settled(start, settle_periods[i], case, plan, sums, work)
+        batch.outcome[i], batch.period[i], batch.settled[i] = outcome, period, settled
+        batch.time[i] = settled * cycle
+        if outcome == OK:
+            # A response of a longer period is kept for whole periods of its own.
+            periods = max(period, 1) * ((plan.periods - 1) // max(period, 1) + 1)
+            n = periods * plan.samples_per_period
+            keep, end = settled * cycle, (settled + periods) * cycle
+            _clear(sums)
+            recorder = Recorder(
+                keep, cycle / plan.samples_per_period, sums, x[:n], velocity[:n], contact[:n]
             )
-            batch.outcome[i], batch.period[i] = outcome, period
-            begin = settled * cycle
-            if period > 1:
-                periods = period * ((plan.periods + period - 1) // period)
-        batch.settled[i] = settled
-        keep = settled * cycle
-        batch.time[i] = keep
-        if batch.outcome[i] != OK:
-            continue
-        n = periods * plan.samples_per_period
-        _clear(sums)
-        recorder = Recorder(keep, step, sums, x[:n], velocity[:n], contact[:n])
-        outcome, time, end_x, end_velocity = follow(
-            case,
-            begin,
-            keep,
-            (settled + periods) * cycle,
-            start_x,
-            start_velocity,
-            plan.rtol,
-            recorder,
-            batch.statistics[i],
-        )
-        batch.outcome[i], batch.time[i] = outcome, time
-        batch.state[i, 0], batch.state[i, 1] = end_x, end_velocity
-        if outcome != OK:
-            continue
-        response.reduce(sums[0], x[:n], velocity[:n], periods, case[0], batch.numbers[i], batch.spectra[i])
-        if batch.waveforms.shape[0]:
-            _keep_waveforms(recorder, case, batch.waveforms[i])
+            outcome, state = follow_from(first, x0, v0, keep, end, case, recorder, work)
+            batch.outcome[i], batch.time[i] = outcome, state.t
+            batch.state[i, 0], batch.state[i, 1] = state.x, state.velocity
+        batch.statistics[i] = work.counts
+        if outcome == OK:
+            response.reduce(
+                sums[0], x[:n], velocity[:n], periods, case[0], batch.numbers[i], batch.spectra[i]
+            )
+            if batch.waveforms.shape[0]:
+                _keep_waveforms(recorder, case, batch.waveforms[i])

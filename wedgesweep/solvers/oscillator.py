@@ -11,7 +11,7 @@ from math import cos, inf, pi, sin, sqrt
 from typing import NamedTuple
 
 from wedgesweep import friction
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.contact import BOLSTER, COLUMN, COLUMN_NORMAL, GUIDE
 from wedgesweep.damper import forces, spring_response
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
@@ -69,6 +69,8 @@ def constant_friction(contact, p):
 @compiled
 def oscillator(contact, p):
     """Closed form of a contact with constant friction; ``linear`` is False where there is none."""
+    if not (p.never_locks and constant_friction(contact, p)):
+        return Oscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
     at_rest = forces(0.0, 0.0, 0.0, contact, p)
     driven = forces(0.0, 0.0, 1.0, contact, p)
     column_mu = contact.column_sign * friction.coefficient(0.0, contact.column, p)
@@ -105,7 +107,7 @@ class Phase(NamedTuple):
     quadrature: float
 
 
-@compiled
+@inlined
 def phase_of(t, x, velocity, o, p):
     """Phase of a state at time t."""
     c, s = cos(p.omega * t), sin(p.omega * t)
@@ -114,7 +116,7 @@ def phase_of(t, x, velocity, o, p):
     return Phase(c, s, free, quadrature)
 
 
-@compiled
+@inlined
 def turned(f, input_cos, input_sin, free_cos, free_sin):
     """Phase after both parts have turned by the given angles."""
     return Phase(
@@ -125,27 +127,27 @@ def turned(f, input_cos, input_sin, free_cos, free_sin):
     )
 
 
-@compiled
+@inlined
 def after(f, time, o, p):
     """Phase some time (s) later."""
     a, b = p.omega * time, o.frequency * time
     return turned(f, cos(a), sin(a), cos(b), sin(b))
 
 
-@compiled
+@inlined
 def state(f, o, p):
     """Deflection (m) and velocity (m/s)."""
     x = o.centre + o.forced * f.sine + f.free
     return x, o.forced * p.omega * f.cosine + o.frequency * f.quadrature
 
 
-@compiled
+@inlined
 def acceleration(f, o, p):
     """X'' in m/s^2."""
     return -o.forced * p.omega**2 * f.sine - o.frequency**2 * f.free
 
 
-@compiled
+@inlined
 def margins(f, o, contact, p):
     """Switching functions of slip velocity and of the normal forces on column and bolster."""
     x, velocity = state(f, o, p)
@@ -157,7 +159,7 @@ def margins(f, o, contact, p):
     )
 
 
-@compiled
+@inlined
 def margin_and_slope(which, f, o, contact, p):
     """One of the ``margins`` and its time derivative."""
     if which == VELOCITY:

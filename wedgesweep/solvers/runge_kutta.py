@@ -9,7 +9,7 @@ from math import inf, pi, sqrt
 import numpy as np
 
 from wedgesweep import excitation
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, acting, held, slip_switches, switches, unique
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 from wedgesweep.solvers.sticking import LOCKED
@@ -25,7 +25,7 @@ MOST_STEPS = 1_000_000
 FAILED = -3
 
 
-@compiled
+@inlined
 def rate(t, x, velocity, contact, p):
     """X'' in m/s^2."""
     return acting(x, velocity, excitation.acceleration(t, p), contact, p).acceleration
@@ -60,7 +60,7 @@ def step(t, h, x, v, a, contact, p):
     return x7, v7, now, error_x, error_v
 
 
-@compiled
+@inlined
 def quintic(s, h, start, end):
     """Deflection, velocity and acceleration at share s of a step, from both ends (x, v, a)."""
     x0, v0, a0 = start[0], start[1] * h, start[2] * h * h
@@ -88,7 +88,8 @@ def _switches_at(s, t, h, start, end, contact, p, out):
 def _slip_zero(target, low, high, h, start, end):
     """Share of a step between two others at which the velocity reaches a target."""
     at_low = quintic(low, h, start, end)[1] - target
-    share = 0.5 * (low + high)
+    at_high = quintic(high, h, start, end)[1] - target
+    share = low + (high - low) * at_low / (at_low - at_high)
     for _ in range(60):
         _, v, a = quintic(share, h, start, end)
         if (v - target) * at_low > 0.0:
@@ -96,8 +97,8 @@ def _slip_zero(target, low, high, h, start, end):
         else:
             high = share
         newton = share - (v - target) / (a * h) if a != 0.0 else low
-        if abs(newton - share) <= 1e-15:
-            return share
+        if abs(newton - share) <= 1e-14:
+            return newton
         share = newton if low < newton < high else 0.5 * (low + high)
     return share
 
@@ -157,66 +158,46 @@ def _zero(place, share, now, t, h, start, end, contact, p, last_switch, out):
 
 
 @compiled
-def _first_switch(share, t, h, start, end, contact, p, last_switch, out, trial):
-    """Share and place of the first switch up to a share of a step, where the switches are ``out``.
+def _first_switch(share, t, h, start, end, contact, last_switch, p, work):
+    """Share and place of the first switch up to a share of a step, where they are ``work.switches``.
 
     The place is -1 if all of them are positive.
     """
-    earliest, first = inf, -1
+    earliest, first = 1.0, -1
     for place in range(SWITCHES):
-        if out[place] <= 0.0:
-            zero = _zero(place, share, out[place], t, h, start, end, contact, p, last_switch, trial)
-            if zero < earliest:
+        now = work.switches[place]
+        if now <= 0.0:
+            zero = _zero(place, share, now, t, h, start, end, contact, p, last_switch, work.trial)
+            if first < 0 or zero < earliest:
                 earliest, first = zero, place
     return earliest, first
 
 
 @compiled
-def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, statistics):
-    """Follow slip until its first switch or ``stop``.
+def slide(t, stop, x, v, contact, last_switch, h, p, keeping, recorder, work):
+    """Follow slip until its first switch or ``stop``, beginning with a step h (s).
 
-    Returns time, x, velocity, the switch (-1: none, LOCKED, FAILED) and the last step (s), from which the
-    next piece may begin.
+    Returns time, x, velocity, the switch (-1: none, LOCKED, FAILED) and the step to go on with.
     """
-    out, trial = np.empty(SWITCHES), np.empty(SWITCHES)
     longest = 2.0 * pi / p.omega / LEAST
-    size_x, size_v = ABSOLUTE * p.amplitude, ABSOLUTE * p.amplitude * p.omega
     a, jump = rate(t, x, v, contact, p), held(contact)
-    most = statistics[1] + MOST_STEPS
+    most = work.counts[1] + MOST_STEPS
     while t < stop:
         h = min(h, longest)
         taken = min(h, stop - t)
         x1, v1, forces, error_x, error_v = step(t, taken, x, v, a, contact, p)
-        statistics[0] += 6
-        scaled_x = error_x / (rtol * (size_x + max(abs(x), abs(x1))))
-        scaled_v = error_v / (rtol * (size_v + max(abs(v), abs(v1))))
-        error = sqrt(0.5 * (scaled_x**2 + scaled_v**2))
+        error = _error(error_x, error_v, x, v, x1, v1, work.rtol, p)
+        work.counts[0] += 6
         if not error <= 1.0:
             h = taken * max(SHRINK, SAFETY * error**-0.2) if error < inf else taken * SHRINK
             if h < SHORTEST * longest:
                 return t, x, v, FAILED, h
             continue
-        statistics[1] += 1
-        if statistics[1] > most:
+        work.counts[1] += 1
+        if work.counts[1] > most:
             return t, x, v, FAILED, h
         start, end = (x, v, a), (x1, v1, forces.acceleration)
-        share, place = inf, -1
-        peak = _peak(start, end, taken)
-        if peak > 0.0:
-            _switches_at(peak, t, taken, start, end, contact, p, out)
-            share, place = _first_switch(
-                peak, t, taken, start, end, contact, p, last_switch, out, trial
-            )
-        if place < 0:
-            if jump:
-                switches(t + taken, x1, v1, contact, p, out)
-            else:
-                slip_switches(v1, forces, contact, p, out)
-            share, place = _first_switch(
-                1.0, t, taken, start, end, contact, p, last_switch, out, trial
-            )
-        if place < 0:
-            share = 1.0
+        share, place = _earliest(t, taken, start, end, forces, jump, contact, last_switch, p, work)
         if keeping:
             keep(t, taken, share, start, end, contact, recorder, p)
         if place >= 0:
@@ -229,6 +210,34 @@ def slide(t, stop, x, v, contact, p, rtol, h, last_switch, keeping, recorder, st
         grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** -0.2)
         h = max(h, grown) if taken < h else grown
     return stop, x, v, -1, h
+
+
+@inlined
+def _error(error_x, error_v, x, v, x1, v1, rtol, p):
+    """Error of a step over what the tolerance allows."""
+    size_x, size_v = ABSOLUTE * p.amplitude, ABSOLUTE * p.amplitude * p.omega
+    scaled_x = error_x / (rtol * (size_x + max(abs(x), abs(x1))))
+    scaled_v = error_v / (rtol * (size_v + max(abs(v), abs(v1))))
+    return sqrt(0.5 * (scaled_x**2 + scaled_v**2))
+
+
+@compiled
+def _earliest(t, h, start, end, forces, jump, contact, last_switch, p, work):
+    """Share of a step and place of its first switch; (1, -1) if there is none.
+
+    A switch of slip may come and go within a step: then it is passed where the velocity is extreme.
+    """
+    peak = _peak(start, end, h)
+    if peak > 0.0:
+        _switches_at(peak, t, h, start, end, contact, p, work.switches)
+        share, place = _first_switch(peak, t, h, start, end, contact, last_switch, p, work)
+        if place >= 0:
+            return share, place
+    if jump:
+        switches(t + h, end[0], end[1], contact, p, work.switches)
+    else:
+        slip_switches(end[1], forces, contact, p, work.switches)
+    return _first_switch(1.0, t, h, start, end, contact, last_switch, p, work)
 
 
 @compiled

@@ -8,9 +8,9 @@ from math import pi
 
 import numpy as np
 
-from wedgesweep import contact as contacts
 from wedgesweep.compiled import compiled
-from wedgesweep.solvers.march import OK, march
+from wedgesweep.solvers.march import OK, begin, march
+from wedgesweep.solvers.sticking import LOCKED
 
 # Periods that are told apart from a response that does not repeat.
 LONGEST = 8
@@ -29,30 +29,18 @@ def _distance(a, b, p):
 
 
 @compiled
-def poincare(k, x, velocity, parameters, rtol, recorder, statistics):
+def poincare(k, x, velocity, parameters, recorder, work):
     """State after one forcing period from a state at phase 0, and the outcome."""
-    p = parameters[0]
-    period = 2.0 * pi / p.omega
-    contact, _ = contacts.initial(k * period, x, velocity, p)
-    end = march(
-        k * period,
-        (k + 1) * period,
-        x,
-        velocity,
-        contact,
-        -1,
-        parameters,
-        rtol,
-        period / 1000.0,
-        False,
-        recorder,
-        statistics,
-    )
-    return end[2], end[3], end[0]
+    period = 2.0 * pi / parameters[0].omega
+    state, unique = begin(k * period, x, velocity, parameters[0])
+    if not unique:
+        return x, velocity, LOCKED
+    outcome, state = march(state, (k + 1) * period, parameters, False, recorder, work)
+    return state.x, state.velocity, outcome
 
 
 @compiled
-def newton(k, x, velocity, parameters, rtol, recorder, statistics):
+def newton(k, x, velocity, parameters, recorder, work):
     """One Newton step towards a fixed point of the map; the state itself where that cannot be trusted.
 
     The slopes of the map come from differences; a response that they call unstable, or whose mean
@@ -60,12 +48,12 @@ def newton(k, x, velocity, parameters, rtol, recorder, statistics):
     """
     p = parameters[0]
     size = np.array([p.amplitude, p.amplitude * p.omega])
-    x1, v1, outcome = poincare(k, x, velocity, parameters, rtol, recorder, statistics)
+    x1, v1, outcome = poincare(k, x, velocity, parameters, recorder, work)
     matrix = np.empty((2, 2))
     for column in range(2):
         shift = PERTURBATION * size * (np.arange(2) == column)
         x2, v2, status = poincare(
-            k, x + shift[0], velocity + shift[1], parameters, rtol, recorder, statistics
+            k, x + shift[0], velocity + shift[1], parameters, recorder, work
         )
         outcome = min(outcome, status)
         matrix[0, column] = (x2 - x1) / size[0] / PERTURBATION
@@ -100,7 +88,7 @@ def _repeats(k, state, past, tolerance, p):
 
 
 @compiled
-def settle(x, velocity, parameters, rtol, tolerance, most, recorder, statistics):
+def settle(x, velocity, parameters, tolerance, most, recorder, work):
     """March from a state at phase 0 until it repeats.
 
     Returns the outcome, the number of periods, x, velocity, and the period of the response in forcing
@@ -111,7 +99,7 @@ def settle(x, velocity, parameters, rtol, tolerance, most, recorder, statistics)
     k = 0
     while k < most:
         past[k % LONGEST, 0], past[k % LONGEST, 1] = x, velocity
-        x, velocity, outcome = poincare(k, x, velocity, parameters, rtol, recorder, statistics)
+        x, velocity, outcome = poincare(k, x, velocity, parameters, recorder, work)
         k += 1
         if outcome != OK:
             return outcome, k, x, velocity, 0
@@ -121,8 +109,8 @@ def settle(x, velocity, parameters, rtol, tolerance, most, recorder, statistics)
             return OK, k, x, velocity, n
         if k % PATIENCE == 0 and velocity != 0.0:
             before = _distance(state, past[(k - 1) % LONGEST], p)
-            trial = newton(k, x, velocity, parameters, rtol, recorder, statistics)
-            x1, v1, outcome = poincare(k, trial[0], trial[1], parameters, rtol, recorder, statistics)
+            trial = newton(k, x, velocity, parameters, recorder, work)
+            x1, v1, outcome = poincare(k, trial[0], trial[1], parameters, recorder, work)
             if outcome == OK and _distance((x1, v1), trial, p) < 0.1 * before:
                 x, velocity = trial
     return OK, k, x, velocity, 0
