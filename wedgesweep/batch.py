@@ -33,11 +33,16 @@ def solve_batch(
         len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
     starts = np.zeros((len(cases), 2)) if starts is None else starts
-    event_driven.run_batch(cases, settle, starts, _plan(settings), tally.empty(), workspace(settings.rtol), batch)
+    event_driven.run_batch(cases, settle, starts, _plan(settings), tally.empty(), workspace(_rtol(settings)), batch)
     records = dataset.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)
     return records, batch.state
+
+
+def _rtol(settings: Settings) -> float:
+    """Tolerance of a step; a state cannot repeat more closely than it is computed."""
+    return min(settings.rtol, settings.steady_tolerance) if settings.steady else settings.rtol
 
 
 def _plan(settings: Settings) -> Plan:

@@ -271,20 +271,37 @@ def _over_jump(x, velocity, base_acceleration, contact, switch, p):
 
 
 @compiled
+def _past_zero_force(t, x, velocity, contact, p):
+    """Contact after a normal force has become zero, and whether it is unique.
+
+    Both forces may vanish at once, a force may only touch zero, and signs at zero are noise: look a
+    moment ahead, and further where the force is still too small to have a sign.
+    """
+    ahead = LOOK_AHEAD / p.omega
+    rate = forces(x, velocity, excitation.acceleration(t, p), contact, p).acceleration
+    found, unique_signs = contact, True
+    for _ in range(4):
+        base_acceleration = excitation.acceleration(t + ahead, p)
+        found, now, unique_signs = closed(
+            x + ahead * (velocity + 0.5 * ahead * rate),
+            velocity + ahead * rate,
+            base_acceleration,
+            contact,
+            p,
+        )
+        weight = p.bolster_mass * (p.gravity + abs(base_acceleration))
+        if min(abs(now.column), abs(now.bolster)) > ROUNDING * weight:
+            break
+        ahead *= 30.0
+    return found, unique_signs
+
+
+@compiled
 def successor(t, x, velocity, contact, switch, p):
     """Contact after a switch has reached zero, and whether it is unique (if not: locked)."""
     base_acceleration = excitation.acceleration(t, p)
     if switch >= COLUMN_NORMAL:
-        # Both forces may vanish at once, and their signs at zero are noise: look a moment ahead.
-        ahead = LOOK_AHEAD / p.omega
-        rate = forces(x, velocity, base_acceleration, contact, p).acceleration
-        return with_consistent_signs(
-            x + velocity * ahead,
-            velocity + rate * ahead,
-            excitation.acceleration(t + ahead, p),
-            contact,
-            p,
-        )
+        return _past_zero_force(t, x, velocity, contact, p)
     if not p.set_valued:
         return _over_jump(x, velocity, base_acceleration, contact, switch, p)
     if stuck(contact, p):

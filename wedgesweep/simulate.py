@@ -25,7 +25,7 @@ class Settings:
     samples_per_period: int = 256
     case_timeout: float = 60.0
     steady: bool = False
-    steady_tolerance: float = 1e-8
+    steady_tolerance: float = 1e-7
     max_periods: int = 5000
     keep_waveforms: bool = True
 

@@ -94,7 +94,7 @@ SOLVER = table(
     Number.of(
         Quantity(
             "steady_tolerance",
-            1e-8,
+            1e-7,
             "change per repetition, over input amplitude and velocity, that counts as steady",
             minimum=1e-13,
             maximum=1e-2,
