@@ -1,6 +1,7 @@
 """Tables of keys, and the two forms of a sweep."""
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 from wedgesweep.config.keys import Key, hint, show
@@ -66,10 +67,9 @@ def _in_force(group: Group, value: dict[str, Any], at: str, problems: list[str])
 
 def _rules(group: Group) -> list[dict[str, Any]]:
     """JSON schema's form of ``_in_force``."""
-    given = [{"required": [key.key]} for key in group]
     if group[0].required:
-        return [{"oneOf": given}]
-    return [{"not": {"required": [key.key for key in group]}}] if len(group) > 1 else []
+        return [{"oneOf": [{"required": [key.key]} for key in group]}]
+    return [{"not": {"required": [a.key, b.key]}} for a, b in combinations(group, 2)]
 
 
 @dataclass(frozen=True, kw_only=True)
