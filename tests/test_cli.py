@@ -372,6 +372,22 @@ def test_plot_all_says_what_does_not_suit(here):
     assert "no figure suits" in invoke("plot", "all", "measured.nc", code=2)
 
 
+def test_a_sweep_without_waveforms(here):
+    text = FEW.replace("[solver]", '[solver]\nmethod = "event-driven"') + "keep_waveforms = false\n"
+    (here / "few.toml").write_text(text)
+    assert "(from 16 cases run now)" in invoke("check", "few.toml")
+    assert "16 ok" in run("few.toml")
+    assert "16 cases: 16 ok" in invoke("status", "few.nc")
+    told = invoke("plot", "all", "few.nc", "-o", "figures")
+    for words in ("wrote figures/stick-map", "skipped phase-portrait", "skipped response"):
+        assert words in told
+    assert "a dataset of metrics alone" in invoke("plot", "phase-portrait", "few.nc", code=2)
+    # One case is run for its trajectory.
+    invoke("case", "few.toml", "--beta", 0.77, "--amplitude", 0.9, "-o", "one")
+    assert (here / "one.png").read_bytes().startswith(PNG)
+    assert xr.load_dataset("one.nc").sizes["phase"] == 64
+
+
 def test_reproduce_exit_code(here, monkeypatch):
     from wedgesweep import reproduce
 

@@ -15,7 +15,7 @@ NUMERICS = (
     *("friction/", "effects/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
-    *("dataset", "sweep", "journal", "cases", "outcomes", "provenance", "fingerprint", "estimate"),
+    *("dataset", "sweep", "backend", "journal", "cases", "outcomes", "provenance", "fingerprint", "estimate"),
     *("config", "figures", "reproduce", "cli"),
 )
 FORBIDDEN = {
@@ -27,7 +27,8 @@ FORBIDDEN = {
 ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/",),
-    "joblib": ("sweep.py", "cli/"),
+    "joblib": ("backend.py", "sweep.py", "cli/"),
+    "distributed": ("backend.py",),
     "wedgesweep.cli": ("cli/", "__main__.py"),
 }
 

@@ -26,14 +26,15 @@ def solve_batch(
     unless given. The wall time of a case is its share of the batch's.
     """
     began = perf_counter()
-    windows = [settings.window(omega) for omega in cases["omega"].tolist()]
-    settle = np.array([window.settle_periods for window in windows])
+    settle = settings.settling(cases["omega"])
     samples = settings.kept_periods * settings.samples_per_period
     batch = event_driven.empty_batch(
         len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
     starts = np.zeros((len(cases), 2)) if starts is None else starts
-    event_driven.run_batch(cases, settle, starts, _plan(settings), tally.empty(), workspace(_rtol(settings)), batch)
+    event_driven.run_batch(
+        cases, settle, starts, _plan(settings), tally.empty(), workspace(_rtol(settings)), batch
+    )
     records = dataset.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)

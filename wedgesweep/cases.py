@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,6 +39,24 @@ def compile_once(method: str) -> None:
 def _compiled_mark(method: str) -> Path:
     # That the folder exists says little: reading parameters compiles a first few functions.
     return CACHE_DIR / f"{method}.complete"
+
+
+class Chunk(NamedTuple):
+    """Arguments of ``solve_cases``, as one that a cluster sends whole.
+
+    Arrays of their own Dask would place on one worker, and they would be lost if that was killed.
+    """
+
+    cases: np.ndarray
+    indices: np.ndarray
+    settings: Settings
+    case_timeout: float
+    dtype: np.dtype
+
+
+def solve_chunk(chunk: Chunk) -> np.ndarray:
+    """``solve_cases`` of a chunk."""
+    return solve_cases(*chunk)
 
 
 def solve_cases(

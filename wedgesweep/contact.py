@@ -164,7 +164,7 @@ def initial(t, x, velocity, p):
     return with_consistent_signs(x, velocity, base_acceleration, contact, p)
 
 
-@inlined
+@compiled
 def _face(velocity, branch, p, place, out):
     """Write the distances of a regularised face to the lower and the upper end of its branch."""
     if branch >= 0:
@@ -204,7 +204,7 @@ def switches(t, x, velocity, contact, p, out):
         slip_switches(velocity, forces(x, velocity, base_acceleration, contact, p), contact, p, out)
 
 
-@inlined
+@compiled
 def slip_switches(velocity, now, contact, p, out):
     """``switches`` of a bolster that slips, from the forces ``now`` on it."""
     out[:] = inf

@@ -30,6 +30,7 @@ def estimate(sweep: Sweep) -> Estimate:
     """Run a few cases spread over the sweep, for some seconds, and scale their time up."""
     cases = len(sweep.parameters)
     compile_once(sweep.settings.method)
+    sweep.solve(np.array([0]), CASE_TIMEOUT)  # the first case waits until its code is loaded
     started = perf_counter()
     records = []
     for index in _spread(cases):

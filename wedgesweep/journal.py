@@ -42,8 +42,10 @@ class Journal:
 
     def append(self, records: np.ndarray) -> None:
         """Add finished cases, a structured array of the journal's dtype."""
-        payloads = [record.tobytes() for record in records]
-        self._write(b"".join(payload + _checksum(payload) for payload in payloads))
+        framed = np.empty(len(records), _framed(records.dtype))
+        framed["record"] = records
+        framed["checksum"] = _checksums(framed)
+        self._write(framed.tobytes())
 
     def _write(self, content: bytes) -> None:
         while content:
@@ -119,22 +121,24 @@ def _header(path: Path, content: bytes) -> dict[str, str]:
 
 def _latest(records: np.ndarray) -> np.ndarray:
     """Drop records of cases that were run again."""
-    last = {int(index): place for place, index in enumerate(records["index"])}
-    return records[sorted(last.values())]
+    _, last = np.unique(records["index"][::-1], return_index=True)
+    return records[np.sort(len(records) - 1 - last)]
 
 
-def _checksum(payload: bytes) -> bytes:
-    return crc32(payload).to_bytes(4, "little")
+def _framed(dtype: np.dtype) -> np.dtype:
+    return np.dtype([("record", dtype), ("checksum", "<u4")])
+
+
+def _checksums(framed: np.ndarray) -> list[int]:
+    """Checksum of each record."""
+    content = framed.view(np.uint8).data
+    size, stride = framed.dtype["record"].itemsize, framed.itemsize
+    return [crc32(content[place : place + size]) for place in range(0, len(content), stride)]
 
 
 def _whole_records(content: bytes, start: int, dtype: np.dtype) -> tuple[int, np.ndarray]:
     """Length of the journal up to its first torn record, and the records before that."""
-    size = dtype.itemsize
-    stride = size + 4
-    payloads = []
-    for place in range(start, len(content) - stride + 1, stride):
-        payload = content[place : place + size]
-        if content[place + size : place + stride] != _checksum(payload):
-            break
-        payloads.append(payload)
-    return start + stride * len(payloads), np.frombuffer(b"".join(payloads), dtype)
+    framed = np.frombuffer(content, _framed(dtype), (len(content) - start) // _framed(dtype).itemsize, start)
+    torn = np.flatnonzero(framed["checksum"] != _checksums(framed))
+    whole = framed[: torn[0]] if torn.size else framed
+    return start + whole.nbytes, whole["record"]

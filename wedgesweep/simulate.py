@@ -1,7 +1,7 @@
 """One case from its parameters to its numbers."""
 
 from dataclasses import dataclass
-from math import floor, pi
+from math import pi
 
 import numpy as np
 
@@ -34,12 +34,15 @@ class Settings:
 
         If ``steady`` the solver finds the settling time itself, and the one here is 0.
         """
-        settle = self.settle_periods or 0
-        if not settle and self.duration is not None:
-            # The paper's 1.5 s are cut to whole periods, so that phase 0 is phase 0 of the input.
-            whole = floor(self.duration * omega / (2.0 * pi) * (1.0 + 1e-12))
-            settle = max(whole - self.kept_periods, 1)
-        return Window(omega, settle, self.kept_periods, self.samples_per_period)
+        return Window(omega, int(self.settling(np.array(omega))), self.kept_periods, self.samples_per_period)
+
+    def settling(self, omega: np.ndarray) -> np.ndarray:
+        """Settling periods of many cases (see ``window``), of the shape of ``omega``."""
+        if self.settle_periods or self.duration is None:
+            return np.full(omega.shape, self.settle_periods or 0)
+        # The paper's 1.5 s are cut to whole periods, so that phase 0 is phase 0 of the input.
+        whole = np.floor(self.duration * omega / (2.0 * pi) * (1.0 + 1e-12)).astype(int)
+        return np.maximum(whole - self.kept_periods, 1)
 
 
 def trajectory(parameters: np.ndarray, settings: Settings) -> Trajectory:

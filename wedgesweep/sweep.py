@@ -3,11 +3,12 @@
 import json
 import signal
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import warnings
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import joblib
@@ -15,7 +16,8 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import contact, damper, dataset, journal, provenance
-from wedgesweep.cases import compile_once, describe, solve_cases
+from wedgesweep.backend import Backend, loky
+from wedgesweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
 from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.fingerprint import differences, fingerprint
@@ -26,8 +28,9 @@ from wedgesweep.simulate import Settings
 Progress = Callable[[np.ndarray, int], None]
 
 
-# Cases of the event-driven solver that go to a worker, and into the journal, together.
-CHUNK = 200
+# Cases of the event-driven solver that go to a worker, and into the journal, together; fewer in a
+# small sweep, which is cut into so many chunks.
+CHUNK, CHUNKS = 200, 64
 
 
 class CaseFailedError(SweepError):
@@ -44,7 +47,7 @@ class Sweep:
     @cached_property
     def parameters(self) -> np.ndarray:
         """Parameter records of all cases, shape (n,)."""
-        return np.concatenate([self.config.record(case) for case in self.config.case_list()])
+        return self.config.records()
 
     @property
     def settings(self) -> Settings:
@@ -107,22 +110,29 @@ class Sweep:
         fail_fast: bool = False,
         progress: Progress = lambda records, total: None,
         command: str = "",
+        backend: Backend = loky,
+        fresh: bool = False,
     ) -> xr.Dataset:
-        """Run what is not finished yet and write the dataset.
+        """Run what is not finished yet, or all if ``fresh``, and write the dataset.
 
         ``progress`` is called in this process, first with the records that earlier runs finished.
         Raises CaseFailedError at the first failed case if ``fail_fast``; what is finished stays in
         the journal.
         """
         started = datetime.now(UTC)
-        finished = []
-        with Journal(self.journal_path, self.dtype, self.journal_header) as kept:
-            for records in self._all_records(kept, n_jobs, case_timeout):
-                progress(records, len(self.parameters))
-                finished.append(records)
+        with ExitStack() as opened:
+            pool = self._open(opened, backend, n_jobs)
+            if fresh:
+                self.discard()
+            kept = opened.enter_context(Journal(self.journal_path, self.dtype, self.journal_header))
+            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout)))
+            records = np.empty(len(self.parameters), self.dtype)
+            for part in parts:
+                records[part["index"]] = part
+                progress(part, len(records))
                 if fail_fast:
-                    self._require_ok(records)
-            result = self.assembled(np.concatenate(finished), started, command)
+                    self._require_ok(part)
+            result = self.assembled(records, started, command)
             dataset.write(result, self.out)
             self.journal_path.unlink()
         return result
@@ -138,33 +148,45 @@ class Sweep:
         limit = self._limit(case_timeout)
         return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
 
-    def _all_records(self, kept: Journal, n_jobs: int, case_timeout: float | None) -> Iterator[np.ndarray]:
+    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> joblib.Parallel:
+        with _interrupts_ignored():
+            return opened.enter_context(backend(n_jobs, partial(fingerprint, self.config)))
+
+    def _all_records(
+        self, kept: Journal, pool: joblib.Parallel, case_timeout: float | None
+    ) -> Generator[np.ndarray, None, None]:
         # A time limit depends on the machine and its load: those cases are tried again.
         whole = kept.records[kept.records["status"] != dataset.STATUSES.index("time_limit")]
         todo = np.setdiff1d(np.arange(len(self.parameters)), whole["index"])
         if todo.size:
             compile_once(self.settings.method)
         yield whole
-        for records in self._solve_parallel(todo, n_jobs, self._limit(case_timeout)):
-            kept.append(records)
-            yield records
+        with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
+            for records in parts:
+                kept.append(records)
+                yield records
 
-    def _solve_parallel(self, indices: np.ndarray, n_jobs: int, case_timeout: float) -> Iterator[np.ndarray]:
+    def _solve_parallel(
+        self, indices: np.ndarray, pool: joblib.Parallel, case_timeout: float
+    ) -> Generator[np.ndarray, None, None]:
         if not indices.size:
             return
-        pool = joblib.Parallel(n_jobs=n_jobs, return_as="generator_unordered")
         with _interrupts_ignored():
             results = pool(
-                joblib.delayed(solve_cases)(
-                    self.parameters[[index]],
-                    np.array([index]),
-                    self.settings,
-                    case_timeout,
-                    self.dtype,
+                joblib.delayed(solve_chunk)(
+                    Chunk(self.parameters[chunk], chunk, self.settings, case_timeout, self.dtype)
                 )
-                for index in indices
+                for chunk in _chunks(indices, self.settings.method)
             )
-        yield from results
+        try:
+            # "yield from" would close it outside of the filter below.
+            for records in results:  # noqa: UP028
+                yield records
+        finally:
+            with warnings.catch_warnings():
+                # joblib finds it worth a warning that a run is stopped half-way.
+                warnings.simplefilter("ignore", UserWarning)
+                results.close()
 
     def _limit(self, case_timeout: float | None) -> float:
         return self.settings.case_timeout if case_timeout is None else case_timeout
@@ -196,6 +218,16 @@ class Sweep:
             "frictionless_resonance": damper.resonance(p),
             "breakaway_acceleration": contact.breakaway_acceleration(coulomb),
         }
+
+
+def _chunks(indices: np.ndarray, method: str) -> Iterator[np.ndarray]:
+    """Cases that are solved together: one slow one, or many fast ones from all over the sweep.
+
+    Cost changes along the grid, so that chunks of neighbours would leave some jobs idle at the end.
+    """
+    size = min(CHUNK, -(-indices.size // CHUNKS)) if method == "event-driven" else 1
+    count = -(-indices.size // size)
+    return (indices[first::count] for first in range(count))
 
 
 def _read_sweep(path: Path) -> xr.Dataset:

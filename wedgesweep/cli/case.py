@@ -72,7 +72,7 @@ def case(
 def _one_case(
     settings: "Config", law: str | None, where: tuple[str, float | None], amplitude: float
 ) -> "Config":
-    """The config with a grid of a single case, so that every figure can draw it."""
+    """The config with a grid of a single case and its waveforms, so that every figure can draw it."""
     from wedgesweep.config import parse, toml
 
     grid = {
@@ -81,7 +81,8 @@ def _one_case(
         "amplitude_mm": amplitude,
         "omega_n_rad_per_s": settings.sweep.omega_n,
     }
-    return parse(toml.dumps(settings.document | {"sweep": grid}), "case")
+    solver = settings.document["solver"] | {"keep_waveforms": True}
+    return parse(toml.dumps(settings.document | {"sweep": grid, "solver": solver}), "case")
 
 
 def _name(config_path: Path, settings: "Config") -> str:

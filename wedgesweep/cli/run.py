@@ -1,8 +1,9 @@
 """run: all cases of a config into a dataset."""
 
+from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,7 +15,10 @@ from wedgesweep.cli.words import duration
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
+    from wedgesweep.backend import Backend
     from wedgesweep.sweep import Sweep
+
+BACKENDS = ("loky", "dask")
 
 
 @click.command()
@@ -29,6 +33,14 @@ if TYPE_CHECKING:
     metavar="SECONDS",
     help="Time limit of a case, instead of the config's.",
 )
+@click.option(
+    "--backend",
+    type=click.Choice(BACKENDS),
+    default="loky",
+    show_default=True,
+    help="Processes here (loky), or a Dask cluster: of --n-jobs processes here, or the --scheduler's.",
+)
+@click.option("--scheduler", metavar="ADDRESS", help="Running Dask scheduler, as tcp://host:8786.")
 @click.option("--fresh", is_flag=True, help="Discard what earlier runs of this output finished.")
 @click.pass_context
 def run(
@@ -39,12 +51,15 @@ def run(
     solver: str | None,
     keep_going: bool,
     case_timeout: float | None,
+    backend: str,
+    scheduler: str | None,
     fresh: bool,
 ) -> None:
     """Run all cases of CONFIG and store them as netCDF.
 
     After an interruption or a kill the same command goes on where it stopped.
     """
+    _require_sense(backend, scheduler, n_jobs)
     from wedgesweep import config
 
     settings = config.load(config_path)
@@ -55,9 +70,14 @@ def run(
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"))
     progress = Progress()
     try:
-        if fresh:
-            sweep.discard()
-        ctx.exit(_run(sweep, progress, jobs(n_jobs), case_timeout, not keep_going))
+        options = {
+            "n_jobs": jobs(n_jobs),
+            "case_timeout": case_timeout,
+            "fail_fast": not keep_going,
+            "backend": _backend(backend, scheduler),
+            "fresh": fresh,
+        }
+        ctx.exit(_run(sweep, progress, options))
     except KeyboardInterrupt:
         _stopped(progress, sweep, "interrupted", "the same command goes on from there")
         ctx.exit(INTERRUPTED)
@@ -69,15 +89,32 @@ def run(
         raise Failure(message) from error
 
 
-def _run(sweep: "Sweep", progress: Progress, n_jobs: int, case_timeout: float | None, fail_fast: bool) -> int:
+def _require_sense(backend: str, scheduler: str | None, n_jobs: int | None) -> None:
+    if scheduler is None:
+        return
+    if backend != "dask":
+        message = "--scheduler needs --backend dask"
+        raise click.UsageError(message)
+    if n_jobs is not None:
+        message = "--n-jobs has no effect with --scheduler, whose cluster has its own workers"
+        raise click.UsageError(message)
+
+
+def _backend(name: str, scheduler: str | None) -> "Backend":
+    from wedgesweep import backend
+
+    return partial(backend.dask, scheduler=scheduler) if name == "dask" else backend.loky
+
+
+def _run(sweep: "Sweep", progress: Progress, options: dict[str, Any]) -> int:
     """Run the sweep unless it is complete; the exit code."""
-    stored = sweep.stored()
+    stored = None if options["fresh"] else sweep.stored()
     if stored is not None:
         click.echo(f"{sweep.out}: complete already; --fresh runs it again")
         return print_summary(stored)
     tell_of_compiling(sweep.settings.method)
     started = perf_counter()
-    result = sweep.run(n_jobs, case_timeout, fail_fast, progress, command_line())
+    result = sweep.run(progress=progress, command=command_line(), **options)
     code = print_summary(result)
     click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
     return code

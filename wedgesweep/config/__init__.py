@@ -167,6 +167,23 @@ class Config:
             effects=self.effects,
         )
 
+    def records(self) -> np.ndarray:
+        """``record`` of all cases, shape (n,)."""
+        sweep = self.sweep
+        if sweep.cases is None:
+            axes = (sweep.friction_law, sweep.beta, sweep.amplitude)
+            laws, betas, amplitudes = (grid.ravel() for grid in np.meshgrid(*axes, indexing="ij"))
+        else:
+            laws, betas, amplitudes = map(np.array, zip(*sweep.cases, strict=True))
+        # Only amplitude and frequency differ between the cases of a law.
+        one_by_law = {law: self.record(Case(law, 1.0, 1.0)) for law in dict.fromkeys(laws.tolist())}
+        records = np.empty(laws.size, next(iter(one_by_law.values())).dtype)
+        for law, one in one_by_law.items():
+            records[laws == law] = one
+        records["amplitude"] = amplitudes
+        records["omega"] = betas * sweep.omega_n
+        return records
+
     def to_toml(self) -> str:
         """The resolved config: every key, ranges written out; ``parse`` gives the same config."""
         return toml.dumps(self.document)

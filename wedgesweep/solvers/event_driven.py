@@ -58,9 +58,7 @@ def solve(
     times = window.sample_times
     samples = Samples(times, np.empty(times.size), np.empty(times.size), np.empty((times.size, 5), np.int8))
     sums, work = tally.empty(), workspace(rtol)
-    recorder = Recorder(
-        window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact
-    )
+    recorder = Recorder(window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact)
     outcome, state = follow_from(0.0, *start, window.keep, window.end, parameters, recorder, work)
     if outcome != OK:
         status, message = MESSAGES[outcome]
@@ -178,9 +176,7 @@ def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
             n = periods * plan.samples_per_period
             keep, end = settled * cycle, (settled + periods) * cycle
             _clear(sums)
-            recorder = Recorder(
-                keep, cycle / plan.samples_per_period, sums, x[:n], velocity[:n], contact[:n]
-            )
+            recorder = Recorder(keep, cycle / plan.samples_per_period, sums, x[:n], velocity[:n], contact[:n])
             outcome, state = follow_from(first, x0, v0, keep, end, case, recorder, work)
             batch.outcome[i], batch.time[i] = outcome, state.t
             batch.state[i, 0], batch.state[i, 1] = state.x, state.velocity

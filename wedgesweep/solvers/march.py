@@ -65,9 +65,7 @@ def _piece(state, stop, parameters, keeping, recorder, work):
         return end, x, velocity, switch, step
     o = oscillator.oscillator(contact, p)
     if not o.linear:
-        return runge_kutta.slide(
-            t, stop, x, velocity, contact, last_switch, step, p, keeping, recorder, work
-        )
+        return runge_kutta.slide(t, stop, x, velocity, contact, last_switch, step, p, keeping, recorder, work)
     end, x1, velocity1, switch = oscillator.slide(t, stop, x, velocity, contact, o, p, last_switch)
     if keeping:
         oscillator.keep(t, end, x, velocity, contact, o, recorder, p)

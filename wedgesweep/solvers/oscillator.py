@@ -107,7 +107,7 @@ class Phase(NamedTuple):
     quadrature: float
 
 
-@inlined
+@compiled
 def phase_of(t, x, velocity, o, p):
     """Phase of a state at time t."""
     c, s = cos(p.omega * t), sin(p.omega * t)
@@ -127,7 +127,7 @@ def turned(f, input_cos, input_sin, free_cos, free_sin):
     )
 
 
-@inlined
+@compiled
 def after(f, time, o, p):
     """Phase some time (s) later."""
     a, b = p.omega * time, o.frequency * time
@@ -141,13 +141,13 @@ def state(f, o, p):
     return x, o.forced * p.omega * f.cosine + o.frequency * f.quadrature
 
 
-@inlined
+@compiled
 def acceleration(f, o, p):
     """X'' in m/s^2."""
     return -o.forced * p.omega**2 * f.sine - o.frequency**2 * f.free
 
 
-@inlined
+@compiled
 def margins(f, o, contact, p):
     """Switching functions of slip velocity and of the normal forces on column and bolster."""
     x, velocity = state(f, o, p)
@@ -159,7 +159,7 @@ def margins(f, o, contact, p):
     )
 
 
-@inlined
+@compiled
 def margin_and_slope(which, f, o, contact, p):
     """One of the ``margins`` and its time derivative."""
     if which == VELOCITY:

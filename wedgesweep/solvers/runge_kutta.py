@@ -212,7 +212,7 @@ def slide(t, stop, x, v, contact, last_switch, h, p, keeping, recorder, work):
     return stop, x, v, -1, h
 
 
-@inlined
+@compiled
 def _error(error_x, error_v, x, v, x1, v1, rtol, p):
     """Error of a step over what the tolerance allows."""
     size_x, size_v = ABSOLUTE * p.amplitude, ABSOLUTE * p.amplitude * p.omega

@@ -52,9 +52,7 @@ def newton(k, x, velocity, parameters, recorder, work):
     matrix = np.empty((2, 2))
     for column in range(2):
         shift = PERTURBATION * size * (np.arange(2) == column)
-        x2, v2, status = poincare(
-            k, x + shift[0], velocity + shift[1], parameters, recorder, work
-        )
+        x2, v2, status = poincare(k, x + shift[0], velocity + shift[1], parameters, recorder, work)
         outcome = min(outcome, status)
         matrix[0, column] = (x2 - x1) / size[0] / PERTURBATION
         matrix[1, column] = (v2 - v1) / size[1] / PERTURBATION

@@ -1,0 +1,159 @@
+"""A Dask cluster gives the bits of the processes here, whatever becomes of its workers."""
+
+import importlib.util
+import os
+import signal
+import time
+from functools import partial
+
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from tests import small_sweep
+from tests.small_sweep import CASES, CONFIG, assert_same_numbers
+from wedgesweep import backend
+from wedgesweep.cli import cli
+from wedgesweep.errors import MismatchError, SweepError
+
+dask = pytest.importorskip("dask")
+distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+
+# Long enough that a worker is at work when it is killed.
+LONG = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"').replace(
+    "settle_periods = 3", "settle_periods = 2000"
+)
+FEW = CONFIG.replace("0.8, 1.1, 1.6, ", "")
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    return small_sweep.sweep(tmp_path_factory.mktemp("here"), LONG).run(n_jobs=1)
+
+
+@pytest.fixture
+def cluster():
+    """Two worker processes, each started again by its nanny if it dies."""
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as running, distributed.Client(running) as client:
+        yield client
+
+
+def through(client):
+    return partial(backend.dask, scheduler=client.scheduler.address)
+
+
+def workers(client):
+    """Process id of each worker that is there."""
+    return set(client.run(os.getpid).values())
+
+
+def invoke(*arguments, code):
+    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    return result.output
+
+
+@pytest.mark.parametrize("method", ["radau", "event-driven"])
+def test_a_cluster_of_its_own_gives_the_same_bits(tmp_path, monkeypatch, method):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "few.toml").write_text(FEW)
+    for name, n_jobs in (("loky", 1), ("dask", 2)):
+        command = ("run", "few.toml", "-o", f"{name}.nc", "--solver", method, "--backend", name)
+        assert "16 cases: 16 ok" in invoke(*command, "--n-jobs", n_jobs, code=0)
+    assert_same_numbers(xr.load_dataset("dask.nc"), xr.load_dataset("loky.nc"))
+    assert {path.name for path in tmp_path.iterdir()} == {"few.toml", "dask.nc", "loky.nc"}
+
+
+def test_a_killed_worker_costs_its_chunk_only(tmp_path, expected, cluster):
+    before, told = workers(cluster), []
+
+    def kill_one(records, total):
+        told.extend(records["index"].tolist())
+        if len(told) == 5:
+            os.kill(min(before), signal.SIGKILL)
+
+    sweep = small_sweep.sweep(tmp_path, LONG)
+    assert_same_numbers(sweep.run(backend=through(cluster), progress=kill_one), expected)
+    assert sorted(told) == list(range(CASES))
+    assert workers(cluster) != before
+    assert [path.name for path in tmp_path.iterdir()] == ["small.nc"]
+
+
+def test_a_chunk_that_dask_gives_up_ends_the_run_and_loses_nothing_else(tmp_path, expected):
+    kept = []
+
+    def kill_all(records, total):
+        kept.extend(records["index"].tolist())
+        if len(kept) == 5:
+            for worker in workers(client):
+                os.kill(worker, signal.SIGKILL)
+
+    sweep = small_sweep.sweep(tmp_path, LONG)
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as running,
+        distributed.Client(running) as client,
+        pytest.raises(SweepError, match="the Dask cluster gave up"),
+    ):
+        sweep.run(backend=through(client), progress=kill_all)
+    assert_same_numbers(sweep.run(n_jobs=1), expected)
+
+
+def test_workers_of_another_version_are_refused(tmp_path, cluster, monkeypatch):
+    monkeypatch.setattr("wedgesweep.fingerprint.__version__", "99.0")
+    with pytest.raises(MismatchError, match=r"would compute other numbers \(wedgesweep: .* there, 99\.0 now"):
+        small_sweep.sweep(tmp_path).run(backend=through(cluster))
+    assert not list(tmp_path.iterdir())
+
+
+def refused(directory, *arguments):
+    """What is said when the run cannot start; the dataset that is there stays."""
+    (directory / "small.toml").write_text(CONFIG)
+    (directory / "small.nc").write_text("mine")
+    output = directory / "small.nc"
+    command = ("run", directory / "small.toml", "-o", output, "--fresh", "--backend", "dask")
+    told = invoke(*command, *arguments, code=2)
+    assert output.read_text() == "mine"
+    assert not list(directory.glob("*.partial"))
+    return told
+
+
+@pytest.mark.parametrize("scheduler", ["tcp://127.0.0.1:9", "nonsense://there", "127.0.0.1"])
+def test_no_scheduler(tmp_path, monkeypatch, scheduler):
+    monkeypatch.setattr(backend, "PATIENCE", 1.0)
+    began = time.monotonic()
+    told = refused(tmp_path, "--scheduler", scheduler)
+    assert f"Error: {scheduler}: no Dask scheduler with a worker" in told
+    assert time.monotonic() - began < 20.0
+
+
+def test_a_scheduler_without_workers(tmp_path, monkeypatch):
+    monkeypatch.setattr(backend, "PATIENCE", 1.0)
+    with distributed.LocalCluster(n_workers=0, dashboard_address=None) as cluster:
+        told = refused(tmp_path, "--scheduler", cluster.scheduler_address)
+    assert "no Dask scheduler with a worker" in told
+
+
+def test_without_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert "pip install 'wedgesweep[dask]'" in refused(tmp_path)
+
+
+def test_options_that_contradict_each_other(tmp_path):
+    told = refused(tmp_path, "--scheduler", "tcp://127.0.0.1:9", "--n-jobs", 2)
+    assert "--n-jobs has no effect with --scheduler" in told
+    told = refused(tmp_path, "--scheduler", "tcp://127.0.0.1:9", "--backend", "loky")
+    assert "--scheduler needs --backend dask" in told
+
+
+def test_interrupted_it_keeps_what_is_finished(tmp_path, cluster, expected):
+    def stop(records, total):
+        if records["index"].size and records["index"].max() > 7:
+            raise KeyboardInterrupt
+
+    sweep = small_sweep.sweep(tmp_path, LONG)
+    with pytest.raises(KeyboardInterrupt):
+        sweep.run(backend=through(cluster), progress=stop)
+    assert sweep.journal_path.exists()
+    assert_same_numbers(sweep.run(backend=through(cluster)), expected)
