@@ -140,3 +140,17 @@ def test_importing_config_loads_neither_numba_nor_scipy_nor_xarray():
         "import sys, wedgesweep.config; sys.exit(bool({'numba', 'scipy', 'xarray'} & sys.modules.keys()))"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("listed", [False, True])
+def test_records_of_all_cases_are_those_of_each(listed):
+    grid = 'friction_law = ["exponential", "coulomb"]\nbeta = [0.3, 1.7]\namplitude_mm = [0.2, 1.0, 3.0]\n'
+    cases = "".join(
+        f'[[sweep.case]]\nfriction_law = "{law}"\nbeta = {beta}\namplitude_mm = 0.7\n'
+        for law, beta in (("coulomb", 0.3), ("exponential", 1.1), ("coulomb", 0.7))
+    )
+    read = config.parse("[suspension]\ncolumn_angle_deg = 6.0\n" + (cases if listed else "[sweep]\n" + grid))
+    records = read.records()
+    assert records.shape == (3 if listed else 12,)
+    for record, case in zip(records, read.case_list(), strict=True):
+        assert record.tobytes() == read.record(case).tobytes()

@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numba
 
@@ -31,16 +31,17 @@ def _cache_home() -> Path:
 
 
 CACHE_DIR = _cache_home() / source_digest(containing=b"from wedgesweep.compiled")[:16]
-numba.config.CACHE_DIR = str(CACHE_DIR)
+numba.config.CACHE_DIR = str(CACHE_DIR)  # type: ignore[attr-defined]
 
 Function = TypeVar("Function", bound=Callable)
 
 
 def compiled(function: Function) -> Function:
     """Compile with numba; a division by zero gives inf or NaN, as in numpy, and threads run at once."""
-    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+    return cast(Function, numba.njit(cache=True, error_model="numpy", nogil=True)(function))
 
 
 def inlined(function: Function) -> Function:
     """``compiled``, and copied into its callers: for what is short and called in the innermost loops."""
-    return numba.njit(cache=True, error_model="numpy", nogil=True, forceinline=True)(function)
+    compiler = numba.njit(cache=True, error_model="numpy", nogil=True, forceinline=True)
+    return cast(Function, compiler(function))

@@ -40,7 +40,11 @@ BACKENDS = ("loky", "dask")
     show_default=True,
     help="Processes here (loky), or a Dask cluster: of --n-jobs processes here, or the --scheduler's.",
 )
-@click.option("--scheduler", metavar="ADDRESS", help="Running Dask scheduler, as tcp://host:8786.")
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Running Dask scheduler (tcp://host:8786), its workers with one thread each.",
+)
 @click.option("--fresh", is_flag=True, help="Discard what earlier runs of this output finished.")
 @click.pass_context
 def run(

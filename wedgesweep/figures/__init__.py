@@ -16,7 +16,7 @@ DOTS_PER_INCH = 200
 def _constants(path: Path) -> dict[str, str]:
     """Literals assigned at the top of a file, read without running it: matplotlib loads slowly."""
     return {
-        statement.targets[0].id: ast.literal_eval(statement.value)
+        ast.unparse(statement.targets[0]): ast.literal_eval(statement.value)
         for statement in ast.parse(path.read_text(encoding="utf-8")).body
         if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Constant)
     }

@@ -58,7 +58,8 @@ def _draw_law(ax, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]):
 
 
 def _draw_breakaway(ax, ds: xr.Dataset) -> None:
-    beta = np.linspace(*ax.get_xlim(), 1001)[1:]
+    lowest, highest = ax.get_xlim()
+    beta = np.linspace(lowest, highest, 1001)[1:]
     amplitude = ds.attrs["breakaway_acceleration"] / (beta * ds.attrs["omega_n"]) ** 2 * style.MM
     ax.plot(beta, amplitude, color="white", linewidth=3.2)
     ax.plot(beta, amplitude, color=style.VERMILLION, linewidth=1.8)

@@ -62,7 +62,8 @@ def solve(
     outcome, state = follow_from(0.0, *start, window.keep, window.end, parameters, recorder, work)
     if outcome != OK:
         status, message = MESSAGES[outcome]
-        raise CaseError(f"{message} (at t = {state.t:.6g} s)", status)
+        message = f"{message} (at t = {state.t:.6g} s)"
+        raise CaseError(message, status)
     counts = dict(zip(STATISTICS, work.counts.tolist(), strict=True))
     return Trajectory(samples, sums, window.periods, counts)
 

@@ -6,8 +6,6 @@ and acceleration at both ends. A switch is located on that quintic.
 
 from math import inf, pi, sqrt
 
-import numpy as np
-
 from wedgesweep import excitation
 from wedgesweep.compiled import compiled, inlined
 from wedgesweep.contact import COLUMN_NORMAL, SWITCHES, acting, held, slip_switches, switches, unique

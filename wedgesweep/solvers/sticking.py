@@ -53,7 +53,7 @@ def _crossing(left, right, x, contact, p, out):
 
 @compiled
 def _linear_release(x, direction, p):
-    """Base acceleration at which a stuck bolster slips in a direction, if both faces stay closed; else NaN."""
+    """Base acceleration at which a stuck bolster slips in a direction; NaN if a face opens there."""
     contact = slipping(direction, p)
     at_rest = forces(x, 0.0, 0.0, contact, p)
     driven = forces(x, 0.0, 1.0, contact, p)
