@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep import contact as contacts
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.damper import Contact
 from wedgesweep.solvers import oscillator, runge_kutta
 from wedgesweep.solvers.recorder import keep_at_rest
@@ -53,7 +53,7 @@ def begin(t, x, velocity, p):
     return State(t, x, velocity, contact, -1, FIRST_STEP * 2.0 * pi / p.omega), unique
 
 
-@compiled
+@inlined
 def _piece(state, stop, parameters, keeping, recorder, work):
     """Follow one contact to its first switch or ``stop``: time, x, velocity, switch (-1: none), step."""
     p = parameters[0]

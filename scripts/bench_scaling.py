@@ -1,0 +1,220 @@
+"""Time and memory of ``wedgesweep run`` over the number of cases, and what a sweep costs beyond solving.
+
+Each run is a process of its own that starts cold, with numba's cache warm. Memory: the largest process, and
+the sum over all processes of a run (proportional set size, sampled). Draws docs/scaling.png.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+
+mpl.use("Agg")
+from matplotlib import pyplot as plt
+
+ROOT = Path(__file__).parent.parent
+PICTURE = ROOT / "docs" / "scaling.png"
+COMMAND = [sys.executable, "-m", "wedgesweep", "run"]
+LAWS = ["coulomb", "static-dynamic", "exponential"]
+# Frequencies x amplitudes, of three laws each: 99, 999, 9,999 and 99,999 cases.
+GRIDS = ((3, 11), (9, 37), (33, 101), (123, 271))
+PAPER_CASES, PAPER_GOAL = 1800, 4.0
+SAMPLING = 0.1  # s between looks at the memory
+EVENT_DRIVEN = """
+method = "event-driven"
+rtol = 1e-5
+settle_periods = 60
+kept_periods = 2
+samples_per_period = 64
+keep_waveforms = false
+"""
+
+
+class Cost(NamedTuple):
+    """Wall time (s) and memory (bytes) of a run: largest process, all processes together."""
+
+    wall: float
+    largest: int
+    together: int
+
+
+def tree_memory(session):
+    """Proportional set size (bytes) of all processes of a session; 0 where /proc does not tell."""
+    total = 0
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            if int((path / "stat").read_text().rsplit(")", 1)[1].split()[3]) == session:
+                total += int((path / "smaps_rollup").read_text().split("Pss:")[1].split()[0])
+        except (OSError, IndexError):  # it has ended meanwhile
+            continue
+    return total * 1024
+
+
+def run(config, out, *options):
+    """One cold process from the config to the closed netCDF file."""
+    started, together = time.perf_counter(), 0
+    process = subprocess.Popen(
+        [*COMMAND, str(config), "-o", str(out), *options],
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+    )
+    while True:
+        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if pid:
+            break
+        together = max(together, tree_memory(process.pid))
+        time.sleep(SAMPLING)
+    wall = time.perf_counter() - started
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode > 1:  # 1: some cases failed
+        sys.exit(process.stderr.read().decode())
+    return Cost(wall, usage.ru_maxrss * 1024, together)
+
+
+def values(numbers):
+    return "[" + ", ".join(f"{number:.9g}" for number in numbers) + "]"
+
+
+def written(path, betas, amplitudes, solver, laws=LAWS):
+    """A config file of a grid; amplitudes in mm."""
+    names = ", ".join(f'"{law}"' for law in laws)
+    sweep = f"friction_law = [{names}]\nbeta = {values(betas)}\namplitude_mm = {values(amplitudes)}"
+    path.write_text(f"[sweep]\n{sweep}\n[solver]\n{solver}")
+    return path
+
+
+def middles(count):
+    """Middles of equal parts of (0, 1): grids of any size then cost the same per case."""
+    return (np.arange(count) + 0.5) / count
+
+
+def scaling(folder):
+    """Costs over the number of cases: metrics only, event-driven, two jobs."""
+    print("cases     wall s   ms/case   largest process MB   all processes MB")
+    costs = {}
+    for frequencies, amplitudes in GRIDS:
+        config = written(
+            folder / "grid.toml",
+            0.1 + 2.9 * middles(frequencies),
+            0.005 * 950.0 ** middles(amplitudes),
+            EVENT_DRIVEN,
+        )
+        cases = len(LAWS) * frequencies * amplitudes
+        cost = costs[cases] = run(config, folder / f"{cases}.nc", "--n-jobs", "2")
+        each = 1e3 * cost.wall / cases
+        print(
+            f"{cases:6} {cost.wall:9.1f} {each:9.2f} {cost.largest / 1e6:12.0f} {cost.together / 1e6:19.0f}"
+        )
+    fewest, most = min(costs), max(costs)
+    slope = (costs[most].wall - costs[fewest].wall) / (most - fewest)
+    growth = [(getattr(costs[most], name) - getattr(costs[fewest], name)) / 1e6 for name in Cost._fields[1:]]
+    print(f"fixed part {costs[fewest].wall - slope * fewest:.1f} s, {1e3 * slope:.2f} ms a case more")
+    print(
+        f"memory grows by {growth[0]:.0f} MB (largest process), {growth[1]:.0f} MB (all); goal: below 200 MB"
+    )
+    return costs
+
+
+def draw(costs):
+    """The picture of cost against number of cases."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 2.8), layout="constrained")
+    cases, walls = list(costs), [cost.wall for cost in costs.values()]
+    left.loglog(cases, walls, "o-", color="#0072B2")
+    most = cases[-1]
+    left.loglog([most / 100, most], [walls[-1] / 100, walls[-1]], "--", color="0.6", label="linear")
+    left.set(xlabel="cases", ylabel="wall time, two jobs (s)")
+    left.legend(frameon=False)
+    for name, colour, label in (
+        ("together", "#0072B2", "all processes"),
+        ("largest", "#D55E00", "largest process"),
+    ):
+        right.semilogx(
+            cases, [getattr(cost, name) / 1e6 for cost in costs.values()], "o-", color=colour, label=label
+        )
+    right.set(xlabel="cases", ylabel="peak memory (MB)", ylim=(0.0, None))
+    right.legend(frameon=False)
+    PICTURE.parent.mkdir(exist_ok=True)
+    figure.savefig(PICTURE, dpi=150)
+
+
+def paper(folder):
+    """The paper's sweep with waveforms, event-driven, from a cold process to the closed file."""
+    config = ROOT / "configs" / "paper.toml"
+    walls = []
+    for turn in range(3):
+        out = folder / f"paper-{turn}.nc"
+        walls.append(run(config, out, "--n-jobs", "2", "--solver", "event-driven").wall)
+    best = min(walls)
+    verdict = "met" if best <= PAPER_GOAL else f"missed by a factor of {best / PAPER_GOAL:.1f}"
+    listed = ", ".join(f"{wall:.1f}" for wall in walls)
+    print(
+        f"paper.toml, {PAPER_CASES} cases, waveforms, two jobs: {listed} s; goal {PAPER_GOAL:.0f} s {verdict}"
+    )
+
+
+def timed_radau(folder, frequencies, amplitudes, n_jobs):
+    """Wall time of a Radau sweep, the sum of its cases' own, and their number."""
+    config = written(
+        folder / "radau.toml",
+        0.3 + 2.7 * middles(frequencies),
+        0.02 * 100.0 ** middles(amplitudes),
+        'method = "radau"',
+    )
+    out = folder / f"radau-{frequencies}-{amplitudes}-{n_jobs}.nc"
+    wall = run(config, out, "--n-jobs", str(n_jobs)).wall
+    with xr.open_dataset(out) as found:
+        solving = float(found["wall_time"].sum())
+    return wall, solving, len(LAWS) * frequencies * amplitudes
+
+
+def overhead(folder):
+    """What a Radau sweep costs beyond solving, and two jobs against one."""
+    few_wall, few_solving, few = timed_radau(folder, 2, 3, 2)
+    wall, solving, cases = timed_radau(folder, 7, 5, 2)
+    single_wall, single_solving, _ = timed_radau(folder, 7, 5, 1)
+    beyond, few_beyond = wall - solving / 2, few_wall - few_solving / 2
+    print(f"Radau, {cases} cases, two jobs: wall {wall:.1f} s, solving 2 x {solving / 2:.1f} s")
+    print(f"Radau, {cases} cases, one job: wall {single_wall:.1f} s, solving {single_solving:.1f} s")
+    each = max(beyond - few_beyond, 0.0) / (cases - few)
+    fixed = few_beyond - few * each
+    total = fixed + PAPER_CASES * each
+    share = total / (PAPER_CASES * solving / cases / 2)
+    print(f"beyond solving: {fixed:.1f} s a sweep and {1e3 * each:.1f} ms a case;")
+    print(
+        f"  extrapolated from {few} and {cases} to {PAPER_CASES} such cases: {share:.1%} of solving, goal 5 %"
+    )
+    alone = single_wall - single_solving
+    whole = PAPER_CASES / cases
+    gain = (alone + whole * single_solving) / (total + whole * solving / 2)
+    print(f"two jobs against one: {single_wall / wall:.2f} x, {gain:.2f} x extrapolated; goal 1.8 x")
+
+
+def warm(folder):
+    """Fill numba's cache for both solvers."""
+    for number, solver in enumerate((EVENT_DRIVEN, 'method = "radau"')):
+        config = written(folder / "warm.toml", [1.0, 2.0], [0.2, 1.0], solver)
+        run(config, folder / f"warm-{number}.nc", "--n-jobs", "2")
+
+
+def main():
+    folder = Path(tempfile.mkdtemp())
+    try:
+        warm(folder)
+        paper(folder)
+        draw(scaling(folder))
+        overhead(folder)
+    finally:
+        shutil.rmtree(folder)
+
+
+if __name__ == "__main__":
+    main()
