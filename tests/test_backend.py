@@ -34,7 +34,7 @@ def expected(tmp_path_factory):
 @pytest.fixture
 def cluster():
     """Two worker processes, each started again by its nanny if it dies."""
-    options = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+    options = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": ":0"}
     with distributed.LocalCluster(**options) as running, distributed.Client(running) as client:
         yield client
 
@@ -92,7 +92,7 @@ def test_a_chunk_that_dask_gives_up_ends_the_run_and_loses_nothing_else(tmp_path
     sweep = small_sweep.sweep(tmp_path, LONG)
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 0}),
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as running,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as running,
         distributed.Client(running) as client,
         pytest.raises(SweepError, match="the Dask cluster gave up"),
     ):
@@ -130,7 +130,7 @@ def test_no_scheduler(tmp_path, monkeypatch, scheduler):
 
 def test_a_scheduler_without_workers(tmp_path, monkeypatch):
     monkeypatch.setattr(backend, "PATIENCE", 1.0)
-    with distributed.LocalCluster(n_workers=0, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster:
         told = refused(tmp_path, "--scheduler", cluster.scheduler_address)
     assert "no Dask scheduler with a worker" in told
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies
+from hypothesis import Phase, given, strategies
 from hypothesis import settings as hypothesis_settings
 
 from tests import small_sweep
@@ -213,7 +213,7 @@ def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):
     assert np.isnan(found["lift_off_fraction"]) or 0.0 <= found["lift_off_fraction"] <= 1.0
 
 
-@hypothesis_settings(max_examples=6, deadline=None, derandomize=True)
+@hypothesis_settings(max_examples=6, deadline=None, derandomize=True, phases=[Phase.generate])
 @given(records())
 def test_agrees_with_radau_where_radau_agrees_with_itself(record):
     ours = solved(record, replace(SHORT, rtol=1e-9))
@@ -222,3 +222,10 @@ def test_agrees_with_radau_where_radau_agrees_with_itself(record):
     if fine["status"] == 0 and moved < 1e-6:
         assert ours["status"] == 0
         assert ours["amplitude_ratio"] == pytest.approx(fine["amplitude_ratio"], abs=1e-5)
+
+
+def test_coulomb_without_friction():
+    friction = {"dynamic": 0.0, "static": 0.0}
+    suspension = {"column_angle": np.radians(0.1)}
+    record = parameters.record("coulomb", 1e-3, 42.5, suspension, friction)
+    assert STATUSES[solved(record)["status"]] == "ok"

@@ -72,7 +72,7 @@ def _local(opened: ExitStack, n_jobs: int) -> "Client":
     from distributed import Client, LocalCluster
 
     cluster = opened.enter_context(
-        LocalCluster(n_workers=n_jobs, threads_per_worker=1, processes=True, dashboard_address=None)
+        LocalCluster(n_workers=n_jobs, threads_per_worker=1, processes=True, dashboard_address=":0")
     )
     return opened.enter_context(Client(cluster, set_as_default=False))
 
@@ -83,7 +83,11 @@ def _connected(opened: ExitStack, scheduler: str) -> "Client":
     try:
         client = opened.enter_context(Client(scheduler, timeout=PATIENCE, set_as_default=False))
         client.wait_for_workers(1, timeout=PATIENCE)
-    except (OSError, ValueError) as error:  # of which TimeoutError is one
+    except (
+        OSError,
+        ValueError,
+        AssertionError,
+    ) as error:  # TimeoutError is an OSError; an address is asserted
         reason = str(error) or f"no answer within {PATIENCE:g} s"
         message = f"{scheduler}: no Dask scheduler with a worker ({reason})"
         raise SweepError(message) from error

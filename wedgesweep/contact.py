@@ -271,6 +271,15 @@ def _over_jump(x, velocity, base_acceleration, contact, switch, p):
 
 
 @compiled
+def _released(t, x, direction, p):
+    """Direction in which the bolster leaves rest; with next to no friction the switch may be noise."""
+    base_acceleration = excitation.acceleration(t + LOOK_AHEAD / p.omega, p)
+    onward = direction * breakaway(x, base_acceleration, direction, p)[0]
+    back = -direction * breakaway(x, base_acceleration, -direction, p)[0]
+    return -direction if onward <= 0.0 < back else direction
+
+
+@compiled
 def _past_zero_force(t, x, velocity, contact, p):
     """Contact after a normal force has become zero, and whether it is unique.
 
@@ -305,7 +314,7 @@ def successor(t, x, velocity, contact, switch, p):
     if not p.set_valued:
         return _over_jump(x, velocity, base_acceleration, contact, switch, p)
     if stuck(contact, p):
-        contact = slipping(1 if switch == COLUMN + 1 else -1, p)
+        contact = slipping(_released(t, x, 1 if switch == COLUMN + 1 else -1, p), p)
     else:
         return from_rest(x, base_acceleration, p)
     return with_consistent_signs(x, velocity, base_acceleration, contact, p)

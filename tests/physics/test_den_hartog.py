@@ -72,7 +72,7 @@ def test_motion_with_stops(r, expected, stick_fraction):
     assert numbers["stick_fraction"] == pytest.approx(stick_fraction, abs=0.002)
 
 
-@pytest.mark.parametrize("force_ratio", [1.0, 1.5])
+@pytest.mark.parametrize("force_ratio", [1.0 + 1e-9, 1.5])
 def test_no_motion_when_friction_exceeds_the_force(force_ratio):
     numbers = respond(1.5, force_ratio, settle_periods=5)
     assert numbers["amplitude_ratio"] == 0.0
