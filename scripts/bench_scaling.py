@@ -1,7 +1,8 @@
 """Time and memory of ``wedgesweep run`` over the number of cases, and what a sweep costs beyond solving.
 
 Each run is a process of its own that starts cold, with numba's cache warm. Memory: the largest process, and
-the sum over all processes of a run (proportional set size, sampled). Draws docs/scaling.png.
+the sum over all processes of a run (proportional set size, sampled). Writes docs/bench_scaling.txt and draws
+docs/scaling.png.
 """
 
 import os
@@ -21,7 +22,7 @@ mpl.use("Agg")
 from matplotlib import pyplot as plt
 
 ROOT = Path(__file__).parent.parent
-PICTURE = ROOT / "docs" / "scaling.png"
+REPORT, PICTURE = ROOT / "docs" / "bench_scaling.txt", ROOT / "docs" / "scaling.png"
 COMMAND = [sys.executable, "-m", "wedgesweep", "run"]
 LAWS = ["coulomb", "static-dynamic", "exponential"]
 # Frequencies x amplitudes, of three laws each: 99, 999, 9,999 and 99,999 cases.
@@ -36,6 +37,15 @@ kept_periods = 2
 samples_per_period = 64
 keep_waveforms = false
 """
+
+
+said: list[str] = []
+
+
+def say(line):
+    """Print a line, and keep it for the report."""
+    print(line, flush=True)
+    said.append(line)
 
 
 class Cost(NamedTuple):
@@ -99,7 +109,7 @@ def middles(count):
 
 def scaling(folder):
     """Costs over the number of cases: metrics only, event-driven, two jobs."""
-    print("cases     wall s   ms/case   largest process MB   all processes MB")
+    say("cases     wall s   ms/case   largest process MB   all processes MB")
     costs = {}
     for frequencies, amplitudes in GRIDS:
         config = written(
@@ -111,16 +121,12 @@ def scaling(folder):
         cases = len(LAWS) * frequencies * amplitudes
         cost = costs[cases] = run(config, folder / f"{cases}.nc", "--n-jobs", "2")
         each = 1e3 * cost.wall / cases
-        print(
-            f"{cases:6} {cost.wall:9.1f} {each:9.2f} {cost.largest / 1e6:12.0f} {cost.together / 1e6:19.0f}"
-        )
+        say(f"{cases:6} {cost.wall:9.1f} {each:9.2f} {cost.largest / 1e6:12.0f} {cost.together / 1e6:19.0f}")
     fewest, most = min(costs), max(costs)
     slope = (costs[most].wall - costs[fewest].wall) / (most - fewest)
     growth = [(getattr(costs[most], name) - getattr(costs[fewest], name)) / 1e6 for name in Cost._fields[1:]]
-    print(f"fixed part {costs[fewest].wall - slope * fewest:.1f} s, {1e3 * slope:.2f} ms a case more")
-    print(
-        f"memory grows by {growth[0]:.0f} MB (largest process), {growth[1]:.0f} MB (all); goal: below 200 MB"
-    )
+    say(f"fixed part {costs[fewest].wall - slope * fewest:.1f} s, {1e3 * slope:.2f} ms a case more")
+    say(f"memory grows by {growth[0]:.0f} MB (largest process), {growth[1]:.0f} MB (all); goal: below 200 MB")
     return costs
 
 
@@ -156,7 +162,7 @@ def paper(folder):
     best = min(walls)
     verdict = "met" if best <= PAPER_GOAL else f"missed by a factor of {best / PAPER_GOAL:.1f}"
     listed = ", ".join(f"{wall:.1f}" for wall in walls)
-    print(
+    say(
         f"paper.toml, {PAPER_CASES} cases, waveforms, two jobs: {listed} s; goal {PAPER_GOAL:.0f} s {verdict}"
     )
 
@@ -182,20 +188,20 @@ def overhead(folder):
     wall, solving, cases = timed_radau(folder, 7, 5, 2)
     single_wall, single_solving, _ = timed_radau(folder, 7, 5, 1)
     beyond, few_beyond = wall - solving / 2, few_wall - few_solving / 2
-    print(f"Radau, {cases} cases, two jobs: wall {wall:.1f} s, solving 2 x {solving / 2:.1f} s")
-    print(f"Radau, {cases} cases, one job: wall {single_wall:.1f} s, solving {single_solving:.1f} s")
+    say(f"Radau, {cases} cases, two jobs: wall {wall:.1f} s, solving 2 x {solving / 2:.1f} s")
+    say(f"Radau, {cases} cases, one job: wall {single_wall:.1f} s, solving {single_solving:.1f} s")
     each = max(beyond - few_beyond, 0.0) / (cases - few)
     fixed = few_beyond - few * each
     total = fixed + PAPER_CASES * each
     share = total / (PAPER_CASES * solving / cases / 2)
-    print(f"beyond solving: {fixed:.1f} s a sweep and {1e3 * each:.1f} ms a case;")
-    print(
+    say(f"beyond solving: {fixed:.1f} s a sweep and {1e3 * each:.1f} ms a case;")
+    say(
         f"  extrapolated from {few} and {cases} to {PAPER_CASES} such cases: {share:.1%} of solving, goal 5 %"
     )
     alone = single_wall - single_solving
     whole = PAPER_CASES / cases
     gain = (alone + whole * single_solving) / (total + whole * solving / 2)
-    print(f"two jobs against one: {single_wall / wall:.2f} x, {gain:.2f} x extrapolated; goal 1.8 x")
+    say(f"two jobs against one: {single_wall / wall:.2f} x, {gain:.2f} x extrapolated; goal 1.8 x")
 
 
 def warm(folder):
@@ -212,6 +218,7 @@ def main():
         paper(folder)
         draw(scaling(folder))
         overhead(folder)
+        REPORT.write_text("\n".join(said) + "\n")
     finally:
         shutil.rmtree(folder)
 

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from tests import small_sweep
 from tests.small_sweep import CASES, CONFIG, assert_same_numbers
-from wedgesweep import backend
+from wedgesweep import cluster as clusters
 from wedgesweep.cli import cli
 from wedgesweep.errors import MismatchError, SweepError
 
@@ -40,7 +40,7 @@ def cluster():
 
 
 def through(client):
-    return partial(backend.dask, scheduler=client.scheduler.address)
+    return partial(clusters.dask, scheduler=client.scheduler.address)
 
 
 def workers(client):
@@ -55,14 +55,15 @@ def invoke(*arguments, code):
 
 
 @pytest.mark.parametrize("method", ["radau", "event-driven"])
-def test_a_cluster_of_its_own_gives_the_same_bits(tmp_path, monkeypatch, method):
+def test_every_backend_gives_the_same_bits(tmp_path, monkeypatch, method):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "few.toml").write_text(FEW)
-    for name, n_jobs in (("loky", 1), ("dask", 2)):
+    for name, n_jobs in (("loky", 2), ("threads", 2), ("dask", 2)):
         command = ("run", "few.toml", "-o", f"{name}.nc", "--solver", method, "--backend", name)
         assert "16 cases: 16 ok" in invoke(*command, "--n-jobs", n_jobs, code=0)
-    assert_same_numbers(xr.load_dataset("dask.nc"), xr.load_dataset("loky.nc"))
-    assert {path.name for path in tmp_path.iterdir()} == {"few.toml", "dask.nc", "loky.nc"}
+    for name in ("threads", "dask"):
+        assert_same_numbers(xr.load_dataset(f"{name}.nc"), xr.load_dataset("loky.nc"))
+    assert {path.name for path in tmp_path.iterdir()} == {"few.toml", "dask.nc", "loky.nc", "threads.nc"}
 
 
 def test_a_killed_worker_costs_its_chunk_only(tmp_path, expected, cluster):
@@ -121,7 +122,7 @@ def refused(directory, *arguments):
 
 @pytest.mark.parametrize("scheduler", ["tcp://127.0.0.1:9", "nonsense://there", "127.0.0.1"])
 def test_no_scheduler(tmp_path, monkeypatch, scheduler):
-    monkeypatch.setattr(backend, "PATIENCE", 1.0)
+    monkeypatch.setattr(clusters, "PATIENCE", 1.0)
     began = time.monotonic()
     told = refused(tmp_path, "--scheduler", scheduler)
     assert f"Error: {scheduler}: no Dask scheduler with a worker" in told
@@ -129,7 +130,7 @@ def test_no_scheduler(tmp_path, monkeypatch, scheduler):
 
 
 def test_a_scheduler_without_workers(tmp_path, monkeypatch):
-    monkeypatch.setattr(backend, "PATIENCE", 1.0)
+    monkeypatch.setattr(clusters, "PATIENCE", 1.0)
     with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster:
         told = refused(tmp_path, "--scheduler", cluster.scheduler_address)
     assert "no Dask scheduler with a worker" in told

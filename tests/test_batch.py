@@ -63,7 +63,7 @@ def test_order_of_the_cases_changes_no_bit(tmp_path, expected):
 def test_every_chunk_is_solved_once():
     for number in (1, 2, 63, 64, 65, 1800, 100_800):
         for method in ("radau", "event-driven"):
-            chunks = list(sweep._chunks(np.arange(number) + 5, method))
+            chunks = list(sweep._chunks(np.arange(number)[:, None] + 5, method))
             assert sorted(np.concatenate(chunks).tolist()) == list(range(5, number + 5))
             assert max(map(len, chunks)) <= (sweep.CHUNK if method == "event-driven" else 1)
             assert max(map(len, chunks)) - min(map(len, chunks)) <= 1
@@ -75,8 +75,8 @@ def test_agrees_with_radau_in_every_variable(tmp_path):
     assert set(ours) == set(radaus)
     assert (ours["status"] == radaus["status"]).all()
     assert np.array_equal(ours["settled_periods"], radaus["settled_periods"])
-    # Each solver reads the peak off at its own quadrature nodes.
-    tolerances = {"peak_velocity": 2e-3, "minimum_normal_force": 1e-5}
+    # Radau reads the peak off at its quadrature nodes, and so do both with the force.
+    tolerances = {"peak_velocity": 5e-6, "minimum_normal_force": 1e-5}
     compared = {name for name in ours if ours[name].dtype.kind == "f"} - {"wall_time"}
     assert len(compared) > 15
     for name in compared:

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 
-from tests import fixture_dataset, small_sweep
+from tests import fixture_dataset, fixture_diagnosis, small_sweep
 from tests.small_sweep import CONFIG, LOCKED
 from wedgesweep import config, figures
 from wedgesweep.cli import cli
@@ -248,6 +248,26 @@ def test_ctrl_c_keeps_what_is_finished(here, bytes_written):
     assert "remaining" in invoke("status", "long.nc")
 
 
+def test_ctrl_c_stops_threads_at_once(here):
+    """A chunk that is being solved is not waited for; what is in the journal goes on to the same bits."""
+    text = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
+    (here / "long.toml").write_text(text.replace("settle_periods = 3", "settle_periods = 10_000"))
+    process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=here)
+    journal = here / "long.nc.partial"
+    while process.poll() is None and not (journal.exists() and journal.stat().st_size > 20_000):
+        time.sleep(0.01)
+    began = time.monotonic()
+    os.killpg(process.pid, signal.SIGINT)
+    told = process.communicate()[0]
+    assert time.monotonic() - began < 5.0
+    assert process.returncode == 130, told
+    assert "cases are kept in long.nc.partial; the same command goes on" in told
+    assert "Traceback" not in told
+    assert "of them kept" in run("long.toml", "--n-jobs", 2)
+    run("long.toml", "-o", "other.nc", "--n-jobs", 1, "--backend", "loky")
+    small_sweep.assert_same_numbers(xr.load_dataset("long.nc"), xr.load_dataset("other.nc"))
+
+
 def numbers(told):
     """Number and unit by name, from what ``case`` prints."""
     lines = [line.split() for line in told.splitlines() if line.startswith("  ")]
@@ -363,6 +383,25 @@ def test_plot_all(here, drawn_dataset):
     assert made == {f"{kind}.png" for kind in figures.DESCRIPTIONS}
 
 
+def test_plot_of_a_diagnosis(here, drawn_dataset):
+    fixture_diagnosis.write(here / "found", "tied", tests=2)
+    assert invoke("plot", "candidates", "found") == "wrote found/candidates.png\n"
+    assert invoke("plot", "misfit", "found", "--format", "svg", "-o", "m.svg") == "wrote m.svg\n"
+    assert "skipped gain: nothing was held out" in invoke("plot", "all", "found", "-o", "figures")
+    assert (here / "figures" / "waveforms.png").read_bytes().startswith(PNG)
+    for arguments, words in (
+        (["misfit", drawn_dataset], "not a directory; misfit draws what 'wedgesweep diagnose -o DIR' left"),
+        (
+            ["stick-map", "found"],
+            "a directory; stick-map draws the dataset of a run, a diagnosis",
+        ),
+        (["gain", "found"], "gain: nothing was held out"),
+        (["misfit", "found", "--beta", 1], "misfit: takes no --beta"),
+        (["misfit", "figures"], "figures/diagnosis.json: no such file"),
+    ):
+        assert words in invoke("plot", *arguments, code=2)
+
+
 def test_plot_all_says_what_does_not_suit(here):
     fixture_dataset.as_cases(fixture_dataset.build()).to_netcdf("cases.nc")
     told = invoke("plot", "all", "cases.nc")
@@ -392,7 +431,7 @@ def test_reproduce_exit_code(here, monkeypatch):
     from wedgesweep import reproduce
 
     def fake(as_recorded):
-        def run_all(directory, n_jobs, report, progress):
+        def run_all(directory, n_jobs, report, progress, only):
             report(f"{directory.name} on {n_jobs}")
             return as_recorded
 

@@ -185,3 +185,27 @@ def test_a_number_whose_neutral_value_is_a_limit_must_be_given(default):
     found: list[str] = []
     table("spring", "a spring", limit).read({}, "effects.spring", found)
     assert found == ["effects.spring.stiffness_N_per_mm: missing; write stiffness_N_per_mm = ..."]
+
+
+STEADY = '[solver]\nmethod = "event-driven"\nsettle = "steady"\ncontinuation = true\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        (SWEEP + "[solver]\ncontinuation = true\n", 'write method = "event-driven" and settle = "steady"'),
+        (SWEEP + STEADY.replace('settle = "steady"\n', ""), 'settle = "steady"'),
+        (CASE + STEADY, "a list of cases has no neighbours"),
+        (SWEEP + STEADY.replace("true", '"yes"'), "neither true nor false"),
+    ],
+)
+def test_continuation_needs_steady_states_and_neighbours(text, hint):
+    found = problem(text)
+    assert found.startswith("study.toml: solver.continuation: ")
+    assert hint in found
+
+
+def test_another_method_must_suit_the_other_settings():
+    read = config.parse(SWEEP + STEADY)
+    with pytest.raises(ConfigError, match=r'solver "radau": solver\.settle: .*\n.*solver\.continuation'):
+        read.with_method("radau")

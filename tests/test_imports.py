@@ -16,19 +16,34 @@ NUMERICS = (
 )
 ABOVE = (
     *("dataset", "sweep", "backend", "journal", "cases", "outcomes", "provenance", "fingerprint", "estimate"),
-    *("config", "figures", "reproduce", "cli"),
+    *("batch", "cluster", "continuation", "config", "figures", "reproduce", "measured", "synthesize", "cli"),
+    *("report", "diagnosed"),
 )
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
-    ("config/",): ("xarray", "joblib", "wedgesweep.sweep", "wedgesweep.dataset"),
-    ("dataset.py", "journal.py", "cases.py"): ("wedgesweep.sweep", "wedgesweep.figures"),
-    ("figures/",): ("wedgesweep.sweep", "wedgesweep.journal", "wedgesweep.cli"),
+    ("config/",): ("xarray", "joblib", *(f"wedgesweep.{name}" for name in ("sweep", "dataset", "measured"))),
+    ("measured/",): (
+        "xarray",
+        *(f"wedgesweep.{name}" for name in ("simulate", "solvers", "sweep", "synthesize")),
+    ),
+    # Synthetic data come from another integrator than a fit uses.
+    ("synthesize/",): ("xarray", "wedgesweep.sweep", "wedgesweep.batch", "wedgesweep.solvers.event_driven"),
+    ("dataset.py", "journal.py", "cases.py", "batch.py", "continuation.py"): (
+        "wedgesweep.sweep",
+        "wedgesweep.figures",
+    ),
+    ("figures/",): tuple(f"wedgesweep.{name}" for name in ("sweep", "journal", "report", "diagnose", "cli")),
+    ("report/", "diagnosed.py"): ("wedgesweep.sweep", "wedgesweep.diagnose", "wedgesweep.cli"),
+    ("digits.py",): ("numpy", "wedgesweep"),
 }
 ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/",),
-    "joblib": ("backend.py", "sweep.py", "cli/"),
-    "distributed": ("backend.py",),
+    "joblib": (
+        *("backend.py", "cluster.py", "sweep.py", "synthesize/", "cli/"),
+        "reproduce/chandiramani.py",
+    ),
+    "distributed": ("cluster.py",),
     "wedgesweep.cli": ("cli/", "__main__.py"),
 }
 

@@ -26,7 +26,7 @@ def reproduced(runs, monkeypatch, tmp_path):
 
     def run():
         told = []
-        return reproduction.reproduce(tmp_path, 1, told.append), told, tmp_path
+        return reproduction.reproduce(tmp_path, 1, told.append, only="claims"), told, tmp_path
 
     return run
 

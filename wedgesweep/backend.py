@@ -1,25 +1,16 @@
-"""Where cases are solved: in processes of this machine (loky), or by the workers of a Dask cluster.
+"""Where cases are solved: in threads or processes of this machine; ``cluster`` adds a Dask cluster.
 
-Either gives a joblib.Parallel, so that results come out of both in one way.
+Each gives a joblib.Parallel, so that results come out of all of them in one way.
 """
 
-import importlib.util
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Future
-from contextlib import AbstractContextManager, ExitStack, contextmanager
-from typing import TYPE_CHECKING, Any, Protocol
+from concurrent.futures import BrokenExecutor
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any, Protocol
 
 import joblib
-from joblib._dask import DaskDistributedBackend
 
-from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.fingerprint import differences
-
-if TYPE_CHECKING:
-    from distributed import Client
-
-# How long (s) a scheduler may take to answer, and then to have a worker.
-PATIENCE = 10.0
+from wedgesweep.errors import SweepError
 
 
 class Backend(Protocol):
@@ -30,90 +21,28 @@ class Backend(Protocol):
     ) -> AbstractContextManager[joblib.Parallel]: ...
 
 
+def parallel(**options: Any) -> joblib.Parallel:
+    """A joblib.Parallel whose results come as they are ready."""
+    # Cases that go together are together already: joblib need not batch them again.
+    return joblib.Parallel(return_as="generator_unordered", batch_size=1, **options)
+
+
+@contextmanager
+def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
+    """Threads of this process, for solvers that are compiled as a whole: they start at once."""
+    yield parallel(n_jobs=n_jobs, backend="threading")
+
+
 @contextmanager
 def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
     """Processes of this machine; they run this very code."""
     try:
-        yield _parallel(n_jobs=n_jobs)
+        yield parallel(n_jobs=n_jobs)
     except BrokenExecutor as error:
         message = "a job died, killed or out of memory; the same command goes on from what is finished"
         raise SweepError(message) from error
 
 
-@contextmanager
-def dask(
-    n_jobs: int, fingerprint: Callable[[], dict[str, str]], scheduler: str | None = None
-) -> Iterator[joblib.Parallel]:
-    """Workers of a running cluster, or of one with ``n_jobs`` processes here that ends with this run.
-
-    Raises SweepError if there is no cluster, MismatchError if its workers would compute other numbers.
-    """
-    if importlib.util.find_spec("distributed") is None:
-        message = "the dask backend needs Dask: pip install 'wedgesweep[dask]'"
-        raise SweepError(message)
-    from distributed import KilledWorker
-
-    with ExitStack() as opened:
-        client = _connected(opened, scheduler) if scheduler else _local(opened, n_jobs)
-        _require_same(client, fingerprint)
-        try:
-            yield _parallel(backend=_Dask(client=client))
-        except (KilledWorker, CancelledError) as error:
-            message = f"the Dask cluster gave up: {error}; the same command goes on from what is finished"
-            raise SweepError(message) from error
-
-
-def _parallel(**options: Any) -> joblib.Parallel:
-    # Cases that go together are together already: joblib need not batch them again.
-    return joblib.Parallel(return_as="generator_unordered", batch_size=1, **options)
-
-
-def _local(opened: ExitStack, n_jobs: int) -> "Client":
-    from distributed import Client, LocalCluster
-
-    cluster = opened.enter_context(
-        LocalCluster(n_workers=n_jobs, threads_per_worker=1, processes=True, dashboard_address=":0")
-    )
-    return opened.enter_context(Client(cluster, set_as_default=False))
-
-
-def _connected(opened: ExitStack, scheduler: str) -> "Client":
-    from distributed import Client
-
-    try:
-        client = opened.enter_context(Client(scheduler, timeout=PATIENCE, set_as_default=False))
-        client.wait_for_workers(1, timeout=PATIENCE)
-    except (
-        OSError,
-        ValueError,
-        AssertionError,
-    ) as error:  # TimeoutError is an OSError; an address is asserted
-        reason = str(error) or f"no answer within {PATIENCE:g} s"
-        message = f"{scheduler}: no Dask scheduler with a worker ({reason})"
-        raise SweepError(message) from error
-    return client
-
-
-def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -> None:
-    """Each worker must have the same wedgesweep and the same libraries, for the same bits."""
-    here = fingerprint()
-    for worker, there in client.run(fingerprint, on_error="return").items():
-        if isinstance(there, BaseException):
-            message = f"Dask worker {worker} cannot run wedgesweep: {there}"
-            raise SweepError(message) from there
-        if differing := differences(there, here):
-            message = f"Dask worker {worker} would compute other numbers ({'; '.join(differing)})"
-            raise MismatchError(message)
-
-
-class _Dask(DaskDistributedBackend):
-    """joblib's own waits forever for a chunk that Dask gave up because its workers died each time."""
-
-    def submit(self, func: Any, callback: Callable[[Any], None]) -> Future:
-        def pass_on(done: Future) -> None:
-            if error := done.exception():
-                callback(error)
-
-        submitted = super().submit(func, callback)
-        submitted.add_done_callback(pass_on)
-        return submitted
+def local(method: str) -> Backend:
+    """The backend of this machine that suits a solver."""
+    return threads if method == "event-driven" else loky

@@ -6,7 +6,7 @@ import numpy as np
 
 from wedgesweep import dataset, response, tally
 from wedgesweep.simulate import Settings
-from wedgesweep.solvers import event_driven
+from wedgesweep.solvers import event_driven, extended
 from wedgesweep.solvers.event_driven import Batch, Plan
 from wedgesweep.solvers.march import OK, workspace
 
@@ -19,11 +19,13 @@ def solve_batch(
     settings: Settings,
     dtype: np.dtype,
     starts: np.ndarray | None = None,
+    chain: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Records of some cases, and their states at the end, shape (n, 2).
 
     ``cases`` are parameter records, shape (n,); ``starts`` are states (m, m/s) at phase 0, shape (n, 2), rest
-    unless given. The wall time of a case is its share of the batch's.
+    unless given; in a ``chain`` a case starts where the one before it ended, unless that failed. The wall
+    time of a case is its share of the batch's.
     """
     began = perf_counter()
     settle = settings.settling(cases["omega"])
@@ -32,9 +34,12 @@ def solve_batch(
         len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
     starts = np.zeros((len(cases), 2)) if starts is None else starts
-    event_driven.run_batch(
-        cases, settle, starts, _plan(settings), tally.empty(), workspace(_rtol(settings)), batch
-    )
+    plan, rtol = _plan(settings, chain), _rtol(settings)
+    # All cases have the effects of one config.
+    if cases["extended"].any():
+        extended.run_batch(cases, settle, starts, plan, rtol, batch)
+    else:
+        event_driven.run_batch(cases, settle, starts, plan, tally.empty(), workspace(rtol), batch)
     records = dataset.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)
@@ -46,13 +51,14 @@ def _rtol(settings: Settings) -> float:
     return min(settings.rtol, settings.steady_tolerance) if settings.steady else settings.rtol
 
 
-def _plan(settings: Settings) -> Plan:
+def _plan(settings: Settings, chain: bool) -> Plan:
     return Plan(
         settings.kept_periods,
         settings.samples_per_period,
         settings.steady,
         settings.steady_tolerance,
         settings.max_periods,
+        chain,
     )
 
 

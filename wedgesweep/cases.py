@@ -10,6 +10,7 @@ import numpy as np
 from wedgesweep import dataset, parameters, simulate
 from wedgesweep.batch import solve_batch
 from wedgesweep.compiled import CACHE_DIR
+from wedgesweep.continuation import solve_lines
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 
@@ -66,7 +67,12 @@ def solve_cases(
     case_timeout: float,
     dtype: np.dtype,
 ) -> np.ndarray:
-    """Records of some cases; a case that fails is a status and a message, never an exception."""
+    """Records of some cases; a case that fails is a status and a message, never an exception.
+
+    In a continuation the cases are whole lines of the grid.
+    """
+    if settings.continuation:
+        return solve_lines(cases, indices, settings, dtype)
     if settings.method == "event-driven":
         return solve_batch(cases, indices, settings, dtype)[0]
     records = dataset.blank(dtype, indices)

@@ -13,6 +13,16 @@ from wedgesweep import friction
 from wedgesweep.compiled import compiled, inlined
 from wedgesweep.effects import guide_friction
 
+# Code of the law whose coefficient grows without bound if its exponent is positive.
+EXPONENTIAL = friction.LAW_NAMES.index("exponential")
+# Fields of effects for which ``_never_locks`` has no proof.
+UNPROVED = (
+    "ageing_rate",
+    "load_dependent_friction_exponent",
+    "column_compliance_stiffness",
+    "fixture_resonance_frequency",
+)
+
 
 class Contact(NamedTuple):
     """Which smooth piece of the equations holds.
@@ -46,7 +56,7 @@ def prepare(p) -> None:
     p["column_ratio"] = p["sin_wedge"] / p["sin_included"]
     p["bolster_ratio"] = -p["sin_column"] / p["sin_included"]
     p["never_locks"] = _never_locks(p)
-    p["rest"] = 0.0
+    p["rest"] = p["column_rest"] = 0.0
     p["rest"] = -frictionless(0.0, 0.0, p).acceleration / frictionless_stiffness(p)
 
 
@@ -77,7 +87,16 @@ def _never_locks(p) -> bool:
     if and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They
     are linear in each coefficient of friction, so that the extreme coefficients decide.
     """
+    if p["law"] == EXPONENTIAL and p["velocity_exponent"] > 0.0:
+        return False
     most = p["dynamic"] if p["set_valued"] else max(p["dynamic"], p["static"])
+    if p["extended"]:
+        # No bound is known for friction that grows with time at rest or with load, nor are the
+        # determinants of more degrees of freedom.
+        if any(p[name] != 0.0 for name in UNPROVED):
+            return False
+        most = max(p["dynamic"], p["static"] + p["stribeck_peak"])
+        most *= 1.0 + abs(p["directional_friction_asymmetry"])
     corners = ((most, most), (most, -most), (-most, most), (-most, -most))
     return all(determinant(column, bolster, p) > 0.0 for column, bolster in corners)
 

@@ -78,17 +78,36 @@ VARIABLES = (
     Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", PHASE, "i1"),
 )
 
+WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
+
+# A continuation has these, too; all other variables are those of its way up in beta. Two responses are
+# different ones if their amplitude ratios are this many steady_tolerance apart, or their periods differ.
+APART = 1000.0
+CONTINUED = (
+    Variable("amplitude_ratio_down", "1", "amplitude_ratio on the way down in beta"),
+    Variable("period_down", "1", "period on the way down in beta", dtype="i2"),
+    Variable(
+        "coexisting",
+        "1",
+        "whether the ways up and down in beta end in different responses: periods differ, or amplitude "
+        f"ratios by more than {APART:g} steady_tolerance; not told where one did not repeat or failed",
+        dtype="i1",
+    ),
+)
+# Flags of the dataset: the values from the first on, in words.
+FLAGS = {"status": (0, STATUSES), "coexisting": (-1, ("not_told", "no", "yes"))}
+
 GRID = ("friction_law", "beta", "amplitude")
 MESSAGE_BYTES = 200
 
 
-def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
+def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
     """Layout of one finished case: its index and every variable, dimensions from ``sizes``.
 
-    Without samples (``sizes["phase"]`` = 0) there are no waveforms.
+    Without samples (``sizes["phase"]`` = 0) there are no waveforms; ``continued`` adds CONTINUED.
     """
     fields: list[tuple[Any, ...]] = [("index", "i8")]
-    for variable in VARIABLES:
+    for variable in VARIABLES + CONTINUED * continued:
         if variable.dims == PHASE and not sizes["phase"]:
             continue
         dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
@@ -103,7 +122,8 @@ def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
         if dtype[name].base.kind == "f":
             records[name] = np.nan
     records["index"] = indices
-    records["period"] = -1
+    for name in {"period", "period_down", "coexisting"} & set(dtype.names or ()):
+        records[name] = -1
     records["status"] = STATUSES.index("not_run")
     return records
 
@@ -120,7 +140,7 @@ def assemble(
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
-    for variable in VARIABLES:
+    for variable in VARIABLES + CONTINUED:
         if variable.name not in (records.dtype.names or ()):
             continue
         values = ordered[variable.name]
@@ -150,9 +170,10 @@ def _attributes(variable: Variable) -> dict[str, Any]:
     attributes: dict[str, Any] = {"long_name": variable.long_name}
     if variable.units:
         attributes["units"] = variable.units
-    if variable.name == "status":
-        attributes["flag_values"] = np.arange(len(STATUSES), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(STATUSES)
+    if variable.name in FLAGS:
+        first, meanings = FLAGS[variable.name]
+        attributes["flag_values"] = np.arange(first, first + len(meanings), dtype=np.int8)
+        attributes["flag_meanings"] = " ".join(meanings)
     return attributes
 
 

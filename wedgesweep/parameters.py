@@ -9,6 +9,8 @@ from types import MappingProxyType
 import numpy as np
 
 from wedgesweep import damper, effects
+from wedgesweep.effects import EXTENDING
+from wedgesweep.extended import rest
 from wedgesweep.friction import LAW_NAMES, LAWS
 from wedgesweep.quantity import Quantity
 
@@ -43,7 +45,8 @@ FRICTION = (
     ),
 )
 
-CASE = ("law", "amplitude", "omega")
+# ``stray_vibration_phase`` (rad) is another one in every measurement.
+CASE = ("law", "amplitude", "omega", "stray_vibration_phase")
 
 # Numbers that follow from the ones above; ``record`` and ``damper.prepare`` fill them in.
 DERIVED = (
@@ -58,8 +61,19 @@ DERIVED = (
     "cos_included",
     "never_locks",  # 1 if the normal forces are unique whatever the state
     "rest",  # z of the frictionless equilibrium
+    "column_rest",  # Q of the frictionless equilibrium
+    "column_slip_ratio",  # slip on the column face per Q
+    "bolster_slip_ratio",  # slip on the bolster face per Q
+    "lift_ratio",  # rise of a wedge per Q
+    "column_damping",  # of a column (N s/m)
+    "fixture_stiffness",  # of the side frame on its table (N/m)
+    "fixture_damping",  # N s/m
+    "extended",  # 1 if an effect needs more than the base model's mechanics
 )
 
+# Under the Coulomb law these effects let the faces stick one at a time; they are regularised instead.
+REGULARISING = ("cross_slip_velocity", "column_compliance_stiffness")
+REGULARISED_VELOCITY = 1e-6  # m/s
 
 EFFECTS_OFF = effects.neutral()
 
@@ -94,5 +108,33 @@ def record(
         case[name] = value
     case["law"] = LAW_NAMES.index(law)
     case["set_valued"] = LAWS[law].SET_VALUED
+    case["extended"] = any(case[name][0] != EFFECTS_OFF[name] for name in EXTENDING)
+    _change_parameters(case[0])
+    if is_regularised(case[0]):
+        _regularise(case[0])
     damper.prepare(case[0])
+    if case["extended"][0]:
+        rest.prepare(case[0])
     return case
+
+
+def _change_parameters(p: np.void) -> None:
+    """Put the effects of the parameters family in place; omega_n is the caller's and stays nominal."""
+    p["bolster_spring"] *= p["bolster_stiffness_scale"]
+    p["wedge_spring"] *= p["wedge_stiffness_scale"]
+    p["bolster_mass"] *= p["bolster_mass_scale"]
+    p["wedge_preload"] += p["preload_force"]
+    p["static"] *= p["friction_level_scale"]
+    p["dynamic"] *= p["friction_level_scale"]
+
+
+def is_regularised(p: np.void) -> bool:
+    """Whether effects turn the case's Coulomb law into a steep ramp (over 1e-3 mm/s)."""
+    return p["law"] == LAW_NAMES.index("coulomb") and any(p[name] != 0.0 for name in REGULARISING)
+
+
+def _regularise(p: np.void) -> None:
+    """Replace set-valued friction by a ramp up to mu_d, or up to the peak of ``stribeck``."""
+    p["set_valued"], p["threshold_velocity"] = 0.0, REGULARISED_VELOCITY
+    if p["stribeck_velocity"] == 0.0:
+        p["static"] = p["dynamic"]

@@ -34,6 +34,7 @@ def attributes(config: Config, started: datetime, command: str) -> dict[str, str
         "fingerprint": json.dumps(fingerprint(config)),
         "wedgesweep_version": __version__,
         "package_versions": json.dumps({name: version(name) for name in PACKAGES}),
+        **({"comment": config.remark} if config.remark else {}),
         **({"git_commit": commit} if commit else {}),
     }
 

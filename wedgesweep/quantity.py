@@ -26,6 +26,9 @@ class Quantity:
 
     ``key`` is its TOML key, whose ending names the unit; ``name`` is the key without that ending and
     names the same number in SI. The range is in the unit of the key; ``above`` excludes its end.
+    A default that is not finite is none: the key must be given. ``off`` is the number that stands for an
+    absent effect, the default unless given. A fit looks for the number within ``search`` (None: it is
+    not fitted), on a scale of its logarithm if ``logarithmic``.
     """
 
     key: str
@@ -35,6 +38,14 @@ class Quantity:
     above: float = -inf
     maximum: float = inf
     below: float = inf
+    off: float | None = None
+    search: tuple[float, float] | None = None
+    logarithmic: bool = False
+
+    @property
+    def neutral(self) -> float:
+        """The number of an absent effect, in the key's unit."""
+        return self.default if self.off is None else self.off
 
     @property
     def suffix(self) -> str:

@@ -5,7 +5,7 @@ from math import atan2, cos, inf, nan, pi, sin
 
 import numpy as np
 
-from wedgesweep import excitation
+from wedgesweep import excitation, sensor
 from wedgesweep.compiled import compiled
 from wedgesweep.contact import acting, stuck
 from wedgesweep.damper import Contact
@@ -75,7 +75,7 @@ def reduce(tally, x, velocity, periods, p, numbers, spectra):
     """Write the numbers, shape (len(NUMBERS),), and the spectra of displacement and velocity.
 
     ``x`` and ``velocity`` are the samples of the kept window; ``spectra`` has shape (2, n, 2): displacement
-    or velocity, harmonic, real or imaginary part.
+    or velocity, harmonic, real or imaginary part. Both are as the sensors show them.
     """
     fourier(-x, periods, spectra[0])
     fourier(-velocity, periods, spectra[1])
@@ -83,10 +83,11 @@ def reduce(tally, x, velocity, periods, p, numbers, spectra):
     slipping_time = tally.time - (tally.stuck_time if p.set_valued else 0.0)
     # The window closes on itself: sticking that runs over its end is one phase.
     onsets = tally.onsets - tally.began_stuck * tally.is_stuck
+    peak_to_peak *= p.displacement_gain_scale
     numbers[0] = 0.5 * peak_to_peak / p.amplitude
     numbers[1] = peak_to_peak
     numbers[2] = tally.peak_velocity
-    numbers[3] = -tally.integral / tally.time
+    numbers[3] = -tally.integral / tally.time * p.displacement_gain_scale
     numbers[4] = tally.stuck_time / tally.time
     numbers[5] = onsets / periods
     numbers[6] = tally.normal_force if tally.normal_force < inf else nan
@@ -95,6 +96,16 @@ def reduce(tally, x, velocity, periods, p, numbers, spectra):
     numbers[9] = tally.supplied / periods
     numbers[10] = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], p.amplitude)
     numbers[11] = _change(x, periods) / p.amplitude
+    sensor.apply_to_spectra(spectra, p)
+    if p.velocity_lag_time > 0.0:
+        numbers[2] = np.abs(channels(x, velocity, periods, p)[1]).max()
+
+
+@compiled
+def channels(x, velocity, periods, p):
+    """Deflection and velocity over whole periods of a kept window as the sensors show them."""
+    step = 2.0 * pi / p.omega * periods / velocity.size
+    return p.displacement_gain_scale * x, sensor.lagged(velocity, step, True, p)
 
 
 @compiled
@@ -127,13 +138,12 @@ def evaluate(trajectory: Trajectory, parameters: np.ndarray, harmonics: int) -> 
     numbers, spectra = np.empty(len(NUMBERS)), np.empty((2, harmonics, 2))
     p, tally = parameters[0], trajectory.tally[0]
     reduce(tally, samples.x, samples.velocity, trajectory.periods, p, numbers, spectra)
-    normal = np.empty((2, samples.t.size))
-    normal_forces(samples.t, samples.x, samples.velocity, samples.contact, p, normal)
+    x, velocity = channels(samples.x, samples.velocity, trajectory.periods, p)
     waveforms = {
-        "displacement": -samples.x,
-        "velocity": -samples.velocity,
-        "normal_force_column": normal[0],
-        "normal_force_bolster": normal[1],
+        "displacement": -x,
+        "velocity": -velocity,
+        "normal_force_column": samples.normal[0],
+        "normal_force_bolster": samples.normal[1],
         "stuck": np.abs(samples.contact[:, 0]) != 1,
     }
     return Response(

@@ -1,16 +1,14 @@
 """One case from its parameters to its numbers."""
 
 from dataclasses import dataclass
+from importlib import import_module
 from math import pi
 
 import numpy as np
 
 from wedgesweep import response
 from wedgesweep.response import Response
-from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Trajectory, Window
-
-SOLVERS = {"radau": radau.solve, "event-driven": event_driven.solve}
 
 
 @dataclass(frozen=True)
@@ -28,6 +26,7 @@ class Settings:
     steady_tolerance: float = 1e-7
     max_periods: int = 5000
     keep_waveforms: bool = True
+    continuation: bool = False
 
     def window(self, omega: float) -> Window:
         """Time span of a case: whole forcing periods, at least one more than are kept.
@@ -48,8 +47,9 @@ class Settings:
 def trajectory(parameters: np.ndarray, settings: Settings) -> Trajectory:
     """Run one case; parameters as from parameters.record. Raises CaseError."""
     window = settings.window(float(parameters["omega"][0]))
-    solve = SOLVERS[settings.method]
-    return solve(parameters, window, settings.rtol, settings.case_timeout)
+    # Only the one that is asked for: scipy takes a quarter of a second to load.
+    solver = import_module(f"wedgesweep.solvers.{settings.method.replace('-', '_')}")
+    return solver.solve(parameters, window, settings.rtol, settings.case_timeout)
 
 
 def respond(parameters: np.ndarray, settings: Settings, harmonics: int) -> tuple[Response, dict[str, int]]:

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import contact, damper, dataset, journal, provenance
-from wedgesweep.backend import Backend, loky
+from wedgesweep.backend import Backend, local
 from wedgesweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
 from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
@@ -66,7 +66,18 @@ class Sweep:
 
     @property
     def dtype(self) -> np.dtype:
-        return dataset.record_dtype(self.sizes)
+        return dataset.record_dtype(self.sizes, self.settings.continuation)
+
+    @property
+    def together(self) -> np.ndarray:
+        """Indices of the cases that depend on each other, a row each, shape (n, m).
+
+        In a continuation these are lines, all frequencies of a law and an amplitude; else single cases.
+        """
+        indices = np.arange(len(self.parameters)).reshape(self.config.case_coordinates()[0])
+        if self.settings.continuation:
+            return indices.swapaxes(1, 2).reshape(-1, indices.shape[1])
+        return indices.reshape(-1, 1)
 
     @property
     def journal_path(self) -> Path:
@@ -110,7 +121,7 @@ class Sweep:
         fail_fast: bool = False,
         progress: Progress = lambda records, total: None,
         command: str = "",
-        backend: Backend = loky,
+        backend: Backend | None = None,
         fresh: bool = False,
     ) -> xr.Dataset:
         """Run what is not finished yet, or all if ``fresh``, and write the dataset.
@@ -121,7 +132,7 @@ class Sweep:
         """
         started = datetime.now(UTC)
         with ExitStack() as opened:
-            pool = self._open(opened, backend, n_jobs)
+            pool = self._open(opened, backend or local(self.settings.method), n_jobs)
             if fresh:
                 self.discard()
             kept = opened.enter_context(Journal(self.journal_path, self.dtype, self.journal_header))
@@ -144,7 +155,7 @@ class Sweep:
         return self.assembled(self.solve(indices, case_timeout), started, command)
 
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
-        """Records of the cases of these indices, solved in this process."""
+        """Records of the cases of these indices (in a continuation: whole lines), solved in this process."""
         limit = self._limit(case_timeout)
         return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
 
@@ -157,26 +168,27 @@ class Sweep:
     ) -> Generator[np.ndarray, None, None]:
         # A time limit depends on the machine and its load: those cases are tried again.
         whole = kept.records[kept.records["status"] != dataset.STATUSES.index("time_limit")]
-        todo = np.setdiff1d(np.arange(len(self.parameters)), whole["index"])
+        rows = self.together
+        todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
         if todo.size:
             compile_once(self.settings.method)
-        yield whole
+        yield whole[~np.isin(whole["index"], todo)]
         with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:
                 kept.append(records)
                 yield records
 
     def _solve_parallel(
-        self, indices: np.ndarray, pool: joblib.Parallel, case_timeout: float
+        self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
     ) -> Generator[np.ndarray, None, None]:
-        if not indices.size:
+        if not rows.size:
             return
         with _interrupts_ignored():
             results = pool(
                 joblib.delayed(solve_chunk)(
                     Chunk(self.parameters[chunk], chunk, self.settings, case_timeout, self.dtype)
                 )
-                for chunk in _chunks(indices, self.settings.method)
+                for chunk in _chunks(rows, self.settings.method)
             )
         try:
             # "yield from" would close it outside of the filter below.
@@ -220,14 +232,14 @@ class Sweep:
         }
 
 
-def _chunks(indices: np.ndarray, method: str) -> Iterator[np.ndarray]:
-    """Cases that are solved together: one slow one, or many fast ones from all over the sweep.
+def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
+    """Cases that a job solves at a time: one slow one, or whole rows of fast ones from all over the sweep.
 
     Cost changes along the grid, so that chunks of neighbours would leave some jobs idle at the end.
     """
-    size = min(CHUNK, -(-indices.size // CHUNKS)) if method == "event-driven" else 1
-    count = -(-indices.size // size)
-    return (indices[first::count] for first in range(count))
+    size = min(CHUNK, -(-rows.size // CHUNKS)) if method == "event-driven" else 1
+    count = -(-len(rows) // max(size // rows.shape[1], 1))
+    return (rows[first::count].ravel() for first in range(count))
 
 
 def _read_sweep(path: Path) -> xr.Dataset:

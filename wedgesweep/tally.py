@@ -61,7 +61,7 @@ def _power_at_jump(x, velocity, base_acceleration, contact, p):
 
 
 @compiled
-def _count_onset(tally, is_stuck):
+def count_onset(tally, is_stuck):
     """Follow the sequence of sticking and slipping spans."""
     if tally.time == 0.0:
         tally.began_stuck = is_stuck
@@ -78,7 +78,7 @@ def add(tally, t, x, velocity, weight, contact, p):
     tally.peak_velocity = max(tally.peak_velocity, abs(velocity))
     sticks = abs(contact.column) != 1
     if weight > 0.0:
-        _count_onset(tally, 1.0 if sticks else 0.0)
+        count_onset(tally, 1.0 if sticks else 0.0)
     tally.time += weight
     tally.integral += weight * x
     if sticks:

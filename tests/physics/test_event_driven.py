@@ -6,8 +6,10 @@ import pytest
 from tests.physics import test_den_hartog as den_hartog
 from tests.physics.cases import OMEGA_N
 from tests.physics.test_reference import ROWS
-from wedgesweep import parameters, response
-from wedgesweep.solvers import event_driven, radau
+from wedgesweep import contact, parameters, response, tally
+from wedgesweep.solvers import event_driven, oscillator, radau, steady
+from wedgesweep.solvers.march import OK, workspace
+from wedgesweep.solvers.recorder import Recorder
 from wedgesweep.solvers.trajectory import CaseError, Window
 
 
@@ -49,6 +51,67 @@ def test_energy_balance(law, beta, amplitude):
     record = parameters.record(law, amplitude, beta * OMEGA_N)
     numbers = respond(record, settle_periods=1000, rtol=1e-10).numbers
     assert numbers["dissipated_energy"] == pytest.approx(numbers["supplied_energy"], rel=1e-8)
+
+
+@pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
+@pytest.mark.parametrize(("beta", "amplitude"), [(0.4, 1e-3), (1.3, 0.2e-3), (2.6, 0.03e-3)])
+def test_peak_velocity_is_that_of_a_fine_grid(law, beta, amplitude):
+    record = parameters.record(law, amplitude, beta * OMEGA_N)
+    run = event_driven.solve(record, Window(float(record["omega"][0]), 30, 2, 8192), 1e-9, 60.0)
+    fastest = np.abs(run.samples.velocity).max()
+    # A parabola misses its peak by at most this share half a sample away; switches are sharper.
+    assert fastest <= run.tally["peak_velocity"][0] <= fastest * (1.0 + 1e-6)
+
+
+def test_creep_to_a_stop_ends_where_friction_holds_the_bolster():
+    """Just above breakaway only one direction slips, ever less: after k periods by 1/k^2."""
+    record = parameters.record("coulomb", 7.9e-6, 2.9 * OMEGA_N)
+    nothing = Recorder(0.0, 1.0, tally.empty(), *np.empty((2, 0)), np.empty((0, 5), np.int8))
+    outcome, periods, x, velocity, period = steady.settle(
+        0.0, 0.0, record, 1e-9, 5000, nothing, workspace(1e-9)
+    )
+    assert (outcome, velocity, period) == (OK, 0.0, 1)
+    assert periods < 300
+    most = 7.9e-6 * (2.9 * OMEGA_N) ** 2
+    margins = [
+        direction * contact.breakaway(x, -direction * most, direction, record[0])[0] for direction in (1, -1)
+    ]
+    assert max(margins) == pytest.approx(0.0, abs=1e-4 * most)
+    assert min(margins) < -1e-2 * most
+
+
+def sampled_margins(times, t, x, velocity, on, o, p):
+    """Slip velocity and normal forces of the closed form, as positive numbers while the contact holds."""
+    free = x - o.centre - o.forced * np.sin(p["omega"] * t)
+    quadrature = (velocity - o.forced * p["omega"] * np.cos(p["omega"] * t)) / o.frequency
+    turn = o.frequency * (times - t)
+    wave = o.forced * np.sin(p["omega"] * times) + free * np.cos(turn) + quadrature * np.sin(turn)
+    speed = o.forced * p["omega"] * np.cos(p["omega"] * times) + o.frequency * (
+        quadrature * np.cos(turn) - free * np.sin(turn)
+    )
+    u2 = -p["amplitude"] * p["omega"] ** 2 * np.sin(p["omega"] * times)
+    column = o.column + o.column_x * (o.centre + wave) + o.column_u * u2
+    bolster = o.bolster + o.bolster_x * (o.centre + wave) + o.bolster_u * u2
+    return np.array([on.column * speed, on.column_sign * column, on.bolster_sign * bolster])
+
+
+def test_the_closed_form_misses_no_switch():
+    """Also where a force dips below zero and returns within one scanned interval, the first one included."""
+    generator, dips = np.random.default_rng(3), 0
+    for _ in range(3000):
+        amplitude, beta = 10 ** generator.uniform(-4, -2.3), generator.uniform(0.3, 3.0)
+        record = parameters.record("coulomb", amplitude, beta * OMEGA_N)
+        p, period = record[0], 2 * np.pi / record["omega"][0]
+        t = generator.uniform(0.0, period)
+        x, velocity = generator.normal(size=2) * amplitude * (1.0, beta * OMEGA_N)
+        on, _ = contact.initial(t, x, velocity, p)
+        o = oscillator.oscillator(on, p)
+        end, *_, switch = oscillator.slide(t, t + period, x, velocity, on, o, p, -1)
+        times = np.linspace(t, end, 1000)[1:-1]
+        margins = sampled_margins(times, t, x, velocity, on, o, p)
+        assert margins.min() > 0.0
+        dips += switch >= contact.COLUMN_NORMAL
+    assert dips > 300
 
 
 def random_records(number, seed=7):

@@ -10,7 +10,7 @@ from tests.physics.cases import OMEGA_N
 from wedgesweep import contact, damper, excitation, friction, parameters
 from wedgesweep.damper import Contact
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.solvers.radau import jacobian, rate
+from wedgesweep.solvers.pieces import jacobian, rate
 
 LEANS = (-0.07, 0.0, 0.07)
 

@@ -8,11 +8,13 @@ import click
 from wedgesweep import __version__
 from wedgesweep.cli.case import case
 from wedgesweep.cli.configs import check, init, schema
+from wedgesweep.cli.diagnose import diagnose
 from wedgesweep.cli.failure import Commands
 from wedgesweep.cli.plot import plot
 from wedgesweep.cli.reproduce import reproduce
 from wedgesweep.cli.run import run
 from wedgesweep.cli.status import status
+from wedgesweep.cli.synthesize import synthesize
 
 EPILOG = """\
 Exit codes: 0 all cases fine, 1 some failed, 2 bad input, 130 interrupted.
@@ -24,7 +26,7 @@ zsh_source and fish_source, too.
 
 @click.group(
     cls=Commands,
-    commands=[init, schema, check, run, status, case, plot, reproduce],
+    commands=[init, schema, check, run, status, case, plot, reproduce, synthesize, diagnose],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=EPILOG,
 )

@@ -81,7 +81,7 @@ def _one_case(
         "amplitude_mm": amplitude,
         "omega_n_rad_per_s": settings.sweep.omega_n,
     }
-    solver = settings.document["solver"] | {"keep_waveforms": True}
+    solver = settings.document["solver"] | {"keep_waveforms": True, "continuation": False}
     return parse(toml.dumps(settings.document | {"sweep": grid, "solver": solver}), "case")
 
 

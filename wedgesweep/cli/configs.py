@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wedgesweep.cli.failure import Failure
+from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, OutputPath, jobs
 from wedgesweep.cli.words import duration, size
 
@@ -42,9 +43,16 @@ def schema(output: Path) -> None:
 @click.command()
 @CONFIG
 def check(config_path: Path) -> None:
-    """Check a config, and estimate what its run takes from a few timed cases."""
-    from wedgesweep import config
+    """Check a config, or measured data (measured.toml or .nc).
 
+    Of a config, what its run takes is estimated from a few timed cases; of measured data, the tests are
+    listed with their frequencies and noise.
+    """
+    from wedgesweep import config, measured
+
+    if measured.is_measured(config_path):
+        print_measurement(measured.read(config_path))
+        return
     settings = config.load(config_path)
     click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
     from wedgesweep.estimate import estimate

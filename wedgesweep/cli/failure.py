@@ -4,7 +4,7 @@ from typing import Any
 
 import click
 
-from wedgesweep.errors import SweepError
+from wedgesweep.errors import InputError, SweepError
 
 SOME_FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -35,9 +35,7 @@ class Commands(click.Group):
 
 def _failure(error: Exception) -> Exception:
     """The same error for the user; an unexpected one stays as it is."""
-    from wedgesweep.config import ConfigError
-
-    if isinstance(error, (ConfigError, SweepError)):
+    if isinstance(error, (InputError, SweepError)):
         return Failure(str(error))
     if isinstance(error, OSError):
         return Failure(": ".join(str(part) for part in (error.filename, error.strerror) if part))

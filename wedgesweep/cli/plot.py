@@ -1,40 +1,55 @@
-"""plot: figures of a dataset."""
+"""plot: figures of a dataset, or of a diagnosis."""
 
 import os
 from collections.abc import Callable
 from inspect import signature
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
-from wedgesweep.figures import DESCRIPTIONS, FORMATS
+from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from wedgesweep.diagnosed import Diagnosed
+
 ALL = "all"
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
-KINDS = "\n".join(f"  {kind:<16} {text}" for kind, text in DESCRIPTIONS.items())
-HELP = f"""Draw a figure of the dataset OUT.
+
+
+def _table(descriptions: dict[str, str]) -> str:
+    return "\n".join(f"  {kind:<16} {text}" for kind, text in descriptions.items())
+
+
+HELP = f"""Draw a figure of OUT: the dataset of a run, or the directory of a diagnosis.
 
 \b
-KIND is one of
-{KINDS}
-  {ALL:<16} each of them that suits the dataset
+KIND is for a dataset one of
+{_table(DESCRIPTIONS)}
+
+\b
+for the directory of a diagnosis one of
+{_table(diagnosis.DESCRIPTIONS)}
+
+\b
+and for both
+  {ALL:<16} each of them that suits OUT
 """
 
 
-@click.command(help=HELP, short_help="Draw a figure of the dataset OUT.")
-@click.argument("kind", metavar="KIND", type=click.Choice([*DESCRIPTIONS, ALL]))
+@click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
+@click.argument("kind", metavar="KIND", type=click.Choice([*DESCRIPTIONS, *diagnosis.DESCRIPTIONS, ALL]))
 @DATASET
 @click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help=f"File ({', '.join(FORMATS)}), for 'all' a directory; default: beside OUT.",
+    help=f"File ({', '.join(FORMATS)}), for 'all' a directory; default: beside the data.",
 )
 @click.option("--format", "suffix", type=click.Choice(SUFFIXES), default="png", show_default=True)
 @click.option("--beta", type=float, help="Frequency ratio; the nearest in OUT is drawn.")
@@ -57,11 +72,12 @@ def plot(
     wanted = {"beta": beta, "amplitude": [value * 1e-3 for value in amplitude], "law": law}
     options = {name: value for name, value in wanted.items() if value not in (None, [])}
     if kind == ALL:
-        directory = output or path.parent
+        directory = output or _beside(path)
         directory.mkdir(parents=True, exist_ok=True)
         _draw_all(_read(path), directory, suffix, options)
         return
-    file = output or path.with_name(f"{kind}.{suffix}")
+    _require_kind(kind, path)
+    file = output or _beside(path) / f"{kind}.{suffix}"
     _require_place(file)
     try:
         _draw(kind, _read(path), file, options)
@@ -69,10 +85,25 @@ def plot(
         raise Failure(str(error)) from error
 
 
-def _read(path: Path) -> "xr.Dataset":
-    from wedgesweep import dataset
+def _beside(path: Path) -> Path:
+    return path if path.is_dir() else path.parent
 
-    return dataset.read(path)
+
+def _read(path: Path) -> "xr.Dataset | Diagnosed":
+    from wedgesweep import dataset, diagnosed
+
+    return diagnosed.read(path) if path.is_dir() else dataset.read(path)
+
+
+def _require_kind(kind: str, path: Path) -> None:
+    """Complain where a figure of a diagnosis is asked of a dataset, or the other way round."""
+    if path.is_dir() and kind in DESCRIPTIONS:
+        valid = ", ".join(diagnosis.DESCRIPTIONS)
+        message = f"{path}: a directory; {kind} draws the dataset of a run, a diagnosis has {valid}"
+        raise Failure(message)
+    if path.is_file() and kind in diagnosis.DESCRIPTIONS:
+        message = f"{path}: not a directory; {kind} draws what 'wedgesweep diagnose -o DIR' left in DIR"
+        raise Failure(message)
 
 
 def _require_place(file: Path) -> None:
@@ -85,11 +116,18 @@ def _require_place(file: Path) -> None:
         raise Failure(message)
 
 
-def _draw_all(ds: "xr.Dataset", directory: Path, suffix: str, options: dict[str, Any]) -> None:
+def _modules(found: "xr.Dataset | Diagnosed") -> dict[str, ModuleType]:
+    """Figures that draw this, by kind."""
+    from wedgesweep import diagnosed, figures
+
+    return diagnosis.FIGURES if isinstance(found, diagnosed.Diagnosed) else figures.FIGURES
+
+
+def _draw_all(found: "xr.Dataset | Diagnosed", directory: Path, suffix: str, options: dict[str, Any]) -> None:
     drawn = 0
-    for kind in DESCRIPTIONS:
+    for kind in _modules(found):
         try:
-            _draw(kind, ds, directory / f"{kind}.{suffix}", options, strict=False)
+            _draw(kind, found, directory / f"{kind}.{suffix}", options, strict=False)
             drawn += 1
         except ValueError as error:
             click.echo(f"skipped {error}", err=True)
@@ -98,11 +136,13 @@ def _draw_all(ds: "xr.Dataset", directory: Path, suffix: str, options: dict[str,
         raise Failure(message)
 
 
-def _draw(kind: str, ds: "xr.Dataset", file: Path, options: dict[str, Any], strict: bool = True) -> None:
+def _draw(
+    kind: str, found: "xr.Dataset | Diagnosed", file: Path, options: dict[str, Any], strict: bool = True
+) -> None:
     from wedgesweep import figures
 
-    draw = figures.FIGURES[kind].draw
-    figures.save(draw(ds, **_accepted(kind, draw, options, strict)), file)
+    draw = _modules(found)[kind].draw
+    figures.save(draw(found, **_accepted(kind, draw, options, strict)), file)
     click.echo(f"wrote {file}")
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from wedgesweep.backend import Backend
     from wedgesweep.sweep import Sweep
 
-BACKENDS = ("loky", "dask")
+BACKENDS = ("threads", "loky", "dask")
 
 
 @click.command()
@@ -31,14 +31,13 @@ BACKENDS = ("loky", "dask")
     "--case-timeout",
     type=click.FloatRange(min=0.0, min_open=True),
     metavar="SECONDS",
-    help="Time limit of a case, instead of the config's.",
+    help="Time limit of a case (radau only), instead of the config's.",
 )
 @click.option(
     "--backend",
     type=click.Choice(BACKENDS),
-    default="loky",
-    show_default=True,
-    help="Processes here (loky), or a Dask cluster: of --n-jobs processes here, or the --scheduler's.",
+    help="Threads here (default of event-driven), processes here (loky, default of radau), or a Dask "
+    "cluster: of --n-jobs processes here, or the --scheduler's.",
 )
 @click.option(
     "--scheduler",
@@ -55,7 +54,7 @@ def run(
     solver: str | None,
     keep_going: bool,
     case_timeout: float | None,
-    backend: str,
+    backend: str | None,
     scheduler: str | None,
     fresh: bool,
 ) -> None:
@@ -93,7 +92,7 @@ def run(
         raise Failure(message) from error
 
 
-def _require_sense(backend: str, scheduler: str | None, n_jobs: int | None) -> None:
+def _require_sense(backend: str | None, scheduler: str | None, n_jobs: int | None) -> None:
     if scheduler is None:
         return
     if backend != "dask":
@@ -104,10 +103,15 @@ def _require_sense(backend: str, scheduler: str | None, n_jobs: int | None) -> N
         raise click.UsageError(message)
 
 
-def _backend(name: str, scheduler: str | None) -> "Backend":
+def _backend(name: str | None, scheduler: str | None) -> "Backend | None":
+    """The backend of a name; None leaves the choice to the sweep."""
+    if name == "dask":
+        from wedgesweep import cluster
+
+        return partial(cluster.dask, scheduler=scheduler)
     from wedgesweep import backend
 
-    return partial(backend.dask, scheduler=scheduler) if name == "dask" else backend.loky
+    return {None: None, "threads": backend.threads, "loky": backend.loky}[name]
 
 
 def _run(sweep: "Sweep", progress: Progress, options: dict[str, Any]) -> int:
@@ -117,6 +121,8 @@ def _run(sweep: "Sweep", progress: Progress, options: dict[str, Any]) -> int:
         click.echo(f"{sweep.out}: complete already; --fresh runs it again")
         return print_summary(stored)
     tell_of_compiling(sweep.settings.method)
+    if sweep.config.remark:
+        click.echo(sweep.config.remark, err=True)
     started = perf_counter()
     result = sweep.run(progress=progress, command=command_line(), **options)
     code = print_summary(result)

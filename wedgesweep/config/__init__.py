@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from wedgesweep.config import toml
+from wedgesweep.errors import InputError
 
 # What needs numba or scipy is imported late, so that `wedgesweep --help` does not wait for it.
 if TYPE_CHECKING:
@@ -19,15 +20,8 @@ if TYPE_CHECKING:
     from wedgesweep.simulate import Settings
 
 
-class ConfigError(Exception):
-    """A config that cannot run; ``problems`` lists all that is wrong with it."""
-
-    def __init__(self, problems: list[str]) -> None:
-        super().__init__(problems)
-        self.problems = problems
-
-    def __str__(self) -> str:
-        return "\n".join(self.problems)
+class ConfigError(InputError):
+    """A config that cannot run."""
 
 
 class Case(NamedTuple):
@@ -114,11 +108,15 @@ class Config:
             steady_tolerance=given["steady_tolerance"],
             max_periods=given["max_periods"],
             keep_waveforms=given["keep_waveforms"],
+            continuation=given["continuation"],
         )
 
     def with_method(self, method: str) -> "Config":
-        """The same config with another solver."""
-        return Config(self.document | {"solver": self.document["solver"] | {"method": method}})
+        """The same config with another solver; raises ConfigError if its settings need the old one."""
+        document = self.document | {"solver": self.document["solver"] | {"method": method}}
+        if problems := list(_contradictions(document)):
+            raise ConfigError([f'solver "{method}": {problem}' for problem in problems])
+        return Config(document)
 
     def case_list(self) -> list[Case]:
         """All cases; a grid in the order law, beta, amplitude (the last varies fastest)."""
@@ -189,6 +187,22 @@ class Config:
         return toml.dumps(self.document)
 
     @property
+    def remark(self) -> str | None:
+        """What a reader of the results should know of how effects changed a law."""
+        from wedgesweep import parameters
+
+        law, sweep = "coulomb", self.sweep
+        if law not in (sweep.friction_law or [case.law for case in sweep.cases or ()]):
+            return None
+        if not parameters.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
+            return None
+        width = parameters.REGULARISED_VELOCITY * 1e3
+        return (
+            f"{law}: with cross_slip or column_compliance the faces may stick one at a time; "
+            f"friction is regularised, a ramp up to mu_d over {width:g} mm/s"
+        )
+
+    @property
     def sha256(self) -> str:
         return sha256(self.to_toml().encode()).hexdigest()
 
@@ -256,6 +270,16 @@ def _contradictions(document: Mapping[str, Any]) -> Iterable[str]:
     friction, solver = document.get("friction", {}), document.get("solver", {})
     if "settle" in solver and solver.get("method") != "event-driven":
         yield 'solver.settle: "steady" needs solver.method = "event-driven"; or give settle_periods'
+    if solver.get("continuation") and not (solver.get("method") == "event-driven" and "settle" in solver):
+        yield (
+            "solver.continuation: hands steady states on, which only the event-driven solver finds; "
+            'write method = "event-driven" and settle = "steady"'
+        )
+    if solver.get("continuation") and "case" in sweep:
+        yield (
+            "solver.continuation: a list of cases has no neighbours in beta; "
+            "write [sweep] with lists of frequencies and amplitudes"
+        )
     if "coulomb" in laws and column == 0.0 and friction.get("dynamic", 0.0) > 0.0:
         yield (
             "suspension.column_angle_deg: 0 leaves the bolster face without slip, where coulomb "

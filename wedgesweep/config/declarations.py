@@ -1,6 +1,6 @@
 """Every key of the config with its default, range and meaning: the one place that declares them."""
 
-from math import nan
+from math import nan, sqrt
 
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
 from wedgesweep.config.series import Series, Several
@@ -34,7 +34,16 @@ def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: i
 
 
 def _effect(effect: Effect) -> Table:
-    return table(effect.name, effect.meaning, *map(Number.of, effect.quantities), optional=True)
+    keys = (Number.of(each, example=_typical(each)) for each in effect.quantities)
+    return table(effect.name, effect.meaning, *keys, optional=True)
+
+
+def _typical(quantity: Quantity) -> float | None:
+    """The middle of what a fit searches, to one digit."""
+    if quantity.search is None:
+        return None
+    low, high = quantity.search
+    return float(f"{sqrt(low * high) if quantity.logarithmic else 0.5 * (low + high):.0e}")
 
 
 OMEGA_N_KEY = Number.of(OMEGA_N, optional=True, example=85.3565)
@@ -100,11 +109,23 @@ SOLVER = table(
             maximum=1e-2,
         )
     ),
+    Flag(
+        key="continuation",
+        meaning="sweep up and down in beta from state to state, to find responses that coexist (steady only)",
+        default=False,
+    ),
     _whole("max_periods", 5000, "periods after which a response counts as not periodic", 10, 10**7),
     _whole("kept_periods", 3, "periods at the end that are evaluated and stored", 2, 1000),
     _whole("samples_per_period", 256, "samples of the stored waveforms", 32, 65_536, step=2),
     Flag(key="keep_waveforms", meaning="store the kept periods, not only numbers", default=True),
-    Number.of(Quantity("case_timeout_s", 60.0, "time limit of a case on the clock", above=0.0)),
+    Number.of(
+        Quantity(
+            "case_timeout_s",
+            60.0,
+            "time limit of a case on the clock (radau; event-driven limits its steps and switches instead)",
+            above=0.0,
+        )
+    ),
     default={},
 )
 

@@ -37,7 +37,7 @@ class Key(ABC):
     """A key of the config.
 
     Where it is absent ``default`` is read; without a default that is an error unless it is
-    ``optional``. ``example`` stands in the template of a key without default.
+    ``optional``. ``example`` stands in the template of a key without default; a table's is its full path.
     """
 
     key: str

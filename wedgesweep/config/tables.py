@@ -21,8 +21,11 @@ class Table(Key):
 
     @property
     def written(self) -> str:
-        required = [group[0].written for group in self.groups if group[0].required]
-        return f"[{self.key}] with {', '.join(required)}"
+        return f"[{self.example or self.key}] with {self.required_keys}"
+
+    @property
+    def required_keys(self) -> str:
+        return ", ".join(group[0].written for group in self.groups if group[0].required)
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
         if not isinstance(value, dict):
@@ -77,6 +80,10 @@ class TableList(Key):
     """A list of different tables, [[path]]."""
 
     item: Table
+
+    @property
+    def written(self) -> str:
+        return f"[[{self.example or self.key}]] with {self.item.required_keys}"
 
     def read(self, value: Any, path: str, problems: list[str]) -> list[dict[str, Any]] | None:
         if not isinstance(value, list) or not value:

@@ -1,15 +1,66 @@
 """Physics that the base model leaves out: one effect per file, each off at its neutral value."""
 
-from wedgesweep.effects import guide_friction
+from wedgesweep.effects import (
+    ageing,
+    bolster_mass,
+    bolster_stiffness,
+    column_compliance,
+    cross_slip,
+    cubic_stiffness,
+    directional_friction,
+    displacement_gain,
+    end_stop,
+    fixture_resonance,
+    friction_level,
+    guide_friction,
+    input_distortion,
+    load_dependent_friction,
+    preload,
+    presliding,
+    stray_vibration,
+    stribeck,
+    velocity_lag,
+    viscous_damping,
+    wedge_stiffness,
+)
 from wedgesweep.effects.base import Effect
 
-EFFECTS: dict[str, Effect] = {effect.name: effect for effect in (guide_friction.EFFECT,)}
+# In the order of families in which a diagnosis lists them.
+MODULES = (
+    bolster_stiffness,
+    wedge_stiffness,
+    bolster_mass,
+    preload,
+    friction_level,
+    stribeck,
+    presliding,
+    ageing,
+    directional_friction,
+    load_dependent_friction,
+    cross_slip,
+    column_compliance,
+    viscous_damping,
+    cubic_stiffness,
+    guide_friction,
+    end_stop,
+    input_distortion,
+    stray_vibration,
+    fixture_resonance,
+    velocity_lag,
+    displacement_gain,
+)
+EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in MODULES}
+
+FAMILIES = tuple(dict.fromkeys(effect.family for effect in EFFECTS.values()))
+
+# Fields of the parameter record that need the extended mechanics unless they are off.
+EXTENDING = tuple(f"{effect.name}_{name}" for effect in EFFECTS.values() for name in effect.extends)
 
 
 def neutral() -> dict[str, float]:
     """The parameter record's fields that belong to effects, with every effect off (SI units)."""
     return {
-        field: quantity.default * quantity.factor
+        field: quantity.neutral * quantity.factor
         for effect in EFFECTS.values()
         for field, quantity in zip(effect.fields, effect.quantities, strict=True)
     }

@@ -4,18 +4,24 @@ from dataclasses import dataclass
 
 from wedgesweep.quantity import Quantity
 
+# The two branches along which the paper looks for its discrepancy.
+NUMERICAL, EXPERIMENTAL = "numerical-model", "experimental-model"
+
 
 @dataclass(frozen=True)
 class Effect:
     """One missing piece of physics, switched on by the config table ``[effects.NAME]``.
 
-    The default of each quantity is its neutral value: the effect is then absent, bit for bit.
+    At the ``off`` value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
+    that need the extended mechanics as soon as they are not off; without any the base model serves.
     """
 
     name: str
     family: str
+    branch: str
     meaning: str
     quantities: tuple[Quantity, ...]
+    extends: tuple[str, ...] = ()
 
     @property
     def fields(self) -> tuple[str, ...]:

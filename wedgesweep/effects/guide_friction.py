@@ -3,18 +3,19 @@
     R = -force sign(z')           on the bolster, force constant
 
 set-valued at z' = 0 under the Coulomb law; under the regularised laws R = -force z'/v_t inside |z'| <= v_t.
-Neutral: force = 0. With frictionless wedges this is Den Hartog's oscillator (1930).
+Neutral and default: force = 0. With frictionless wedges this is Den Hartog's oscillator (1930).
 """
 
 from wedgesweep.compiled import compiled, inlined
-from wedgesweep.effects.base import Effect
+from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
 
 EFFECT = Effect(
     name="guide_friction",
     family="missing-force",
+    branch=EXPERIMENTAL,
     meaning="constant dry friction on the bolster from its lateral guide",
-    quantities=(Quantity("force_N", 0.0, "friction force of the guide", minimum=0.0),),
+    quantities=(Quantity("force_N", 0.0, "friction force of the guide", minimum=0.0, search=(0.0, 10.0)),),
 )
 
 

@@ -4,36 +4,16 @@ A file that defines ``NAME``, ``DESCRIPTION`` and ``draw(ds, **options) -> Figur
 nothing else has to know of it. Options are in SI units, as the dataset is; mm exist on axes only.
 """
 
-import ast
+import io
 import os
-from importlib import import_module
 from pathlib import Path
+
+from wedgesweep.figures import catalogue
 
 FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
 
-
-def _constants(path: Path) -> dict[str, str]:
-    """Literals assigned at the top of a file, read without running it: matplotlib loads slowly."""
-    return {
-        ast.unparse(statement.targets[0]): ast.literal_eval(statement.value)
-        for statement in ast.parse(path.read_text(encoding="utf-8")).body
-        if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Constant)
-    }
-
-
-def _declared() -> dict[str, tuple[str, str]]:
-    """Find module and description of every figure by the kind that it draws."""
-    files = sorted(Path(__file__).parent.glob("*.py"))
-    found = [(path.stem, _constants(path)) for path in files if path.stem != "__init__"]
-    return {
-        constants["NAME"]: (stem, constants["DESCRIPTION"])
-        for stem, constants in found
-        if "NAME" in constants
-    }
-
-
-_DECLARED = _declared()
+_DECLARED = catalogue.declared(Path(__file__).parent)
 DESCRIPTIONS = {kind: description for kind, (_, description) in _DECLARED.items()}
 
 
@@ -42,7 +22,7 @@ def __getattr__(name: str):
     if name != "FIGURES":
         message = f"module {__name__!r} has no attribute {name!r}"
         raise AttributeError(message)
-    return {kind: import_module(f"{__name__}.{stem}") for kind, (stem, _) in _DECLARED.items()}
+    return catalogue.load(__name__, _DECLARED)
 
 
 def save(figure, path: str | Path) -> None:
@@ -64,3 +44,13 @@ def save(figure, path: str | Path) -> None:
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def svg(figure) -> bytes:
+    """Draw a figure as an SVG that needs no font and is the same each time."""
+    from matplotlib import rc_context
+
+    stream = io.BytesIO()
+    with rc_context({"svg.hashsalt": "wedgesweep", "svg.fonttype": "path"}):
+        figure.savefig(stream, format="svg", metadata={"Date": None})
+    return stream.getvalue()

@@ -12,6 +12,7 @@ from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from wedgesweep import digits
 from wedgesweep.friction.names import LAW_NAMES
 
 MM = 1e3  # mm per m
@@ -31,6 +32,7 @@ GREY = "0.45"
 SEQUENTIAL = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
 
 CHARACTERS_PER_INCH = 13  # of a title
+TITLE_MARGIN = 0.08  # inches
 
 SIGN = "$x-y$: side frame minus bolster, from the frictionless rest position"
 BETA = "frequency ratio $β = ω/ω_n$"
@@ -62,19 +64,27 @@ def panels(
     for spare in grid[count:]:
         spare.remove()
     for ax in grid[:count]:
-        ax.tick_params(labelsize=8, color=GREY)
-        ax.grid(visible=True, color="0.9", linewidth=0.6)
-        ax.set_axisbelow(True)
-        ax.spines[["top", "right"]].set_visible(False)
-        ax.spines[["left", "bottom"]].set_color(GREY)
+        dress(ax)
     return figure, list(grid[:count])
+
+
+def dress(ax: Axes) -> None:
+    """Give axes the frame and the grid that all of them have."""
+    ax.tick_params(labelsize=8, color=GREY)
+    ax.grid(visible=True, color="0.9", linewidth=0.6)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.spines[["left", "bottom"]].set_color(GREY)
 
 
 def title(figure: Figure, what: str, note: str = "") -> None:
     """Write what the figure shows; below it the sign convention or how to read it."""
     width = int(CHARACTERS_PER_INCH * figure.get_figwidth())
     lines = [line for text in (what, note) for line in wrap(text, width)]
-    figure.suptitle("\n".join(lines), fontsize=10.5, linespacing=1.4)
+    # Where nothing lays the figure out, the title stays at the same distance from its upper edge.
+    free = figure.get_layout_engine() is None
+    place = {"y": 1.0 - TITLE_MARGIN / figure.get_figheight(), "va": "top"} if free else {}
+    figure.suptitle("\n".join(lines), fontsize=10.5, linespacing=1.4, **place)
 
 
 def label(axes: Sequence[Axes], x: str, y: str, columns: int = 3) -> None:
@@ -101,6 +111,19 @@ def decimal_ticks(axis) -> None:
     """Put 1, 2, 5, 10 ... in plain decimals on a logarithmic axis."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())
+
+
+def log_ticks(axis) -> None:
+    """Choose the ticks of a logarithmic axis that has its limits: powers of ten, or decimals between them."""
+    low, high = axis.get_view_interval()
+    (power_ticks if high > 100.0 * low else decimal_ticks)(axis)
+
+
+def power_ticks(axis, count: int = 6) -> None:
+    """Put powers of ten, at most ``count`` of them, on a logarithmic axis."""
+    axis.set_major_locator(LogLocator(numticks=count))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: digits.power(round(np.log10(value)))))
     axis.set_minor_locator(NullLocator())
 
 

@@ -11,14 +11,15 @@ PICTURES = {
 }
 
 
-def render(content: dict[str, Any]) -> str:
-    """Markdown of ``report.document``."""
+def render(content: dict[str, Any], experiment: str = "") -> str:
+    """Markdown of ``report.document``, and of the section on the experiment."""
     sections = (
         "# Reproduction of the paper's claims",
         _answer(content),
         *_mismatches(content["claims"]),
         _claims(content["claims"]),
         *(f"![{text}](paper-{kind}.png)" for kind, text in PICTURES.items()),
+        experiment,
         "## Why",
         *(_reason(claim) for claim in content["claims"]),
         "## The three laws on the same cases",

@@ -1,6 +1,7 @@
 """The outcome of a reproduction as data (reproduction.json) and as a page (reproduction.md)."""
 
 import json
+import os
 from collections import Counter
 from collections.abc import Sequence
 from math import isfinite
@@ -13,18 +14,32 @@ from wedgesweep.reproduce.findings import VERDICTS
 from wedgesweep.reproduce.runs import Run, Runs
 
 
-def write(directory: Path, runs: Runs, outcomes: Sequence[Outcome]) -> None:
-    """Write both files."""
+def write(directory: Path, runs: Runs, outcomes: Sequence[Outcome], experiment: str = "") -> None:
+    """Write both files; ``experiment`` is the page's section on the experiment, where it was searched."""
     content = document(runs, outcomes)
-    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
-    (directory / "reproduction.json").write_text(text + "\n", encoding="utf-8")
-    (directory / "reproduction.md").write_text(page.render(content), encoding="utf-8")
+    write_text(directory / "reproduction.json", json_text(content))
+    write_text(directory / "reproduction.md", page.render(content, experiment))
+
+
+def json_text(content: dict[str, Any]) -> str:
+    """Plain data as JSON."""
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    try:
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def document(runs: Runs, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Everything that both files say."""
     verdicts = Counter(outcome.verdict for outcome in outcomes)
-    return _plain(
+    return plain(
         {
             "agrees": all(outcome.agrees for outcome in outcomes),
             "verdicts": {verdict: n for verdict in VERDICTS if (n := verdicts[verdict])},
@@ -66,11 +81,11 @@ def _run(run: Run) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Lists, dicts and Python numbers only; what is not finite becomes None."""
     if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
+        return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [plain(each) for each in value]
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and not isfinite(value) else value

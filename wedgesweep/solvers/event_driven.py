@@ -11,19 +11,21 @@ import numpy as np
 
 from wedgesweep import response, tally
 from wedgesweep.compiled import compiled
+from wedgesweep.solvers import extended
+from wedgesweep.solvers.extended import STATISTICS
 from wedgesweep.solvers.march import CHATTERING, OK, SWITCHES_PER_PERIOD, begin, march, workspace
+from wedgesweep.solvers.passage import clear
 from wedgesweep.solvers.recorder import Recorder
 from wedgesweep.solvers.runge_kutta import FAILED
 from wedgesweep.solvers.steady import LONGEST, settle
 from wedgesweep.solvers.sticking import LOCKED
-from wedgesweep.solvers.trajectory import CaseError, Samples, Trajectory, Window
+from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
 
 MESSAGES = {
     LOCKED: ("locked", "normal forces not unique: the wedge locks"),
-    FAILED: ("solver_failure", "the step size became too small"),
+    FAILED: ("solver_failure", "the steps became too small, or too many"),
     CHATTERING: ("solver_failure", f"more than {SWITCHES_PER_PERIOD} switches per period"),
 }
-STATISTICS = ("rate_evaluations", "steps", "switches")
 
 
 @compiled
@@ -55,17 +57,26 @@ def solve(
 
     The compiled loop cannot be interrupted: in place of the time limit it counts steps and switches.
     """
+    if parameters["extended"][0]:
+        outcome, time, run = extended.run(parameters, window, rtol, start)
+        _require(outcome, time)
+        return run
     times = window.sample_times
-    samples = Samples(times, np.empty(times.size), np.empty(times.size), np.empty((times.size, 5), np.int8))
+    samples = empty_samples(times)
     sums, work = tally.empty(), workspace(rtol)
     recorder = Recorder(window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact)
     outcome, state = follow_from(0.0, *start, window.keep, window.end, parameters, recorder, work)
-    if outcome != OK:
-        status, message = MESSAGES[outcome]
-        message = f"{message} (at t = {state.t:.6g} s)"
-        raise CaseError(message, status)
+    _require(outcome, state.t)
+    response.normal_forces(times, samples.x, samples.velocity, samples.contact, parameters[0], samples.normal)
     counts = dict(zip(STATISTICS, work.counts.tolist(), strict=True))
     return Trajectory(samples, sums, window.periods, counts)
+
+
+def _require(outcome: int, time: float) -> None:
+    if outcome != OK:
+        status, message = MESSAGES[outcome]
+        message = f"{message} (at t = {time:.6g} s)"
+        raise CaseError(message, status)
 
 
 class Plan(NamedTuple):
@@ -119,23 +130,14 @@ def empty_batch(cases: int, harmonics: int, samples: int) -> Batch:
 
 
 @compiled
-def _clear(sums):
-    """Empty a tally."""
-    one = sums[0]
-    one.lowest, one.highest, one.normal_force = np.inf, -np.inf, np.inf
-    one.peak_velocity = one.time = one.integral = 0.0
-    one.stuck_time = one.lifted_time = one.dissipated = one.supplied = 0.0
-    one.onsets = one.began_stuck = one.is_stuck = 0.0
-
-
-@compiled
-def _keep_waveforms(recorder, parameters, out):
+def _keep_waveforms(recorder, periods, parameters, out):
     """Write the last samples of a case as waveforms."""
     samples = out.shape[1]
     x, velocity = recorder.x[-samples:], recorder.velocity[-samples:]
     contact = recorder.contact[-samples:]
     times = recorder.start + recorder.step * np.arange(recorder.x.size)[-samples:]
-    out[0], out[1] = x, velocity
+    seen = response.channels(recorder.x, recorder.velocity, periods, parameters[0])
+    out[0], out[1] = seen[0][-samples:], seen[1][-samples:]
     response.normal_forces(times, x, velocity, contact, parameters[0], out[2:4])
     for i in range(samples):
         out[4, i] = 1.0 if abs(contact[i, 0]) != 1 else 0.0
@@ -176,7 +178,7 @@ def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
             periods = max(period, 1) * ((plan.periods - 1) // max(period, 1) + 1)
             n = periods * plan.samples_per_period
             keep, end = settled * cycle, (settled + periods) * cycle
-            _clear(sums)
+            clear(sums)
             recorder = Recorder(keep, cycle / plan.samples_per_period, sums, x[:n], velocity[:n], contact[:n])
             outcome, state = follow_from(first, x0, v0, keep, end, case, recorder, work)
             batch.outcome[i], batch.time[i] = outcome, state.t
@@ -187,4 +189,4 @@ def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
                 sums[0], x[:n], velocity[:n], periods, case[0], batch.numbers[i], batch.spectra[i]
             )
             if batch.waveforms.shape[0]:
-                _keep_waveforms(recorder, case, batch.waveforms[i])
+                _keep_waveforms(recorder, periods, case, batch.waveforms[i])

@@ -160,6 +160,18 @@ def margins(f, o, contact, p):
 
 
 @compiled
+def slopes(f, o, contact, p):
+    """Time derivatives of the ``margins``."""
+    velocity = o.forced * p.omega * f.cosine + o.frequency * f.quadrature
+    u3 = -p.amplitude * p.omega**3 * f.cosine
+    return (
+        contact.column * acceleration(f, o, p),
+        contact.column_sign * (o.column_x * velocity + o.column_u * u3),
+        contact.bolster_sign * (o.bolster_x * velocity + o.bolster_u * u3),
+    )
+
+
+@compiled
 def margin_and_slope(which, f, o, contact, p):
     """One of the ``margins`` and its time derivative."""
     if which == VELOCITY:
@@ -221,12 +233,15 @@ def _crossing(which, f, span, before, now, at_zero, o, contact, p):
 
 
 @compiled
-def _may_dip(before, now, following):
-    """Whether three positive samples may hide a zero between them: the parabola through them does."""
-    if not before > now <= following:
+def _may_dip(now, falling, following, rising, span):
+    """Whether a margin may be negative between two positive samples: their tangents meet near zero or below.
+
+    Between samples so close a margin with a minimum is convex, so that it lies above its tangents.
+    """
+    if not falling < 0.0 < rising:
         return False
-    curvature = before - 2.0 * now + following
-    return now - (following - before) ** 2 / (8.0 * curvature) < 0.3 * now
+    lowest = (rising * now - falling * following + falling * rising * span) / (rising - falling)
+    return lowest < 0.1 * now
 
 
 @compiled
@@ -250,32 +265,61 @@ def slide(t, stop, x, velocity, contact, o, p, last_switch):
     at_zero = last_switch - COLUMN_NORMAL + 1 if last_switch >= COLUMN_NORMAL else -1
     if velocity == 0.0 or last_switch == o.switch:
         at_zero = VELOCITY
-    f = earlier = phase_of(t, x, velocity, o, p)
-    before = now = margins(f, o, contact, p)
+    f = phase_of(t, x, velocity, o, p)
+    now, falling = margins(f, o, contact, p), slopes(f, o, contact, p)
     while t < stop:
         span = min(step, stop - t)
         g = turned(f, turn_a, turn_b, turn_c, turn_d) if span == step else after(f, span, o, p)
-        following = margins(g, o, contact, p)
-        found, which, base = inf, -1, t
+        following, rising = margins(g, o, contact, p), slopes(g, o, contact, p)
+        found, which = inf, -1
         if min(following[0], following[1], following[2]) <= 0.0:
             found, which = _first(f, span, now, following, at_zero, o, contact, p)
         for i in range(3):
-            if i != at_zero and following[i] > 0.0 and _may_dip(before[i], now[i], following[i]):
-                dip = _dip(i, earlier, step + span, o, contact, p)
-                low = margin_and_slope(i, after(earlier, dip, o, p), o, contact, p)[0]
+            may_dip = _may_dip(now[i], falling[i], following[i], rising[i], span)
+            if may_dip and following[i] > 0.0 and i != at_zero:
+                dip = _dip(i, f, span, o, contact, p)
+                low = margin_and_slope(i, after(f, dip, o, p), o, contact, p)[0]
                 if low <= 0.0:
-                    zero = _crossing(i, earlier, dip, before[i], low, False, o, contact, p) - step
+                    zero = _crossing(i, f, dip, now[i], low, False, o, contact, p)
                     if zero < found:
                         found, which = zero, i
         if which >= 0:
             x, velocity = state(after(f, found, o, p), o, p)
-            return base + found, x, velocity, o.switch if which == 0 else COLUMN_NORMAL - 1 + which
+            return t + found, x, velocity, o.switch if which == 0 else COLUMN_NORMAL - 1 + which
         t += span
-        earlier, before = f, now
-        f, now = g, following
+        f, now, falling = g, following, rising
         at_zero = -1
     x, velocity = state(f, o, p)
     return stop, x, velocity, -1
+
+
+@compiled
+def _fastest(f, low, high, rate, following, o, p):
+    """Time of the extreme velocity between two times (s after f) with accelerations of opposite sign.
+
+    The velocity there is off by the square of the error in time only: few iterations do.
+    """
+    time = low + (high - low) * rate / (rate - following)
+    for _ in range(3):
+        g = after(f, time, o, p)
+        jerk = -o.forced * p.omega**3 * g.cosine - o.frequency**3 * g.quadrature
+        if jerk != 0.0:
+            time = min(max(time - acceleration(g, o, p) / jerk, low), high)
+    return time
+
+
+@compiled
+def _keep_until(time, weight, f, earlier, rate, t, contact, o, recorder, p):
+    """Keep the state some time after f (at t), and an extreme velocity on the way; the acceleration there."""
+    g = after(f, time, o, p)
+    now = acceleration(g, o, p)
+    if rate * now < 0.0:
+        fastest = _fastest(f, earlier, time, rate, now, o, p)
+        x, velocity = state(after(f, fastest, o, p), o, p)
+        put_node(t + fastest, x, velocity, 0.0, contact, recorder, p)
+    x, velocity = state(g, o, p)
+    put_node(t + time, x, velocity, weight, contact, recorder, p)
+    return now
 
 
 @compiled
@@ -283,15 +327,15 @@ def keep(t, end, x, velocity, contact, o, recorder, p):
     """Keep a piece that ``slide`` has followed from the state at t to ``end``."""
     f = phase_of(t, x, velocity, o, p)
     put_node(t, x, velocity, 0.0, contact, recorder, p)
+    earlier, rate = 0.0, acceleration(f, o, p)
     parts = int((end - t) * max(p.omega, o.frequency) / (2.0 * pi) * 12.0) + 1
     span = (end - t) / parts
     for part in range(parts):
         for node in range(len(NODES)):
             time = span * (part + NODES[node])
-            x, velocity = state(after(f, time, o, p), o, p)
-            put_node(t + time, x, velocity, span * WEIGHTS[node], contact, recorder, p)
-    x, velocity = state(after(f, end - t, o, p), o, p)
-    put_node(end, x, velocity, 0.0, contact, recorder, p)
+            rate = _keep_until(time, span * WEIGHTS[node], f, earlier, rate, t, contact, o, recorder, p)
+            earlier = time
+    _keep_until(end - t, 0.0, f, earlier, rate, t, contact, o, recorder, p)
     for i in range(first_sample(t, recorder), first_sample(end, recorder)):
         x, velocity = state(after(f, recorder.start + i * recorder.step - t, o, p), o, p)
         put_sample(i, x, velocity, contact, recorder)

@@ -18,8 +18,8 @@ ABSOLUTE = 1e-2
 LEAST = 12
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 SHORTEST = 1e-13
-# A piece that needs more steps than this will not end.
-MOST_STEPS = 1_000_000
+# A piece that needs more steps than this per forcing period will not end.
+MOST_STEPS = 100_000
 FAILED = -3
 
 
@@ -115,14 +115,16 @@ def _force_zero(place, low, high, t, h, start, end, contact, p, out):
 
 
 @compiled
-def _peak(start, end, h):
-    """Share of a step at which the velocity is extreme, -1 where it is not."""
-    if start[2] * end[2] >= 0.0:
-        return -1.0
-    low, high = 0.0, 1.0
+def _extreme(what, share, h, start, end):
+    """Share of a step, below the given one, at which x (0) or the velocity (1) is extreme.
+
+    Its derivative has opposite signs at the start and at that share. What is extreme is off by the square of
+    the error in time only, so that 30 halvings leave none.
+    """
+    low, high = 0.0, share
     for _ in range(30):
         middle = 0.5 * (low + high)
-        if quintic(middle, h, start, end)[2] * start[2] > 0.0:
+        if quintic(middle, h, start, end)[what + 1] * start[what + 1] > 0.0:
             low = middle
         else:
             high = middle
@@ -179,7 +181,7 @@ def slide(t, stop, x, v, contact, last_switch, h, p, keeping, recorder, work):
     """
     longest = 2.0 * pi / p.omega / LEAST
     a, jump = rate(t, x, v, contact, p), held(contact)
-    most = work.counts[1] + MOST_STEPS
+    most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / (LEAST * longest))
     while t < stop:
         h = min(h, longest)
         taken = min(h, stop - t)
@@ -225,8 +227,8 @@ def _earliest(t, h, start, end, forces, jump, contact, last_switch, p, work):
 
     A switch of slip may come and go within a step: then it is passed where the velocity is extreme.
     """
-    peak = _peak(start, end, h)
-    if peak > 0.0:
+    if start[2] * end[2] < 0.0:
+        peak = _extreme(1, 1.0, h, start, end)
         _switches_at(peak, t, h, start, end, contact, p, work.switches)
         share, place = _first_switch(peak, t, h, start, end, contact, last_switch, p, work)
         if place >= 0:
@@ -246,25 +248,13 @@ def keep(t, h, share, start, end, contact, recorder, p):
         s = share * NODES[node]
         x, v, _ = quintic(s, h, start, end)
         put_node(t + s * h, x, v, share * h * WEIGHTS[node], contact, recorder, p)
-    x, v, _ = quintic(share, h, start, end)
-    put_node(t + share * h, x, v, 0.0, contact, recorder, p)
-    if start[1] * v < 0.0:
-        s = turning_point(share, h, start, end)
-        x, v, _ = quintic(s, h, start, end)
-        put_node(t + s * h, x, v, 0.0, contact, recorder, p)
+    last = quintic(share, h, start, end)
+    put_node(t + share * h, last[0], last[1], 0.0, contact, recorder, p)
+    for what in range(2):
+        if start[what + 1] * last[what + 1] < 0.0:
+            s = _extreme(what, share, h, start, end)
+            x, v, _ = quintic(s, h, start, end)
+            put_node(t + s * h, x, v, 0.0, contact, recorder, p)
     for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
         x, v, _ = quintic((recorder.start + i * recorder.step - t) / h, h, start, end)
         put_sample(i, x, v, contact, recorder)
-
-
-@compiled
-def turning_point(share, h, start, end):
-    """Share of a step, below the given one, at which x is extreme."""
-    low, high = 0.0, share
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        if quintic(middle, h, start, end)[1] * start[1] > 0.0:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)

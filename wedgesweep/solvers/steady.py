@@ -56,7 +56,8 @@ def newton(k, x, velocity, parameters, recorder, work):
         outcome = min(outcome, status)
         matrix[0, column] = (x2 - x1) / size[0] / PERTURBATION
         matrix[1, column] = (v2 - v1) / size[1] / PERTURBATION
-    trace, determinant = matrix[0, 0] + matrix[1, 1], np.linalg.det(matrix)
+    trace = matrix[0, 0] + matrix[1, 1]
+    determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
     margin = 1.0 - trace + determinant  # of (I - J)
     stable = abs(trace) < 1.0 + determinant and determinant < UNSTABLE
     if outcome != OK or not stable or margin < SINGULAR:
@@ -65,6 +66,19 @@ def newton(k, x, velocity, parameters, recorder, work):
     dx = ((1.0 - matrix[1, 1]) * rx + matrix[0, 1] * rv) / margin
     dv = (matrix[1, 0] * rx + (1.0 - matrix[0, 0]) * rv) / margin
     return x + dx * size[0], velocity + dv * size[1]
+
+
+@compiled
+def _extrapolated(x, last, before):
+    """Limit of three deflections in a row (Aitken), the last of them where there is none in sight.
+
+    A bolster that is at rest at phase 0 creeps by a slip per period, near breakaway ever more slowly: as
+    1/k after k periods. There each extrapolation halves what is left, and does not overshoot.
+    """
+    now, then = x - last, last - before
+    if now == 0.0 or abs(now) >= abs(then) or now * then <= 0.0:
+        return x
+    return x + now * now / (then - now)
 
 
 @compiled
@@ -105,10 +119,14 @@ def settle(x, velocity, parameters, tolerance, most, recorder, work):
         n = _repeats(k, state, past, tolerance, p)
         if n:
             return OK, k, x, velocity, n
-        if k % PATIENCE == 0 and velocity != 0.0:
-            before = _distance(state, past[(k - 1) % LONGEST], p)
-            trial = newton(k, x, velocity, parameters, recorder, work)
+        if k % PATIENCE == 0:
+            before, gain = _distance(state, past[(k - 1) % LONGEST], p), 0.1
+            if velocity == 0.0:
+                gain = 0.5
+                trial = (_extrapolated(x, past[(k - 1) % LONGEST, 0], past[(k - 2) % LONGEST, 0]), 0.0)
+            else:
+                trial = newton(k, x, velocity, parameters, recorder, work)
             x1, v1, outcome = poincare(k, trial[0], trial[1], parameters, recorder, work)
-            if outcome == OK and _distance((x1, v1), trial, p) < 0.1 * before:
+            if outcome == OK and _distance((x1, v1), trial, p) < gain * before:
                 x, velocity = trial
     return OK, k, x, velocity, 0

@@ -33,18 +33,37 @@ class Window:
         return 2.0 * pi / self.omega * (self.settle_periods + steps)
 
 
+@dataclass(frozen=True, eq=False)
+class TimedWindow(Window):
+    """A window with sample times of one's own: ``offsets`` (s, increasing, shape (n,)) from ``keep``."""
+
+    offsets: np.ndarray
+
+    @property
+    def sample_times(self) -> np.ndarray:
+        return self.keep + self.offsets
+
+
 @dataclass(frozen=True)
 class Samples:
-    """States on the even phase grid of the kept window.
+    """States at the sample times of the kept window.
 
     ``t`` (s), ``x`` (m, deflection from rest) and ``velocity`` (m/s) have shape (n,); ``contact`` holds the
-    five numbers of ``damper.Contact`` in each row, shape (n, 5).
+    five numbers of ``damper.Contact`` in each row, shape (n, 5), ``normal`` the normal forces on column and
+    bolster (N; NaN while stuck), shape (2, n).
     """
 
     t: np.ndarray
     x: np.ndarray
     velocity: np.ndarray
     contact: np.ndarray
+    normal: np.ndarray
+
+
+def empty_samples(times: np.ndarray) -> Samples:
+    """Room for samples at some times (s)."""
+    n = times.size
+    return Samples(times, np.empty(n), np.empty(n), np.empty((n, 5), np.int8), np.empty((2, n)))
 
 
 @dataclass(frozen=True)

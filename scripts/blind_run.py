@@ -1,0 +1,142 @@
+"""One data set: the command line makes and diagnoses it; its record compares the verdict with the truth."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from shutil import rmtree
+from time import perf_counter
+from typing import Any
+
+import blind_bench as bench
+import blind_outside_files as outside
+from blind_baselines import BASELINES
+from blind_bench import Test
+from blind_draft import LEVEL, Draft, draw
+from blind_judge import gain_in_truth
+from blind_sets import BlindSet
+
+from wedgesweep.config import toml
+
+ROOT = Path(__file__).parent.parent
+RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
+DATA, RESULT = "data", "diagnosis"
+# Relative std with which the amplitude of a recommended test is known.
+ADDED_SPREAD = 0.01
+
+
+class Failed(Exception):
+    """A set that did not come to a verdict."""
+
+
+def run_chain(chain: list[BlindSet], out: Path, baselines: bool = True) -> list[dict[str, Any]]:
+    """Records of sets that need one another; finished ones are kept. A failure is a record, too."""
+    return [record_of(one, out, baselines) for one in chain]
+
+
+def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
+    directory = out / one.name
+    if (directory / RECORD).exists():
+        return json.loads((directory / RECORD).read_text())
+    rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    try:
+        record = _run(one, out, directory, baselines)
+    except (Failed, RuntimeError) as error:
+        # No record file: the next run tries again.
+        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": str(error)}
+    _write(directory / RECORD, record)
+    return record
+
+
+def _write(file: Path, document: Any) -> None:
+    partial = file.with_suffix(".partial")
+    partial.write_text(json.dumps(document, indent=1) + "\n")
+    os.replace(partial, file)
+
+
+def _run(one: BlindSet, out: Path, directory: Path, baselines: bool) -> dict[str, Any]:
+    took = {}
+    began = perf_counter()
+    if one.kind == "added" and (poor := _poor(one, out))["next_test"] is None:
+        # Nothing to add: the verdict on the poor set stands.
+        return {**poor, "name": one.name, "kind": one.kind}
+    draft, plan = _draft(one, out)
+    _write(directory / DRAFT, asdict(draft))
+    took["draw"], began = perf_counter() - began, perf_counter()
+    if draft.foreign:
+        outside.make(draft, LEVEL, one.number, directory / DATA)
+    else:
+        _synthesize(one, draft, plan, directory)
+    # Out of the reach of the diagnosis.
+    (directory / DATA / TRUTH).rename(directory / TRUTH)
+    took["synthesize"], began = perf_counter() - began, perf_counter()
+    limit = ["--effects", ",".join(draft.candidates)] if one.kind == "unknown" else []
+    measured = directory / DATA / "measured.toml"
+    _wedgesweep("diagnose", measured, "-o", directory / RESULT, "--n-jobs", 1, *limit)
+    took["diagnose"], began = perf_counter() - began, perf_counter()
+    found = json.loads((directory / RESULT / "diagnosis.json").read_text())
+    record = {
+        "name": one.name,
+        "kind": one.kind,
+        "index": one.index,
+        "truth": sorted(draft.hidden) or ([draft.foreign["name"]] if draft.foreign else []),
+        "numbers": draft.hidden,
+        **{key: getattr(draft, key) for key in ("law", "lean", "noise", "spread", "uncertain", "expected")},
+        **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
+        "excess": found["misfit"]["excess_base"],
+        "p_extended": found["misfit"]["p_extended"],
+        "gain_in_truth": gain_in_truth(draft, found),
+    }
+    if baselines:
+        record["baselines"] = {
+            name: baseline(measured, directory / RESULT, draft.candidates)
+            for name, baseline in BASELINES.items()
+        }
+        took["baselines"] = perf_counter() - began
+    return {**record, "seconds": {key: round(value, 1) for key, value in took.items()}}
+
+
+def _draft(one: BlindSet, out: Path) -> tuple[Draft, list[dict[str, Any]]]:
+    """What a set is made from, and its tests as ``synthesize`` reads them."""
+    draft = draw(one.partner)
+    plan = [_planned(test, draft.spread) for test in draft.tests]
+    if one.kind == "added":
+        following = _poor(one, out)["next_test"]
+        draft.tests.append(Test(following["frequency_hz"], following["amplitude_mm"]))
+        plan.append(_planned(draft.tests[-1], ADDED_SPREAD))
+    return draft, plan
+
+
+def _poor(one: BlindSet, out: Path) -> dict[str, Any]:
+    """Record of the set that a test is added to."""
+    file = out / one.partner.name / RECORD
+    if not file.exists():
+        message = f"{one.name}: {one.partner.name} did not come to a verdict"
+        raise Failed(message)
+    return json.loads(file.read_text())
+
+
+def _planned(test: Test, spread: float | None) -> dict[str, Any]:
+    known = {"known": False} if spread is None else {"amplitude_std": spread}
+    return {"frequency_hz": test.frequency_hz, "amplitude_mm": test.amplitude_mm, **known}
+
+
+def _synthesize(one: BlindSet, draft: Draft, plan: list[dict[str, Any]], directory: Path) -> None:
+    (directory / "true.toml").write_text(bench.model(draft.law, draft.lean, draft.hidden))
+    document = {"uncertain": draft.uncertain, "test": plan}
+    (directory / "tests.toml").write_text(toml.dumps(document))
+    options = ["--noise", draft.noise, "--level", LEVEL, "--seed", one.number, "--n-jobs", 1]
+    files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
+    _wedgesweep("synthesize", *files, *options)
+
+
+def _wedgesweep(*arguments: Any) -> None:
+    """Run the command line as a user would."""
+    command = [sys.executable, "-m", "wedgesweep", *map(str, arguments)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode:
+        message = f"{' '.join(map(str, arguments))}: exit code {done.returncode}\n{done.stderr[-2000:]}"
+        raise Failed(message)

@@ -1,0 +1,54 @@
+"""Problems whose truth is known: harmonics of the model itself with noise drawn on top.
+
+For tests of the machinery only; data from another solver are in tests/hidden.
+"""
+
+from math import pi
+
+import numpy as np
+
+from wedgesweep import config
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.spectra import Smooth, Spectrum
+
+FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])
+AMPLITUDES = 1e-3 * np.array([1.5, 0.6, 0.16, 0.11, 0.09, 0.06])
+HARMONICS, SAMPLES, INTERVAL = 16, 1600, 5e-4
+MODEL = """
+[sweep]
+friction_law = ["static-dynamic"]
+beta = [1.0]
+amplitude_mm = [0.1]
+"""
+
+
+def drawn(
+    effects=None, seed=0, level=0.04, std=0.02, uncertain=None, known=True, off=0.0, tests=slice(None)
+) -> Problem:
+    """Problem of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated."""
+    rng = np.random.default_rng(seed)
+    model = config.parse(MODEL)
+    frequencies, stated = FREQUENCIES[tests], AMPLITUDES[tests]
+    omega = 2.0 * pi * frequencies
+    rows = simulation.records(model, "static-dynamic", effects or {}, omega, stated * (1.0 + off))
+    exact = simulation.respond(rows, simulation.cold(omega.size), HARMONICS).harmonics
+    spectra = []
+    for frequency, harmonics in zip(frequencies, exact, strict=True):
+        turn = np.exp(1j * np.arange(1, HARMONICS + 1) * rng.uniform(0.0, 2.0 * pi))
+        rms = np.sqrt(0.5 * (np.abs(harmonics) ** 2).sum(axis=1))
+        variance = np.repeat(4.0 / SAMPLES * (level * rms[:, None]) ** 2, HARMONICS, axis=1)
+        noise = rng.normal(size=(2, 2, HARMONICS)) * np.sqrt(variance / 2.0)
+        mean = harmonics * turn + noise[0] + 1j * noise[1]
+        flat = tuple(Smooth(np.zeros(3), 1.0) for _ in range(2))
+        silent = np.zeros((2, SAMPLES))
+        spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
+    return Problem(
+        model,
+        "static-dynamic",
+        tuple(f"{f:g} Hz" for f in frequencies),
+        tuple(spectra),
+        stated if known else np.full(stated.size, np.nan),
+        np.full(stated.size, std if known else np.inf),
+        uncertain or {},
+    )

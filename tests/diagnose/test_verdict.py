@@ -1,0 +1,94 @@
+"""The six answers, from fits that are set by hand."""
+
+from types import SimpleNamespace
+
+import pytest
+from scipy.stats import chi2
+
+from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.search import Explanation
+from wedgesweep.diagnose.verdict import Thresholds, decide
+
+DOF, PRICE = 700, 12.6
+
+
+def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1):
+    problem = SimpleNamespace(tests=tests, uncertain=uncertain or {})
+    hypothesis = SimpleNamespace(effects=effects)
+    model = SimpleNamespace(problem=problem, hypothesis=hypothesis, size=numbers * len(effects))
+    fit = SimpleNamespace(
+        q=q,
+        excess=q - DOF,
+        p=float(chi2.sf(q, DOF)),
+        model=model,
+        values={effect: {"scale": scale} for effect in effects},
+    )
+    return Explanation(fit, PRICE)
+
+
+def verdict_of(base, *others, thresholds=verdict.DEFAULT):
+    return decide(base, others, thresholds)
+
+
+def test_noise_needs_no_cause():
+    found = verdict_of(explained(715.0), explained(708.0, "stribeck"), explained(712.0, "preload"))
+    assert (found.verdict, found.cause) == ("nothing-missing", None)
+
+
+def test_a_strong_cause_is_named():
+    found = verdict_of(explained(5000.0), explained(705.0, "stribeck"), explained(2000.0, "preload"))
+    assert (found.verdict, found.cause.effects) == ("named", ("stribeck",))
+
+
+def test_weak_evidence_is_only_consistent():
+    found = verdict_of(explained(1000.0), explained(705.0, "stribeck"), explained(800.0, "preload"))
+    assert found.verdict == "consistent-with"
+
+
+def test_equally_good_explanations_are_tied():
+    found = verdict_of(explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload"))
+    assert found.verdict == "tied"
+    assert [each.effects for each in found.rivals] == [("preload",)]
+
+
+def test_a_misfit_that_nobody_explains():
+    found = verdict_of(
+        explained(5000.0), explained(1500.0, "stribeck"), explained(1400.0, "stribeck", "preload")
+    )
+    assert (found.verdict, found.cause) == ("none-of-mine", None)
+
+
+def test_a_misfit_that_nobody_even_touches():
+    found = verdict_of(explained(5000.0), explained(4999.0, "stribeck"))
+    assert found.verdict == "none-of-mine"
+
+
+def test_many_equal_explanations_say_that_the_data_are_poor():
+    others = [explained(705.0 + i, name) for i, name in enumerate("abcdef")]
+    assert verdict_of(explained(5000.0), *others).verdict == "data-insufficient"
+
+
+def test_two_tests_name_nothing():
+    found = verdict_of(explained(5000.0, tests=2), explained(705.0, "stribeck", tests=2))
+    assert (found.verdict, found.cause) == ("data-insufficient", None)
+
+
+def test_a_pair_must_beat_its_parts():
+    single = explained(730.0, "stribeck")
+    assert verdict_of(explained(5000.0), single, explained(716.0, "stribeck", "preload")).cause is single
+    pair = explained(690.0, "stribeck", "preload")
+    assert verdict_of(explained(5000.0), single, pair).cause is pair
+
+
+@pytest.mark.parametrize(("scale", "named"), [(1.1, False), (1.4, True)])
+def test_an_uncertain_number_is_a_cause_beyond_three_deviations(scale, named):
+    found = verdict_of(
+        explained(5000.0), explained(705.0, "friction_level", uncertain={"friction_level": 0.1}, scale=scale)
+    )
+    assert (found.verdict == "named") is named
+
+
+def test_calibrated_thresholds_replace_the_general_ones():
+    base, best = explained(1000.0), explained(705.0, "stribeck")
+    assert verdict_of(base, best, thresholds=Thresholds(strong=0.0)).verdict == "named"
+    assert verdict_of(base, best, thresholds=Thresholds(least_gain=1000.0)).verdict != "named"

@@ -1,0 +1,304 @@
+"""Effects: neutral values, limits, energy, symmetry; over all of them where possible."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies
+
+from tests.physics.cases import OMEGA_N
+from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
+from wedgesweep import config, parameters, response
+from wedgesweep.effects import EFFECTS, FAMILIES
+from wedgesweep.extended import rest
+from wedgesweep.friction import LAW_NAMES
+from wedgesweep.solvers import event_driven, periodic, radau
+from wedgesweep.solvers.trajectory import CaseError, Window
+
+LAWS = ("coulomb", "static-dynamic", "exponential")
+# Slow: a steep ramp under the Coulomb law, see its docstring.
+STEEP = ("coulomb", "column_compliance")
+
+
+def numbers(record, settle_periods=60, rtol=1e-8, periods=2):
+    window = Window(float(record["omega"][0]), settle_periods, periods, 256)
+    run = event_driven.solve(record, window, rtol, 60.0)
+    return response.evaluate(run, record, 9).numbers
+
+
+def with_effect(law, name, values=None, amplitude=0.8e-3, beta=0.6, **more):
+    values = mild(name) if values is None else values
+    return parameters.record(law, amplitude, beta * OMEGA_N, effects={name: values}, **more)
+
+
+def test_the_declared_order_is_that_of_the_families():
+    families = [effect.family for effect in EFFECTS.values()]
+    assert families == sorted(families, key=FAMILIES.index)
+    assert FAMILIES == (
+        "parameters",
+        "friction-law",
+        "two-dimensional",
+        "missing-force",
+        "excitation",
+        "sensor",
+    )
+    assert len(EFFECTS) == 21
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_a_config_switches_it_on_and_its_range_is_allowed(name):
+    values = {
+        quantity.key: (quantity.search or (quantity.default,))[-1] for quantity in EFFECTS[name].quantities
+    }
+    lines = "\n".join(f"{key} = {value}" for key, value in values.items())
+    text = f'[effects.{name}]\n{lines}\n[sweep]\nfriction_law = "coulomb"\nbeta = 1\namplitude_mm = 1\n'
+    read = config.parse(text)
+    record = read.record(read.case_list()[0])
+    for quantity, field in zip(EFFECTS[name].quantities, EFFECTS[name].fields, strict=True):
+        assert record[field][0] == pytest.approx(values[quantity.key] * quantity.factor)
+        if quantity.search:
+            assert quantity.fault(quantity.search[0]) is None
+    assert read.sweep.omega_n == pytest.approx(OMEGA_N)
+    assert record["omega"][0] == pytest.approx(OMEGA_N)
+    assert bool(record["extended"][0]) == bool(EFFECTS[name].extends)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("law", LAWS)
+def test_neutral_is_the_base_model_bit_for_bit(law, name):
+    effect = EFFECTS[name]
+    values = typical(name)
+    for quantity in effect.quantities:
+        if quantity.name in effect.extends or not effect.extends:
+            values[quantity.name] = quantity.neutral * quantity.factor
+    if name == "stribeck":
+        values["peak"] = 0.0
+    base = numbers(parameters.record(law, 1e-4, 1.472 * OMEGA_N), 3)
+    assert numbers(with_effect(law, name, values, 1e-4, 1.472), 3) == pytest.approx(base, abs=0.0, rel=0.0)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("beta", "amplitude"), [(0.4, 1e-3), (1.472, 5e-5), (0.9, 3e-3)])
+def test_the_extended_solver_agrees_with_the_base_solver(law, beta, amplitude):
+    base = parameters.record(law, amplitude, beta * OMEGA_N)
+    record = base.copy()
+    record["extended"] = 1.0
+    rest.prepare(record[0])
+    expected, found = numbers(base, 10), numbers(record, 10)
+    for name in (
+        "amplitude_ratio",
+        "stick_fraction",
+        "dissipated_energy",
+        "supplied_energy",
+        "lift_off_fraction",
+    ):
+        assert found[name] == pytest.approx(expected[name], rel=1e-5, abs=1e-9), name
+
+
+# Against the end stops this response repeats after two periods, both of which are kept.
+DOUBLED = ("exponential", "end_stop")
+
+
+@pytest.mark.parametrize("name", REPEATING)
+@pytest.mark.parametrize("law", LAWS)
+def test_energy_balance_with_every_effect(law, name):
+    if (law, name) == STEEP:
+        pytest.skip("a period costs a million steps")
+    found = numbers(with_effect(law, name), 80)
+    if (law, name) != DOUBLED:
+        assert found["periodicity"] < 1e-6
+    assert found["dissipated_energy"] > 0.0
+    assert found["supplied_energy"] == pytest.approx(found["dissipated_energy"], rel=2e-6)
+
+
+@pytest.mark.parametrize("name", EXTENDING)
+def test_it_changes_the_response(name):
+    base = numbers(parameters.record("static-dynamic", 0.8e-3, 0.6 * OMEGA_N), 20)
+    found = numbers(with_effect("static-dynamic", name), 20)
+    assert abs(found["amplitude_ratio"] / base["amplitude_ratio"] - 1.0) > 1e-4
+
+
+def distance(law, name, values, beta=0.6, amplitude=0.8e-3):
+    """Relative change of the ratio that an effect makes."""
+    record = with_effect(law, name, values, amplitude, beta)
+    base = parameters.record(law, amplitude, beta * OMEGA_N)
+    return abs(numbers(record, 30)["amplitude_ratio"] / numbers(base, 30)["amplitude_ratio"] - 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "far", "near", "order"),
+    [
+        ("column_compliance", "stiffness", 2e5, 2e6, 10.0),
+        ("fixture_resonance", "frequency", 100.0, 400.0, 16.0),
+        ("stribeck", "velocity", 1e-4, 1e-5, 10.0),
+        ("cross_slip", "velocity", 1e-4, 1e-5, 100.0),
+        ("viscous_damping", "coefficient", 1.0, 0.1, 10.0),
+        ("cubic_stiffness", "coefficient", 1e8, 1e7, 10.0),
+        ("directional_friction", "asymmetry", 0.02, 0.002, 10.0),
+        ("load_dependent_friction", "exponent", 0.02, 0.002, 10.0),
+        ("ageing", "rate", 1e-2, 1e-3, 10.0),
+    ],
+)
+def test_towards_its_neutral_limit_an_effect_vanishes_in_proportion(name, field, far, near, order):
+    values = mild(name) | ({"peak": 0.0} if name == "stribeck" else {})
+    changes = [distance("static-dynamic", name, values | {field: value}) for value in (far, near)]
+    assert changes[0] > 1e-6
+    assert changes[1] == pytest.approx(changes[0] / order, rel=0.5)
+
+
+def test_an_end_stop_that_is_never_touched_is_none():
+    assert distance("static-dynamic", "end_stop", {"clearance": 5e-3, "stiffness": 1e5}) < 1e-6
+
+
+def test_a_short_presliding_length_is_set_valued_friction_on_the_column_face():
+    """With the bolster face without slip (gamma = 0): then it is the base model under the Coulomb law."""
+
+    def ratio(length):
+        record = parameters.record(
+            "static-dynamic",
+            1e-3,
+            0.6 * OMEGA_N,
+            suspension={"column_angle": 0.0},
+            effects={"presliding": {"length": length}},
+        )
+        return numbers(record, 30)["amplitude_ratio"]
+
+    changes = [abs(ratio(length) - ratio(2.5e-8)) for length in (4e-6, 1e-6, 2.5e-7)]
+    assert changes[2] < 0.5 * changes[1] < 0.25 * changes[0]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_directional_friction_mirrors(law):
+    """Without gravity the mirror image of a motion is one, with forces and asymmetry reversed."""
+
+    def extremes(asymmetry):
+        record = parameters.record(
+            law,
+            0.5e-3,
+            0.6 * OMEGA_N,
+            suspension={"gravity": 0.0},
+            friction={"dynamic": 0.2, "static": 0.25},
+            effects={"directional_friction": {"asymmetry": asymmetry}},
+        )
+        cold = np.full((1, periodic.SIZE), np.nan), np.full((1, periodic.SIZE, periodic.SIZE), np.nan)
+        found = periodic.respond(record, *cold, 1e-8, 400, 256, 7, 1e-9)
+        assert found.outcome[0] == periodic.OK
+        return found.extremes[0]
+
+    low, high = extremes(0.3)
+    mirrored = extremes(-0.3)
+    assert low != pytest.approx(-high, rel=1e-3)
+    assert (-high, -low) == pytest.approx(tuple(mirrored), rel=1e-5)
+
+
+def test_parameters_change_what_their_names_say():
+    suspension = {
+        "bolster_spring": 5100 * 1.1,
+        "wedge_spring": 2550 * 0.9,
+        "bolster_mass": 0.7 * 1.2,
+        "wedge_preload": 2.0,
+    }
+    friction = {"dynamic": 0.29 * 0.8, "static": 0.32 * 0.8}
+    expected = parameters.record("exponential", 1e-3, 50.0, suspension, friction)
+    found = parameters.record(
+        "exponential",
+        1e-3,
+        50.0,
+        effects={
+            "bolster_stiffness": {"scale": 1.1},
+            "wedge_stiffness": {"scale": 0.9},
+            "bolster_mass": {"scale": 1.2},
+            "preload": {"force": 2.0},
+            "friction_level": {"scale": 0.8},
+        },
+    )
+    assert numbers(found, 5)["amplitude_ratio"] == pytest.approx(numbers(expected, 5)["amplitude_ratio"])
+
+
+@pytest.mark.parametrize("name", EXTENDING)
+def test_a_locked_wedge_is_told(name):
+    record = with_effect(
+        "coulomb",
+        name,
+        suspension={"column_angle": np.radians(-4.0)},
+        friction={"dynamic": 0.9, "static": 0.9},
+    )
+    # On a compliant column friction is a steep ramp, which runs away before the wedge locks.
+    with pytest.raises(CaseError, match="steps" if name == "column_compliance" else "locks"):
+        numbers(record, 5)
+
+
+def test_springs_without_a_place_to_rest_are_told():
+    record = with_effect("static-dynamic", "cubic_stiffness", {"coefficient": -1e12})
+    with pytest.raises(CaseError):
+        numbers(record, 2)
+
+
+def test_a_foreign_tone_shows_at_its_frequency_and_has_a_phase_of_its_own():
+    beta, omega = 0.6, 0.6 * OMEGA_N
+    tone = 5.5 * omega / (2 * pi)
+    cold = np.full((1, periodic.SIZE), np.nan)
+    spectra = []
+    for phase in (0.0, pi / 2):
+        record = with_effect(
+            "static-dynamic", NOT_PERIODIC, {"acceleration": 1.0, "frequency": tone}, 1e-4, beta
+        )
+        record["stray_vibration_phase"] = phase
+        x, _, _ = periodic.samples(record, cold, 20, 20, 64, 1e-8)
+        spectra.append(np.fft.rfft(x[0]) / x.size * 2)
+    at_tone = [spectrum[110] for spectrum in spectra]
+    assert abs(at_tone[0]) > 1e-6
+    assert abs(at_tone[0]) == pytest.approx(abs(at_tone[1]), rel=0.05)
+    assert np.angle(at_tone[1] / at_tone[0]) == pytest.approx(pi / 2, abs=0.1)
+
+
+def pairs():
+    return strategies.lists(strategies.sampled_from(list(EFFECTS)), min_size=1, max_size=2, unique=True)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    law=strategies.sampled_from(LAW_NAMES),
+    names=pairs(),
+    place=strategies.floats(0.02, 0.98),
+    beta=strategies.floats(0.2, 3.0),
+    exponent=strategies.floats(-5.0, -2.7),
+    lean=strategies.sampled_from([4.0, -4.0]),
+    dynamic=strategies.sampled_from([0.1, 0.29, 0.6]),
+)
+def test_any_effects_end_with_a_finite_answer_or_a_reason(law, names, place, beta, exponent, lean, dynamic):
+    if law == "coulomb" and "column_compliance" in names:
+        law = "exponential"
+    record = parameters.record(
+        law,
+        10**exponent,
+        beta * OMEGA_N,
+        suspension={"column_angle": np.radians(lean)},
+        friction={"dynamic": dynamic},
+        effects={name: typical(name, place) for name in names},
+    )
+    cold = np.full((1, periodic.SIZE), np.nan), np.full((1, periodic.SIZE, periodic.SIZE), np.nan)
+    found = periodic.respond(record, *cold, 1e-6, 30, 128, 5, 1e-6)
+    assert np.isfinite(found.spectra[0]).all() == (found.outcome[0] == periodic.OK)
+    # The proof that a wedge never locks is not needed to find that it does.
+    record["never_locks"] = 0.0
+    again = periodic.respond(record, *cold, 1e-6, 30, 128, 5, 1e-6)
+    assert (again.outcome[0] == periodic.OK) == (found.outcome[0] == periodic.OK)
+
+
+@pytest.mark.parametrize(("name", "law"), [(name, LAWS[i % 3]) for i, name in enumerate(EXTENDING)])
+def test_both_solvers_agree_from_the_same_start(name, law):
+    if (law, name) == STEEP:
+        law = "exponential"
+    record = with_effect(law, name)
+    window = Window(float(record["omega"][0]), 3, 2, 64)
+    runs = [solve(record, window, 1e-8, 120.0) for solve in (event_driven.solve, radau.solve)]
+    ours, radaus = (response.evaluate(run, record, 5) for run in runs)
+    size = np.ptp(radaus.waveforms["displacement"])
+    for channel in ("displacement", "velocity"):
+        scale = size * (1.0 if channel == "displacement" else window.omega)
+        np.testing.assert_allclose(ours.waveforms[channel], radaus.waveforms[channel], atol=1e-4 * scale)
+    for number in ("dissipated_energy", "supplied_energy", "amplitude_ratio"):
+        assert ours.numbers[number] == pytest.approx(radaus.numbers[number], rel=1e-4), number
+    slipping = ~ours.waveforms["stuck"]
+    np.testing.assert_array_equal(np.isnan(ours.waveforms["normal_force_column"][slipping]), False)

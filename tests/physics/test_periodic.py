@@ -1,0 +1,116 @@
+"""Steady responses from neighbouring states."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from tests.physics.cases import OMEGA_N
+from tests.physics.effect_cases import REPEATING, mild
+from wedgesweep import parameters, response
+from wedgesweep.solvers import event_driven, periodic
+from wedgesweep.solvers.trajectory import Window
+
+CASES = (("coulomb", 0.4, 1e-3), ("static-dynamic", 1.472, 1e-4), ("exponential", 0.6, 8e-4))
+
+
+def records(name=None, factor=1.0, cases=CASES):
+    effects = {name: mild(name)} if name else {}
+    return np.concatenate(
+        [parameters.record(law, factor * a, beta * OMEGA_N, effects=effects) for law, beta, a in cases]
+    )
+
+
+def respond(rows, states=None, maps=None, tolerance=1e-8):
+    n, size = len(rows), periodic.SIZE
+    states = np.full((n, size), np.nan) if states is None else states
+    maps = np.full((n, size, size), np.nan) if maps is None else maps
+    return periodic.respond(rows, states, maps, tolerance, 400, 256, 7, 1e-9)
+
+
+@pytest.mark.parametrize("name", [None, *REPEATING])
+def test_a_warm_start_finds_what_a_cold_start_finds(name):
+    # Against the end stops the exponential case answers with twice the input's period, by either solver.
+    cases = {"column_compliance": CASES[1:], "end_stop": CASES[:2]}.get(name, CASES)
+    first = respond(records(name, cases=cases))
+    assert (first.outcome == periodic.OK).all()
+    assert (first.period == 1).all()
+    rows = records(name, 1.01, cases)
+    cold, warm = respond(rows), respond(rows, first.state, first.map)
+    size = np.abs(cold.spectra).max(axis=2)
+    assert (np.abs(warm.spectra - cold.spectra).max(axis=2) < 1e-5 * size).all()
+    assert warm.dissipated == pytest.approx(cold.dissipated, rel=1e-5)
+    assert warm.periods.max() <= 12
+    assert np.median(warm.periods) <= 6
+
+
+@pytest.mark.parametrize("name", [None, "viscous_damping", "velocity_lag", "displacement_gain"])
+def test_it_is_what_a_long_run_ends_in(name):
+    rows = records(name)
+    found = respond(rows)
+    for i in range(len(rows)):
+        row = rows[i : i + 1]
+        run = event_driven.solve(row, Window(float(row["omega"][0]), 150, 1, 256), 1e-9, 60.0)
+        expected = response.evaluate(run, row, 7)
+        spectra = np.stack([expected.spectra[f"{each}_harmonics"] for each in ("displacement", "velocity")])
+        complex_spectra = spectra[..., 0] + 1j * spectra[..., 1]
+        size = np.abs(complex_spectra).max(axis=1, keepdims=True)
+        assert (np.abs(found.spectra[i] - complex_spectra) < 1e-5 * size).all()
+        assert found.stuck[i] == pytest.approx(expected.numbers["stick_fraction"], abs=1e-5)
+        assert found.dissipated[i] == pytest.approx(expected.numbers["dissipated_energy"], rel=1e-5)
+
+
+def test_a_neighbour_that_is_already_steady_costs_one_period():
+    rows = records()
+    first = respond(rows)
+    again = respond(rows, first.state, first.map, tolerance=1e-7)
+    assert (again.periods == 1).all()
+    np.testing.assert_allclose(again.spectra, first.spectra, rtol=1e-4, atol=1e-9)
+
+
+def test_faces_that_age_without_slipping_do_not_keep_a_case_from_being_steady():
+    row = parameters.record("coulomb", 1e-6, 0.6 * OMEGA_N, effects={"ageing": {"rate": 0.05, "time": 0.01}})
+    found = respond(row)
+    assert (found.period[0], found.stuck[0]) == (1, 1.0)
+    assert found.periods[0] <= 2
+
+
+def test_threads_do_not_disturb_each_other():
+    rows = np.concatenate([records(), records("viscous_damping")])
+    alone = respond(rows)
+    with ThreadPoolExecutor(2) as pool:
+        both = list(pool.map(respond, [rows, rows]))
+    for found in both:
+        np.testing.assert_array_equal(found.spectra, alone.spectra)
+
+
+def test_a_locked_wedge_has_no_response():
+    rows = parameters.record(
+        "coulomb", 1e-3, 40.0, suspension={"column_angle": np.radians(-4.0)}, friction={"dynamic": 0.5}
+    )
+    found = respond(rows)
+    assert found.outcome[0] != periodic.OK
+    assert np.isnan(found.spectra).all()
+    assert np.isnan(found.state).all()
+
+
+def test_sensors_turn_and_scale_the_spectra():
+    plain = respond(records())
+    lag, gain = 2e-3, 1.1
+    rows = records()
+    rows["velocity_lag_time"], rows["displacement_gain_scale"] = lag, gain
+    seen = respond(rows)
+    np.testing.assert_allclose(seen.spectra[:, 0], gain * plain.spectra[:, 0], rtol=1e-12)
+    turns = 1j * np.outer(rows["omega"], np.arange(1, 8)) * lag
+    np.testing.assert_allclose(seen.spectra[:, 1], plain.spectra[:, 1] / (1 + turns), rtol=1e-12)
+
+
+def test_the_lagged_waveform_has_the_lagged_spectrum():
+    row = parameters.record("exponential", 8e-4, 0.6 * OMEGA_N, effects={"velocity_lag": {"time": 5e-3}})
+    run = event_driven.solve(row, Window(float(row["omega"][0]), 60, 2, 256), 1e-9, 60.0)
+    seen = response.evaluate(run, row, 7)
+    spectrum = np.empty((7, 2))
+    response.fourier(seen.waveforms["velocity"], 2, spectrum)
+    size = np.abs(spectrum).max()
+    np.testing.assert_allclose(spectrum, seen.spectra["velocity_harmonics"], atol=2e-5 * size)
+    assert seen.numbers["peak_velocity"] == np.abs(seen.waveforms["velocity"]).max()

@@ -1,0 +1,261 @@
+"""Chandiramani's experiment: what counts as seen, what the suspects show, and what the search finds."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wedgesweep import reproduce as reproduction
+from wedgesweep.reproduce import chandiramani, chandiramani_page, observations, search, separation, trials
+from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
+from wedgesweep.reproduce.search import Effort
+from wedgesweep.reproduce.suspects import AN_INPUT_EACH, COULOMB, READINGS, SUSPECTS, Law
+from wedgesweep.reproduce.trials import FINE, Question
+
+HERTZ = np.arange(20.0, 41.0)
+BY_NAME = {suspect.name: suspect for suspect in SUSPECTS}
+ONE_AMPLITUDE, ONE_ACCELERATION, _ = READINGS
+PHASE = 2.0 * np.pi * np.arange(2048) / 2048
+
+
+def recorded(**changes):
+    """Recordings at 20 and 30 Hz that show all that was seen, with changes of the one or the other."""
+    seen = {
+        "slow": {"peak_to_peak": 0.03, "plateau": 1 / 8, "distortion": 0.27},
+        "fast": {"peak_to_peak": 0.2, "plateau": 0.1, "distortion": 0.4},
+    }
+    for name, value in changes.items():
+        which, number = name.split("_", 1)
+        seen[which][number] = value
+    return tuple(Recording(**{k: np.array([v]) for k, v in seen[w].items()}) for w in ("slow", "fast"))
+
+
+def missed_in_tests(**changes):
+    far = observations.of_tests(*recorded(**changes))[0] > 1.0
+    return [OBSERVATIONS[k].name for k in np.flatnonzero(far)]
+
+
+def missed_in_sweep(levels):
+    far = observations.of_sweep(HERTZ, np.array([levels]))[0] > 1.0
+    return [OBSERVATIONS[OF_TESTS + k].name for k in np.flatnonzero(far)]
+
+
+def spectra_of(velocity, harmonics=40):
+    """Spectra (1, 2, H) of a response with this velocity."""
+    shares = 2.0 * np.fft.rfft(velocity)[1 : harmonics + 1] / velocity.size
+    return np.stack([shares, shares])[None]
+
+
+@pytest.mark.parametrize(
+    ("changes", "missed"),
+    [
+        ({}, []),
+        ({"slow_peak_to_peak": 0.021}, []),
+        ({"slow_peak_to_peak": 0.019}, ["level-20"]),
+        ({"slow_peak_to_peak": 0.046}, ["level-20"]),
+        ({"slow_plateau": 0.05}, ["plateau-20"]),
+        ({"slow_plateau": 0.25}, ["plateau-20"]),
+        ({"fast_peak_to_peak": 0.31}, ["level-30"]),
+        ({"fast_plateau": 0.02}, ["stick-30"]),
+        ({"fast_distortion": 0.2}, ["distorted-30"]),
+        ({"fast_peak_to_peak": np.nan}, ["level-30", "stick-30", "distorted-30"]),
+    ],
+)
+def test_what_counts_as_seen_in_the_recordings(changes, missed):
+    assert missed_in_tests(**changes) == missed
+
+
+def test_a_bolster_that_does_not_move_shows_no_stick_slip():
+    assert missed_in_tests(fast_peak_to_peak=1e-5, fast_plateau=1.0) == [
+        "level-30",
+        "stick-30",
+        "distorted-30",
+    ]
+
+
+def test_what_counts_as_seen_in_the_sweep():
+    line = 0.03 + 0.01 * (HERTZ - 20.0)
+    step = np.where(HERTZ >= 35.0, 0.2, 0.0)
+    assert missed_in_sweep(line + step) == []
+    assert missed_in_sweep(line) == ["jump"]
+    assert missed_in_sweep(line + np.where(HERTZ >= 27.0, 0.2, 0.0)) == ["slow-growth", "jump"]
+    # A resonance that is passed is no jump to a higher value, and a sweep that falls does not grow.
+    assert missed_in_sweep(line + step * (HERTZ < 38.0)) == ["jump"]
+    assert missed_in_sweep(line[::-1] + step) == ["slow-growth"]
+    assert missed_in_sweep(0.0 * line) == ["slow-growth", "jump"]
+    assert missed_in_sweep(np.nan * line) == ["slow-growth", "jump"]
+
+
+def test_a_sine_has_no_plateau_and_one_that_stops_has_its_stops():
+    sine, stops = np.sin(PHASE), np.maximum(np.abs(np.sin(PHASE)) - 0.5, 0.0) * np.sign(np.sin(PHASE))
+    found = [observations.recording(spectra_of(v), np.array([[-1e-5, 2e-5]])) for v in (sine, stops)]
+    assert found[0].plateau[0] == pytest.approx(2.0 * np.arcsin(0.05) / (2.0 * np.pi), abs=1 / 128)
+    assert found[0].distortion[0] == pytest.approx(0.0, abs=1e-12)
+    # The velocity is 0 for 1/6 of the period around each turn, and below 5 % a little longer.
+    edge = np.arcsin(0.5 + 0.05 * 0.5) / np.pi
+    assert found[1].plateau[0] == pytest.approx(edge, abs=1 / 100)
+    assert found[1].peak_to_peak[0] == pytest.approx(0.03)
+
+
+def test_a_plateau_over_the_end_of_the_period_is_one():
+    lengths = []
+    for turn in np.linspace(0.0, 2.0 * np.pi, 7):
+        sine = np.sin(PHASE + turn)
+        velocity = np.maximum(np.abs(sine) - 0.5, 0.0) * np.sign(sine)
+        lengths.append(observations.recording(spectra_of(velocity), np.array([[0.0, 1e-5]])).plateau[0])
+    assert np.ptp(lengths) <= 3 / 256
+    assert min(lengths) > 1 / 6
+
+
+def alone(lean=4.0, law=COULOMB, suspect="small-input", own=()):
+    """Parameter record of a suspect with its own numbers as shares of their ranges."""
+    return BY_NAME[suspect].record(law, lean, own)
+
+
+def test_set_valued_friction_at_a_constant_small_input_breaks_away_near_35_hz():
+    levels = trials.sweep(alone(), np.full((1, 21), 0.015e-3), HERTZ, FINE)[0]
+    at = dict(zip(HERTZ, levels, strict=True))
+    # PHYSICS.md, claim 12; in mm.
+    assert [at[hertz] for hertz in (32.0, 35.0, 40.0)] == pytest.approx([0.0002, 0.0034, 0.0141], abs=6e-5)
+    # It breaks away there, but from rest, and far below the measured levels.
+    assert missed_in_sweep(levels) == ["slow-growth"]
+    assert at[30.0] < 0.01 * observations.LEVELS[30.0]
+
+
+def test_set_valued_friction_sticks_at_20_and_30_hz():
+    stuck = {}
+    for lean in (4.0, -4.0):
+        for hertz, amplitude in ((20.0, 0.04e-3), (20.0, 0.05e-3), (30.0, 0.018e-3), (30.0, 0.022e-3)):
+            rows = trials.at(alone(lean), hertz, np.array([amplitude]))
+            stuck[lean, hertz, amplitude] = trials.respond(rows, FINE).stuck[0]
+    # PHYSICS.md, claim 6; with the other lean the same cases are stuck nearly always.
+    expected = [0.58, 0.15, 0.56, 0.24]
+    assert [stuck[key] for key in stuck if key[0] > 0] == pytest.approx(expected, abs=6e-3)
+    assert all(stuck[key] > 0.9 for key in stuck if key[0] < 0)
+
+
+def test_set_valued_friction_has_the_measured_level_and_plateaus_of_20_hz_at_one_input():
+    slow, fast = trials.record(alone(), np.array([[0.05e-3, 0.05e-3]]), FINE)
+    found = observations.of_tests(slow, fast)[0]
+    assert (found[:2] <= 1.0).all()
+    # At the same input it slips all the time at 30 Hz: what was seen there needs something else.
+    assert (found[2:] > 1.0).all()
+
+
+def test_friction_alone_scales_motions_and_leaves_their_shape():
+    """Den Hartog's oscillator: twice the force and twice the input are twice the motion."""
+    dry = Law("wedges without friction", "coulomb", {"dynamic": 0.0, "static": 0.0})
+    once, twice = (alone(law=dry, suspect="guide-friction", own=(share,)) for share in (0.1, 0.2))
+    first = trials.record(once, np.full((1, 2), 0.075e-3), FINE)
+    second = trials.record(twice, np.full((1, 2), 0.15e-3), FINE)
+    for a, b in zip(first, second, strict=True):
+        assert b.peak_to_peak[0] == pytest.approx(2.0 * a.peak_to_peak[0], rel=1e-6)
+        assert b.plateau[0] == a.plateau[0]
+        assert b.distortion[0] == pytest.approx(a.distortion[0], rel=1e-4)
+    assert first[0].plateau[0] > observations.STICK
+
+
+@pytest.mark.parametrize("suspect", SUSPECTS, ids=lambda suspect: suspect.name)
+def test_suspects_have_the_numbers_that_their_config_says(suspect):
+    shares = np.linspace(0.3, 0.6, len(suspect.free))
+    keys, record = suspect.keys(shares), suspect.record(COULOMB, 4.0, shares)[0]
+    for (effect, quantity), (key, value) in zip(suspect.free, keys.items(), strict=True):
+        low, high = quantity.search
+        assert key == f"{effect}.{quantity.key}"
+        assert low < value < high
+        assert record[f"{effect}_{quantity.name}"] == pytest.approx(value * quantity.factor)
+
+
+def test_an_input_each_holds_the_other_readings():
+    shares = np.array([[0.4], [0.7]])
+    for reading in READINGS[:2]:
+        wide = reading.as_an_input_each(shares)
+        for one, other in zip(
+            reading.amplitudes(shares, HERTZ), AN_INPUT_EACH.amplitudes(wide, HERTZ), strict=True
+        ):
+            np.testing.assert_allclose(one, other, rtol=1e-12)
+    tested, swept = ONE_ACCELERATION.amplitudes(shares, HERTZ)
+    np.testing.assert_allclose(swept * HERTZ**2 / 400.0, np.repeat(swept[:, :1], 21, axis=1))
+    np.testing.assert_allclose(tested[:, 1] / tested[:, 0], 4 / 9)
+
+
+def test_the_sweep_is_left_out_where_the_recordings_cannot_win():
+    question = Question(BY_NAME["small-input"], COULOMB, 4.0, ONE_AMPLITUDE)
+    points = np.array([[0.45], [0.5]])
+    found = trials.distances(question, points, search.SEARCH_HERTZ, np.array([0.0, np.inf]))
+    assert np.isinf(found[0, OF_TESTS:]).all()
+    assert np.isfinite(found[:, :OF_TESTS]).any(axis=1).all()
+
+
+def test_one_more_observation_met_is_worth_more_than_coming_closer():
+    near, met_one = np.full(7, 3.0), np.r_[0.5, np.full(6, 4.0)]
+    losses = trials.loss(np.stack([near, met_one, np.full(7, np.inf), np.full(7, 1.0)]))
+    assert losses[1] < losses[0] < losses[2] == 7.0
+    assert losses[3] == 0.0
+
+
+def test_the_search_finds_the_input_of_20_hz_and_the_same_each_time():
+    question = Question(BY_NAME["small-input"], COULOMB, 4.0, ONE_ACCELERATION)
+    found, again = (search.search(question, Effort(10, 6)) for _ in range(2))
+    assert (found.distances[:2] <= 1.0).all()
+    assert trials.described(question, found.point)["amplitude_20_hz_mm"] == pytest.approx(0.05, rel=0.05)
+    np.testing.assert_array_equal(found.point, again.point)
+    assert (trials.met(trials.distances(question, found.alike, search.SEARCH_HERTZ)) <= found.met).all()
+
+
+def test_trials_stay_within_the_ranges_and_start_points_are_kept():
+    random = np.random.default_rng(1)
+    moved = search._trials(random.random((40, 3)), random.random(40), random)
+    assert ((moved >= 0.0) & (moved <= 1.0)).all()
+    spread = search._spread(10, 2, random)
+    assert sorted(np.floor(10 * spread[:, 0])) == list(range(10))
+
+
+def test_predictions_differ_by_their_harmonics_whatever_the_start_phase():
+    one = np.array([[1.0 + 1.0j, 0.2, 0.05j]]) * 1e-4
+    later = one * np.exp(1j * np.array([1, 2, 3]) * 0.7)
+    assert separation.distance(one, later)[0] == pytest.approx(0.0, abs=1e-9)
+    # Twice the motion: half of the larger one is 12.5 times 4 %.
+    assert separation.distance(one, 2.0 * later)[0] == pytest.approx(12.5)
+    assert separation.distance(1e-6 * one, 0.0 * one)[0] < 1e-3
+    members = np.stack([one, 2.0 * one])
+    assert separation.closest(members, np.stack([2.0 * later]))[0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def outcome():
+    """A search too small to find much, of two suspects."""
+    suspects = [replace(BY_NAME[name], laws=(COULOMB,)) for name in ("small-input", "guide-friction")]
+    told = []
+    return chandiramani.investigate(1, told.append, suspects, (Effort(2, 1), Effort(2, 1))), told
+
+
+def test_an_investigation_asks_every_question_and_tells_of_every_suspect(outcome):
+    found, told = outcome
+    assert len(found.questions) == 2 * 2 * len(READINGS)
+    assert [case.found.question.suspect.name for case in found.cases] == ["small-input", "guide-friction"]
+    assert len(found.rivals) == 2
+    assert len(found.pairs) == 1
+    assert any(line.endswith("guide friction") for line in told)
+    # What is told of the best is computed again, finely; it may lose what was met by a hair.
+    for case in found.cases:
+        assert case.sweep.shape == HERTZ.shape
+        assert abs(case.met - case.found.met) <= 1
+
+
+def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
+    monkeypatch.setattr(chandiramani, "investigate", lambda n_jobs, report: outcome[0])
+    told = []
+    assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is False
+    content = json.loads((tmp_path / "chandiramani.json").read_text())
+    text = (tmp_path / "chandiramani.md").read_text()
+    for suspect in content["suspects"]:
+        assert f"| {suspect['words']} |" in text
+    for observation in content["observations"]:
+        assert observation["words"] in text
+    assert (tmp_path / chandiramani_page.PICTURE).stat().st_size > 10_000
+    assert not list(tmp_path.glob(".*"))
+    found = {each["suspect"]: each["met"] for each in content["suspects"]}
+    monkeypatch.setattr(chandiramani, "RECORDED", found)
+    assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is True

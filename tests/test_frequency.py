@@ -1,0 +1,105 @@
+"""Frequency and drift of a record: as accurate as the noise allows, and honest about it."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from wedgesweep.measured.frequency import drift, estimate_frequency, near, stands_out
+
+SAMPLING = 2000.0
+SINE = {1: 1.0}
+STRONG_HARMONICS = {1: 1.0, 2: 0.2, 3: 0.5, 5: 0.15}
+WEAK_FUNDAMENTAL = {1: 0.2, 2: 0.1, 3: 1.0, 5: 0.2}
+
+
+def record(random, frequency, periods, amplitudes, level, correlation=0.0, change=0.0):
+    """Time and a vibration of harmonics with random phases, a constant part and noise over its rms."""
+    t = np.arange(int(periods / frequency * SAMPLING)) / SAMPLING
+    phase = 2.0 * pi * frequency * (t + 0.5 * change * t * (t / t[-1] - 1.0))
+    signal = 3.0 + sum(a * np.cos(k * phase + random.uniform(0.0, 2.0 * pi)) for k, a in amplitudes.items())
+    rms = np.sqrt(0.5 * sum(a * a for a in amplitudes.values()))
+    fresh = random.normal(size=t.size + 200) * np.sqrt(1.0 - correlation**2)
+    return t, signal + level * rms * lfilter([1.0], [1.0, -correlation], fresh)[200:]
+
+
+def cramer_rao(periods, frequency, amplitudes, level):
+    """Least std (Hz) of an unbiased estimate under white noise (Rife and Boorstyn, 1974; with harmonics)."""
+    t = np.arange(int(periods / frequency * SAMPLING)) / SAMPLING
+    rms = np.sqrt(0.5 * sum(a * a for a in amplitudes.values()))
+    curvature = sum((k * a) ** 2 / 2.0 for k, a in amplitudes.items()) * np.sum((t - t.mean()) ** 2)
+    return level * rms / (2.0 * pi * np.sqrt(curvature))
+
+
+@pytest.mark.parametrize("amplitudes", [SINE, STRONG_HARMONICS, WEAK_FUNDAMENTAL])
+@pytest.mark.parametrize("level", [0.04, 0.1])
+def test_near_the_least_error_that_is_possible(amplitudes, level):
+    random = np.random.default_rng(5)
+    errors = []
+    for _ in range(60):
+        frequency, periods = random.uniform(4.0, 32.0), random.uniform(6.0, 20.0)
+        t, signal = record(random, frequency, periods, amplitudes, level)
+        found = estimate_frequency(t, signal)
+        errors.append((found - frequency) / cramer_rao(periods, frequency, amplitudes, level))
+    assert np.sqrt(np.mean(np.square(errors))) < 1.3
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.9])
+@pytest.mark.parametrize("amplitudes", [SINE, STRONG_HARMONICS])
+def test_standard_errors_are_right_whatever_the_noise(amplitudes, correlation):
+    random = np.random.default_rng(6)
+    offs, drifts, significant = [], [], 0
+    for _ in range(150):
+        frequency, periods = random.uniform(4.0, 32.0), random.uniform(6.0, 12.0)
+        t, signal = record(random, frequency, periods, amplitudes, 0.07, correlation)
+        tone = near(t, signal, frequency * random.uniform(0.95, 1.05))
+        offs.append((tone.frequency - frequency) / tone.std)
+        drifts.append(tone.drift / tone.drift_std)
+        significant += tone.drifts or tone.differs(frequency)
+    assert np.std(offs) == pytest.approx(1.0, abs=0.25)
+    assert np.std(drifts) == pytest.approx(1.0, abs=0.25)
+    assert significant == 0
+
+
+def test_few_cycles_raise_no_false_alarm():
+    random = np.random.default_rng(7)
+    for _ in range(300):
+        t, signal = record(random, 11.0, 4.02, SINE, 0.1, 0.9)
+        tone = near(t, signal, 11.0)
+        assert not tone.drifts
+        assert not tone.differs(11.0)
+
+
+@pytest.mark.parametrize("change", [0.01, -0.01])
+def test_drift_is_measured_with_its_sign(change):
+    random = np.random.default_rng(8)
+    t, signal = record(random, 20.0, 20.4, STRONG_HARMONICS, 0.04, change=change)
+    found, std = drift(t, signal, 20.0)
+    assert found == pytest.approx(change, abs=4.0 * std)
+    assert std < 1e-3
+    assert near(t, signal, 20.0).drifts
+
+
+def test_a_foreign_tone_is_no_drift():
+    """A tone next to the input's frequency turns its phase, but not in step with a drift."""
+    random = np.random.default_rng(9)
+    for phase in np.linspace(0.0, 2.0 * pi, 9):
+        t, signal = record(random, 20.0, 8.4, STRONG_HARMONICS, 0.04)
+        tone = near(t, signal + 0.1 * np.sin(2.0 * pi * 21.3 * t + phase), 20.0)
+        assert not tone.drifts
+        assert not tone.differs(20.0)
+
+
+def test_noise_alone_has_no_frequency():
+    random = np.random.default_rng(10)
+    t = np.arange(2000) / SAMPLING
+    found = [estimate_frequency(t, random.normal(size=t.size)) for _ in range(30)]
+    assert np.isnan(found).sum() >= 29
+
+
+def test_only_what_repeats_stands_out():
+    t, signal = record(np.random.default_rng(11), 20.0, 10.3, SINE, 0.04)
+    assert stands_out(t, signal, 20.0)
+    for other in (10.0, 14.0, 40.0):
+        assert not stands_out(t, signal, other)

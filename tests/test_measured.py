@@ -1,0 +1,352 @@
+"""Measured data: what is read is what was written, and every fault is named with its place."""
+
+from math import pi
+
+import netCDF4
+import numpy as np
+import pytest
+
+from tests import fixture_measured
+from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, lines, vibration
+from wedgesweep import measured
+from wedgesweep.measured import noise
+from wedgesweep.measured.declarations import SCALES
+from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.measured.sampling import even_grid, resolution
+
+
+@pytest.fixture
+def bench(tmp_path):
+    return measured.read(fixture_measured.write(tmp_path))
+
+
+def problems(path, **more):
+    with pytest.raises(measured.MeasuredError) as caught:
+        measured.read(path, **more)
+    return caught.value.problems
+
+
+def test_si_units_and_what_is_not_known(tmp_path, bench):
+    t, d, v = vibration()
+    test = bench.tests[0]
+    assert (bench.title, bench.law, bench.model.title) == ("bench", "static-dynamic", "on trial")
+    assert (test.name, test.file, test.frequency) == ("one", "one.csv", FREQUENCY)
+    assert (test.amplitude, test.amplitude_std) == (pytest.approx(3e-4), 0.01)
+    np.testing.assert_allclose(test.time, t, atol=1e-12)
+    np.testing.assert_allclose(test.displacement, d * 1e-3, rtol=1e-5)
+    np.testing.assert_allclose(test.velocity, v * 1e-3, rtol=1e-5)
+    text = MEASURED.split("frequency_hz")[0].replace('velocity = { column = "v", unit = "mm/s" }\n', "")
+    (tmp_path / "measured.toml").write_text(text)
+    test = measured.read(tmp_path / "measured.toml").tests[0]
+    assert (test.frequency, test.amplitude, test.amplitude_std, test.velocity) == (None, None, 0.0, None)
+
+
+@pytest.mark.parametrize(
+    ("units", "factors"),
+    [
+        (("ms", "um", "m/s"), (1e3, 1e3, 1e-3)),
+        (("s", "m", "mm/s"), (1.0, 1e-3, 1.0)),
+    ],
+)
+def test_every_unit_gives_the_same_data(tmp_path, bench, units, factors):
+    text = MEASURED.replace('"s"', f'"{units[0]}"')
+    text = text.replace('"mm"', f'"{units[1]}"').replace('"mm/s"', f'"{units[2]}"')
+    rows = np.column_stack(vibration()) * factors
+    csv = ["t,d,v", *(",".join(f"{each:.9g}" for each in row) for row in rows)]
+    other = measured.read(fixture_measured.write(tmp_path, text, csv=csv)).tests[0]
+    for name in ("time", "displacement", "velocity"):
+        np.testing.assert_allclose(getattr(other, name), getattr(bench.tests[0], name), rtol=1e-5, atol=1e-9)
+
+
+def test_channels_that_nobody_asked_for_may_hold_anything(tmp_path, bench):
+    csv = [f'"{i}, fine",{line}' for i, line in enumerate(lines())]
+    other = measured.read(fixture_measured.write(tmp_path, csv=csv)).tests[0]
+    assert np.array_equal(other.displacement, bench.tests[0].displacement)
+
+
+def test_a_model_instead_of_the_one_that_is_named(tmp_path):
+    path = fixture_measured.write(tmp_path)
+    (tmp_path / "other.toml").write_text(MODEL.replace("static-dynamic", "coulomb"))
+    assert measured.read(path, tmp_path / "other.toml").law == "coulomb"
+
+
+def test_the_scales_of_the_parameters_family_can_be_uncertain(tmp_path):
+    table = "".join(f"{name} = 0.0{i}\n" for i, name in enumerate(SCALES, 1))
+    text = MEASURED.replace("[[measurement.test]]", f"[measurement.uncertain]\n{table}[[measurement.test]]")
+    found = measured.read(fixture_measured.write(tmp_path, text)).uncertain
+    assert found == {name: i / 100.0 for i, name in enumerate(SCALES, 1)}
+    assert set(SCALES) == {"bolster_stiffness", "wedge_stiffness", "bolster_mass", "friction_level"}
+
+
+def edited(number, edit):
+    """The CSV with one line changed; line numbers from 1."""
+    csv = lines()
+    csv[number - 1 : number] = edit(csv[number - 1].split(","))
+    return csv
+
+
+def joined(edit):
+    return lambda cells: [",".join(edit(cells))]
+
+
+TOML_FAULTS = {
+    "not TOML": (("[measurement]", "[measurement"), "measured.toml: not valid TOML: Expected"),
+    "near miss": (("frequency_hz", "frequncy_hz"), 'test[0].frequncy_hz: unknown key; did you mean "freq'),
+    "unknown table": (
+        ("[[measurement.test]]", "[measurement.uncertian]\n[[measurement.test]]"),
+        'measurement.uncertian: unknown key; did you mean "uncertain"?',
+    ),
+    "not a scale": (
+        ("[[measurement.test]]", "[measurement.uncertain]\npreload = 0.1\n[[measurement.test]]"),
+        "measurement.uncertain.preload: unknown key",
+    ),
+    "std of 2": (
+        ("[[measurement.test]]", "[measurement.uncertain]\nbolster_mass = 2.0\n[[measurement.test]]"),
+        "measurement.uncertain.bolster_mass: 2.0 is out of range; it must be less than 1",
+    ),
+    "no model": (('model = "model.toml"\n', ""), 'measurement.model: missing; write model = "model.toml"'),
+    "absent model": (("model.toml", "none.toml"), "none.toml: No such file"),
+    "no time": (
+        ('time = { column = "t", unit = "s" }\n', ""),
+        'columns.time: missing; write time = { column = "t", unit = "s" }',
+    ),
+    "no test": (
+        (MEASURED[MEASURED.index("[[") :], ""),
+        "measurement.test: missing; write [[measurement.test]] with file",
+    ),
+    "wrong unit": (
+        ('unit = "mm" ', 'unit = "cm" '),
+        'displacement.unit: unknown unit "cm"; valid here: m, mm',
+    ),
+    "unit of another channel": (
+        ('unit = "mm/s"', 'unit = "mm"'),
+        'velocity.unit: unknown unit "mm"; valid here: m/s',
+    ),
+    "negative amplitude": (("0.3", "-0.3"), "test[0].amplitude_mm: -0.3 is out of range; it must be greater"),
+    "negative std": (
+        ("0.01", "-0.01"),
+        "test[0].amplitude_std: -0.01 is out of range; it must be at least 0",
+    ),
+    "std of nothing": (("amplitude_mm = 0.3\n", ""), "test[0].amplitude_std: there is no amplitude_mm"),
+    "negative frequency": (("20.0", "-20.0"), "test[0].frequency_hz: -20.0 is out of range"),
+    "text as frequency": (("20.0", '"20"'), 'test[0].frequency_hz: "20" is not a finite number'),
+    "above Nyquist": (("20.0", "600.0"), "600 is not below half the sampling rate of "),
+    "twice the same file": (
+        ("[[measurement.test]]", '[[measurement.test]]\nfile = "one.csv"\n[[measurement.test]]'),
+        "test[1].file: repeats test[0].file",
+    ),
+    "absent data": (("one.csv", "two.csv"), "two.csv: No such file"),
+    "unknown column": (('"d"', '"dd"'), 'one.csv:1: no column "dd" (displacement); did you mean "d"?'),
+    "another frequency": (("20.0", "20.2"), "test[0].frequency_hz: 20.2, but "),
+    "a harmonic's frequency": (("20.0", "10.0"), "one.csv vibrates at 20"),
+    "far from the frequency": (("20.0", "33.0"), "one.csv vibrates at 20"),
+}
+CSV_FAULTS = {
+    "empty": ([], "one.csv:1: empty; the first line must hold the names"),
+    "header only": (["t,d,v"], "one.csv: no data below the header"),
+    "duplicate header": (
+        [f"{line},{'d' if i == 0 else 1}" for i, line in enumerate(lines())],
+        'one.csv:1: column "d" is there 2 times',
+    ),
+    "other separator": ([line.replace(",", ";") for line in lines()], "one.csv:1: one column only"),
+    "text": (edited(8, joined(lambda c: [c[0], "n/a", c[2]])), 'one.csv:8: d: "n/a" is not a finite number'),
+    "NaN": (edited(9, joined(lambda c: [c[0], c[1], "nan"])), 'one.csv:9: v: "nan" is not a finite number'),
+    "empty cell": (edited(7, joined(lambda c: [c[0], "", c[2]])), "one.csv:7: d: an empty cell is not a"),
+    "missing cell": (edited(6, joined(lambda c: c[:2])), "one.csv:6: 2 cells; the header has 3"),
+    "too many cells": (edited(6, joined(lambda c: [*c, "1"])), "one.csv:6: 4 cells; the header has 3"),
+    "time back": (
+        edited(9, joined(lambda c: ["0.0009", *c[1:]])),
+        "one.csv:9: time goes back (0.0009 follows",
+    ),
+    "time stands": (
+        edited(9, joined(lambda c: ["0.0060", *c[1:]])),
+        "one.csv:9: time stands still (0.006 fol",
+    ),
+    "gap": (edited(99, lambda cells: []), "one.csv:99: a gap of 1 samples after 0.096"),
+    "gap at the end": (edited(510, lambda cells: []), "one.csv:510: a gap of 1 samples after 0.507"),
+    "uneven": (edited(50, joined(lambda c: ["0.0484", *c[1:]])), "one.csv:50: sampling not constant (0.0014"),
+    "few samples": (lines()[:6], "one.csv:6: ends after 5 samples"),
+    "few periods": (lines(periods=3.9), "one.csv: covers 3.9 periods of 20 Hz; at least 4 are needed"),
+    "dead channel": (
+        [
+            ",".join([line.split(",")[0], line.split(",")[1], "1" if i else "v"])
+            for i, line in enumerate(lines())
+        ],
+        "one.csv: velocity never changes",
+    ),
+    "drift": (lines(drift=0.02), "one.csv: the frequency drifts by +2.1 %"),
+}
+
+
+@pytest.mark.parametrize("fault", TOML_FAULTS)
+def test_faults_of_the_document(tmp_path, fault):
+    (old, new), words = TOML_FAULTS[fault]
+    assert old in MEASURED
+    found = problems(fixture_measured.write(tmp_path, MEASURED.replace(old, new, 1)))
+    assert len(found) == 1, found
+    assert words in found[0]
+    assert found[0].startswith(str(tmp_path))
+
+
+@pytest.mark.parametrize("fault", CSV_FAULTS)
+def test_faults_of_the_data(tmp_path, fault):
+    csv, words = CSV_FAULTS[fault]
+    found = problems(fixture_measured.write(tmp_path, csv=csv))
+    assert len(found) == 1, found
+    assert words in found[0]
+    assert found[0].startswith(f"{tmp_path}/one.csv")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            '"static-dynamic"',
+            '["coulomb", "exponential"]',
+            "sweep.friction_law: coulomb, exponential; a model",
+        ),
+        ("beta", "betta", "model.toml: sweep.betta: unknown key"),
+    ],
+)
+def test_faults_of_the_model(tmp_path, old, new, words):
+    found = problems(fixture_measured.write(tmp_path, model=MODEL.replace(old, new)))
+    assert words in found[0]
+    assert "model.toml" in found[0]
+
+
+def test_all_faults_are_told_at_once(tmp_path):
+    text = MEASURED.replace("0.3", "-1.0") + '[[measurement.test]]\nfile = "absent.csv"\n'
+    csv = edited(5, joined(lambda c: ["0.0001", *c[1:]]))
+    found = "\n".join(problems(fixture_measured.write(tmp_path, text, MODEL.replace("beta", "bta"), csv)))
+    for words in ("amplitude_mm: -1.0", "absent.csv: No such file", "one.csv:5: time goes", "sweep.bta"):
+        assert words in found
+
+
+def test_many_faulty_lines_are_counted(tmp_path):
+    csv = [line if i < 20 else line.replace(".", "x") for i, line in enumerate(lines())]
+    assert "more such faults" in problems(fixture_measured.write(tmp_path, csv=csv))[-1]
+
+
+def test_a_record_without_vibration_needs_a_frequency(tmp_path):
+    random = np.random.default_rng(3)
+    csv = [
+        "t,d,v",
+        *(f"{i / 1000:.4f},{a:.6g},{b:.6g}" for i, (a, b) in enumerate(random.normal(size=(600, 2)))),
+    ]
+    path = fixture_measured.write(tmp_path, MEASURED.replace("frequency_hz = 20.0\n", ""), csv=csv)
+    assert "no vibration stands out of the noise; state frequency_hz" in problems(path)[0]
+
+
+@pytest.mark.parametrize(("rate", "decimals"), [(1000.0, 3), (3000.0, 4), (2038.8, 4), (1 / 0.0015, 3)])
+def test_rounded_stamps_are_an_even_grid(rate, decimals):
+    times = 2.0 + np.arange(3000) / rate
+    faults = []
+    grid = even_grid(np.round(times, decimals), str, faults)
+    assert faults == []
+    assert np.abs(grid - times).max() < 0.6 * 10.0**-decimals
+    # One sample missing shows all the same.
+    assert even_grid(np.round(np.delete(times, 1700), decimals), str, faults).size == 0
+    assert faults[0].startswith("1700: a gap of 1 samples")
+
+
+def test_stamps_of_limited_digits_and_of_a_slow_clock():
+    times = np.arange(4000) / 700.0
+    stamps = np.array([float(f"{t:.5g}") for t in times])
+    assert resolution(stamps)[[10, 100, -1]] == pytest.approx([1e-6, 1e-5, 1e-4])
+    faults = []
+    assert even_grid(stamps, str, faults).size == 4000
+    assert faults == []
+    assert even_grid(times * (1.0 + 1e-3 * times / times[-1]), str, faults).size == 0
+    assert "sampling not constant" in faults[0]
+
+
+def test_noise_is_what_does_not_repeat(bench):
+    test = bench.tests[0]
+    found = noise.of_channel(test.time, test.displacement, FREQUENCY)
+    assert found.std == pytest.approx(NOISE * 1e-3, rel=0.1)
+    assert found.share == pytest.approx(NOISE / np.sqrt(0.5 * (1.0 + 0.3**2)), rel=0.1)
+    assert found.harmonics[:2] == (1, 3)
+    velocity = noise.of_channel(test.time, test.velocity, FREQUENCY)
+    assert velocity.std == pytest.approx(NOISE * 2.0 * pi * FREQUENCY * 1e-3, rel=0.1)
+
+
+def same(one, other):
+    assert (one.title, one.law, one.uncertain) == (other.title, other.law, other.uncertain)
+    assert one.derived_velocity == other.derived_velocity
+    assert one.model == other.model
+    for a, b in zip(one.tests, other.tests, strict=True):
+        for name in ("name", "file", "frequency", "amplitude_std"):
+            assert getattr(a, name) == getattr(b, name)
+        assert a.amplitude == b.amplitude
+        np.testing.assert_allclose(a.time, b.time, rtol=1e-12, atol=1e-15)
+        assert np.array_equal(a.displacement, b.displacement)
+        assert (a.velocity is None) == (b.velocity is None)
+        assert a.velocity is None or np.array_equal(a.velocity, b.velocity)
+
+
+def test_netcdf_holds_the_same(tmp_path):
+    text = MEASURED.replace('"mm/s" }', '"mm/s", derived = true }')
+    text = text.replace("[[", "[measurement.uncertain]\nfriction_level = 0.1\n[[", 1)
+    text += '[[measurement.test]]\nfile = "two.csv"\n'
+    path = fixture_measured.write(tmp_path, text)
+    (tmp_path / "two.csv").write_text("\n".join(lines(frequency=8.0, periods=5.2, seed=1)))
+    bench = measured.read(path)
+    assert bench.derived_velocity
+    assert bench.tests[1].frequency is None
+    write_netcdf(bench, tmp_path / "bench.nc")
+    same(measured.read(tmp_path / "bench.nc"), bench)
+    assert sorted(each.suffix for each in tmp_path.iterdir()) == [".csv", ".csv", ".nc", ".toml", ".toml"]
+
+
+NETCDF_FAULTS = {
+    "unknown attribute": (lambda file, test: file.setncattr("titel", "x"), 'did you mean "title"?'),
+    "no model": (lambda file, test: file.delncattr("model"), "model: missing"),
+    "faulty model": (
+        lambda file, test: file.setncattr("model", MODEL.replace("beta", "betta")),
+        "bench.nc: model: sweep.betta",
+    ),
+    "uncertain": (lambda file, test: file["uncertain"].setncattr("mu", 0.1), "uncertain: mu: unknown key"),
+    "key of a test": (
+        lambda file, test: test.setncattr("amplitude", 0.1),
+        "tests/0000: amplitude: unknown key",
+    ),
+    "amplitude": (
+        lambda file, test: test.setncattr("amplitude_mm", -0.1),
+        "tests/0000: amplitude_mm: -0.1 is out",
+    ),
+    "units": (lambda file, test: test["time"].setncattr("units", "min"), 'time: unknown units "min"'),
+    "name": (lambda file, test: test.renameVariable("velocity", "speed"), "speed: unknown variable"),
+    "absent": (lambda file, test: test.renameVariable("time", "stamps"), "no variable time"),
+    "NaN": (lambda file, test: test["velocity"].__setitem__(7, np.nan), "velocity: sample 7 is not a finite"),
+    "gap": (
+        lambda file, test: test["time"].__setitem__(slice(300, None), test["time"][300:] + 0.002),
+        "sample 300: a gap of 2 samples",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", NETCDF_FAULTS)
+def test_faults_of_a_netcdf_file(tmp_path, bench, fault):
+    spoil, words = NETCDF_FAULTS[fault]
+    path = tmp_path / "bench.nc"
+    write_netcdf(bench, path)
+    with netCDF4.Dataset(path, "a") as file:
+        spoil(file, file["tests/0000"])
+    found = problems(path)
+    assert any(words in problem for problem in found), found
+    assert all(problem.startswith(str(path)) for problem in found)
+
+
+def test_files_that_are_not_netcdf_or_hold_no_test(tmp_path):
+    (tmp_path / "text.nc").write_text("text")
+    assert "give the path of a netCDF file" in problems(tmp_path / "text.nc")[0]
+    netCDF4.Dataset(tmp_path / "empty.nc", "w").close()
+    assert "no tests" in "".join(problems(tmp_path / "empty.nc"))
+
+
+def test_which_files_are_measured_data(tmp_path):
+    path = fixture_measured.write(tmp_path)
+    assert measured.is_measured(path)
+    assert measured.is_measured(tmp_path / "any.nc")
+    for other in ("model.toml", "one.csv", "absent.toml"):
+        assert not measured.is_measured(tmp_path / other)

@@ -1,0 +1,206 @@
+"""The page of a diagnosis: the answer first, everything in it, nothing outside of it."""
+
+import json
+import re
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import pytest
+
+from tests import fixture_diagnosis
+from wedgesweep import diagnosed, digits, report
+from wedgesweep.diagnosed import VERDICTS
+from wedgesweep.effects import EFFECTS
+from wedgesweep.errors import InputError, SweepError
+from wedgesweep.report import html
+from wedgesweep.report.pictures import Pictures
+
+VOID = {"meta", "img", "link", "br"}
+
+
+class Page(HTMLParser):
+    """Tags with their attributes, headings, texts; complains of tags that are not closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.headings, self.open, self.texts = [], [], [], []
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.texts.append(data)
+        if self.open and re.fullmatch("h[1-6]", self.open[-1]):
+            self.headings.append((int(self.open[-1][1]), data))
+
+    def of(self, tag):
+        return [attributes for name, attributes in self.tags if name == tag]
+
+    @property
+    def text(self):
+        return plain(" ".join(" ".join(self.texts).split()))
+
+
+def plain(text):
+    return text.replace(digits.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
+
+
+@pytest.fixture
+def no_pictures(monkeypatch):
+    """Pages without figures, where they do not matter."""
+    monkeypatch.setattr(Pictures, "__call__", lambda self, kind, words, tests=None: html.paragraph(words))
+
+
+@pytest.fixture(scope="module", params=VERDICTS)
+def written(request, tmp_path_factory):
+    """Verdict, directory and page of a diagnosis of each verdict."""
+    directory = tmp_path_factory.mktemp(request.param)
+    # Beyond six tests there are figures that are folded away: once is enough.
+    fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 4)
+    return request.param, directory, Page(report.write(directory).read_text(encoding="utf-8"))
+
+
+def test_the_answer_comes_first(written):
+    verdict, directory, page = written
+    sentence = plain(report.sentence(directory))
+    assert sentence.endswith(".")
+    assert page.text.index(sentence) < page.text.index(f"Verdict: {verdict}".split(":")[0])
+    assert page.text.index(sentence) < page.text.index("How it was done")
+
+
+def test_nothing_comes_from_elsewhere(written):
+    _, directory, page = written
+    addresses = [image["src"] for image in page.of("img")]
+    assert addresses
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses)
+    assert {link["href"] for link in page.of("a")} <= {
+        "extended.toml",
+        *(f"#{tag['id']}" for _, tag in page.tags if "id" in tag),
+    }
+    assert not page.of("script")
+    assert not page.of("link")
+    text = (directory / report.PAGE).read_text(encoding="utf-8")
+    assert not re.search(r"https?://|url\(|@import", text)
+
+
+def test_accessible(written):
+    _, _, page = written
+    assert all(len(image["alt"]) > 40 and image["width"] and image["height"] for image in page.of("img"))
+    levels = [level for level, _ in page.headings]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+    assert all(head["scope"] in ("row", "col") for head in page.of("th"))
+    assert len(page.of("caption")) == len(page.of("table"))
+
+
+def test_every_candidate_limit_and_number_is_told(written):
+    _, directory, page = written
+    document = diagnosed.read(directory).document
+    for each in document["candidates"]:
+        assert " + ".join(each["effects"]) in page.text
+    for effect in (*document["detectable"], *document["not_testable"]):
+        assert effect in page.text
+    for test in document["misfit"]["tests"]:
+        assert test["name"] in page.text
+
+
+NAMED = "guide_friction; force 2.13 N, 95 % interval 1.95 to 2.31 N"
+SAID = {
+    "nothing-missing": ("Nothing is missing", "p = 0."),
+    "named": (
+        "Two causes together explain",
+        "stribeck; peak 0.080, 95 % interval 0.070 to 0.090",
+        NAMED,
+        "of the excess is gone",
+    ),
+    "consistent-with": ("The tests are consistent with", NAMED, "evidence is weak"),
+    "tied": ("Two explanations", "(guide_friction, behind by 3.2)", "24 Hz and 0.1 mm would tell them apart"),
+    "data-insufficient": ("cannot show what", "24 Hz and 0.1 mm", "stribeck from guide_friction"),
+    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, is still off by"),
+}
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_sentence(verdict, tmp_path):
+    fixture_diagnosis.write(tmp_path, verdict)
+    sentence = plain(report.sentence(tmp_path))
+    for words in SAID[verdict]:
+        assert words in sentence
+    # One sentence: a stop only inside numbers and at the end.
+    assert not re.search(r"\.\s", sentence)
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_equations_of_what_was_added(tmp_path):
+    fixture_diagnosis.write(tmp_path, "consistent-with")
+    page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
+    assert "R = -force sign(z')" in page.text
+    assert EFFECTS["guide_friction"].meaning in page.text
+    assert "Family: missing-force" in page.text
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_text_of_the_user_is_not_markup(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "named")
+    document["title"] = 'run <script>alert("1")</script> & $title'
+    document["misfit"]["tests"][0]["name"] = "<b>00</b>"
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
+    assert not page.of("script")
+    assert not page.of("b")
+    assert 'alert("1")</script> & $title' in page.text
+    assert html.element("p", "a < b", title='"') == '<p title="&quot;">a &lt; b</p>'
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_numbers_that_are_missing(tmp_path):
+    """Few tests, no velocity, no interval, nothing detectable, fits without numbers."""
+    document, _ = fixture_diagnosis.write(tmp_path, "named", tests=5, velocity=False, known=False)
+    document["detectable"], document["not_testable"], document["uncertain"] = {}, [], {}
+    document["misfit"]["tests"][1]["q_base"] = None
+    document["causes"][0]["parameters"]["peak"] = {"value": None, "ci95": [None, None]}
+    document["causes"][0]["parameters"]["velocity_mm_per_s"]["ci95"] = [None, None]
+    document["gain"]["ci95"] = None
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    for words in (
+        "peak not determined",
+        "velocity 5.10 mm/s, no interval",
+        "too few tests for an interval",
+        "No effect can be shown",
+        "No test has a known input amplitude",
+    ):
+        assert words in text
+
+
+def test_what_is_missing_or_damaged_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"diagnosis\.json: no such file; 'wedgesweep diagnose"):
+        report.write(tmp_path)
+    document, data = fixture_diagnosis.write(tmp_path)
+    file = tmp_path / diagnosed.JSON
+    for broken, words in (
+        ("{", "not JSON"),
+        ("[]", "must hold an object"),
+        (json.dumps({**document, "verdict": "guilty"}), "'guilty' is none of nothing-missing"),
+        (json.dumps({key: each for key, each in document.items() if key != "gain"}), "gain: missing"),
+    ):
+        file.write_text(broken, encoding="utf-8")
+        with pytest.raises(InputError, match=re.escape(words)):
+            report.write(tmp_path)
+    file.write_text(json.dumps(document), encoding="utf-8")
+    data.drop_vars("q").to_netcdf(tmp_path / diagnosed.DATASET, engine="netcdf4")
+    with pytest.raises(InputError, match=r"diagnosis\.nc: has no q"):
+        report.write(tmp_path)
+    (tmp_path / diagnosed.DATASET).write_bytes(b"half a dataset")
+    with pytest.raises(SweepError, match="damaged"):
+        report.write(tmp_path)
+    assert {each.name for each in tmp_path.iterdir()} == {diagnosed.JSON, diagnosed.DATASET}

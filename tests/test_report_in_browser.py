@@ -1,0 +1,89 @@
+"""The report in a real browser, opened from disk: whole, quiet, readable in light, dark and on paper."""
+
+import pytest
+
+from tests import browser, fixture_diagnosis
+from wedgesweep import report
+
+pytestmark = pytest.mark.skipif(browser.PROGRAM is None, reason="no chromium or chrome here")
+
+# Contrast of WCAG 2 between the colours of all texts and the background behind them, the least of them.
+CONTRAST = """(() => {
+  const channels = colour => colour.match(/[\\d.]+/g).map(Number);
+  const linear = c => (c /= 255) <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+  const light = colour => {
+    const [r, g, b] = channels(colour).map(linear);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const behind = node => {
+    const colour = getComputedStyle(node).backgroundColor;
+    return node.parentElement && channels(colour)[3] === 0 ? behind(node.parentElement) : colour;
+  };
+  const texts = document.querySelectorAll("p, h1, h2, h3, th, td, a, summary, figcaption, caption, pre");
+  return Math.min(...[...texts].map(node => {
+    const both = [light(getComputedStyle(node).color), light(behind(node))].sort((a, b) => b - a);
+    return (both[0] + 0.05) / (both[1] + 0.05);
+  }));
+})()"""
+
+
+@pytest.fixture(scope="module")
+def tab():
+    with browser.tab() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("named")
+    fixture_diagnosis.write(directory, "named", tests=8)
+    return report.write(directory)
+
+
+def test_opens_without_error_and_without_network(tab, page):
+    tab.open(page)
+    assert tab.evaluate("document.readyState") == "complete"
+    faults = [event["entry"] for event in tab.of("Log.entryAdded")]
+    assert faults + tab.of("Runtime.consoleAPICalled") + tab.of("Runtime.exceptionThrown") == []
+    asked = {event["request"]["url"].partition(":")[0] for event in tab.of("Network.requestWillBeSent")}
+    assert asked <= {"file", "data"}
+    assert tab.of("Network.loadingFailed") == []
+    assert tab.evaluate("document.querySelector('main p').innerText") == report.sentence(page.parent)
+
+
+def test_the_browser_would_tell_of_an_error(tab, tmp_path):
+    """The listeners above hear: a page that asks for what is not there, and logs, is told of."""
+    page = tmp_path / "page.html"
+    page.write_text("<img src='http://127.0.0.1:9/none.png'><script>console.error('heard')</script>")
+    tab.open(page)
+    assert tab.of("Runtime.consoleAPICalled")
+    assert any(event["request"]["url"].startswith("http") for event in tab.of("Network.requestWillBeSent"))
+
+
+def test_every_figure_has_a_size_and_is_inside_the_page(tab, page):
+    for width in (1100, 390):
+        tab.open(page, width=width)
+        tab.evaluate("document.querySelectorAll('details').forEach(each => each.open = true)")
+        tab.evaluate("Promise.all([...document.images].map(each => each.decode())).then(() => true)")
+        sizes = tab.evaluate("[...document.images].map(i => [i.naturalWidth, i.width, i.height, i.complete])")
+        assert len(sizes) >= 10
+        assert all(
+            natural > 0 and 0 < shown <= width and high > 0 and done for natural, shown, high, done in sizes
+        )
+        assert tab.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_texts_stand_out_in_light_and_dark(tab, page):
+    backgrounds = []
+    for dark in (False, True):
+        tab.open(page, dark=dark)
+        backgrounds.append(tab.evaluate("getComputedStyle(document.body).backgroundColor"))
+        assert tab.evaluate(CONTRAST) > 4.5
+    assert backgrounds[0] != backgrounds[1]
+
+
+def test_prints(tab, page, tmp_path):
+    tab.open(page, dark=True)
+    assert tab.print().startswith(b"%PDF")
+    tab.screenshot(tmp_path / "page.png")
+    assert (tmp_path / "page.png").stat().st_size > 100_000

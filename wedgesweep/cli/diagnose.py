@@ -1,0 +1,86 @@
+"""diagnose: measured data in, a named cause (or an honest refusal) out."""
+
+from pathlib import Path
+
+import click
+
+from wedgesweep.cli.failure import Failure
+from wedgesweep.cli.options import N_JOBS, jobs
+
+FIGURE_KINDS = ("misfit", "candidates", "gain")
+
+
+@click.command()
+@click.argument("measured", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "--model",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Config of the model on trial, instead of the one that MEASURED names.",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Directory of the result; default: MEASURED's name with -diagnosis, here.",
+)
+@N_JOBS
+@click.option("--effects", metavar="A,B,...", help="Only these candidates; default: all.")
+@click.option("--calibrate", is_flag=True, help="Thresholds by simulation of these very tests (minutes).")
+def diagnose(
+    measured: Path,
+    model: Path | None,
+    output: Path | None,
+    n_jobs: int | None,
+    effects: str | None,
+    calibrate: bool,
+) -> None:
+    """Say what the simulation of the data in MEASURED gets wrong, and why.
+
+    MEASURED is a measured.toml with its CSV files, or the same as one netCDF file.
+    """
+    chosen = _chosen(effects)
+    from wedgesweep import measured as data
+    from wedgesweep import report
+    from wedgesweep.diagnose import diagnosis, result
+
+    measurement = data.read(measured, model)
+    directory = output or Path(f"{measured.resolve().parent.name}-diagnosis")
+    if directory.exists() and not directory.is_dir():
+        message = f"{directory}: not a directory"
+        raise Failure(message)
+    found = diagnosis.diagnose(measurement, chosen, jobs(n_jobs), _said, calibrate)
+    result.write(found, directory)
+    _draw(directory)
+    page = report.write(directory)
+    click.echo(report.sentence(directory))
+    click.echo(f"wrote {page}")
+
+
+def _draw(directory: Path) -> None:
+    """Write the figures beside the data; one that the tests cannot fill is left out."""
+    from wedgesweep import diagnosed, figures
+    from wedgesweep.figures.diagnosis import FIGURES
+
+    found = diagnosed.read(directory)
+    for kind in FIGURE_KINDS:
+        try:
+            figures.save(FIGURES[kind].draw(found), directory / f"{kind}.png")
+        except ValueError as error:
+            click.echo(f"skipped {error}", err=True)
+
+
+def _said(step: str) -> None:
+    click.echo(f"  {step}", err=True)
+
+
+def _chosen(effects: str | None) -> tuple[str, ...]:
+    from wedgesweep.effects import EFFECTS
+
+    if effects is None:
+        return tuple(EFFECTS)
+    names = tuple(name.strip() for name in effects.split(",") if name.strip())
+    unknown = [name for name in names if name not in EFFECTS]
+    if unknown or not names:
+        message = f"--effects: {', '.join(unknown) or 'nothing'} is none of {', '.join(EFFECTS)}"
+        raise Failure(message)
+    return names

@@ -1,0 +1,70 @@
+"""Measured data as check prints them."""
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from wedgesweep.measured import Measurement, Test
+
+HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
+UNITS = ("", "Hz", "mm", "", "per period", "of displacement, velocity", "")
+
+
+def print_measurement(measurement: "Measurement") -> None:
+    """Print what was read, and a table of the tests."""
+    click.echo(f"{measurement.path}: valid\ntitle: {measurement.title}")
+    click.echo(f"model: {measurement.model.title}, {measurement.law}")
+    for name, std in measurement.uncertain.items():
+        click.echo(f"uncertain: {name}, {100.0 * std:.3g} %")
+    derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
+    click.echo(f"tests: {len(measurement.tests)}{derived}\n")
+    rows = [HEADINGS, UNITS, *map(_row, measurement.tests)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        click.echo("  ".join(cells).rstrip())
+
+
+def _row(test: "Test") -> tuple[str, ...]:
+    from wedgesweep.measured.frequency import estimate_frequency
+
+    known = test.frequency is not None
+    frequency = test.frequency or estimate_frequency(test.time, test.displacement)
+    noise, harmonics = _noise(test, frequency)
+    return (
+        test.file,
+        f"{frequency:.6g}{'' if known else ' (estimated)'}",
+        _amplitude(test),
+        f"{test.duration * frequency:.2f}",
+        f"{test.sampling_rate / frequency:.4g}",
+        noise,
+        harmonics,
+    )
+
+
+def _amplitude(test: "Test") -> str:
+    if test.amplitude is None:
+        return "unknown"
+    std = f" +- {100.0 * test.amplitude_std:.3g} %" if test.amplitude_std else ""
+    return f"{test.amplitude * 1e3:.6g}{std}"
+
+
+def _noise(test: "Test", frequency: float) -> tuple[str, str]:
+    """Noise per channel, and the harmonics of the displacement."""
+    from wedgesweep.measured import noise
+
+    displacement = noise.of_channel(test.time, test.displacement, frequency)
+    told = [f"{displacement.std * 1e3:.3g} mm ({100.0 * displacement.share:.2g} %)"]
+    if test.velocity is not None:
+        velocity = noise.of_channel(test.time, test.velocity, frequency)
+        told.append(f"{velocity.std * 1e3:.3g} mm/s ({100.0 * velocity.share:.2g} %)")
+    return ", ".join(told), _runs(displacement.harmonics)
+
+
+def _runs(orders: tuple[int, ...]) -> str:
+    """1, 2, 3, 5 as 1-3, 5."""
+    numbered = enumerate(orders)
+    runs = [[order for _, order in run] for _, run in groupby(numbered, lambda each: each[1] - each[0])]
+    return ", ".join(f"{run[0]}" if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs) or "none"

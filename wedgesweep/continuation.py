@@ -1,0 +1,61 @@
+"""Sweeps up and down in beta: each case starts from the steady state of its neighbour.
+
+A response that exists beside another one is found by where it came from. A line holds the cases of one law
+and one amplitude over all frequencies; the way up starts from rest, the way down where the way up ended. A
+state at phase 0 of the input (m, m/s) is handed on as it is; behind a case that failed comes rest.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from wedgesweep import dataset
+from wedgesweep.batch import solve_batch
+from wedgesweep.simulate import Settings
+
+COEXISTING, ALONE, NOT_TOLD = 1, 0, -1
+
+
+def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtype: np.dtype) -> np.ndarray:
+    """Records of whole lines, in any order: the way up, with the way down as ``dataset.CONTINUED``.
+
+    ``cases`` are parameter records, shape (n,). The lines do not depend on each other.
+    """
+    records = dataset.blank(dtype, indices)
+    for line in lines(cases):
+        up, states = solve_batch(cases[line], indices[line], settings, dtype, chain=True)
+        end = states[-1] if up["status"][-1] == 0 else np.zeros(2)
+        down = _back(cases[line], indices[line], settings, dtype, end)[0][::-1]
+        up["amplitude_ratio_down"], up["period_down"] = down["amplitude_ratio"], down["period"]
+        up["coexisting"] = compared(up, settings.steady_tolerance)
+        up["wall_time"] += down["wall_time"]
+        records[line] = up
+    return records
+
+
+def lines(cases: np.ndarray) -> Iterator[np.ndarray]:
+    """Places of the cases of each law and amplitude, by frequency."""
+    order = np.lexsort((cases["omega"], cases["amplitude"], cases["law"]))
+    line = cases[["law", "amplitude"]][order]
+    yield from np.split(order, np.flatnonzero(line[1:] != line[:-1]) + 1)
+
+
+def _back(
+    cases: np.ndarray, indices: np.ndarray, settings: Settings, dtype: np.dtype, state: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Records and states of the way down from a state at the highest frequency, without waveforms."""
+    bare = dtype[[name for name in dtype.names or () if name not in dataset.WAVEFORMS]]
+    starts = np.zeros((len(cases), 2))
+    starts[0] = state
+    return solve_batch(cases[::-1].copy(), indices[::-1], settings, bare, starts, chain=True)
+
+
+def compared(records: np.ndarray, steady_tolerance: float) -> np.ndarray:
+    """Whether both ways lead to different responses, as the flag of the dataset; shape (n,).
+
+    Without a periodic answer on both ways there is nothing to compare.
+    """
+    apart = np.abs(records["amplitude_ratio"] - records["amplitude_ratio_down"])
+    differ = (apart > dataset.APART * steady_tolerance) | (records["period"] != records["period_down"])
+    told = (records["period"] > 0) & (records["period_down"] > 0)
+    return np.where(told, np.where(differ, COEXISTING, ALONE), NOT_TOLD)

@@ -1,0 +1,143 @@
+"""The whole way from measured tests to a verdict."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wedgesweep.diagnose import gain, next_test, pairs, score, tone, verdict
+from wedgesweep.diagnose.calibration import calibrate
+from wedgesweep.diagnose.fit import Fit
+from wedgesweep.diagnose.gain import Gain
+from wedgesweep.diagnose.next_test import NextTest
+from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.score import Score
+from wedgesweep.diagnose.search import Explanation, Search
+from wedgesweep.diagnose.spectra import spectrum
+from wedgesweep.diagnose.verdict import Finding, Thresholds
+from wedgesweep.effects import EFFECTS
+from wedgesweep.measured import Measurement, Test
+
+# Explanations that a next test should tell apart where the verdict abstains.
+COMPARED = 6
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything that was found; ``explanations`` are sorted, the best first."""
+
+    measurement: Measurement
+    problem: Problem
+    base: Explanation
+    explanations: tuple[Explanation, ...]
+    scores: tuple[Score, ...]
+    finding: Finding
+    gain: Gain | None
+    next_test: NextTest | None
+    thresholds: Thresholds
+    calibration: dict[str, float | None] | None = None
+
+    @property
+    def extended(self) -> Fit:
+        """The best explanation's fit, the base model's where the verdict is that nothing is missing."""
+        best = self.finding.best
+        return self.base.fit if best is None else best.fit
+
+
+def problem_of(measurement: Measurement) -> Problem:
+    """Spectra of all tests; frequencies that are not stated are estimated, a common foreign tone is found."""
+    from wedgesweep.measured.frequency import estimate_frequency
+
+    tests = measurement.tests
+    frequencies = [t.frequency or estimate_frequency(t.time, t.displacement) for t in tests]
+    signals = [_channels(test, measurement.derived_velocity) for test in tests]
+    found = [spectrum(t.time, s, f) for t, s, f in zip(tests, signals, frequencies, strict=True)]
+    foreign = tone.find(found)
+    if foreign is not None:
+        found = [
+            spectrum(test.time, signal, first.frequency, foreign)
+            if first.separates(np.array([foreign]))[0]
+            else first
+            for test, signal, first in zip(tests, signals, found, strict=True)
+        ]
+    known = [test.amplitude is not None for test in tests]
+    return Problem(
+        measurement.model,
+        measurement.law,
+        tuple(test.name for test in tests),
+        tuple(found),
+        np.array([test.amplitude if test.amplitude else np.nan for test in tests]),
+        np.array([t.amplitude_std if k else np.inf for t, k in zip(tests, known, strict=True)]),
+        dict(measurement.uncertain),
+        foreign,
+    )
+
+
+def _channels(test: Test, derived_velocity: bool) -> np.ndarray:
+    """Channels that say something of their own, (C, n)."""
+    if test.velocity is None or derived_velocity:
+        return test.displacement[None]
+    return np.array([test.displacement, test.velocity])
+
+
+def diagnose(
+    measurement: Measurement,
+    effects: Sequence[str] = tuple(EFFECTS),
+    threads: int = 1,
+    progress: Callable[[str], None] = lambda step: None,
+    calibrated: bool = False,
+) -> Diagnosis:
+    """Name what the model on trial misses, or say why it cannot be named.
+
+    ``calibrated``: with thresholds from simulations of these very tests, not the general ones.
+    """
+    problem = problem_of(measurement)
+    search = Search(problem, effects, threads, progress)
+    progress("base model")
+    base = search.base()
+    explanations = explain(search, base)
+    thresholds, simulated = verdict.DEFAULT, None
+    finding = verdict.decide(base, explanations, thresholds)
+    if calibrated:
+        simulated = calibrate(base, finding.best, explain, effects, threads, progress)
+        thresholds = simulated.thresholds
+        finding = verdict.decide(base, explanations, thresholds)
+    progress("scores")
+    scores = score.scores(search, base.fit)
+    measured_gain = None
+    if finding.best is not None and problem.tests > 1:
+        progress("held-out tests")
+        measured_gain = gain.measure(base.fit, finding.best.fit, search.each)
+    progress("next test")
+    following = next_test.recommend(_undecided(finding, explanations, thresholds))
+    return Diagnosis(
+        measurement,
+        problem,
+        base,
+        tuple(explanations),
+        tuple(scores),
+        finding,
+        measured_gain,
+        following,
+        thresholds,
+        simulated.as_dict() if simulated else None,
+    )
+
+
+def explain(search: Search, base: Explanation) -> list[Explanation]:
+    """All fits, best first: pairs only where no single effect will do."""
+    singles = search.singles(base.fit)
+    found = [each.explanation for each in singles]
+    best = min([base, *found], key=lambda each: each.penalised)
+    if best.fit.p < verdict.ADEQUATE and search.problem.tests >= verdict.FEWEST_TESTS:
+        found += pairs.pairs(search, base.fit, singles)
+    return sorted(found, key=lambda each: each.penalised)
+
+
+def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
+    """Fits that a next test should tell apart: a tie, or what comes closest where the verdict abstains."""
+    if finding.verdict == verdict.TIED and finding.best is not None:
+        return [finding.best.fit, *(each.fit for each in finding.rivals)]
+    if finding.verdict == verdict.INSUFFICIENT:
+        return [each.fit for each in verdict.ranked(explanations, thresholds.gap)[:COMPARED]]
+    return []

@@ -1,0 +1,330 @@
+"""Weighted least squares of a hypothesis and all that is unknown beside it (Levenberg and Marquardt).
+
+Unknown are the numbers of the hypothesis, the uncertain numbers of the model with their priors, and of
+each test its start phase and its input amplitude. Phases have a closed way out (``Problem.start_phase``);
+amplitudes are local to a test, so that each step solves for them test by test.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.stats import chi2
+
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.coordinates import Hypothesis, Values
+from wedgesweep.diagnose.problem import Problem, real
+from wedgesweep.diagnose.simulation import Warm
+
+# The effect that answers to a foreign tone.
+TONE = "stray_vibration"
+# Finite differences: share of a coordinate's width, and of an amplitude.
+STEP, AMPLITUDE_STEP = 2e-4, 2e-4
+# An exactly known amplitude, as a relative standard deviation.
+EXACT = 1e-6
+ITERATIONS = 25
+# A fit has arrived when a step promises less than this of Q, absolute and relative.
+ARRIVED, ARRIVED_SHARE = 0.02, 1e-5
+# Damping of a step at the start, and at which it has failed.
+DAMPING, STUCK = 1e-3, 1e8
+# Largest step of one iteration, in widths of the coordinates.
+LONGEST_STEP = 3.0
+# Largest relative step of an input amplitude.
+LONGEST_AMPLITUDE = 0.1
+
+
+@dataclass(frozen=True)
+class Point:
+    """A guess: numbers ``x`` (k + u,) of hypothesis and uncertain model, ``amplitude`` (T,) in logarithm."""
+
+    x: np.ndarray
+    amplitude: np.ndarray
+    warm: Warm
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left."""
+
+    point: Point
+    whitened: np.ndarray
+    harmonics: np.ndarray
+    phase: np.ndarray
+    residual: np.ndarray
+    prior: np.ndarray
+    found_tests: np.ndarray
+
+    @property
+    def found(self) -> bool:
+        return bool(self.found_tests.all())
+
+    @cached_property
+    def by_test(self) -> np.ndarray:
+        """Squared misfit of each test, its amplitude's prior included (T,)."""
+        return (self.residual**2).sum(-1) + self.prior[: len(self.residual)] ** 2
+
+    @cached_property
+    def q(self) -> float:
+        return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``trial.point.x``."""
+
+    model: "Model"
+    trial: Trial
+    covariance: np.ndarray
+    arrived: bool
+
+    @property
+    def q(self) -> float:
+        return self.trial.q
+
+    @property
+    def dof(self) -> int:
+        return self.model.dof
+
+    @property
+    def excess(self) -> float:
+        return self.q - self.dof
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.trial.point.x
+
+    @property
+    def p(self) -> float:
+        """Probability of a misfit this large if the model is right."""
+        return float(chi2.sf(self.q, self.dof))
+
+    @property
+    def values(self) -> Values:
+        """Numbers of the hypothesis in key units."""
+        return self.model.hypothesis.in_key_units(self.x[: self.model.size])
+
+    def amplitudes(self) -> np.ndarray:
+        """Input amplitudes (T,) in m."""
+        return self.model.reference * np.exp(self.trial.point.amplitude)
+
+
+class Model:
+    """A hypothesis on the tests of a problem: simulates, and knows what is free."""
+
+    def __init__(self, problem: Problem, hypothesis: Hypothesis, reference: np.ndarray) -> None:
+        self.problem, self.hypothesis, self.reference = problem, hypothesis, reference
+        self.size = len(hypothesis.coordinates)
+        self.toned = problem.tone is not None and TONE in hypothesis.effects
+        # An effect on trial is no nuisance at the same time: it is free of its prior.
+        self.uncertain = {k: s for k, s in problem.uncertain.items() if k not in hypothesis.effects}
+        self.low = np.r_[hypothesis.low, [0.2] * len(self.uncertain)]
+        self.high = np.r_[hypothesis.high, [5.0] * len(self.uncertain)]
+        self.width = np.r_[hypothesis.width, [0.1] * len(self.uncertain)]
+        self.prior_std = np.array(list(self.uncertain.values()))
+        self.amplitude_weight = 1.0 / np.maximum(problem.amplitude_std, EXACT)
+
+    @property
+    def dof(self) -> int:
+        """Data less what is fitted without a prior: phases, unknown amplitudes, the hypothesis."""
+        problem = self.problem
+        unknown = int(np.isinf(problem.amplitude_std).sum())
+        tones = sum(s.tone is not None for s in problem.spectra) if self.toned else 0
+        return int(problem.points.sum()) - problem.tests - unknown - tones - self.size
+
+    def values(self, x: np.ndarray) -> Values:
+        nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}
+        return {**nuisance, **self.hypothesis.values(x[: self.size])}
+
+    def simulate(
+        self, x: np.ndarray, amplitude: np.ndarray, warm: Warm
+    ) -> tuple[np.ndarray, np.ndarray, Warm]:
+        """Harmonics (n, T, C, H) of points ``x`` (n, k + u) and log ``amplitude`` (n, T); found or not."""
+        problem = self.problem
+        rows = np.concatenate(
+            [
+                simulation.records(
+                    problem.model, problem.law, self.values(each), problem.omega, self.reference * np.exp(a)
+                )
+                for each, a in zip(x, amplitude, strict=True)
+            ]
+        )
+        done = self._respond(rows, warm)
+        shape = (len(x), problem.tests)
+        harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : problem.shape[0]]
+        return harmonics, done.found.reshape(shape), done.warm
+
+    def _respond(self, rows: np.ndarray, warm: Warm) -> simulation.Responses:
+        harmonics, tone = self.problem.shape[1], self.problem.tone
+        if self.toned and tone is not None:
+            return simulation.respond_with_tone(rows, warm, harmonics, tone)
+        done = simulation.respond(rows, warm, harmonics)
+        if tone is None:
+            return done
+        silent = np.zeros((len(rows), 2, 1))  # a periodic response has nothing there
+        return done._replace(harmonics=np.concatenate([done.harmonics, silent], axis=-1))
+
+    def trials(self, x: np.ndarray, amplitude: np.ndarray, warm: Warm) -> list[Trial]:
+        """Simulate n points; the warm start of each is T rows of ``warm``."""
+        problem = self.problem
+        harmonics, found, after = self.simulate(x, amplitude, warm)
+        harmonics = np.where(found[:, :, None, None], harmonics, 0.0)
+        whitened = problem.whiten(harmonics)
+        phase = problem.start_phase(whitened)
+        residual = real(problem.whitened - problem.turned(whitened, phase))
+        n = problem.tests
+        return [
+            Trial(
+                Point(x[i], amplitude[i], after.of(slice(i * n, (i + 1) * n))),
+                whitened[i],
+                harmonics[i],
+                phase[i],
+                residual[i],
+                self._prior(x[i], amplitude[i]),
+                found[i],
+            )
+            for i in range(len(x))
+        ]
+
+    def trial(self, point: Point) -> Trial:
+        return self.trials(point.x[None], point.amplitude[None], point.warm)[0]
+
+    def _prior(self, x: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        return np.r_[amplitude * self.amplitude_weight, (x[self.size :] - 1.0) / self.prior_std]
+
+    def tangents(self, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the residual by the numbers (T, m, k + u) and by phase and amplitude (T, m, 2)."""
+        point, problem = trial.point, self.problem
+        step = STEP * self.width * np.where(point.x + STEP * self.width <= self.high, 1.0, -1.0)
+        x = np.concatenate([point.x + np.diag(step), point.x[None]])
+        amplitude = np.repeat(point.amplitude[None], len(x), axis=0)
+        amplitude[-1] += AMPLITUDE_STEP
+        harmonics, found, _ = self.simulate(x, amplitude, point.warm.repeated(len(x)))
+        moved = problem.turned(problem.whiten(harmonics), np.repeat(trial.phase[None], len(x), axis=0))
+        here = problem.turned(trial.whitened, trial.phase)
+        change = np.where(found[:, :, None, None], here - moved, 0.0)
+        change /= np.r_[step, AMPLITUDE_STEP][:, None, None, None]
+        columns = np.moveaxis(real(change), 0, -1)
+        orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
+        turn = real(-1j * orders * here)
+        return columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1)
+
+    def equations(self, trial: Trial) -> "Equations":
+        """Normal equations of a step from a trial."""
+        by_number, by_test = self.tangents(trial)
+        tests = self.problem.tests
+        inner = np.einsum("tmi,tmj->tij", by_test, by_test)
+        inner[:, 1, 1] += self.amplitude_weight**2
+        inner += 1e-12 * (1.0 + np.einsum("tii->t", inner))[:, None, None] * np.eye(2)
+        right = np.einsum("tmi,tm->ti", by_test, trial.residual)
+        right[:, 1] += self.amplitude_weight * trial.prior[:tests]
+        outer = np.einsum("tmk,tml->kl", by_number, by_number)
+        gradient = np.einsum("tmk,tm->k", by_number, trial.residual)
+        free = np.arange(self.size, len(gradient))
+        outer[free, free] += self.prior_std**-2.0
+        gradient[self.size :] += trial.prior[tests:] / self.prior_std
+        return Equations(inner, np.einsum("tmi,tmk->tik", by_test, by_number), right, outer, gradient)
+
+    def start(self, base: "Fit | None", x: np.ndarray) -> Point:
+        """Point with the numbers of the hypothesis and everything else as a base fit has it."""
+        if base is None:
+            nothing = np.zeros(self.problem.tests)
+            return Point(np.r_[x, np.ones(len(self.uncertain))], nothing, simulation.cold(nothing.size))
+        known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
+        rest = [known.get(name, 1.0) for name in self.uncertain]
+        return Point(np.r_[x, rest], base.trial.point.amplitude, base.trial.point.warm)
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Normal equations: numbers (k), and phase and amplitude of each test (T, 2), solved for first."""
+
+    inner: np.ndarray
+    mixed: np.ndarray
+    right: np.ndarray
+    outer: np.ndarray
+    gradient: np.ndarray
+
+    def eliminated(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
+        """What phases and amplitudes do by themselves (T, 2), and along with the numbers (T, 2, k)."""
+        inner = self.inner.copy()
+        inner[:, 1, 1] *= 1.0 + damping
+        solved = np.linalg.solve(inner, np.concatenate([self.mixed, self.right[..., None]], axis=-1))
+        return solved[..., -1], solved[..., :-1]
+
+    def reduced(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+        """Matrix (k, k) and gradient (k,) for the numbers alone."""
+        own, along = self.eliminated(damping)
+        matrix = self.outer - np.einsum("tik,til->kl", self.mixed, along)
+        return matrix, self.gradient - np.einsum("tik,ti->k", self.mixed, own)
+
+    def local(self, numbers: np.ndarray, damping: float) -> np.ndarray:
+        """Steps of phase and amplitude (T, 2) that go with a step of the numbers (k,)."""
+        own, along = self.eliminated(damping)
+        return -own - along @ numbers
+
+    def promise(self, numbers: np.ndarray, local: np.ndarray) -> float:
+        """What a step takes off Q if the responses are linear."""
+        slope = self.gradient @ numbers + (self.right * local).sum()
+        bend = numbers @ self.outer @ numbers + np.einsum("ti,tij,tj->", local, self.inner, local)
+        bend += 2.0 * np.einsum("ti,tik,k->", local, self.mixed, numbers)
+        return float(-2.0 * slope - bend)
+
+
+def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
+    """Follow a trial to the nearest minimum of Q within the bounds."""
+    trial, damping, arrived = start, DAMPING, False
+    matrix = np.zeros((len(model.low), len(model.low)))
+    for _ in range(iterations):
+        if not trial.found:
+            break
+        equations = model.equations(trial)
+        matrix, _ = equations.reduced()
+        better, promised = None, np.inf
+        while damping < STUCK:
+            step, promised = _step(model, trial.point, equations, damping)
+            if promised < max(ARRIVED, ARRIVED_SHARE * trial.q):
+                break
+            better = model.trial(step)
+            if better.q < trial.q:
+                break
+            better = None
+            damping *= 8.0
+        if better is None:
+            arrived = promised < max(ARRIVED, ARRIVED_SHARE * trial.q)
+            break
+        gained = trial.q - better.q
+        trial, damping = better, max(damping / (8.0 if gained > 0.5 * promised else 1.0), 1e-9)
+    return Fit(model, trial, _covariance(matrix), arrived)
+
+
+def restrict(fit: Fit, rows: np.ndarray) -> Fit:
+    """The same point on some of a fit's tests."""
+    model = Model(fit.model.problem.subset(rows), fit.model.hypothesis, fit.model.reference[rows])
+    point = fit.trial.point
+    trial = model.trial(Point(point.x, point.amplitude[rows], point.warm.of(rows)))
+    return Fit(model, trial, fit.covariance, fit.arrived)
+
+
+def _step(model: Model, point: Point, equations: Equations, damping: float) -> tuple[Point, float]:
+    """The point after a damped step within the bounds, and what it promises to take off Q."""
+    x = point.x
+    matrix, gradient = equations.reduced(damping)
+    free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
+    step = np.zeros(len(x))
+    if free.any():
+        inner = matrix[np.ix_(free, free)]
+        scale = np.diag(np.diag(inner) + 1e-12 * (1.0 + np.trace(inner)))
+        step[free] = -np.linalg.solve(inner + damping * scale, gradient[free])
+    longest = np.max(np.abs(step) / model.width, initial=0.0)
+    if longest > LONGEST_STEP:
+        step *= LONGEST_STEP / longest
+    step = np.clip(x + step, model.low, model.high) - x
+    local = equations.local(step, damping)
+    local[:, 1] = np.clip(local[:, 1], -LONGEST_AMPLITUDE, LONGEST_AMPLITUDE)
+    promised = equations.promise(step, local)
+    return replace(point, x=x + step, amplitude=point.amplitude + local[:, 1]), promised
+
+
+def _covariance(matrix: np.ndarray) -> np.ndarray:
+    scale = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    return np.linalg.pinv(matrix / np.outer(scale, scale), rcond=1e-12) / np.outer(scale, scale)

@@ -1,0 +1,146 @@
+"""What an extended model gains on tests that it was not fitted to."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wedgesweep.diagnose.fit import Fit, Model, Point, Trial, refine, restrict
+
+# Iterations that adapt a fit to fewer tests, and the phase and amplitude to a held-out one.
+ADAPT, LOCAL = 6, 4
+# Amplitudes (or frequencies) closer than this belong together.
+ALIKE = 0.02
+RESAMPLED = 2000
+# With fewer tests an interval would be a pretence.
+FEWEST = 8
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Whitened squared misfit of one test under models that were fitted to others, and its points."""
+
+    test: int
+    scheme: str
+    base: float
+    extended: float
+    points: int
+    local: int
+
+    @property
+    def noise(self) -> float:
+        """Squared misfit that noise leaves after phase (and amplitude) are fitted."""
+        return float(self.points - self.local)
+
+    def rmse(self, squared: float) -> float:
+        return float(np.sqrt(squared / self.points))
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Gain over all held-out tests; ``interval`` of ``excess_removed``, None for too few tests."""
+
+    held_out: tuple[HeldOut, ...]
+
+    def _total(self, part: Callable[[HeldOut], float], chosen: Sequence[HeldOut]) -> float:
+        return sum(map(part, chosen)) / sum(each.points for each in chosen)
+
+    def totals(self, chosen: Sequence[HeldOut] | None = None) -> tuple[float, float, float]:
+        """Mean squares of base, extended and noise."""
+        chosen = self.held_out if chosen is None else chosen
+        parts = (lambda h: h.base, lambda h: h.extended, lambda h: h.noise)
+        return tuple(self._total(part, chosen) for part in parts)  # type: ignore[return-value]
+
+    @staticmethod
+    def removed(base: float, extended: float, noise: float) -> float:
+        """Share of the excess that is gone."""
+        return (base - extended) / (base - noise) if base > noise else 0.0
+
+    @property
+    def excess_removed(self) -> float:
+        return self.removed(*self.totals())
+
+    @property
+    def interval(self) -> list[float] | None:
+        """95 % interval of ``excess_removed`` from tests drawn again, both schemes of a test together."""
+        tests = sorted({each.test for each in self.held_out})
+        if len(tests) < FEWEST:
+            return None
+        by_test = [[each for each in self.held_out if each.test == test] for test in tests]
+        sums = np.array(
+            [
+                [sum(getattr(h, name) for h in rows) for name in ("base", "extended", "noise")]
+                for rows in by_test
+            ]
+        )
+        drawn = np.random.default_rng(0).integers(0, len(tests), (RESAMPLED, len(tests)))
+        base, extended, noise = sums[drawn].sum(axis=1).T
+        removed = np.where(base > noise, (base - extended) / np.where(base > noise, base - noise, 1.0), 0.0)
+        low, high = np.quantile(removed, [0.025, 0.975])
+        return [float(low), float(high)]
+
+
+def measure(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) -> Gain:
+    """Leave out one frequency, then one amplitude, and predict that; ``each`` maps a function."""
+    problem = base.model.problem
+    jobs = [("frequency", rows) for rows in groups(problem.omega)]
+    known = extended.amplitudes()
+    if not np.isinf(problem.amplitude_std).any():
+        jobs += [("amplitude", rows) for rows in groups(known)]
+    jobs = [job for job in jobs if len(job[1]) < problem.tests]
+    rows = each(lambda job: _held_out(base, extended, *job), jobs)
+    return Gain(tuple(one for group in rows for one in group))
+
+
+def groups(values: np.ndarray) -> list[np.ndarray]:
+    """Indices of values that are alike, group by group."""
+    order = np.argsort(values)
+    jumps = np.flatnonzero(np.diff(np.log(values[order])) > ALIKE) + 1
+    return np.split(order, jumps)
+
+
+def _held_out(base: Fit, extended: Fit, scheme: str, rows: np.ndarray) -> list[HeldOut]:
+    rest = np.setdiff1d(np.arange(base.model.problem.tests), rows)
+    misfits = [_predict(fit, rest, rows) for fit in (base, extended)]
+    problem = base.model.problem
+    return [
+        HeldOut(int(test), scheme, float(b), float(e), int(problem.points[test]), 1)
+        for test, b, e in zip(rows, *misfits, strict=True)
+    ]
+
+
+def _predict(fit: Fit, rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Squared misfits (rows,) after a fit to the rest of the tests."""
+    trained = restrict(fit, rest)
+    if len(fit.x):
+        trained = refine(trained.model, trained.trial, ADAPT)
+    return predict(fit, trained.x, rows)
+
+
+def predict(fit: Fit, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Squared misfits (rows,) with given numbers; each test keeps its own phase and amplitude.
+
+    A known amplitude may move within its prior; an unknown one comes from the fundamental of the displacement
+    alone, so that the rest of the test is a prediction.
+    """
+    part = restrict(fit, rows)
+    unknown = np.isinf(part.model.problem.amplitude_std)
+    trial = part.model.trial(Point(x, part.trial.point.amplitude, part.trial.point.warm))
+    for _ in range(LOCAL):
+        if not trial.found:
+            break
+        trial = part.model.trial(_moved(part.model, trial, unknown))
+    misfit = (trial.residual**2).sum(-1)
+    return np.where(trial.found_tests, misfit, (np.abs(part.model.problem.whitened) ** 2).sum((-2, -1)))
+
+
+def _moved(model: Model, trial: Trial, unknown: np.ndarray) -> Point:
+    """Point with each amplitude moved: by its prior and data, or to match the fundamental."""
+    point = trial.point
+    equations = model.equations(trial)
+    step = equations.local(np.zeros(len(point.x)), 0.0)[:, 1]
+    measured = np.abs(model.problem.measured[:, 0, 0])
+    simulated = np.abs(trial.harmonics[:, 0, 0])
+    match = np.log(measured / np.where(simulated > 0.0, simulated, measured))
+    step = np.where(unknown, match, step)
+    return Point(point.x, point.amplitude + np.clip(step, -0.3, 0.3), point.warm)

@@ -1,0 +1,106 @@
+"""Fits of two effects at a time.
+
+A weak effect alone may be half of the right pair, so that no effect is dropped for its own fit: beside
+each of the best single fits every other effect is tried. Where it starts is chosen as if responses added;
+what promises most after a few iterations on some of the tests goes on to more of both (successive halving).
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep.diagnose.fit import Fit, Model, Point, refine, restrict
+from wedgesweep.diagnose.search import Explanation, Search, Single, trials_of
+
+# Single fits beside which every other effect is tried, and starting points of the other effect.
+PARTNERS, STARTS = 8, 2
+# Rounds of improvement on some of the tests: iterations, and how many pairs enter; then all tests.
+ROUNDS = ((3, 1000), (5, 40))
+GOING_ON = 8
+# Tests that the first look takes.
+FEW = 6
+# Least change (squared, in noise) of a response that says something.
+SEEN = 4.0
+# An effect may be this much weaker or stronger than where it was tried.
+SCALES = (0.1, 2.0)
+
+
+class Library(NamedTuple):
+    """Responses of one effect over its range: numbers (n, k), and changes (n, m) from the base model's."""
+
+    effect: str
+    x: np.ndarray
+    changes: np.ndarray
+
+
+def pairs(search: Search, base: Fit, singles: Sequence[Single]) -> list[Explanation]:
+    """The best fits of pairs, best first."""
+    libraries = [_library(base, each) for each in singles]
+    leading = sorted((each.explanation.fit for each in singles), key=lambda fit: fit.q)[:PARTNERS]
+    beside = [
+        (_worst(first), first, other)
+        for first in leading
+        for other in libraries
+        if (other.effect,) != first.model.hypothesis.effects and len(other.x)
+    ]
+    fits = [fit for fit in search.each(lambda job: _begin(search, *job), beside) if np.isfinite(fit.q)]
+    for iterations, entering in ROUNDS:
+        entered = _best_of_each(fits)[:entering]
+        fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
+    found = search.each(lambda fit: _finish(search, base, fit), _best_of_each(fits)[:GOING_ON])
+    return sorted(found, key=lambda each: each.penalised)
+
+
+def _worst(fit: Fit) -> Fit:
+    """A fit on the few tests that it leaves unexplained."""
+    return restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
+
+
+def _library(base: Fit, single: Single) -> Library:
+    """Everything that was simulated of one effect."""
+    fit = single.explanation.fit
+    trials = [trial for trial in (*single.trials, fit.trial) if trial.found]
+    size = fit.model.size
+    changes = np.array([(base.trial.residual - trial.residual).ravel() for trial in trials])
+    x = np.array([trial.point.x[:size] for trial in trials])
+    seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
+    return Library(fit.model.hypothesis.effects[0], x[seen], changes[seen] if seen.any() else changes[:0])
+
+
+def _starts(first: Fit, other: Library) -> np.ndarray:
+    """Points (n, k) of the other effect that go best with a fit, if responses add."""
+    residual = first.trial.residual.ravel()
+    size, along = (other.changes**2).sum(1), other.changes @ residual
+    scale = np.clip(along / size, *SCALES)
+    order = np.argsort(scale**2 * size - 2.0 * scale * along)
+    return other.x[order[:STARTS]]
+
+
+def _begin(search: Search, few: Fit, first: Fit, other: Library) -> Fit:
+    """The best start of a second effect beside a fitted one, on some of the tests."""
+    effects = (*first.model.hypothesis.effects, other.effect)
+    model = Model(few.model.problem, search.model(*effects).hypothesis, few.model.reference)
+    known = first.x[: first.model.size]
+    points = [model.start(few, np.r_[known, x]) for x in _starts(first, other)]
+    trial = min(trials_of(model, points), key=lambda each: each.q)
+    return Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
+
+
+def _best_of_each(begun: Sequence[Fit]) -> list[Fit]:
+    """The best fit of each pair, best first."""
+    best: dict[frozenset[str], Fit] = {}
+    for fit in sorted(begun, key=lambda each: each.q):
+        best.setdefault(frozenset(fit.model.hypothesis.effects), fit)
+    return list(best.values())
+
+
+def _finish(search: Search, base: Fit, first: Fit) -> Explanation:
+    """A fit on all tests from one on some of them."""
+    effects = first.model.hypothesis.effects
+    model = search.model(*effects)
+    start = model.start(base, first.x[: model.size])
+    start = Point(np.r_[first.x[: model.size], start.x[model.size :]], start.amplitude, start.warm)
+    fit = refine(model, model.trial(start))
+    search.progress(" + ".join(effects))
+    return search.explanation(fit)

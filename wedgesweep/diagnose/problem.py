@@ -1,0 +1,135 @@
+"""The measured tests as one vector of whitened differences, and what is unknown about each test."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf, pi
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.diagnose.spectra import Spectrum
+
+# Phases at which the best rotation is looked for.
+TURNS = 256
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What the measurement says, with T tests, C channels and H harmonics (absent ones weigh nothing).
+
+    ``amplitude`` (T,): input amplitude in m, NaN where unknown; ``amplitude_std`` (T,): relative, 0 where
+    exact, inf where unknown. ``uncertain``: numbers of the model with their relative standard deviations.
+    ``tone``: a foreign frequency (Hz) in the records; its complex amplitude is one more column behind the
+    harmonics, with a phase of its own in each test.
+    """
+
+    model: Config
+    law: str
+    names: tuple[str, ...]
+    spectra: tuple[Spectrum, ...]
+    amplitude: np.ndarray
+    amplitude_std: np.ndarray
+    uncertain: dict[str, float]
+    tone: float | None = None
+
+    @cached_property
+    def omega(self) -> np.ndarray:
+        return np.array([2.0 * pi * each.frequency for each in self.spectra])
+
+    @property
+    def tests(self) -> int:
+        return len(self.spectra)
+
+    @cached_property
+    def shape(self) -> tuple[int, int]:
+        """Channels and harmonics of the padded arrays, a tone not counted."""
+        return max(s.mean.shape[0] for s in self.spectra), max(s.harmonics for s in self.spectra)
+
+    @property
+    def columns(self) -> int:
+        """Harmonics, and the tone where there is one."""
+        return self.shape[1] + (self.tone is not None)
+
+    def subset(self, rows: np.ndarray) -> "Problem":
+        """The same problem with some of its tests."""
+        return replace(
+            self,
+            names=tuple(self.names[i] for i in rows),
+            spectra=tuple(self.spectra[i] for i in rows),
+            amplitude=self.amplitude[rows],
+            amplitude_std=self.amplitude_std[rows],
+        )
+
+    def _padded(self, values: list[np.ndarray], fill: float) -> np.ndarray:
+        full = np.full((self.tests, self.shape[0], self.columns), fill, dtype=values[0].dtype)
+        for row, value, spectrum in zip(full, values, self.spectra, strict=True):
+            channels, harmonics = value.shape[0], spectrum.harmonics
+            row[:channels, :harmonics] = value[:, :harmonics]
+            if spectrum.tone is not None:
+                row[:channels, -1] = value[:, -1]
+        return full
+
+    @cached_property
+    def measured(self) -> np.ndarray:
+        """Harmonics (T, C, H), complex; 0 where absent."""
+        return self._padded([s.mean for s in self.spectra], 0.0)
+
+    @cached_property
+    def weight(self) -> np.ndarray:
+        """One over the noise of a real part, (T, C, H); 0 where absent."""
+        return np.sqrt(2.0 / self._padded([s.variance for s in self.spectra], inf))
+
+    @cached_property
+    def coherence(self) -> np.ndarray:
+        return np.array([s.coherence for s in self.spectra])
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Real numbers that each test contributes, (T,)."""
+        return np.array([2 * s.mean.size for s in self.spectra])
+
+    def whiten(self, harmonics: np.ndarray) -> np.ndarray:
+        """Harmonics (..., T, C, H) over their noise, complex, with the channels' common noise taken out."""
+        scaled = harmonics[..., : self.shape[0], :] * self.weight
+        if self.shape[0] == 2 and self.coherence.any():
+            share = self.coherence[:, None]
+            second = (scaled[..., 1, :] - share * scaled[..., 0, :]) / np.sqrt(1.0 - abs(share) ** 2)
+            scaled = np.stack([scaled[..., 0, :], second], axis=-2)
+        return scaled
+
+    @cached_property
+    def whitened(self) -> np.ndarray:
+        """The measured harmonics over their noise, (T, C, H)."""
+        return self.whiten(self.measured)
+
+    @cached_property
+    def orders(self) -> np.ndarray:
+        return np.arange(1, self.shape[1] + 1)
+
+    def start_phase(self, simulated: np.ndarray) -> np.ndarray:
+        """Rotation (rad) that brings whitened simulations (..., T, C, H) closest to the measurement."""
+        overlap = (self.whitened * simulated.conj()).sum(-2)[..., : self.shape[1]]
+        wave = np.fft.fft(overlap, TURNS, axis=-1)  # of orders 0..H-1: one turn too few, no matter to |.|
+        angles = 2.0 * pi * np.arange(TURNS) / TURNS
+        phase = angles[np.argmax((wave * np.exp(-1j * angles)).real, axis=-1)]
+        for _ in range(4):
+            turned = overlap * np.exp(-1j * self.orders * phase[..., None])
+            slope = (self.orders * turned.imag).sum(-1)
+            bend = -(self.orders**2 * turned.real).sum(-1)
+            step = np.divide(-slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
+            phase = phase + np.clip(step, -0.02, 0.02)
+        return phase
+
+    def turned(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
+        """Harmonics (..., T, C, H) turned by phases (..., T); a tone turns to suit the measurement."""
+        turn = np.exp(1j * self.orders * phase[..., None])
+        if self.tone is not None:
+            overlap = (self.whitened[..., -1] * simulated[..., -1].conj()).sum(-1)
+            turn = np.concatenate([turn, np.exp(1j * np.angle(overlap))[..., None]], axis=-1)
+        return simulated * turn[..., None, :]
+
+
+def real(values: np.ndarray) -> np.ndarray:
+    """Complex (..., T, C, H) as real vectors (..., T, 2 * C * H)."""
+    flat = values.reshape(*values.shape[:-2], -1)
+    return np.concatenate([flat.real, flat.imag], axis=-1)

@@ -1,0 +1,150 @@
+"""Fits of every candidate alone; see pairs.py for two at a time."""
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from math import log
+
+import numpy as np
+
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.coordinates import Hypothesis
+from wedgesweep.diagnose.fit import TONE, Fit, Model, Point, Trial, refine
+from wedgesweep.diagnose.problem import Problem
+
+# What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
+PENALTY = 6.0
+# Starting points that are followed, and for how long before only the best is.
+# Close to a neutral value a start is never bad, so that along one coordinate more of them are followed.
+FOLLOWED, FOLLOWED_ALONG, FIRST_ITERATIONS = 4, 7, 6
+# Least probability of the base model's misfit at which it may do without a cause.
+POSSIBLE = 1e-3
+# Input amplitudes that are tried where none is known, over the fundamental of the displacement.
+AMPLITUDES = np.geomspace(0.12, 8.0, 25)
+TONE_FREQUENCY = f"{TONE}.frequency_hz"
+
+
+def unknown_reference(problem: Problem) -> np.ndarray:
+    """Input amplitudes (T,) in m about which a fit looks: the stated ones, else the fundamental's."""
+    fundamental = np.abs(problem.measured[:, 0, 0])
+    return np.where(np.isinf(problem.amplitude_std), fundamental, problem.amplitude)
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A hypothesis with its fit, and what it costs."""
+
+    fit: Fit
+    price: float
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return self.fit.model.hypothesis.effects
+
+    @property
+    def penalised(self) -> float:
+        return self.fit.q + self.price * self.fit.model.size
+
+
+@dataclass(frozen=True)
+class Single:
+    """The best fit of one effect, and what its responses were over its whole range."""
+
+    explanation: Explanation
+    trials: tuple[Trial, ...]
+
+
+class Search:
+    """All fits to one problem; ``progress`` is told each step that is done."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        effects: Sequence[str],
+        threads: int = 1,
+        progress: Callable[[str], None] = lambda step: None,
+    ) -> None:
+        self.problem, self.threads, self.progress = problem, threads, progress
+        # Where no tone stands out there is nothing to fit one to.
+        self.effects = tuple(name for name in effects if name != TONE or problem.tone is not None)
+        self.reference = unknown_reference(problem)
+        self.price = log(problem.points.sum()) + PENALTY
+
+    def model(self, *effects: str) -> Model:
+        tone = self.problem.tone
+        fixed = ((TONE_FREQUENCY, tone),) if tone is not None and TONE in effects else ()
+        return Model(self.problem, Hypothesis(effects, fixed), self.reference)
+
+    def explanation(self, fit: Fit) -> Explanation:
+        return Explanation(fit, self.price)
+
+    def base(self) -> Explanation:
+        """The model on trial with everything fitted that is unknown about the tests."""
+        model = self.model()
+        start = best_amplitudes(model, [model.start(None, np.zeros(0))])[0]
+        return self.explanation(refine(model, start))
+
+    def single(self, effect: str, base: Fit) -> "Single":
+        """Best fit of one effect, and the trials among which it began."""
+        model = self.model(effect)
+        starts = [model.start(base, x) for x in model.hypothesis.starts()]
+        trials = best_amplitudes(model, starts)
+        # Where the base model will do, a cause could only be weak: one start is as good as another.
+        followed = FOLLOWED_ALONG if model.size == 1 else FOLLOWED
+        fit = best_of(model, trials, followed if base.p < POSSIBLE else 1)
+        self.progress(effect)
+        return Single(self.explanation(fit), tuple(trials))
+
+    def singles(self, base: Fit) -> list["Single"]:
+        """Best fits of every effect, in their order."""
+        return self.each(lambda effect: self.single(effect, base), self.effects)
+
+    def each(self, function: Callable, items: Iterable) -> list:
+        if self.threads == 1:
+            return [function(item) for item in items]
+        with ThreadPoolExecutor(self.threads) as pool:
+            return list(pool.map(function, items))
+
+
+def trials_of(model: Model, points: Sequence[Point]) -> list[Trial]:
+    """Simulate many points at once."""
+    warm = simulation.Warm(
+        np.concatenate([each.warm.states for each in points]),
+        np.concatenate([each.warm.maps for each in points]),
+    )
+    x = np.array([each.x for each in points]).reshape(len(points), -1)
+    return model.trials(x, np.array([each.amplitude for each in points]), warm)
+
+
+def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
+    """Simulated points, with the unknown input amplitudes that suit each of them best."""
+    unknown = np.isinf(model.problem.amplitude_std)
+    if not unknown.any():
+        return trials_of(model, points)
+    ladder = np.log(AMPLITUDES)
+    rungs = [
+        replace(point, amplitude=np.where(unknown, rung, point.amplitude))
+        for point in points
+        for rung in ladder
+    ]
+    trials = trials_of(model, rungs)
+    chosen = []
+    for i, point in enumerate(points):
+        mine = trials[i * ladder.size : (i + 1) * ladder.size]
+        misfit = np.array([np.where(each.found_tests, each.by_test, np.inf) for each in mine])
+        best = np.argmin(misfit, axis=0)
+        warm = simulation.Warm(
+            np.array([mine[b].point.warm.states[t] for t, b in enumerate(best)]),
+            np.array([mine[b].point.warm.maps[t] for t, b in enumerate(best)]),
+        )
+        amplitude = np.where(unknown, ladder[best], point.amplitude)
+        chosen.append(Point(point.x, amplitude, warm))
+    return trials_of(model, chosen)
+
+
+def best_of(model: Model, trials: Sequence[Trial], followed: int = FOLLOWED) -> Fit:
+    """Follow the best few trials a little way and the best of those to the end."""
+    leading = sorted(trials, key=lambda each: each.q)[:followed]
+    begun = [refine(model, trial, FIRST_ITERATIONS) for trial in leading]
+    best = min(begun, key=lambda fit: fit.q)
+    return best if best.arrived else refine(model, best.trial)

@@ -1,0 +1,183 @@
+"""Measured signals as harmonics with their noise.
+
+A forced response repeats each period, noise does not. One least-squares fit over the whole record gives
+the harmonics, whatever the sampling rate; what is left between them gives the noise near each of them
+(after Pintelon and Schoukens, System Identification, 2012, ch. 4). No noise model is assumed but that its
+spectrum is smooth.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+# Harmonics that are compared with a simulation, and that are taken out before the noise is measured.
+COMPARED, REMOVED = 16, 40
+# Highest frequency that is used, over the sampling rate.
+BAND = 0.4
+# The noise is looked at between harmonics, at multiples of this part of the input frequency.
+PARTS = 8
+# Order of the polynomial, in log frequency, that the logarithm of the noise spectrum follows.
+ORDER = 2
+# A line this many times above the smooth noise is something else (odds of 1e-5 in noise).
+FOREIGN = 11.5
+# Frequencies this many resolutions (one over the record) apart are told apart.
+RESOLVED = 1.2
+# Two channels whose noise is more coherent than this say the same.
+SAME = 0.98
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Harmonics of one test; channels are displacement x - y (m) and velocity x' - y' (m/s).
+
+    ``mean`` (channels, harmonics), complex: signal = Re sum D_h exp(i h omega t) from the first sample;
+    ``variance`` (channels, harmonics): of one such complex number, real and imaginary part together;
+    ``coherence``: of the noise of both channels, complex. ``lines``: noise lines looked at, per channel.
+    ``residual`` (channels, n): what is left of the record. ``tone``: a foreign frequency (Hz) whose complex
+    amplitude is the last column of ``mean``, where the record can tell it from the harmonics.
+    """
+
+    frequency: float
+    periods: float
+    samples: int
+    interval: float
+    mean: np.ndarray
+    variance: np.ndarray
+    coherence: complex
+    residual: np.ndarray
+    level: tuple["Smooth", ...]
+    tone: float | None = None
+
+    @property
+    def harmonics(self) -> int:
+        """Number of harmonics, a tone not counted."""
+        return self.mean.shape[1] - (self.tone is not None)
+
+    def excess_at(self, frequencies: np.ndarray) -> np.ndarray:
+        """Power at some frequencies over the smooth noise, summed over channels (1 each in noise)."""
+        padded = 8 * self.samples
+        transform = np.fft.rfft(self.residual, padded, axis=1)
+        bins = np.round(frequencies * self.interval * padded).astype(int)
+        return self._over_noise(np.abs(transform[:, bins]) ** 2 / self.samples, frequencies)
+
+    def exact_excess_at(self, frequencies: np.ndarray) -> np.ndarray:
+        """``excess_at`` without the rounding of frequencies to a fine grid; slow for many of them."""
+        time = np.arange(self.samples) * self.interval
+        power, _ = _periodograms(self.residual, np.exp(2j * pi * np.outer(frequencies, time)))
+        return self._over_noise(power, frequencies)
+
+    def _over_noise(self, power: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
+        return sum(each / level(frequencies) for each, level in zip(power, self.level, strict=True))
+
+    def separates(self, frequencies: np.ndarray) -> np.ndarray:
+        """Whether the record tells these frequencies from the harmonics, in the band of those compared."""
+        offset = np.abs(frequencies - self.frequency * np.round(frequencies / self.frequency))
+        resolved = offset * self.samples * self.interval > RESOLVED
+        return resolved & (frequencies < self.frequency * (self.harmonics + 1))
+
+
+def regressors(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
+    """Constant, drift, and cosine and sine of each harmonic, shape (n, 2 + 2 * harmonics)."""
+    turns = _turns(time, frequency, harmonics).T
+    slow = np.stack([np.ones_like(time), 2.0 * time / time[-1] - 1.0], axis=1)
+    return np.concatenate([slow, turns.real, turns.imag], axis=1)
+
+
+def _turns(time: np.ndarray, frequency: float, multiples: int) -> np.ndarray:
+    """exp(2 pi i k f t) for k = 1..multiples, shape (multiples, n), as powers of the first."""
+    first = np.exp(2j * pi * frequency * time)
+    return np.multiply.accumulate(np.repeat(first[None], multiples, axis=0), axis=0)
+
+
+def spectrum(time: np.ndarray, channels: np.ndarray, frequency: float, tone: float | None = None) -> Spectrum:
+    """Harmonics of the channels, shape (channels, n), of one test; ``time`` (n,) in s, frequencies in Hz."""
+    time = time - time[0]
+    interval = time[-1] / (time.size - 1)
+    highest = int(BAND / interval / frequency)
+    fitted, compared = min(REMOVED, highest), min(COMPARED, highest)
+    matrix = regressors(time, frequency, fitted)
+    at = frequency * np.arange(1, compared + 1)
+    if tone is not None:
+        turn = 2.0 * pi * tone * time
+        matrix = np.concatenate([matrix, np.cos(turn)[:, None], np.sin(turn)[:, None]], axis=1)
+        at = np.r_[at, tone]
+    # The columns are nearly orthogonal, so that the normal equations lose nothing.
+    solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
+    mean = (solution[2 : 2 + compared] - 1j * solution[2 + fitted : 2 + fitted + compared]).T
+    if tone is not None:
+        mean = np.concatenate([mean, (solution[-2] - 1j * solution[-1])[:, None]], axis=1)
+    residual = channels - (matrix @ solution).T
+    parts = np.arange(1, PARTS * (compared + 1))
+    parts = parts[parts % PARTS > 0]
+    lines = frequency * parts / PARTS
+    turns = _turns(time, frequency / PARTS, int(parts[-1]))[parts - 1]
+    power, product = _periodograms(residual, turns)
+    smooth = [_smooth(lines, each) for each in power]
+    variance = np.array([4.0 / time.size * level(at) for level in smooth])
+    coherence = 0.0j
+    if len(channels) == 2:
+        coherence = _coherence(product, smooth[0](lines), smooth[1](lines))
+        if abs(coherence) > SAME:
+            mean, variance, residual, coherence = mean[:1], variance[:1], residual[:1], 0.0j
+    return Spectrum(
+        frequency,
+        time.size * interval * frequency,
+        time.size,
+        interval,
+        mean,
+        variance,
+        coherence,
+        residual,
+        tuple(smooth[: len(mean)]),
+        tone,
+    )
+
+
+def _periodograms(residual: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Power of each channel (channels, lines) and product of the first two (lines,); ``turns`` (lines, n)."""
+    transform = residual @ turns.conj().T
+    samples = residual.shape[1]
+    return np.abs(transform) ** 2 / samples, transform[-1] * transform[0].conj() / samples
+
+
+class Smooth:
+    """A noise spectrum whose logarithm is a polynomial in the logarithm of frequency."""
+
+    def __init__(self, coefficients: np.ndarray, reference: float) -> None:
+        self.coefficients, self.reference = coefficients, reference
+
+    def __call__(self, frequency: np.ndarray) -> np.ndarray:
+        return np.exp(np.polynomial.polynomial.polyval(np.log(frequency / self.reference), self.coefficients))
+
+
+def _smooth(lines: np.ndarray, power: np.ndarray) -> Smooth:
+    """Maximum likelihood for powers that scatter exponentially around a smooth spectrum.
+
+    Lines that stand out are left out and the rest is fitted again.
+    """
+    reference = float(np.sqrt(lines[0] * lines[-1]))
+    design = np.polynomial.polynomial.polyvander(np.log(lines / reference), ORDER)
+    kept = np.ones(lines.size, bool)
+    tiny = np.finfo(float).tiny
+    coefficients = np.zeros(ORDER + 1)
+    for _ in range(4):
+        coefficients[:] = 0.0
+        coefficients[0] = np.log(power[kept].mean() + tiny)
+        for _ in range(30):
+            ratio = power[kept] / np.exp(design[kept] @ coefficients)
+            change = np.linalg.solve(design[kept].T @ design[kept], design[kept].T @ (ratio - 1.0))
+            coefficients += np.clip(change, -1.0, 1.0)
+            if np.abs(change).max() < 1e-10:
+                break
+        stands_out = power > FOREIGN * np.exp(design @ coefficients)
+        if (kept == ~stands_out).all():
+            break
+        kept = ~stands_out
+    return Smooth(coefficients.copy(), reference)
+
+
+def _coherence(product: np.ndarray, first: np.ndarray, second: np.ndarray) -> complex:
+    """Mean coherence of two channels' noise; 0 where it is no more than chance."""
+    value = complex((product / np.sqrt(first * second)).mean())
+    return value if abs(value) ** 2 * product.size > 9.0 else 0.0j

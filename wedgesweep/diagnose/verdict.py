@@ -1,0 +1,101 @@
+"""From fits to one of six answers; a wrong name is the worst of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from wedgesweep.diagnose.search import Explanation
+
+NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
+    "nothing-missing",
+    "named",
+    "consistent-with",
+    "tied",
+    "data-insufficient",
+    "none-of-mine",
+)
+# Penalised misfits closer than this cannot be told apart.
+GAP = 10.0
+# Least probability of the misfit that an explanation leaves: to be named, and to be an explanation at all.
+ADEQUATE, POSSIBLE = 0.01, 1e-5
+# Excess chi-squared of the base model that it takes to name a cause.
+STRONG = 800.0
+# With fewer tests no cause can be checked on a test that it was not fitted to.
+FEWEST_TESTS = 3
+# With more explanations than this in a tie the tests show that something is wrong, but not what.
+MOST_TIED = 4
+# An uncertain number is a cause only if it is this many of its standard deviations off.
+UNCERTAIN = 3.0
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """What a verdict depends on beside the fits; --calibrate puts its own in place of these.
+
+    ``least_gain``: penalised misfit that a cause must take away at the least.
+    """
+
+    gap: float = GAP
+    strong: float = STRONG
+    least_gain: float = 0.0
+
+
+DEFAULT = Thresholds()
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A verdict with the best explanation, and those that the data cannot tell from it."""
+
+    verdict: str
+    best: Explanation | None
+    rivals: tuple[Explanation, ...]
+
+    @property
+    def cause(self) -> Explanation | None:
+        """What is reported as the cause; None where the verdict abstains."""
+        return self.best if self.verdict in (NAMED, CONSISTENT, TIED) else None
+
+
+def eligible(each: Explanation) -> bool:
+    """Whether a fit may be called a cause: an uncertain number must have moved beyond its spread."""
+    problem = each.fit.model.problem
+    return all(
+        abs(numbers["scale"] - 1.0) > UNCERTAIN * problem.uncertain[name]
+        for name, numbers in each.fit.values.items()
+        if name in problem.uncertain
+    )
+
+
+def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
+    """Explanations best first; a pair that hardly beats one of its own effects is left out."""
+    allowed = sorted(filter(eligible, explanations), key=lambda each: each.penalised)
+    alone = {each.effects[0]: each.penalised for each in allowed if len(each.effects) == 1}
+    return [
+        each
+        for each in allowed
+        if len(each.effects) == 1
+        or each.penalised < min(alone.get(effect, float("inf")) for effect in each.effects) - gap
+    ]
+
+
+def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: Thresholds) -> Finding:
+    """Weigh the base model against everything that was fitted."""
+    order = ranked(explanations, thresholds.gap)
+    if not order or order[0].penalised >= base.penalised - thresholds.least_gain:
+        if base.fit.p >= POSSIBLE:
+            return Finding(NOTHING, None, ())
+        return Finding(_nobody(base), order[0] if order else None, ())
+    best = order[0]
+    if best.fit.p < POSSIBLE:
+        return Finding(_nobody(base), best, ())
+    rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
+    if len(rivals) >= MOST_TIED or base.fit.model.problem.tests < FEWEST_TESTS:
+        return Finding(INSUFFICIENT, best, rivals)
+    if rivals:
+        return Finding(TIED, best, rivals)
+    strong = base.fit.excess >= thresholds.strong and best.fit.p >= ADEQUATE
+    return Finding(NAMED if strong else CONSISTENT, best, ())
+
+
+def _nobody(base: Explanation) -> str:
+    return NONE if base.fit.model.problem.tests >= FEWEST_TESTS else INSUFFICIENT

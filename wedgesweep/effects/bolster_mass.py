@@ -1,0 +1,17 @@
+"""Another mass of the bolster than the model's; its weight goes with it.
+
+    M_b -> scale M_b
+
+Neutral and default: scale = 1. omega_n stays that of the nominal suspension.
+"""
+
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="bolster_mass",
+    family="parameters",
+    branch=NUMERICAL,
+    meaning="another mass of the bolster, weight too",
+    quantities=(Quantity("scale", 1.0, "factor of M_b", above=0.0, search=(0.5, 2.0)),),
+)

@@ -1,0 +1,17 @@
+"""Another stiffness under the bolster than the model's.
+
+    k_b -> scale k_b
+
+Neutral and default: scale = 1. omega_n stays that of the nominal suspension.
+"""
+
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="bolster_stiffness",
+    family="parameters",
+    branch=NUMERICAL,
+    meaning="another stiffness under the bolster",
+    quantities=(Quantity("scale", 1.0, "factor of k_b", above=0.0, search=(0.5, 2.0)),),
+)

@@ -1,0 +1,31 @@
+"""Slip out of the plane: friction shares itself between both directions.
+
+    |V| = hypot(v, W cos(omega t + phase))         W = velocity, v slip of a face in the plane
+    mu -> mu(|V|) v/|V|                            its share in the plane, on both faces
+
+For |V| <= v_t this is the base law's mu_s v/v_t. A column face under ``presliding`` keeps its bristle.
+Under the Coulomb law the faces are regularised: mu_d |V|/v_t up to v_t = 1e-3 mm/s.
+Neutral and default: velocity = 0. Default: phase = 0.
+"""
+
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="cross_slip",
+    family="two-dimensional",
+    branch=NUMERICAL,
+    meaning="slip out of the plane of both faces, at the input frequency",
+    quantities=(
+        Quantity(
+            "velocity_mm_per_s",
+            0.0,
+            "amplitude of the slip velocity out of the plane",
+            minimum=0.0,
+            search=(0.1, 200.0),
+            logarithmic=True,
+        ),
+        Quantity("phase_deg", 0.0, "lead over the velocity of the input", search=(-180.0, 180.0)),
+    ),
+    extends=("velocity",),
+)

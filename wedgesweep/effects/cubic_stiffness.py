@@ -1,0 +1,25 @@
+"""Bolster springs that stiffen with travel (Duffing, 1918).
+
+    R = -coefficient z^3             on the bolster, z from the springs' free length
+
+It moves the rest position. Neutral and default: coefficient = 0.
+"""
+
+from wedgesweep.compiled import inlined
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="cubic_stiffness",
+    family="missing-force",
+    branch=NUMERICAL,
+    meaning="bolster springs that stiffen with travel",
+    quantities=(Quantity("coefficient_N_per_mm3", 0.0, "cubic stiffness, k_3", search=(-1.0, 20.0)),),
+    extends=("coefficient",),
+)
+
+
+@inlined
+def force(z, p):
+    """Force on the bolster (N, up positive)."""
+    return -p.cubic_stiffness_coefficient * z * z * z

@@ -1,0 +1,17 @@
+"""A gain error of the displacement channel.
+
+    y = scale d                      d displacement, y its channel
+
+Neutral and default: scale = 1.
+"""
+
+from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="displacement_gain",
+    family="sensor",
+    branch=EXPERIMENTAL,
+    meaning="gain error of the displacement channel",
+    quantities=(Quantity("scale", 1.0, "factor of the displacement", above=0.0, search=(0.5, 2.0)),),
+)

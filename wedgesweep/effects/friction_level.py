@@ -1,0 +1,17 @@
+"""Another level of friction than the model's, on both faces of the wedges.
+
+    mu_s, mu_d -> scale mu_s, scale mu_d
+
+Neutral and default: scale = 1.
+"""
+
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="friction_level",
+    family="parameters",
+    branch=NUMERICAL,
+    meaning="another level of friction on the wedges",
+    quantities=(Quantity("scale", 1.0, "factor of mu_s and mu_d", minimum=0.0, search=(0.5, 2.0)),),
+)

@@ -1,0 +1,19 @@
+"""More preload of the wedge springs than the model's.
+
+    F_w0 -> F_w0 + force             of each wedge
+
+Neutral and default: force = 0.
+"""
+
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="preload",
+    family="parameters",
+    branch=NUMERICAL,
+    meaning="more force of each wedge spring",
+    quantities=(
+        Quantity("force_N", 0.0, "added to the force of each wedge spring at z = 0", search=(-5.0, 30.0)),
+    ),
+)

@@ -1,0 +1,17 @@
+"""The velocity channel lags behind the displacement channel: a first-order filter.
+
+    time y' = v - y                  v velocity, y its channel
+
+Neutral and default: time = 0.
+"""
+
+from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="velocity_lag",
+    family="sensor",
+    branch=EXPERIMENTAL,
+    meaning="first-order lag of the velocity channel",
+    quantities=(Quantity("time_s", 0.0, "time constant of the lag", minimum=0.0, search=(0.0, 0.02)),),
+)

@@ -1,0 +1,27 @@
+"""Viscous damping between the bolster and the side frame.
+
+    R = -coefficient z'              on the bolster
+
+Neutral and default: coefficient = 0.
+"""
+
+from wedgesweep.compiled import inlined
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="viscous_damping",
+    family="missing-force",
+    branch=NUMERICAL,
+    meaning="viscous damping between bolster and side frame",
+    quantities=(
+        Quantity("coefficient_N_s_per_m", 0.0, "viscous coefficient", minimum=0.0, search=(0.0, 100.0)),
+    ),
+    extends=("coefficient",),
+)
+
+
+@inlined
+def force(velocity, p):
+    """Force on the bolster (N, up positive) at z' = ``velocity``."""
+    return -p.viscous_damping_coefficient * velocity

@@ -1,0 +1,17 @@
+"""Another stiffness under the wedges than the model's.
+
+    k_w -> scale k_w
+
+Neutral and default: scale = 1.
+"""
+
+from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.quantity import Quantity
+
+EFFECT = Effect(
+    name="wedge_stiffness",
+    family="parameters",
+    branch=NUMERICAL,
+    meaning="another stiffness under the wedges",
+    quantities=(Quantity("scale", 1.0, "factor of k_w", above=0.0, search=(0.5, 2.0)),),
+)

@@ -1,0 +1,28 @@
+"""Measured vibration: a measured.toml with one CSV per test, or the same as one netCDF file."""
+
+from pathlib import Path
+
+from wedgesweep.measured.measurement import MeasuredError, Measurement, Test
+
+__all__ = ["MeasuredError", "Measurement", "Test", "is_measured", "read"]
+
+
+def is_measured(path: Path) -> bool:
+    """Whether a file is meant as measured data, not as a config: by its ending or its [measurement]."""
+    from wedgesweep.measured import netcdf, toml_and_csv
+
+    return path.suffix in netcdf.SUFFIXES or toml_and_csv.has_measurement(path)
+
+
+def read(path: Path, model: Path | None = None) -> Measurement:
+    """Read measured data; ``model`` is a config to take instead of the one that the data name.
+
+    Raises
+    ------
+    MeasuredError
+        With everything that is wrong: in the file itself, in the data of each test and in the model.
+    """
+    from wedgesweep.measured import netcdf, toml_and_csv
+
+    reader = netcdf if path.suffix in netcdf.SUFFIXES else toml_and_csv
+    return reader.read(path, model)

@@ -1,0 +1,52 @@
+"""Harmonics of a record, cycle by cycle: what repeats, and by how much each cycle differs."""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+FIRST_HARMONICS = np.arange(1, 13)
+# A harmonic is seen if its mean square exceeds this many times the variance of the mean.
+SEEN = 15.0
+
+
+@dataclass(frozen=True, eq=False)
+class Cycles:
+    """Harmonics of P cycles; the coefficients D of y = Re sum_k D_k exp(i k omega (t - middle)).
+
+    ``times`` (s), shape (P,), are the middles of the cycles, counted from ``middle`` (s) of the record;
+    ``harmonics``, shape (P, K), of the given ``orders``, shape (K,), are fitted to each cycle alone, with a
+    constant part of its own.
+    """
+
+    omega: float
+    middle: float
+    times: np.ndarray
+    orders: np.ndarray
+    harmonics: np.ndarray
+
+
+def cut(
+    time: np.ndarray, signal: np.ndarray, frequency: float, orders: np.ndarray = FIRST_HARMONICS
+) -> Cycles:
+    """Cut a record, shape (n,), into its cycles of a frequency (Hz); too high orders are left out.
+
+    Cycles are a little longer than a period, so that they use the whole record; the least-squares fit
+    does not need whole periods (Pintelon and Schoukens, System Identification, 2012, ch. 13).
+    """
+    step = (time[-1] - time[0]) / (time.size - 1)
+    count = max(int(time.size * step * frequency * (1.0 + 1e-6)), 1)
+    length = time.size // count
+    first = (time.size - count * length) // 2
+    omega = 2.0 * pi * frequency
+    local = step * (np.arange(length) - 0.5 * (length - 1))
+    orders = orders[orders <= max(1, (length - 1) // 3)]
+    waves = np.exp(1j * omega * np.outer(local, orders))
+    design = np.hstack([np.ones((length, 1)), waves.real, -waves.imag])
+    blocks = signal[first : first + count * length].reshape(count, length)
+    # The waves are all but orthogonal, so that the normal equations lose nothing.
+    fitted = np.linalg.solve(design.T @ design, design.T @ (blocks - signal.mean()).T).T
+    here = fitted[:, 1 : orders.size + 1] + 1j * fitted[:, orders.size + 1 :]
+    times = step * length * (np.arange(count) - 0.5 * (count - 1))
+    middle = float(time[0] + step * (first + 0.5 * (count * length - 1)))
+    return Cycles(omega, middle, times, orders, here * np.exp(-1j * omega * np.outer(times, orders)))

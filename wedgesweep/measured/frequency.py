@@ -1,0 +1,183 @@
+"""Frequency of a steady vibration, and its drift, from the phases of its cycles.
+
+If the frequency is off by delta and changes by beta, the harmonics of the cycle at time t turn:
+
+    D_k(t) = A_k exp(i k (delta t + beta t^2 / 2))
+
+Each harmonic gives delta and beta by a straight and a bent line through its phases, weighted by its noise,
+which shows in the scatter of its cycles, so that coloured noise and foreign tones count as what they are.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from wedgesweep.measured.cycles import FIRST_HARMONICS, SEEN, Cycles, cut
+from wedgesweep.measured.noise import of_channel
+
+# Fewer cycles leave no scatter to compare with.
+FEWEST_CYCLES = 4
+# The first search goes this far from the frequency given, as a share of it.
+RANGE = 0.15
+# Weak fundamentals under a strong harmonic are looked for by dividing its frequency by these.
+DIVISORS = (2, 3, 5, 7)
+# Chance that noise passes for a line.
+CHANCE = 1e-5
+# A difference is significant if it is as improbable as 5 std of a normal variable.
+IMPROBABLE = 2.9e-7
+PADDING = 8
+
+
+@dataclass(frozen=True)
+class Tone:
+    """Frequency (Hz, in the middle of the record), its relative change over the record, standard errors.
+
+    ``freedom`` is the number of degrees of freedom that the standard errors rest on.
+    """
+
+    frequency: float
+    std: float
+    drift: float
+    drift_std: float
+    freedom: int
+
+    def differs(self, frequency: float) -> bool:
+        """Whether another frequency (Hz) is excluded."""
+        return abs(self.frequency - frequency) > _bound(self.freedom) * self.std
+
+    @property
+    def drifts(self) -> bool:
+        """Whether a constant frequency is excluded."""
+        return abs(self.drift) > _bound(self.freedom) * self.drift_std
+
+
+def estimate_frequency(time: np.ndarray, displacement: np.ndarray) -> float:
+    """Frequency (Hz) of the slowest vibration that repeats in a record, shape (n,); NaN if none is seen."""
+    frequency = _strongest(time, displacement)
+    if _cycle_count(time, frequency) < FEWEST_CYCLES:
+        return frequency
+    frequency = near(time, displacement, frequency).frequency
+    if not stands_out(time, displacement, frequency):
+        return float("nan")
+    while divisor := _divisor(time, displacement, frequency):
+        frequency = near(time, displacement, frequency / divisor).frequency
+    return frequency
+
+
+def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple[float, float]:
+    """Relative change of a frequency (Hz) over the record, and its standard error."""
+    tone = near(time, displacement, frequency)
+    return tone.drift, tone.drift_std
+
+
+def near(time: np.ndarray, displacement: np.ndarray, frequency: float, reach: float = RANGE) -> Tone:
+    """The tone next to a frequency (Hz) that is right within a share ``reach``; at least 4 cycles."""
+    frequency += _search(cut(time, displacement, frequency), reach * frequency)
+    frequency += _search(cut(time, displacement, frequency), 0.5 / (time[-1] - time[0]))
+    for _ in range(3):
+        tone = _fit(cut(time, displacement, frequency))
+        frequency = tone.frequency
+    return tone
+
+
+def amplitude(time: np.ndarray, signal: np.ndarray, frequency: float) -> float:
+    """Amplitude of the fundamental at a frequency (Hz)."""
+    return float(abs(cut(time, signal, frequency).harmonics[:, 0].mean()))
+
+
+def stands_out(time: np.ndarray, displacement: np.ndarray, frequency: float) -> bool:
+    """Whether a fundamental of this frequency (Hz) repeats from cycle to cycle beyond chance."""
+    return _repeats(cut(time, displacement, frequency), FIRST_HARMONICS[:1])
+
+
+def _search(cycles: Cycles, reach: float) -> float:
+    """Change of frequency (Hz) within ``reach`` that lines the cycles up best."""
+    span = cycles.times[-1] - cycles.times[0]
+    fine = 1.0 / (8.0 * span * cycles.orders[-1])
+    changes = np.arange(-reach, reach + fine, fine)
+    turns = np.exp(-2j * pi * np.outer(changes, cycles.times))
+    power = np.zeros(changes.size)
+    for order, harmonic in zip(cycles.orders.tolist(), cycles.harmonics.T, strict=True):
+        power += np.abs(turns**order @ harmonic) ** 2
+    return float(changes[power.argmax()])
+
+
+def _fit(cycles: Cycles) -> Tone:
+    """One step of weighted least squares on the phases of all harmonics that are seen."""
+    times, count = cycles.times, cycles.times.size
+    mean = cycles.harmonics.mean(axis=0)
+    turned = cycles.harmonics * np.exp(-1j * np.angle(mean))
+    straight, bent = times, times**2 - (times**2).mean()
+    powers = np.array([straight @ straight, bent @ bent])
+    slopes = np.array([straight @ turned.imag, bent @ turned.imag]) / powers[:, None]
+    left = turned.imag - np.outer(straight, slopes[0]) - np.outer(bent, slopes[1])
+    scatter = np.sum((turned.real - np.abs(mean)) ** 2, axis=0) + np.sum((left - left.mean(0)) ** 2, axis=0)
+    variance = _smooth(scatter / max(2 * count - 4, 1))
+    size = np.abs(mean) * cycles.orders
+    seen = np.abs(mean) ** 2 * count > SEEN * 2.0 * variance
+    seen[0] |= not seen.any()
+    weight = np.where(seen, size**2 / variance, 0.0)
+    turn, bend = (np.where(seen, slopes / size, 0.0) * weight).sum(axis=1) / weight.sum()
+    turn_std, bend_std = 1.0 / np.sqrt(weight.sum() * powers)
+    record = times[-1] - times[0] + (times[1] - times[0])
+    over_record = 2.0 * record / cycles.omega
+    frequency, std = (cycles.omega + turn) / (2.0 * pi), turn_std / (2.0 * pi)
+    return Tone(
+        float(frequency), float(std), float(bend * over_record), float(bend_std * over_record), 4 * count - 8
+    )
+
+
+def _bound(freedom: int) -> float:
+    from scipy.special import stdtrit
+
+    return -float(stdtrit(freedom, IMPROBABLE))
+
+
+def _smooth(variance: np.ndarray) -> np.ndarray:
+    """Mean of each variance and its neighbours: single ones have few degrees of freedom."""
+    padded = np.pad(variance, 1, mode="edge")
+    return np.maximum((padded[:-2] + padded[1:-1] + padded[2:]) / 3.0, np.finfo(float).tiny)
+
+
+def _cycle_count(time: np.ndarray, frequency: float) -> float:
+    return time.size / (time.size - 1) * (time[-1] - time[0]) * frequency
+
+
+def _strongest(time: np.ndarray, signal: np.ndarray) -> float:
+    """Frequency (Hz) of the highest peak of the spectrum, above one and a half cycles per record."""
+    count = time.size
+    step = (time[-1] - time[0]) / (count - 1)
+    length = PADDING * 2 ** int(np.ceil(np.log2(count)))
+    spectrum = np.abs(np.fft.rfft((signal - signal.mean()) * np.hanning(count), length))
+    frequencies = np.fft.rfftfreq(length, step)
+    spectrum[frequencies < 1.5 / (count * step)] = 0.0
+    return float(frequencies[spectrum.argmax()])
+
+
+def _divisor(time: np.ndarray, signal: np.ndarray, frequency: float) -> int:
+    """That of DIVISORS at which a frequency has lines between its harmonics; 0 if none.
+
+    Lines leak into each other: of several divisors the one that leaves least of the signal is right.
+    """
+    left: dict[int, float] = {}
+    for divisor in DIVISORS:
+        slower = frequency / divisor
+        between = np.setdiff1d(np.arange(1, 2 * divisor), [divisor])
+        orders = np.union1d(between, divisor * FIRST_HARMONICS)
+        enough = _cycle_count(time, slower) >= FEWEST_CYCLES
+        if enough and _repeats(cut(time, signal, slower, orders), between):
+            left[divisor] = of_channel(time, signal, slower).std
+    return min(left, key=lambda divisor: left[divisor], default=0)
+
+
+def _repeats(cycles: Cycles, orders: np.ndarray) -> bool:
+    """Whether the harmonics of some orders repeat from cycle to cycle beyond chance (F test)."""
+    from scipy.special import fdtrc
+
+    harmonics = cycles.harmonics[:, np.isin(cycles.orders, orders)]
+    count, lines = harmonics.shape
+    mean = harmonics.mean(axis=0)
+    scatter = np.sum(np.abs(harmonics - mean) ** 2) / (lines * (count - 1))
+    ratio = count * np.sum(np.abs(mean) ** 2) / lines / max(scatter, np.finfo(float).tiny)
+    return bool(fdtrc(2 * lines, 2 * lines * (count - 1), ratio) < CHANCE)

@@ -1,0 +1,32 @@
+"""The model on trial: a config with one friction law."""
+
+from pathlib import Path
+
+from wedgesweep.config import Config, ConfigError, load, parse
+
+
+def load_model(path: Path, problems: list[str]) -> tuple[Config | None, str]:
+    """The config and its friction law; what is wrong goes to ``problems``."""
+    try:
+        return with_law(load(path), str(path), problems)
+    except ConfigError as error:
+        problems.extend(error.problems)
+        return None, ""
+
+
+def parse_model(text: str, source: str, problems: list[str]) -> tuple[Config | None, str]:
+    """As ``load_model``, from TOML text."""
+    try:
+        return with_law(parse(text, source), source, problems)
+    except ConfigError as error:
+        problems.extend(error.problems)
+        return None, ""
+
+
+def with_law(config: Config, source: str, problems: list[str]) -> tuple[Config, str]:
+    """The config and its one friction law; several are a problem."""
+    laws = list(dict.fromkeys(case.law for case in config.case_list()))
+    if len(laws) > 1:
+        names = ", ".join(laws)
+        problems.append(f"{source}: sweep.friction_law: {names}; a model on trial names exactly one law")
+    return config, laws[0]

@@ -1,0 +1,64 @@
+"""Whether a test vibrates steadily at its frequency, for long enough."""
+
+from math import isnan
+
+from wedgesweep.measured import frequency
+from wedgesweep.measured.frequency import Tone
+from wedgesweep.measured.measurement import Test
+
+FEWEST_PERIODS = 4
+# A last period that lacks less than this share counts as whole: frequencies are rounded, too.
+WHOLE = 1e-3
+# Frequencies that differ or change by less, relatively, do no harm.
+NEGLIGIBLE = 2e-3
+# A stated frequency is compared with the nearest line this many inverse record lengths around it; further
+# off a line leaks less than this share of its amplitude into it.
+LOBE, LEAKAGE = 1.5, 0.3
+
+
+def frequency_faults(test: Test, file: str, at: str) -> list[str]:
+    """What is wrong with the frequency of a test, as its keys ``at`` a place state it and in the data."""
+    stated = test.frequency
+    found = frequency.estimate_frequency(test.time, test.displacement) if stated is None else stated
+    if isnan(found):
+        return [f"{file}: no vibration stands out of the noise; state frequency_hz in {at}"]
+    nyquist = 0.5 * test.sampling_rate
+    if found >= nyquist:
+        wrong = f"{found:g} is not below half the sampling rate of {file}, {nyquist:g} Hz"
+        return [f"{at}.frequency_hz: {wrong}; sample faster"]
+    periods = test.duration * found
+    if periods < FEWEST_PERIODS - WHOLE:
+        told = f"covers {periods:.3g} periods of {found:.6g} Hz"
+        return [f"{file}: {told}; at least {FEWEST_PERIODS} are needed"]
+    tone = frequency.near(test.time, test.displacement, found, LOBE / periods)
+    return _contradiction(test, tone, file, at) or _drift(tone, file)
+
+
+def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:
+    stated = test.frequency
+    if stated is None:
+        return []
+    actual = tone.frequency if tone.differs(stated) else stated
+    if actual == stated and not frequency.stands_out(test.time, test.displacement, stated):
+        actual = _elsewhere(test, stated)
+    if abs(actual / stated - 1.0) < NEGLIGIBLE:
+        return []
+    return [f"{at}.frequency_hz: {stated:.6g}, but {file} vibrates at {actual:.6g} Hz; correct one of them"]
+
+
+def _elsewhere(test: Test, stated: float) -> float:
+    """Frequency (Hz) of a vibration beside which the stated one is nothing; else the stated one."""
+    found = frequency.estimate_frequency(test.time, test.displacement)
+    if isnan(found):
+        return stated
+    there, here = (frequency.amplitude(test.time, test.displacement, each) for each in (found, stated))
+    return found if here < LEAKAGE * there else stated
+
+
+def _drift(tone: Tone, file: str) -> list[str]:
+    if abs(tone.drift) < NEGLIGIBLE or not tone.drifts:
+        return []
+    change = (
+        f"by {100.0 * tone.drift:+.2g} % ({100.0 * tone.drift_std:.1g} % std) around {tone.frequency:.6g} Hz"
+    )
+    return [f"{file}: the frequency drifts {change}; measure at a constant one"]

@@ -1,0 +1,101 @@
+"""measured.toml and its CSV files."""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from wedgesweep.measured import csv_columns
+from wedgesweep.measured.declarations import ROOT
+from wedgesweep.measured.measurement import MeasuredError, Measurement, Test
+from wedgesweep.measured.model import load_model
+from wedgesweep.measured.record import Channels, build
+
+# Found even in a file that is not valid TOML, so that its error speaks of measured data.
+HEADER = re.compile(r"^\s*\[+\s*measurement\b", re.MULTILINE)
+
+
+def read(path: Path, model: Path | None = None) -> Measurement:
+    """Read a measured.toml with all that it names; raises MeasuredError with all that is wrong."""
+    problems: list[str] = []
+    given = _document(path, problems)
+    measurement = given.get("measurement", {})
+    if model is None and "model" in measurement:
+        model = path.parent / measurement["model"]
+    config, law = load_model(model, problems) if model else (None, "")
+    tests = _tests(path, measurement, problems)
+    if problems or config is None:
+        raise MeasuredError(problems)
+    columns = measurement["columns"]
+    return Measurement(
+        path=path,
+        title=measurement["title"],
+        model=config,
+        law=law,
+        uncertain=measurement["uncertain"],
+        tests=tuple(tests),
+        derived_velocity=columns.get("velocity", {}).get("derived", False),
+        columns={name: {"column": each["column"], "unit": each["unit"]} for name, each in columns.items()},
+    )
+
+
+def has_measurement(path: Path) -> bool:
+    """Whether a file has a [measurement] table, or what is to become one."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError):
+        return False
+    return HEADER.search(text) is not None
+
+
+def _document(path: Path, problems: list[str]) -> dict[str, Any]:
+    """The checked document; what is wrong with it goes to ``problems``."""
+    try:
+        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except UnicodeDecodeError as error:
+        problems.append(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8")
+    except OSError as error:
+        problems.append(f"{path}: {error.strerror}; give the path of a measured.toml")
+    except ValueError as error:
+        problems.append(f"{path}: not valid TOML: {error}")
+    else:
+        found: list[str] = []
+        document = ROOT.read(given, "", found)
+        problems.extend(f"{path}: {problem}" for problem in found)
+        return document
+    raise MeasuredError(problems)
+
+
+def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[Test]:
+    """The tests whose keys and data are right; the columns must be known to read any."""
+    columns = measurement.get("columns", {})
+    complete = {"time", "displacement"} <= columns.keys() and all(
+        {"column", "unit"} <= each.keys() for each in columns.values()
+    )
+    tests: list[Test] = []
+    seen: dict[str, int] = {}
+    for i, given in enumerate(measurement.get("test", ())):
+        at = f"{path}: measurement.test[{i}]"
+        file = given.get("file")
+        if file is None:
+            continue
+        if file in seen:
+            problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
+            continue
+        seen[file] = i
+        if complete:
+            tests += _test(path.parent / file, at, given, columns, problems)
+    return tests
+
+
+def _test(
+    file: Path, at: str, given: dict[str, Any], columns: dict[str, Any], problems: list[str]
+) -> list[Test]:
+    wanted = {channel: each["column"] for channel, each in columns.items()}
+    numbers, lines = csv_columns.read(file, wanted, problems)
+    if not numbers:
+        return []
+    units = {channel: each["unit"] for channel, each in columns.items()}
+    channels = Channels(numbers, units, str(file), lambda sample: f"{file}:{lines[sample]}")
+    test = build(file.stem, given, channels, at, problems)
+    return [test] if test else []

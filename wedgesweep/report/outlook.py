@@ -1,0 +1,87 @@
+"""What these tests can show, what they cannot, and what to measure next."""
+
+from wedgesweep import digits
+from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.report import html, words
+from wedgesweep.report.html import Markup
+
+
+def limits(found: Diagnosed) -> Markup:
+    """Section on what would have shown and what cannot."""
+    rows = [
+        [effect, name, words.with_unit(digits.short(value, 2), unit)]
+        for effect, smallest in found.document["detectable"].items()
+        for (name, unit), value in [(words.split_key(key), value) for key, value in smallest.items()]
+    ]
+    caption = "Smallest effect that these tests would have shown"
+    table = html.table(caption, ("effect", "number", "smallest value"), rows, 2)
+    hidden = found.document["not_testable"]
+    return html.section(
+        "limits",
+        "What these tests can show",
+        table if rows else html.paragraph("No effect can be shown by these tests."),
+        html.paragraph(_hidden(hidden)),
+    )
+
+
+def _hidden(effects: list[str]) -> str:
+    if not effects:
+        return "There is no candidate that these tests cannot show at all."
+    return (
+        f"Not testable, whatever their size: {words.listing(effects)}. The verdict says nothing about them."
+    )
+
+
+def rivals(found: Diagnosed) -> Markup:
+    """Section on explanations that the data cannot tell from the first."""
+    rows = [
+        [
+            words.together(each["effects"]),
+            "; ".join(map(words.meaning, each["effects"])),
+            digits.number(each["gap"], 2),
+        ]
+        for each in found.document["rivals"]
+    ]
+    told = (
+        html.table("Explanations that fit as well", ("explanation", "meaning", "behind by"), rows, 2)
+        if rows
+        else html.paragraph(_alone(found))
+    )
+    return html.section("rivals", "Rivals", told)
+
+
+def _alone(found: Diagnosed) -> str:
+    if not found.document["causes"]:
+        return "No cause is named, so nothing rivals it."
+    return "No other explanation comes close enough to the best one to be confused with it."
+
+
+def following(found: Diagnosed) -> Markup:
+    """Section on the test to make next."""
+    test = found.document["next_test"]
+    if test is None:
+        told: Markup | str = NOTHING_TO_MEASURE[found.verdict]
+    else:
+        told = html.join(
+            [
+                "A test at ",
+                html.element("strong", words.following(test)),
+                f" input amplitude would tell {' from '.join(test['separates'])}: their responses there are "
+                f"{digits.number(test['distance'])} apart (squared, over noise; 30 is enough). It is the "
+                "cheapest one that does.",
+            ],
+            "",
+        )
+    return html.section("next", "What to measure next", html.paragraph(told))
+
+
+NOTHING_TO_MEASURE = {
+    "nothing-missing": "Nothing needs to be measured: the model explains these tests.",
+    "named": "No further test is needed to name the cause.",
+    "consistent-with": "There is no rival to separate; more periods or larger inputs would make the "
+    "evidence stronger.",
+    "tied": "No test within reach of the bench tells the tied explanations apart.",
+    "data-insufficient": "No single test was found that would tell the candidates apart.",
+    "none-of-mine": "No test can name an effect that is not among the candidates; the leftover force above "
+    "shows what is missing.",
+}

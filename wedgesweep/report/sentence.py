@@ -1,0 +1,131 @@
+"""The answer of a diagnosis in one sentence, with its numbers and intervals."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from wedgesweep import digits
+from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.report import words
+
+
+def sentence(found: Diagnosed) -> str:
+    """Plain text; a template per verdict."""
+    return TEMPLATES[found.verdict](found)
+
+
+def _nothing(found: Diagnosed) -> str:
+    misfit = found.document["misfit"]
+    tests = words.counted(found.data.sizes["test"], "test")
+    return (
+        f"Nothing is missing: over {tests} the simulation is off by {_error(found, 'base')}, which is what "
+        f"noise alone leaves (p = {words.probability(misfit['p_base'])})."
+    )
+
+
+def _named(found: Diagnosed) -> str:
+    count = len(found.document["causes"])
+    explain = (
+        "One cause explains" if count == 1 else f"{COUNTS.get(count, str(count))} causes together explain"
+    )
+    return f"{explain} the misfit: {_causes(found)}; {_improvement(found)}."
+
+
+def _consistent(found: Diagnosed) -> str:
+    return (
+        f"The tests are consistent with {_causes(found)}, but the evidence is weak "
+        f"(excess misfit {digits.number(found.document['misfit']['excess_base'])} over noise); "
+        f"{_improvement(found)}."
+    )
+
+
+def _tied(found: Diagnosed) -> str:
+    rivals = [_rival(rival) for rival in found.document["rivals"]]
+    count = 1 + len(rivals)
+    return (
+        f"{COUNTS.get(count, str(count))} explanations fit the tests equally well: {_causes(found)}, or "
+        f"{words.listing(rivals, 'or')}; {_improvement(found)}{_would_tell(found, 'them')}."
+    )
+
+
+def _rival(rival: Mapping[str, Any]) -> str:
+    meanings = words.listing([words.meaning(effect) for effect in rival["effects"]])
+    return f"{meanings} ({words.together(rival['effects'])}, behind by {digits.number(rival['gap'], 2)})"
+
+
+def _insufficient(found: Diagnosed) -> str:
+    return (
+        f"Something is wrong, the simulation is off by {_error(found, 'base')}, but these "
+        f"{words.counted(found.data.sizes['test'], 'test')} cannot show what{_would_tell(found)}."
+    )
+
+
+def _none(found: Diagnosed) -> str:
+    tried = [each for each in found.document["candidates"] if each["effects"]]
+    single = words.counted(len([each for each in tried if len(each["effects"]) == 1]), "candidate")
+    best = (
+        f"; the best attempt, {words.together(found.added)}, is still off by {_error(found, 'extended')}"
+        if found.added
+        else ""
+    )
+    return (
+        f"Something is wrong, the simulation is off by {_error(found, 'base')}, and none of the {single}, "
+        f"alone or in pairs, explains it{best}."
+    )
+
+
+TEMPLATES = {
+    "nothing-missing": _nothing,
+    "named": _named,
+    "consistent-with": _consistent,
+    "tied": _tied,
+    "data-insufficient": _insufficient,
+    "none-of-mine": _none,
+}
+COUNTS = {2: "Two", 3: "Three", 4: "Four"}
+
+
+def _causes(found: Diagnosed) -> str:
+    return words.listing([_cause(cause) for cause in found.document["causes"]])
+
+
+def _cause(cause: Mapping[str, Any]) -> str:
+    numbers = [words.estimate(key, value) for key, value in cause["parameters"].items()]
+    return f"{words.meaning(cause['effect'])} ({'; '.join([cause['effect'], *numbers])})"
+
+
+def _error(found: Diagnosed, model: str) -> str:
+    misfit = found.document["misfit"]
+    dof = misfit.get(f"dof_{model}", misfit["dof"])
+    return words.times_noise(misfit[f"chi2_{model}"], dof)
+
+
+def _improvement(found: Diagnosed) -> str:
+    """Before and after, on all tests and on held-out ones."""
+    before, after = _error(found, "base"), _error(found, "extended")
+    it = "the first" if found.document["rivals"] else "it" if len(found.added) == 1 else "them"
+    return (
+        f"with {it} the error falls from {before.removesuffix(' times the noise')} to {after}{_gain(found)}"
+    )
+
+
+def _gain(found: Diagnosed) -> str:
+    gain = found.document["gain"]
+    if gain is None:
+        return ", not tried on held-out tests"
+    interval = (
+        f" ({words.INTERVAL} {digits.percent(gain['ci95'][0])} to {digits.percent(gain['ci95'][1])})"
+        if gain["ci95"]
+        else " (too few tests for an interval)"
+    )
+    return f", and on held-out tests {digits.percent(gain['excess_removed'])}{interval} of the excess is gone"
+
+
+def _would_tell(found: Diagnosed, what: str = "") -> str:
+    following = found.document["next_test"]
+    if following is None:
+        return ""
+    if what:
+        return f"; a test at {words.following(following)} would tell {what} apart"
+    return (
+        f"; next test {words.following(following)}, which would tell {' from '.join(following['separates'])}"
+    )

@@ -1,0 +1,136 @@
+"""Dormand and Prince's 5(4) pair (1980) for the states of the extended system, with dense output.
+
+The continuous extension of order 4 is Hairer's (Hairer, Norsett and Wanner, Solving ODEs I, 1993).
+"""
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep.compiled import compiled
+from wedgesweep.extended.mode import AGE, BRISTLE, SIZE, SWITCHES, VELOCITY, X
+from wedgesweep.extended.switching import rate
+from wedgesweep.solvers.runge_kutta import ABSOLUTE
+
+STAGES = 7
+TIMES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
+MATRIX = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [3 / 40, 9 / 40, 0.0, 0.0, 0.0, 0.0],
+        [44 / 45, -56 / 15, 32 / 9, 0.0, 0.0, 0.0],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0],
+        [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+    ]
+)
+ERROR = np.array([71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
+DENSE = np.array(
+    [
+        -12715105075 / 11282082432,
+        0.0,
+        87487479700 / 32700410799,
+        -10690763975 / 1880347072,
+        701980252875 / 199316789632,
+        -1453857185 / 822651844,
+        69997945 / 29380423,
+    ]
+)
+
+
+class Room(NamedTuple):
+    """Room for one run: stages, states, dense output and switches; see ``room``."""
+
+    rtol: float
+    counts: Any  # evaluations, steps, switches
+    stages: Any  # (STAGES, SIZE) dy/dt
+    trial: Any  # (SIZE,)
+    end: Any  # (SIZE,)
+    dense: Any  # (5, SIZE)
+    inside: Any  # (SIZE,) a state within the step
+    at_start: Any  # (SWITCHES,)
+    at_middle: Any
+    at_end: Any
+    at_point: Any
+
+
+def room(rtol: float) -> Room:
+    """A fresh Room for runs at a relative tolerance."""
+    return Room(
+        rtol,
+        np.zeros(3, np.int64),
+        np.zeros((STAGES, SIZE)),
+        np.zeros(SIZE),
+        np.zeros(SIZE),
+        np.zeros((5, SIZE)),
+        np.zeros(SIZE),
+        np.zeros(SWITCHES),
+        np.zeros(SWITCHES),
+        np.zeros(SWITCHES),
+        np.zeros(SWITCHES),
+    )
+
+
+@compiled
+def step(t, h, y, mode, p, room):
+    """One step from y, whose rate is ``room.stages[0]``, to ``room.end``; the error over the tolerance."""
+    stages, trial = room.stages, room.trial
+    for stage in range(1, STAGES):
+        target = room.end if stage == STAGES - 1 else trial
+        for i in range(SIZE):
+            change = 0.0
+            for j in range(stage):
+                change += MATRIX[stage, j] * stages[j, i]
+            target[i] = y[i] + h * change
+        rate(t + TIMES[stage] * h, target, mode, p, stages[stage])
+    return _error(h, y, p, room)
+
+
+@compiled
+def _error(h, y, p, room):
+    """Error of a step over what the tolerance allows: root mean square over the states that move."""
+    total, count = 0.0, 0
+    for i in range(AGE):
+        error = 0.0
+        for j in range(STAGES):
+            error += ERROR[j] * room.stages[j, i]
+        error *= h
+        size = max(abs(y[i]), abs(room.end[i]))
+        if i > VELOCITY and size == 0.0:
+            continue
+        if i == BRISTLE:
+            size += ABSOLUTE
+        else:
+            # Ways and velocities alternate; the bristle sits between both pairs.
+            is_way = i == X or i == 3 or i == 5
+            size += ABSOLUTE * p.amplitude * (1.0 if is_way else p.omega)
+        total += (error / (room.rtol * size)) ** 2
+        count += 1
+    return sqrt(total / count)
+
+
+@compiled
+def connect(h, y, room):
+    """Prepare ``inside`` for the step from y that was just made."""
+    dense, stages = room.dense, room.stages
+    for i in range(SIZE):
+        rise = room.end[i] - y[i]
+        bend = h * stages[0, i] - rise
+        dense[0, i], dense[1, i], dense[2, i] = y[i], rise, bend
+        dense[3, i] = rise - h * stages[STAGES - 1, i] - bend
+        last = 0.0
+        for j in range(STAGES):
+            last += DENSE[j] * stages[j, i]
+        dense[4, i] = h * last
+
+
+@compiled
+def inside(share, room):
+    """State at a share of the step, in ``room.inside``."""
+    dense, rest = room.dense, 1.0 - share
+    for i in range(SIZE):
+        tail = dense[3, i] + rest * dense[4, i]
+        room.inside[i] = dense[0, i] + share * (dense[1, i] + rest * (dense[2, i] + share * tail))
+    return room.inside

@@ -1,0 +1,166 @@
+"""Steady responses of many cases, each started from a state nearby: what a fit asks for.
+
+Works alike for the base model, whose states are the first two of the extended system's, and for every
+effect. See settling.py for the way to a steady state.
+"""
+
+from math import ceil, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep import response, sensor
+from wedgesweep.compiled import compiled
+from wedgesweep.extended.mode import SIZE
+from wedgesweep.solvers.march import OK
+from wedgesweep.solvers.passage import clear, passage, tools
+from wedgesweep.solvers.settling import settle
+
+__all__ = ["OK", "SIZE", "Periodic", "respond", "samples"]
+
+# Time constants after which the lag of the velocity channel has forgotten how it began.
+LAG_TIMES = 16.0
+
+
+class Periodic(NamedTuple):
+    """Steady responses, a row a case (SI units); NaN where there is none.
+
+    ``spectra`` (n, 2, H), complex: D_h, h = 1..H, of displacement x - y = -z and of its rate, as the sensors
+    show them; ``state`` (n, SIZE) at phase 0, ``map`` (n, SIZE, SIZE) the derivative of the map from one
+    phase 0 to the next (NaN where it was not needed). ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
+    ``period`` (forcing periods; 0: it did not repeat), ``periods`` run, ``extremes`` (n, 2) lowest and
+    highest deflection (m), ``stuck`` share of time, ``dissipated`` (J per forcing period).
+    """
+
+    spectra: Any
+    state: Any
+    map: Any
+    outcome: Any
+    period: Any
+    periods: Any
+    extremes: Any
+    stuck: Any
+    dissipated: Any
+
+
+def respond(
+    parameters: np.ndarray,
+    states: np.ndarray,
+    maps: np.ndarray,
+    tolerance: float,
+    most_periods: int,
+    samples_per_period: int,
+    harmonics: int,
+    rtol: float,
+) -> Periodic:
+    """Steady responses of parameter records, shape (n,).
+
+    Parameters
+    ----------
+    parameters : structured array, shape (n,)
+        See parameters.record.
+    states : ndarray, shape (n, SIZE)
+        States at phase 0 to start from; a row with NaN starts at rest.
+    maps : ndarray, shape (n, SIZE, SIZE)
+        Derivatives of the map there, as an earlier response returned them; NaN where unknown.
+    tolerance : float
+        Change of the state per repetition, over input amplitude and velocity, that counts as steady.
+    most_periods : int
+        Periods after which a response counts as not periodic.
+    samples_per_period, harmonics : int
+        Samples from which the harmonics are taken, and how many.
+    rtol : float
+        Relative tolerance of a step.
+    """
+    n = len(parameters)
+    found = Periodic(
+        np.full((n, 2, harmonics), np.nan, np.complex128),
+        np.array(states, dtype=float),
+        np.array(maps, dtype=float),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+        np.full((n, 2), np.nan),
+        np.full(n, np.nan),
+        np.full(n, np.nan),
+    )
+    _respond_all(parameters, tolerance, most_periods, tools(rtol, samples_per_period), found, passage())
+    return found
+
+
+@compiled
+def _respond_all(parameters, tolerance, most, bench, found, passage):
+    spectra = np.empty((2, found.spectra.shape[2], 2))
+    for i in range(parameters.size):
+        case = parameters[i : i + 1]
+        y = found.state[i].copy()
+        outcome, period, run, kept = settle(y, found.map[i], case, tolerance, most, bench, True, passage)
+        if outcome == OK and not kept:
+            kept = max(period, 1)
+            clear(bench.tally)
+            outcome = passage(run if period == 0 else 0, kept, y, case, True, bench)
+            run += kept
+        found.outcome[i], found.period[i], found.periods[i] = outcome, period, run
+        found.state[i] = y
+        if outcome != OK:
+            found.state[i] = np.nan
+        else:
+            _reduce(i, kept, case[0], bench, spectra, found)
+
+
+@compiled
+def _reduce(i, periods, p, bench, spectra, found):
+    """Write what the kept periods come to."""
+    n = periods * bench.samples_per_period
+    response.fourier(-bench.x[:n], periods, spectra[0])
+    response.fourier(-bench.velocity[:n], periods, spectra[1])
+    sensor.apply_to_spectra(spectra, p)
+    found.spectra[i] = spectra[:, :, 0] + 1j * spectra[:, :, 1]
+    one = bench.tally[0]
+    found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
+    found.stuck[i] = one.stuck_time / one.time
+    found.dissipated[i] = one.dissipated / periods
+
+
+def samples(
+    parameters: np.ndarray,
+    states: np.ndarray,
+    settle_periods: int,
+    periods: int,
+    samples_per_period: int,
+    rtol: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Deflection (m) and velocity (m/s) as the sensors show them, shape (n, samples), and states at the end.
+
+    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, SIZE; a row with NaN
+    at rest) and runs ``settle_periods`` before the kept ones. NaN where the case has no answer.
+    """
+    n, kept = len(parameters), periods * samples_per_period
+    x, velocity = np.full((n, kept), np.nan), np.full((n, kept), np.nan)
+    state = np.array(states, dtype=float)
+    slowest = float((parameters["velocity_lag_time"] * parameters["omega"]).max()) / (2.0 * pi)
+    # The lag of the velocity channel dies out before the kept samples.
+    before = min(settle_periods, ceil(LAG_TIMES * slowest))
+    bench = tools(rtol, samples_per_period, before + periods)
+    _sample_all(parameters, settle_periods - before, before, periods, bench, x, velocity, state, passage())
+    return x, velocity, state
+
+
+@compiled
+def _sample_all(parameters, settle_periods, before, periods, bench, x, velocity, state, passage):
+    for i in range(parameters.size):
+        case = parameters[i : i + 1]
+        p = case[0]
+        y = state[i].copy() if np.isfinite(state[i]).all() else np.zeros(SIZE)
+        outcome = OK
+        if settle_periods > 0:
+            outcome = passage(0, settle_periods, y, case, False, bench)
+        if outcome == OK:
+            outcome = passage(settle_periods, before + periods, y, case, True, bench)
+        state[i] = y
+        if outcome != OK:
+            state[i] = np.nan
+        else:
+            step = 2.0 * pi / p.omega / bench.samples_per_period
+            x[i] = p.displacement_gain_scale * bench.x[-x.shape[1] :]
+            velocity[i] = sensor.lagged(bench.velocity, step, False, p)[-x.shape[1] :]

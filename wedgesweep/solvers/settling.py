@@ -1,0 +1,267 @@
+"""The way to a steady state: march, and Newton's method on the map from one phase 0 to the next.
+
+The map's derivative J comes from differences, or from a neighbour; Broyden's update (1965) keeps it
+right from one step to the next. Steps of Newton's method must bring the state ever closer to its own
+image, or the run goes back to where marching had come. A response that J calls unstable, or whose mean
+position is free, is left to marching.
+"""
+
+from math import pi
+
+import numpy as np
+
+from wedgesweep.compiled import compiled
+from wedgesweep.extended.mode import (
+    AGE,
+    BRISTLE,
+    COLUMN_VELOCITY,
+    COLUMN_WAY,
+    FRAME_VELOCITY,
+    FRAME_WAY,
+    SIZE,
+    VELOCITY,
+    X,
+)
+from wedgesweep.solvers.march import OK
+from wedgesweep.solvers.passage import LONGEST, clear
+
+# States of a longer period differ by this many tolerances from one period to the next.
+APART = 1e4
+# Perturbation of the scaled state for J, at least NOISE times an integrator's tolerance, and the least step
+# that teaches J anything.
+PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e3, 1e-4
+# Where Newton's method is not to be trusted: determinant of I - J, largest eigenvalue of J.
+SINGULAR, UNSTABLE = 1e-3, 0.9999
+# Periods that are marched before Newton's method is tried, from rest and after it has failed.
+PATIENCE = 8
+# Above STALE times the last distance J is made anew; with a fresh one more than GAIN is a failure.
+STALE, GAIN = 0.2, 0.5
+# Share of a period by which a time at rest grows if nothing slips, less rounding.
+GROWN = 1.0 - 1e-9
+# Below this distance the next period may be the last one, and is kept.
+NEAR = 1e-3
+# Periods marched of a response with a foreign tone, which never repeats.
+TONE_PERIODS = 30
+
+
+@compiled
+def scales(p):
+    """Units of the states: input amplitude and velocity, a share of 1 and a forcing period."""
+    size = np.empty(SIZE)
+    size[X] = size[COLUMN_WAY] = size[FRAME_WAY] = p.amplitude
+    size[VELOCITY] = size[COLUMN_VELOCITY] = size[FRAME_VELOCITY] = p.amplitude * p.omega
+    size[BRISTLE], size[AGE] = 1.0, 2.0 * pi / p.omega
+    return size
+
+
+@compiled
+def active(y, p):
+    """Which states carry over to the next period; not the velocity of a bolster that is held at phase 0.
+
+    The time at rest does if the last slip was within the period before.
+    """
+    found = np.zeros(SIZE, np.bool_)
+    found[X] = True
+    found[VELOCITY] = not (p.set_valued and y[VELOCITY] == 0.0)
+    found[BRISTLE] = p.presliding_length > 0.0
+    found[COLUMN_WAY] = found[COLUMN_VELOCITY] = p.column_compliance_stiffness > 0.0
+    found[FRAME_WAY] = found[FRAME_VELOCITY] = p.fixture_stiffness > 0.0
+    found[AGE] = 0.0 < y[AGE] * p.omega < 2.0 * pi * GROWN
+    return found
+
+
+@compiled
+def _distance(a, b, size):
+    """Largest difference of two states in their units.
+
+    A time at rest that has grown by a whole period or more tells of faces that did not slip meanwhile:
+    it will grow for ever, and does not count.
+    """
+    apart = np.abs(a - b) / size
+    if a[AGE] - b[AGE] >= GROWN * size[AGE]:
+        apart[AGE] = 0.0
+    return np.max(apart)
+
+
+@compiled
+def differences(y, image, moves, size, parameters, jacobian, tools, passage):
+    """Write J at y, whose image is known; returns the outcome and the periods it took."""
+    jacobian[:] = 0.0
+    run = 0
+    share = PERTURBATION
+    if parameters[0].extended:
+        share = max(share, NOISE * tools.room.rtol)
+    for column in range(SIZE):
+        if moves[column]:
+            shifted = y.copy()
+            shifted[column] += share * size[column]
+            outcome = passage(0, 1, shifted, parameters, False, tools)
+            run += 1
+            if outcome != OK:
+                jacobian[:] = np.nan
+                return outcome, run
+            jacobian[:, column] = (shifted - image) / size / share
+    return OK, run
+
+
+@compiled
+def _part(jacobian, moves):
+    """J of the states that move."""
+    places = np.flatnonzero(moves)
+    part = np.empty((places.size, places.size))
+    for i in range(places.size):
+        for j in range(places.size):
+            part[i, j] = jacobian[places[i], places[j]]
+    return part
+
+
+@compiled
+def _trusted(jacobian, moves):
+    """Whether a derivative is known and calls the response stable, and its place determined."""
+    part = _part(jacobian, moves)
+    n = part.shape[0]
+    if not np.isfinite(part).all():
+        return False
+    margin = np.linalg.det(np.eye(n) - part)
+    if n == 1:
+        return abs(part[0, 0]) < UNSTABLE and margin >= SINGULAR
+    if n == 2:
+        determinant = np.linalg.det(part)
+        stable = abs(part[0, 0] + part[1, 1]) < 1.0 + determinant and determinant < UNSTABLE
+        return stable and margin >= SINGULAR
+    largest = np.max(np.abs(np.linalg.eigvals(part.astype(np.complex128))))
+    return largest < UNSTABLE and margin >= SINGULAR
+
+
+@compiled
+def _aim(y, image, jacobian, moves, size):
+    """Newton's next state."""
+    places = np.flatnonzero(moves)
+    miss = ((image - y) / size)[places]
+    step = np.linalg.solve(np.eye(places.size) - _part(jacobian, moves), miss)
+    aim = image.copy()
+    for i in range(places.size):
+        aim[places[i]] = y[places[i]] + step[i] * size[places[i]]
+    return aim
+
+
+@compiled
+def _update(jacobian, y, image, before, image_before, size):
+    """Broyden's update of J from two states and their images, unless they are too close to tell."""
+    step = (y - before) / size
+    square = np.dot(step, step)
+    if square > LEAST_STEP**2:
+        miss = (image - image_before) / size - np.dot(jacobian, step)
+        jacobian += np.outer(miss, step) / square
+
+
+@compiled
+def _repeats(state, past, count, tolerance, size):
+    """Number of periods after which the state came back, 0 if it did not.
+
+    A spiral into a fixed point comes close to itself every few turns: a longer period counts only where
+    the state is far from that of one period before.
+    """
+    last = _distance(state, past[(count - 1) % LONGEST], size)
+    if last <= tolerance:
+        return 1
+    if last < APART * tolerance:
+        return 0
+    for n in range(2, min(count, LONGEST) + 1):
+        if _distance(state, past[(count - n) % LONGEST], size) <= tolerance:
+            return n
+    return 0
+
+
+@compiled
+def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
+    """Newton's method from y, with J made where it is not known or not right.
+
+    Returns whether y repeats now, the outcome and the periods run, of which the last is kept if so.
+    Where it fails y is the state with the shortest way to its own image that it has come to.
+    """
+    before, image_before, best = y.copy(), y.copy(), y.copy()
+    shortest, last, fresh, run = np.inf, np.inf, False, 0
+    while run < most:
+        image = y.copy()
+        keeping = last < NEAR or run == 0
+        if keeping:
+            clear(tools.tally)
+        outcome = passage(0, 1, image, parameters, keeping, tools)
+        run += 1
+        if outcome != OK:
+            y[:] = best
+            return False, outcome, run
+        now = _distance(image, y, size)
+        if now <= tolerance and keeping:
+            y[:] = image
+            return True, OK, run
+        moves = active(image, parameters[0])
+        if now < shortest:
+            shortest = now
+            best[:] = image
+        if run > 1 and np.isfinite(jacobian).all():
+            _update(jacobian, y, image, before, image_before, size)
+        if now > STALE * last or (run == 1 and not _trusted(jacobian, moves)):
+            if fresh and now > GAIN * last:
+                break
+            outcome, more = differences(y, image, moves, size, parameters, jacobian, tools, passage)
+            run += more
+            fresh = True
+            if outcome != OK or not _trusted(jacobian, moves):
+                break
+        else:
+            fresh = False
+        before[:], image_before[:], last = y, image, now
+        y[:] = _aim(y, image, jacobian, moves, size)
+    y[:] = best
+    return False, OK, run
+
+
+@compiled
+def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
+    """Find a state at phase 0 that repeats, from y (rest where it is NaN) and J (NaN: unknown).
+
+    ``near``: y is thought to lie close to it, so that Newton's method comes first. Returns the outcome,
+    the period of the response in forcing periods (0: it did not repeat), the periods run, and how many of
+    them, the last ones, the tools have kept. y and J move along.
+    """
+    p = parameters[0]
+    size = scales(p)
+    run = 0
+    warm = np.isfinite(y).all()
+    if not warm:
+        y[:] = 0.0
+        jacobian[:] = np.nan
+    if p.stray_vibration_acceleration != 0.0:
+        most = min(most, TONE_PERIODS)
+        return passage(0, most, y, parameters, False, tools), 0, most, 0
+    if warm and near:
+        found, outcome, run = chase(y, jacobian, parameters, tolerance, most, size, tools, passage)
+        if found:
+            return OK, 1, run, 1
+        if outcome != OK:
+            # The neighbour's state may lie where this case cannot go: rest is the start that decides.
+            y[:] = 0.0
+    past = np.full((LONGEST, SIZE), np.inf)
+    count = 0
+    while run < most:
+        past[count % LONGEST] = y
+        outcome = passage(0, 1, y, parameters, False, tools)
+        run, count = run + 1, count + 1
+        if outcome != OK:
+            return outcome, 0, run, 0
+        period = _repeats(y, past, count, tolerance, size)
+        if period:
+            return OK, period, run, 0
+        if count % PATIENCE == 0:
+            trial = y.copy()
+            jacobian[:] = np.nan
+            found, outcome, more = chase(
+                trial, jacobian, parameters, tolerance, most - run, size, tools, passage
+            )
+            run += more
+            if found:
+                y[:] = trial
+                return OK, 1, run, 1
+    return OK, 0, run, 0

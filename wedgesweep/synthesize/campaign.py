@@ -1,0 +1,166 @@
+"""From a config and a plan of tests to a directory of measured data."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import joblib
+import numpy as np
+
+from wedgesweep.cases import compile_once
+from wedgesweep.config import Config
+from wedgesweep.errors import InputError
+from wedgesweep.measured.model import with_law
+from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.synthesize import files, noise
+from wedgesweep.synthesize.files import Table
+from wedgesweep.synthesize.motion import RTOL, Motion, steady
+from wedgesweep.synthesize.plan import Plan
+from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
+
+# A bolster that moves less than this share of the input sticks.
+STUCK = 1e-6
+
+
+class SynthesisError(InputError):
+    """Data that cannot be made."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How the data are made; ``level`` and ``amplitude_error`` are relative std.
+
+    ``sampling_hz`` None: near 2 kHz, another one in each test, so that it does not divide the period.
+    """
+
+    noise: str = "white"
+    level: float = 0.04
+    seed: int = 0
+    periods: float = 8.4
+    sampling_hz: float | None = None
+    settle_periods: int = 60
+    amplitude_error: float = 1e-3
+
+
+def synthesize(
+    config: Config, source: str, plan: Plan, options: Options, directory: Path, n_jobs: int
+) -> list[str]:
+    """Make measured data of the system of a config, which was read from ``source``; what to know of them.
+
+    Raises
+    ------
+    InputError
+        If the config has several laws, a test cannot be simulated or the directory is not free; nothing
+        is written then.
+    """
+    directory = directory.absolute()
+    files.require_free(directory)
+    problems: list[str] = []
+    _, law = with_law(config, source, problems)
+    if problems:
+        raise SynthesisError(problems)
+    truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
+    motions = _motions(truth, options, n_jobs)
+    tables = [_table(*each, options) for each in zip(truth.tests, motions, strict=True)]
+    model = Config(config.document | {"effects": {}, "title": "model on trial"})
+    measured = _measured(directory.name, plan, options)
+    files.write(directory, measured, model, tables, _told(truth, motions, options))
+    return [
+        f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
+        for i, (test, motion) in enumerate(zip(truth.tests, motions, strict=True))
+        if test.stray_phase_deg is None and motion.settle_periods == options.settle_periods
+    ]
+
+
+def _name(i: int, test: TrueTest) -> str:
+    return f"test[{i}] ({test.plan.frequency_hz:g} Hz, {test.plan.amplitude_mm:g} mm)"
+
+
+def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
+    """What happens in each test; raises SynthesisError with every test that fails."""
+    compile_once("radau")
+    more = 2 if options.noise == "differentiated" else 0
+    jobs = (
+        joblib.delayed(_motion)(
+            truth.record(test),
+            test.clock(options.periods, more),
+            options.settle_periods,
+            STRAY not in truth.config.effects,
+            truth.effects,
+        )
+        for test in truth.tests
+    )
+    found = joblib.Parallel(n_jobs=n_jobs)(jobs)
+    problems = [
+        f"{_name(i, test)}: {motion}"
+        for i, (test, motion) in enumerate(zip(truth.tests, found, strict=True))
+        if isinstance(motion, str)
+    ]
+    if problems:
+        raise SynthesisError(problems)
+    return found
+
+
+def _motion(record: np.ndarray, *arguments: Any) -> Motion | str:
+    """Motion of a test, or why there is none."""
+    try:
+        motion = steady(record, *arguments)
+    except CaseError as error:
+        return str(error)
+    if np.ptp(motion.displacement) < STUCK * record["amplitude"][0]:
+        return "the bolster sticks all the time, so that there is nothing to measure; raise the amplitude"
+    return motion
+
+
+def _table(test: TrueTest, motion: Motion, options: Options) -> Table:
+    """Channels with offset and noise, as a file shows them; time from 0."""
+    displacement = motion.displacement + test.offset * motion.displacement.std()
+    channels = (displacement, motion.velocity)
+    step = 1.0 / test.sampling_hz
+    displacement, velocity = noise.NOISES[options.noise](channels, options.level, step, test.random)
+    return Table(step * np.arange(displacement.size), displacement * 1e3, velocity * 1e3)
+
+
+def _measured(title: str, plan: Plan, options: Options) -> dict[str, Any]:
+    """The document of measured.toml."""
+    tests = []
+    for i, test in enumerate(plan.tests):
+        told: dict[str, Any] = {"file": f"test-{i:02d}.csv", "frequency_hz": test.frequency_hz}
+        if test.known:
+            told["amplitude_mm"] = test.amplitude_mm
+            told["amplitude_std"] = test.amplitude_std or options.amplitude_error
+        tests.append(told)
+    velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated"}
+    columns = {
+        "time": {"column": "t", "unit": "s"},
+        "displacement": {"column": "d", "unit": "mm"},
+        "velocity": velocity,
+    }
+    head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
+    return {"measurement": {**head, "test": tests}}
+
+
+def _told(truth: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
+    """The document of truth.json: what a diagnosis is to find, in the keys and units of a config."""
+    tests = [
+        {
+            "frequency_hz": test.plan.frequency_hz,
+            "amplitude_mm": test.amplitude_mm,
+            "nominal_amplitude_mm": test.plan.amplitude_mm,
+            "phase_deg": test.phase_deg,
+            "stray_vibration_phase_deg": test.stray_phase_deg,
+            "sampling_hz": test.sampling_hz,
+            "settle_periods": motion.settle_periods,
+        }
+        for test, motion in zip(truth.tests, motions, strict=True)
+    ]
+    return {
+        "effects": truth.config.document["effects"],
+        "friction_law": truth.law,
+        "uncertain": truth.factors,
+        "noise": options.noise,
+        "level": options.level,
+        "seed": options.seed,
+        "solver": {"method": "radau", "rtol": RTOL},
+        "tests": tests,
+    }

@@ -1,0 +1,54 @@
+"""The files of a synthetic measurement: measured.toml, model.toml, a CSV per test, truth.json."""
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from shutil import rmtree
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.config import Config, toml
+from wedgesweep.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """What stands in a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each."""
+
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+
+def require_free(directory: Path) -> None:
+    """Complain before the work about a directory that holds something; raises InputError."""
+    if directory.exists() and (not directory.is_dir() or any(directory.iterdir())):
+        raise InputError([f"{directory}: not an empty directory; choose another, or remove it"])
+    if not directory.parent.is_dir():
+        raise InputError([f"{directory.parent}: not a directory; create it"])
+
+
+def write(
+    directory: Path, measured: dict[str, Any], model: Config, tables: Sequence[Table], truth: dict[str, Any]
+) -> None:
+    """Write everything into a directory, or nothing."""
+    partial = directory.with_name(f"{directory.name}.partial")
+    rmtree(partial, ignore_errors=True)
+    partial.mkdir()
+    try:
+        (partial / "measured.toml").write_text(toml.dumps(measured), encoding="utf-8")
+        (partial / "model.toml").write_text(model.to_toml(), encoding="utf-8")
+        (partial / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
+        for test, table in zip(measured["measurement"]["test"], tables, strict=True):
+            _write_csv(partial / test["file"], table)
+        os.replace(partial, directory)
+    finally:
+        rmtree(partial, ignore_errors=True)
+
+
+def _write_csv(path: Path, table: Table) -> None:
+    rows = np.column_stack([table.time, table.displacement, table.velocity])
+    np.savetxt(path, rows, fmt=["%.7f", "%.7g", "%.7g"], delimiter=",", header="t,d,v", comments="")

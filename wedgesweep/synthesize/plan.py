@@ -1,0 +1,64 @@
+"""tests.toml: which tests are made, and what their measured.toml calls uncertain."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from wedgesweep.config.keys import Flag, Number
+from wedgesweep.config.tables import TableList, table
+from wedgesweep.errors import InputError
+from wedgesweep.measured.declarations import AMPLITUDE, AMPLITUDE_STD, FREQUENCY, UNCERTAIN
+
+KNOWN = Flag(key="known", meaning="whether measured.toml tells the amplitude", default=True)
+
+ROOT = table(
+    "",
+    "tests to make",
+    UNCERTAIN,
+    TableList(
+        key="test",
+        meaning="the tests",
+        item=table(
+            "test",
+            "one test",
+            Number.of(FREQUENCY, example=20.0),
+            Number.of(AMPLITUDE, example=0.1),
+            Number.of(AMPLITUDE_STD),
+            KNOWN,
+        ),
+    ),
+)
+
+
+@dataclass(frozen=True)
+class PlannedTest:
+    """One test; its amplitude is nominal. ``amplitude_std`` is relative, 0 where none is given."""
+
+    frequency_hz: float
+    amplitude_mm: float
+    amplitude_std: float
+    known: bool
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The tests, and the relative std of uncertain numbers by the effect that scales them."""
+
+    tests: tuple[PlannedTest, ...]
+    uncertain: dict[str, float]
+
+
+def load(path: Path) -> Plan:
+    """Read a tests.toml; raises InputError with all that is wrong."""
+    try:
+        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        problem = f"{path}: {error.strerror}; give the path of a tests.toml"
+        raise InputError([problem]) from error
+    except ValueError as error:
+        raise InputError([f"{path}: not valid TOML: {error}"]) from error
+    problems: list[str] = []
+    document = ROOT.read(given, "", problems)
+    if problems:
+        raise InputError([f"{path}: {problem}" for problem in problems])
+    return Plan(tuple(PlannedTest(**each) for each in document["test"]), document["uncertain"])

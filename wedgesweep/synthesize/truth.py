@@ -1,0 +1,112 @@
+"""The true system: every number that chance decides, drawn once and known from then on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil, pi
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.synthesize.motion import Clock
+from wedgesweep.synthesize.plan import Plan, PlannedTest
+
+# Sampling rates that nobody asked for are near this one, and differ from test to test.
+SAMPLING_HZ, SAMPLING_SPREAD = 2000.0, 0.03
+STRAY = "stray_vibration"
+
+
+@dataclass(frozen=True)
+class TrueTest:
+    """One test as it is: true amplitude, phase of the input at the first sample, offset over the rms.
+
+    ``stray_phase_deg`` is that of a foreign tone, None without one; ``random`` makes the noise.
+    """
+
+    plan: PlannedTest
+    amplitude_mm: float
+    phase_deg: float
+    sampling_hz: float
+    offset: float
+    stray_phase_deg: float | None
+    random: np.random.Generator
+
+    def clock(self, periods: float, more: int) -> Clock:
+        """When to sample; ``more`` samples than the periods need."""
+        period = 1.0 / self.plan.frequency_hz
+        count = ceil(periods * period * self.sampling_hz) + more
+        return Clock(self.phase_deg / 360.0 * period, 1.0 / self.sampling_hz, count)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The system behind the data: a config with effects, its law, and the true value of what is uncertain."""
+
+    config: Config
+    law: str
+    factors: Mapping[str, float]
+    tests: tuple[TrueTest, ...]
+
+    @property
+    def effects(self) -> dict[str, dict[str, float]]:
+        """Effects of the config with the uncertain numbers at their true values, in SI units."""
+        effects = {name: dict(values) for name, values in self.config.effects.items()}
+        for name, factor in self.factors.items():
+            scale = effects.get(name, {}).get("scale", 1.0)
+            effects[name] = {"scale": scale * factor}
+        return effects
+
+    def record(self, test: TrueTest) -> np.ndarray:
+        """Parameters of a test for the solver, shape (1,)."""
+        from wedgesweep import parameters
+
+        record = parameters.record(
+            law=self.law,
+            amplitude=test.amplitude_mm * 1e-3,
+            omega=2.0 * pi * test.plan.frequency_hz,
+            suspension=self.config.suspension,
+            friction=self.config.friction,
+            effects=self.effects,
+        )
+        if test.stray_phase_deg is not None:
+            record[f"{STRAY}_phase"] = np.radians(test.stray_phase_deg)
+        return record
+
+
+def draw(
+    config: Config,
+    law: str,
+    plan: Plan,
+    amplitude_error: float,
+    sampling_hz: float | None,
+    seed: int,
+) -> Truth:
+    """Draw what is random; each test has a source of its own, so that the others do not change it."""
+    seeds = np.random.SeedSequence(seed).spawn(len(plan.tests) + 1)
+    random = np.random.default_rng(seeds[0])
+    factors = {name: 1.0 + std * float(random.normal()) for name, std in plan.uncertain.items()}
+    stray = STRAY in config.effects
+    tests = tuple(
+        _drawn(test, amplitude_error, sampling_hz, stray, np.random.default_rng(seed))
+        for test, seed in zip(plan.tests, seeds[1:], strict=True)
+    )
+    return Truth(config, law, factors, tests)
+
+
+def _drawn(
+    test: PlannedTest,
+    amplitude_error: float,
+    sampling_hz: float | None,
+    stray: bool,
+    random: np.random.Generator,
+) -> TrueTest:
+    error, offset = random.normal(size=2).tolist()
+    phase, stray_phase, spread = random.random(3).tolist()
+    return TrueTest(
+        plan=test,
+        amplitude_mm=test.amplitude_mm * (1.0 + (test.amplitude_std or amplitude_error) * error),
+        phase_deg=360.0 * phase,
+        sampling_hz=sampling_hz or round(SAMPLING_HZ * (1.0 + SAMPLING_SPREAD * (2.0 * spread - 1.0)), 3),
+        offset=offset,
+        stray_phase_deg=360.0 * stray_phase if stray else None,
+        random=random,
+    )
