@@ -60,6 +60,11 @@ class Quantity:
         """What turns a number in the key's unit into SI."""
         return SI_FACTORS.get(self.suffix, 1.0)
 
+    @property
+    def angle(self) -> bool:
+        """Whether the number is an angle, which comes round again."""
+        return self.suffix == "_deg"
+
     def fault(self, value: float) -> str | None:
         """Why ``value`` (in the key's unit) cannot be right, or None."""
         if value < self.minimum:

@@ -130,8 +130,16 @@ def explain(search: Search, base: Explanation) -> list[Explanation]:
     found = [each.explanation for each in singles]
     best = min([base, *found], key=lambda each: each.penalised)
     if best.fit.p < verdict.ADEQUATE and search.problem.tests >= verdict.FEWEST_TESTS:
-        found += pairs.pairs(search, base.fit, singles)
-    return sorted(found, key=lambda each: each.penalised)
+        both = pairs.pairs(search, base.fit, singles)
+        found += both + pairs.halves(search, both)
+    return sorted(_best_of_each(found), key=lambda each: each.penalised)
+
+
+def _best_of_each(found: Sequence[Explanation]) -> list[Explanation]:
+    best: dict[frozenset[str], Explanation] = {}
+    for each in sorted(found, key=lambda one: one.penalised):
+        best.setdefault(frozenset(each.effects), each)
+    return list(best.values())
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:

@@ -279,22 +279,26 @@ def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
             break
         equations = model.equations(trial)
         matrix, _ = equations.reduced()
-        better, promised = None, np.inf
-        while damping < STUCK:
-            step, promised = _step(model, trial.point, equations, damping)
-            if promised < max(ARRIVED, ARRIVED_SHARE * trial.q):
+        better, promised, little = None, np.inf, max(ARRIVED, ARRIVED_SHARE * trial.q)
+        while better is None and damping < STUCK:
+            step, promised, limited = _step(model, trial.point, equations, damping)
+            # A step cut short at a limit may promise nothing; a more damped one still may.
+            if promised < little and not limited:
                 break
-            better = model.trial(step)
-            if better.q < trial.q:
-                break
-            better = None
-            damping *= 8.0
+            better = _better(model, trial, step) if promised >= little else None
+            if better is None:
+                damping *= 8.0
         if better is None:
-            arrived = promised < max(ARRIVED, ARRIVED_SHARE * trial.q)
+            arrived = promised < little
             break
         gained = trial.q - better.q
         trial, damping = better, max(damping / (8.0 if gained > 0.5 * promised else 1.0), 1e-9)
     return Fit(model, trial, _covariance(matrix), arrived)
+
+
+def _better(model: Model, trial: Trial, step: Point) -> Trial | None:
+    tried = model.trial(step)
+    return tried if tried.q < trial.q else None
 
 
 def restrict(fit: Fit, rows: np.ndarray) -> Fit:
@@ -305,8 +309,8 @@ def restrict(fit: Fit, rows: np.ndarray) -> Fit:
     return Fit(model, trial, fit.covariance, fit.arrived)
 
 
-def _step(model: Model, point: Point, equations: Equations, damping: float) -> tuple[Point, float]:
-    """The point after a damped step within the bounds, and what it promises to take off Q."""
+def _step(model: Model, point: Point, equations: Equations, damping: float) -> tuple[Point, float, bool]:
+    """The point after a damped step, what it promises to take off Q, and whether a limit cut it short."""
     x = point.x
     matrix, gradient = equations.reduced(damping)
     free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
@@ -318,11 +322,12 @@ def _step(model: Model, point: Point, equations: Equations, damping: float) -> t
     longest = np.max(np.abs(step) / model.width, initial=0.0)
     if longest > LONGEST_STEP:
         step *= LONGEST_STEP / longest
-    step = np.clip(x + step, model.low, model.high) - x
-    local = equations.local(step, damping)
+    within = np.clip(x + step, model.low, model.high) - x
+    local = equations.local(within, damping)
+    limited = bool((within != step).any() or (np.abs(local[:, 1]) > LONGEST_AMPLITUDE).any())
     local[:, 1] = np.clip(local[:, 1], -LONGEST_AMPLITUDE, LONGEST_AMPLITUDE)
-    promised = equations.promise(step, local)
-    return replace(point, x=x + step, amplitude=point.amplitude + local[:, 1]), promised
+    promised = equations.promise(within, local)
+    return replace(point, x=x + within, amplitude=point.amplitude + local[:, 1]), promised, limited
 
 
 def _covariance(matrix: np.ndarray) -> np.ndarray:

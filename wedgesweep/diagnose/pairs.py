@@ -20,6 +20,8 @@ ROUNDS = ((3, 1000), (5, 40))
 GOING_ON = 8
 # Tests that the first look takes.
 FEW = 6
+# Pairs whose misfit is this close to the best have each of their effects fitted alone again.
+CLOSE = 50.0
 # Least change (squared, in noise) of a response that says something.
 SEEN = 4.0
 # An effect may be this much weaker or stronger than where it was tried.
@@ -50,6 +52,24 @@ def pairs(search: Search, base: Fit, singles: Sequence[Single]) -> list[Explanat
         fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
     found = search.each(lambda fit: _finish(search, base, fit), _best_of_each(fits)[:GOING_ON])
     return sorted(found, key=lambda each: each.penalised)
+
+
+def halves(search: Search, both: Sequence[Explanation]) -> list[Explanation]:
+    """Either effect of the leading pairs alone, from its numbers in the pair.
+
+    A pair whose other half does nothing shows a minimum that the single fit had missed.
+    """
+    if not both:
+        return []
+    close = [each for each in both if each.fit.q - both[0].fit.q < CLOSE]
+    jobs = [(pair.fit, effect) for pair in close for effect in pair.effects]
+    return search.each(lambda job: search.explanation(_half(search, *job)), jobs)
+
+
+def _half(search: Search, pair: Fit, effect: str) -> Fit:
+    model = search.model(effect)
+    start = model.start(pair, model.hypothesis.at(pair.values))
+    return refine(model, model.trial(start))
 
 
 def _worst(fit: Fit) -> Fit:

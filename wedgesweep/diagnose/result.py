@@ -3,7 +3,7 @@
 import json
 import os
 from datetime import UTC, datetime
-from math import exp, isfinite, log, sqrt
+from math import exp, inf, isfinite, log, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from wedgesweep.diagnose.fit import Fit
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.search import PENALTY, Explanation
 from wedgesweep.effects import EFFECTS
+from wedgesweep.quantity import Quantity
 
 # 95 % of a normal distribution.
 TWO_SIDED = 1.959964
@@ -44,7 +45,8 @@ def _write_text(file: Path, text: str) -> None:
 def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
     """Fitted numbers of every effect with their 95 % intervals, in key units.
 
-    Symmetric in the fit's coordinate: a number that is fitted as a logarithm has the interval of that.
+    Symmetric in the fit's coordinate: a number that is fitted as a logarithm has the interval of that. No
+    interval reaches beyond the range that was searched: of what lies there the fit knows nothing.
     """
     hypothesis, size = fit.model.hypothesis, fit.model.size
     x, covariance = fit.x[:size], fit.covariance[:size, :size]
@@ -55,19 +57,33 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
     for name in hypothesis.effects:
         found[name] = {}
         for quantity in EFFECTS[name].quantities:
-            value = here[name][quantity.key]
-            if not quantity.search:
-                continue
-            change = lambda v: log(v / value) if quantity.logarithmic and value > 0.0 else v - value  # noqa: E731, B023
-            slope = np.array([change(m[name][quantity.key]) for m in moved]) / step
-            half = TWO_SIDED * sqrt(max(float(slope @ covariance @ slope), 0.0))
-            ends = (
-                [value * exp(-half), value * exp(half)]
-                if quantity.logarithmic
-                else [value - half, value + half]
-            )
-            found[name][quantity.key] = {"value": _finite(value), "ci95": [_finite(end) for end in ends]}
+            if quantity.search:
+                value = here[name][quantity.key]
+                slope = np.array([_change(quantity, value, m[name][quantity.key]) for m in moved]) / step
+                half = TWO_SIDED * sqrt(max(float(slope @ covariance @ slope), 0.0))
+                ends = _interval(quantity, value, half)
+                found[name][quantity.key] = {"value": _finite(value), "ci95": [_finite(end) for end in ends]}
     return found
+
+
+def _change(quantity: Quantity, value: float, moved: float) -> float:
+    """Change of a number in the coordinate in which it is fitted."""
+    if quantity.logarithmic:
+        return log(moved / value)
+    change = moved - value
+    return (change + 180.0) % 360.0 - 180.0 if quantity.angle else change
+
+
+def _interval(quantity: Quantity, value: float, half: float) -> tuple[float, float]:
+    """Ends of an interval of half a width ``half`` in the coordinate in which a number is fitted."""
+    low, high = quantity.search or (-inf, inf)
+    if quantity.angle:
+        half = min(half, 180.0)
+        return value - half, value + half
+    if quantity.logarithmic:
+        half = min(half, log(high / low))
+        return max(value * exp(-half), low), min(value * exp(half), high)
+    return max(value - half, low), min(value + half, high)
 
 
 def causes(each: Explanation | None) -> list[dict[str, Any]]:

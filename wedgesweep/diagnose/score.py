@@ -4,6 +4,7 @@ A score test asks whether the misfit of the base model points the way in which a
 response, once what phases, amplitudes and uncertain numbers can take up is taken out of both.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -84,9 +85,7 @@ def scores(search: Search, base: Fit) -> list[Score]:
 
 def _score(search: Search, base: Fit, effect: str, project: Projector, residual: np.ndarray) -> Score:
     hypothesis = Hypothesis((effect,))
-    path = _path(hypothesis)
-    model = search.model(effect)
-    trials = trials_of(model, [model.start(base, x) for x in path])
+    path, trials = _along(search, base, hypothesis)
     changes = [_change(base, each) for each in trials]
     sizes = np.array([np.linalg.norm(each) for each in changes])
     remaining = [project(each) for each in changes]
@@ -98,6 +97,17 @@ def _score(search: Search, base: Fit, effect: str, project: Projector, residual:
     if retention >= RETAINED and left[weak] > 0.0:
         t2 = float((remaining[weak] @ residual) ** 2 / left[weak] ** 2)
     return Score(effect, t2, retention, key, _detectable(hypothesis, path, left**2))
+
+
+def _along(search: Search, base: Fit, hypothesis: Hypothesis) -> tuple[np.ndarray, Sequence[Trial]]:
+    """Points (n, k) along the leading number of an effect, and their responses."""
+    coordinates, model = hypothesis.coordinates, search.model(*hypothesis.effects)
+    known = search.along.get(hypothesis.effects[0])
+    told = not np.isinf(base.model.problem.amplitude_std).any()
+    if known and told and len(coordinates) == 1 and coordinates[0].logarithmic:
+        return np.array([trial.point.x[:1] for trial in known]), known
+    path = _path(hypothesis)
+    return path, trials_of(model, [model.start(base, x) for x in path])
 
 
 def _path(hypothesis: Hypothesis) -> np.ndarray:

@@ -14,9 +14,8 @@ from wedgesweep.diagnose.problem import Problem
 
 # What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
 PENALTY = 6.0
-# Starting points that are followed, and for how long before only the best is.
-# Close to a neutral value a start is never bad, so that along one coordinate more of them are followed.
-FOLLOWED, FOLLOWED_ALONG, FIRST_ITERATIONS = 4, 7, 6
+# Starting points that are followed, and for how many iterations; the best of the last go on to the end.
+FOLLOWED = ((4, 3), (2, 4))
 # Least probability of the base model's misfit at which it may do without a cause.
 POSSIBLE = 1e-3
 # Input amplitudes that are tried where none is known, over the fundamental of the displacement.
@@ -69,6 +68,8 @@ class Search:
         self.effects = tuple(name for name in effects if name != TONE or problem.tone is not None)
         self.reference = unknown_reference(problem)
         self.price = log(problem.points.sum()) + PENALTY
+        # What was simulated of each effect over its range beside the base model.
+        self.along: dict[str, tuple[Trial, ...]] = {}
 
     def model(self, *effects: str) -> Model:
         tone = self.problem.tone
@@ -89,9 +90,9 @@ class Search:
         model = self.model(effect)
         starts = [model.start(base, x) for x in model.hypothesis.starts()]
         trials = best_amplitudes(model, starts)
+        self.along[effect] = tuple(trials)
         # Where the base model will do, a cause could only be weak: one start is as good as another.
-        followed = FOLLOWED_ALONG if model.size == 1 else FOLLOWED
-        fit = best_of(model, trials, followed if base.p < POSSIBLE else 1)
+        fit = best_of(model, trials, FOLLOWED if base.p < POSSIBLE else ((1, 3),))
         self.progress(effect)
         return Single(self.explanation(fit), tuple(trials))
 
@@ -142,9 +143,11 @@ def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
     return trials_of(model, chosen)
 
 
-def best_of(model: Model, trials: Sequence[Trial], followed: int = FOLLOWED) -> Fit:
-    """Follow the best few trials a little way and the best of those to the end."""
-    leading = sorted(trials, key=lambda each: each.q)[:followed]
-    begun = [refine(model, trial, FIRST_ITERATIONS) for trial in leading]
-    best = min(begun, key=lambda fit: fit.q)
+def best_of(model: Model, trials: Sequence[Trial], followed: Sequence[tuple[int, int]] = FOLLOWED) -> Fit:
+    """Follow the best few trials a little way, the best of these further, the best of those to the end."""
+    for entering, iterations in followed:
+        leading = sorted(trials, key=lambda each: each.q)[:entering]
+        fits = [refine(model, trial, iterations) for trial in leading]
+        trials = [fit.trial for fit in fits]
+    best = min(fits, key=lambda fit: fit.q)
     return best if best.arrived else refine(model, best.trial)

@@ -12,7 +12,7 @@ from wedgesweep.solvers import periodic
 
 # A model that is this exact adds nothing to the noise of 4 % data (share of the input amplitude).
 TOLERANCE, RTOL = 1e-6, 1e-6
-MOST_PERIODS = 60
+MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 256
 # Periods run before and over which a response with a foreign tone is evaluated, and its samples.
 TONE_SETTLING, TONE_PERIODS, TONE_SAMPLES = 10, 20, 64

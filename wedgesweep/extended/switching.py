@@ -11,7 +11,7 @@ import numpy as np
 from wedgesweep.compiled import compiled
 from wedgesweep.contact import AT_JUMP, LOOK_AHEAD, ROUNDING
 from wedgesweep.excitation import table_acceleration
-from wedgesweep.extended.faces import bolster_slip, column_slip, cross_velocity
+from wedgesweep.extended.faces import bolster_slip, column_slip, cross_velocity, sliding
 from wedgesweep.extended.jumps import WIDTH, acting, blend, settled, slip_rate
 from wedgesweep.extended.mechanics import closed, riding, write_rate
 from wedgesweep.extended.mode import (
@@ -33,6 +33,10 @@ from wedgesweep.extended.mode import (
     stuck,
     with_branch,
 )
+
+# A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
+# end cannot go back and forth between both at one instant.
+OVERLAP = 1e-9
 
 
 @compiled
@@ -133,6 +137,8 @@ def initial(t, y, p):
 @compiled
 def _ends(value, threshold, now, place, out):
     """Write the distances of a measure of slip to the lower and the upper end of its branch."""
+    if now == 0:
+        threshold *= 1.0 + OVERLAP
     if now >= 0:
         out[place] = value - threshold if now else value + threshold
     if now <= 0:
@@ -247,14 +253,24 @@ def _released(t, y, direction, stop, p):
 
 
 @compiled
+def _continuous(axis, p):
+    """Whether friction goes over from one branch of an axis to the next without a jump."""
+    if axis >= 2:
+        return axis == 2
+    if axis == 0 and p.presliding_length > 0.0:
+        return True
+    jump = p.static + p.stribeck_peak - sliding(p.threshold_velocity, p)
+    return p.ageing_rate == 0.0 and abs(jump) <= ROUNDING * p.dynamic
+
+
+@compiled
 def _over_jump(t, y, mode, switch, p):
     """Mode behind the end of a branch, or at the jump where the side behind points back to it."""
     axis = switch // 2
     was_held = abs(branch(mode, axis)) == AT_JUMP
     across, now, certain = settled(t, y, beyond(mode, switch, False, p), p)
     onward = slip_rate(axis, t, y, now.acceleration, now.column_acceleration, p)
-    smooth = axis == 0 and p.presliding_length > 0.0
-    if was_held or smooth or (onward if switch % 2 else -onward) >= 0.0:
+    if was_held or _continuous(axis, p) or (onward if switch % 2 else -onward) >= 0.0:
         return across, certain
     found, _, certain = settled(t, y, beyond(mode, switch, True, p), p)
     return found, certain

@@ -3,15 +3,14 @@
 The continuous extension of order 4 is Hairer's (Hairer, Norsett and Wanner, Solving ODEs I, 1993).
 """
 
-from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from wedgesweep.compiled import compiled
-from wedgesweep.extended.mode import AGE, BRISTLE, SIZE, SWITCHES, VELOCITY, X
+from wedgesweep.extended.mode import SIZE, SWITCHES
 from wedgesweep.extended.switching import rate
-from wedgesweep.solvers.runge_kutta import ABSOLUTE
+from wedgesweep.solvers.step_error import over_tolerance
 
 STAGES = 7
 TIMES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
@@ -85,30 +84,11 @@ def step(t, h, y, mode, p, room):
                 change += MATRIX[stage, j] * stages[j, i]
             target[i] = y[i] + h * change
         rate(t + TIMES[stage] * h, target, mode, p, stages[stage])
-    return _error(h, y, p, room)
-
-
-@compiled
-def _error(h, y, p, room):
-    """Error of a step over what the tolerance allows: root mean square over the states that move."""
-    total, count = 0.0, 0
-    for i in range(AGE):
-        error = 0.0
-        for j in range(STAGES):
-            error += ERROR[j] * room.stages[j, i]
-        error *= h
-        size = max(abs(y[i]), abs(room.end[i]))
-        if i > VELOCITY and size == 0.0:
-            continue
-        if i == BRISTLE:
-            size += ABSOLUTE
-        else:
-            # Ways and velocities alternate; the bristle sits between both pairs.
-            is_way = i == X or i == 3 or i == 5
-            size += ABSOLUTE * p.amplitude * (1.0 if is_way else p.omega)
-        total += (error / (room.rtol * size)) ** 2
-        count += 1
-    return sqrt(total / count)
+    trial[:] = 0.0
+    for j in range(STAGES):
+        for i in range(SIZE):
+            trial[i] += h * ERROR[j] * stages[j, i]
+    return over_tolerance(trial, y, room.end, room.rtol, p)
 
 
 @compiled

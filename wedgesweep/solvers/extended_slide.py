@@ -10,7 +10,8 @@ from wedgesweep.compiled import compiled
 from wedgesweep.excitation import fastest
 from wedgesweep.extended.mode import SIZE, SWITCHES, stuck
 from wedgesweep.extended.switching import rate, switches, unique
-from wedgesweep.solvers.dormand_prince import connect, inside, step
+from wedgesweep.solvers import dormand_prince, rosenbrock
+from wedgesweep.solvers.dormand_prince import connect, inside
 from wedgesweep.solvers.extended_recorder import keep
 from wedgesweep.solvers.runge_kutta import FAILED, GROW, LEAST, MOST_STEPS, SAFETY, SHORTEST, SHRINK
 from wedgesweep.solvers.sticking import GOLDEN, LOCKED
@@ -124,6 +125,19 @@ def first_switch(t, h, mode, last_switch, p, room):
 
 
 @compiled
+def _step(t, h, y, mode, implicit, p, room):
+    """A step with its dense output; the error over the tolerance."""
+    if implicit:
+        room.counts[0] += rosenbrock.STAGES + SIZE + 2
+        return rosenbrock.step(t, h, y, mode, p, room)
+    room.counts[0] += dormand_prince.STAGES - 1
+    error = dormand_prince.step(t, h, y, mode, p, room)
+    if error <= 1.0:
+        connect(h, y, room)
+    return error
+
+
+@compiled
 def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
     """Follow a mode until its first switch or ``stop``, beginning with a step h (s); y moves along.
 
@@ -133,20 +147,22 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
     rate(t, y, mode, p, room.stages[0])
     switches(t, y, mode, p, room.at_start)
     most = room.counts[1] + MOST_STEPS
+    implicit = rosenbrock.stiff(mode, p)
+    if implicit and last_switch >= 0:
+        h = min(h, rosenbrock.first_step(p))
+    exponent = -0.25 if implicit else -0.2
     while t < stop:
         h = min(h, longest)
         taken = min(h, stop - t)
-        error = step(t, taken, y, mode, p, room)
-        room.counts[0] += 6
+        error = _step(t, taken, y, mode, implicit, p, room)
         if not error <= 1.0:
-            h = taken * max(SHRINK, SAFETY * error**-0.2) if error < inf else taken * SHRINK
+            h = taken * max(SHRINK, SAFETY * error**exponent) if error < inf else taken * SHRINK
             if h < SHORTEST * longest:
                 return t, FAILED, h
             continue
         room.counts[1] += 1
         if room.counts[1] > most:
             return t, FAILED, h
-        connect(taken, y, room)
         share, place = first_switch(t, taken, mode, last_switch, p, room)
         if keeping:
             keep(t, taken, share, mode, recorder, p, room)
@@ -160,9 +176,9 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
             return t, LOCKED, h
         t = stop if taken == stop - t else t + taken
         for i in range(SIZE):
-            y[i], room.stages[0, i] = room.end[i], room.stages[6, i]
+            y[i], room.stages[0, i] = room.end[i], room.stages[-1, i]
         room.at_start[:] = room.at_end
         last_switch = -1
-        grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** -0.2)
+        grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
         h = max(h, grown) if taken < h else grown
     return stop, -1, h

@@ -1,0 +1,63 @@
+"""The implicit steps on steep ramps of friction: order, dense output, and no step over what runs away."""
+
+import numpy as np
+import pytest
+
+from tests.physics.cases import OMEGA_N
+from wedgesweep import parameters
+from wedgesweep.extended.mode import SIZE, Mode
+from wedgesweep.extended.switching import rate
+from wedgesweep.solvers import dormand_prince, rosenbrock
+from wedgesweep.solvers.dormand_prince import inside, room
+
+ON_RAMPS = Mode(0, 0, 0, 1, 1, 0, 0, 1)
+
+
+def record(law="static-dynamic", **friction):
+    effects = {"column_compliance": {"stiffness": 3e5}}
+    return parameters.record(law, 1e-4, OMEGA_N, {}, friction, effects)
+
+
+def after(method, record, start, duration, steps):
+    """State after some even steps, and halfway through the last by the dense output."""
+    y, t, h, tools, p = start.copy(), 0.0, duration / steps, room(1e-6), record[0]
+    for _ in range(steps):
+        rate(t, y, ON_RAMPS, p, tools.stages[0])
+        method.step(t, h, y, ON_RAMPS, p, tools)
+        if method is dormand_prince:
+            dormand_prince.connect(h, y, tools)
+        middle = inside(0.5, tools).copy()
+        y, t = tools.end.copy(), t + h
+    return y, middle
+
+
+@pytest.mark.parametrize(("place", "order"), [(0, 4), (1, 3)], ids=["end", "dense output"])
+def test_order_on_a_gentle_ramp(place, order):
+    gentle, start = record(threshold_velocity=1.0), np.zeros(SIZE)
+    start[1], start[4] = 0.02, -0.01
+    true = [after(dormand_prince, gentle, start, 4e-3, 4 * n)[0] for n in (64, 128)]
+    assert np.abs(true[0] - true[1]).max() < 1e-12
+    errors = []
+    for steps in (16, 32):
+        end, middle = after(rosenbrock, gentle, start, 4e-3, steps)
+        if place == 0:
+            errors.append(np.abs(end - true[1]).max())
+        else:
+            half = after(dormand_prince, gentle, start, 4e-3 * (1 - 0.5 / steps), 512)[0]
+            errors.append(np.abs(middle - half).max())
+    assert np.log2(errors[0] / errors[1]) > order - 0.3
+
+
+def test_long_steps_on_a_steep_ramp_end_where_short_ones_do():
+    steep, start = record("coulomb"), np.zeros(SIZE)
+    short, _ = after(dormand_prince, steep, start, 2e-4, 4000)
+    long, _ = after(rosenbrock, steep, start, 2e-4, 40)
+    assert long[[0, 1, 3, 4]] == pytest.approx(short[[0, 1, 3, 4]], rel=1e-3, abs=1e-12)
+
+
+def test_what_runs_away_is_not_stepped_over():
+    slopes = np.zeros((SIZE, SIZE))
+    slopes[np.ix_((1, 4), (1, 4))] = [[-2e6, 1e6], [3e6, -1e6]]  # eigenvalues (-3 +- sqrt(13)) / 2 in 1e6
+    assert rosenbrock._growth(slopes) == pytest.approx(0.5 * (13**0.5 - 3) * 1e6)
+    slopes[1, 1] = -9e6
+    assert rosenbrock._growth(slopes) < 0.0

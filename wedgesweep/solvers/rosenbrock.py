@@ -1,0 +1,165 @@
+"""Rosenbrock's method RODAS of order 4(3) for the stiff pieces of the extended system, with dense output.
+
+A face that a steep ramp of friction all but holds answers within nanoseconds; an explicit step could not
+be longer than that. Coefficients: Hairer and Wanner, Solving ODEs II (1996), section VI.4.
+"""
+
+from math import inf, sqrt
+
+import numpy as np
+
+from wedgesweep.compiled import compiled
+from wedgesweep.extended.faces import bolster_slip, column_slip
+from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY
+from wedgesweep.extended.switching import rate
+from wedgesweep.solvers.step_error import over_tolerance, unit
+
+STAGES = 6
+GAMMA = 0.25
+TIMES = np.array([0.0, 0.386, 0.21, 0.63, 1.0, 1.0])
+# Weights of the rate's own dependence on time.
+SLOPES = np.array([0.25, -0.1043, 0.1035, -0.03620000000000023, 0.0, 0.0])
+# State of a stage, from the increments of those before.
+MATRIX = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0, 0.0],
+        [1.544, 0.0, 0.0, 0.0, 0.0],
+        [0.9466785280815826, 0.2557011698983284, 0.0, 0.0, 0.0],
+        [3.314825187068521, 2.896124015972201, 0.9986419139977817, 0.0, 0.0],
+        [1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895, 0.0],
+        [1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895, 1.0],
+    ]
+)
+# What earlier increments, over the step, add to the right-hand side of a stage.
+COUPLING = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0, 0.0],
+        [-5.6688, 0.0, 0.0, 0.0, 0.0],
+        [-2.430093356833875, -0.2063599157091915, 0.0, 0.0, 0.0],
+        [-0.1073529058151375, -9.594562251023355, -20.47028614809616, 0.0, 0.0],
+        [7.496443313967647, -10.24680431464352, -33.99990352819905, 11.7089089320616, 0.0],
+        [8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054],
+    ]
+)
+DENSE = np.array(
+    [
+        [10.12623508344586, -7.487995877610167, -34.80091861555747, -7.992771707568823, 10.25137723295662],
+        [-0.6762803392806898, 6.087714651680015, 16.43084320892478, 24.76722511418386, -6.594389125712872],
+    ]
+)
+# Share of a unit by which it is moved for a derivative.
+MOVED = 1e-7
+# Share of the tolerance that a steady response wants of these long steps, and the error of a slip velocity
+# that it allows on a ramp, over the end of the ramp.
+TIGHTER, ON_RAMP = 0.01, 3000.0
+# Growth over a step that is still followed.
+LARGEST_GROWTH = 0.5
+# Friction that answers this many times faster than the input is stiff.
+STIFF = 2000.0
+
+
+@compiled
+def stiff(mode, p):
+    """Whether a face or the guide is on a ramp of friction that an explicit method could not follow."""
+    on_ramp = mode.column == 0 or mode.bolster == 0 or (mode.guide == 0 and p.guide_friction_force > 0.0)
+    steep = p.static * p.gravity > STIFF * p.omega * p.threshold_velocity
+    return not p.set_valued and on_ramp and steep
+
+
+@compiled
+def first_step(p):
+    """A step (s) that resolves how a face settles on its ramp after a switch.
+
+    A longer one may be accurate enough but looks past that, and then sees no motion away from the switch.
+    """
+    return 0.1 * p.threshold_velocity / (p.static * p.gravity)
+
+
+@compiled
+def _derivatives(t, y, mode, p, room):
+    """The rate's derivatives by the states (SIZE, SIZE) and by time (SIZE,), from differences."""
+    here, trial, moved = room.stages[0], room.trial, np.empty(SIZE)
+    by_state, by_time = np.zeros((SIZE, SIZE)), np.empty(SIZE)
+    trial[:] = y
+    for i in range(SIZE):
+        # A ramp bends within its own width: normal forces depend on friction, and friction on them.
+        is_velocity = i in (VELOCITY, COLUMN_VELOCITY, FRAME_VELOCITY)
+        size = p.threshold_velocity if is_velocity else max(unit(i, p), abs(y[i]))
+        trial[i] = y[i] + MOVED * size
+        change = trial[i] - y[i]
+        rate(t, trial, mode, p, moved)
+        trial[i] = y[i]
+        for j in range(SIZE):
+            by_state[j, i] = (moved[j] - here[j]) / change
+    change = MOVED / p.omega
+    rate(t + change, y, mode, p, moved)
+    by_time[:] = (moved - here) / change
+    return by_state, by_time
+
+
+@compiled
+def _growth(by_state):
+    """Rate (1/s) at which friction on its ramps drives the velocities of bolster and column apart.
+
+    An implicit method would damp what in truth runs away, and step over a wedge that locks.
+    """
+    a, b = by_state[VELOCITY, VELOCITY], by_state[VELOCITY, COLUMN_VELOCITY]
+    c, d = by_state[COLUMN_VELOCITY, VELOCITY], by_state[COLUMN_VELOCITY, COLUMN_VELOCITY]
+    return 0.5 * (a + d + sqrt(max((a - d) ** 2 + 4.0 * b * c, 0.0)))
+
+
+@compiled
+def step(t, h, y, mode, p, room):
+    """One step from y, whose rate is ``room.stages[0]``, to ``room.end``; the error over the tolerance.
+
+    Leaves the dense output and, as ``room.stages[-1]``, the rate at the end, as dormand_prince does.
+    """
+    by_state, by_time = _derivatives(t, y, mode, p, room)
+    if h * _growth(by_state) > LARGEST_GROWTH:
+        return inf
+    matrix = -by_state
+    for i in range(SIZE):
+        matrix[i, i] += 1.0 / (GAMMA * h)
+    if not np.isfinite(matrix).all():
+        return inf
+    inverse = np.linalg.inv(matrix)
+    increments, slope, right = np.zeros((STAGES, SIZE)), np.empty(SIZE), np.empty(SIZE)
+    end = room.end
+    for stage in range(STAGES):
+        end[:] = y
+        for j in range(stage):
+            if j < STAGES - 1:
+                end += MATRIX[stage, j] * increments[j]
+        rate(t + TIMES[stage] * h, end, mode, p, slope)
+        right[:] = slope + h * SLOPES[stage] * by_time
+        for j in range(stage):
+            right += COUPLING[stage, j] / h * increments[j]
+        if not np.isfinite(right).all():
+            return inf
+        increments[stage] = inverse @ right
+    end += increments[STAGES - 1]
+    rate(t + h, end, mode, p, room.stages[-1])
+    _connect(y, increments, room)
+    error = increments[STAGES - 1]
+    rtol = TIGHTER * room.rtol
+    return max(over_tolerance(error, y, end, rtol, p), _off_ramp(error, mode, rtol, p))
+
+
+@compiled
+def _off_ramp(error, mode, rtol, p):
+    """Largest error of a slip velocity on a ramp over what the tolerance allows where it is this narrow."""
+    column = abs(column_slip(error, p)) if mode.column == 0 else 0.0
+    bolster = abs(bolster_slip(error, p)) if mode.bolster == 0 else 0.0
+    largest = max(column, bolster)
+    return largest / (ON_RAMP * rtol * p.threshold_velocity)
+
+
+@compiled
+def _connect(y, increments, room):
+    """Write what ``dormand_prince.inside`` evaluates: a polynomial of order 3."""
+    dense = room.dense
+    dense[0], dense[1], dense[4] = y, room.end - y, 0.0
+    for row in range(2):
+        dense[2 + row] = 0.0
+        for j in range(STAGES - 1):
+            dense[2 + row] += DENSE[row, j] * increments[j]
