@@ -189,6 +189,15 @@ def records(draw):
     )
 
 
+def test_a_regularised_law_without_friction_has_numbers():
+    suspension = {"column_angle": 0.0978704313781991}
+    omega, amplitude = 195.35324097317206, 7.227765780030118e-05  # a face turns back just at v_t
+    frictionless = {"dynamic": 0.0, "static": 0.0}
+    record = parameters.record("static-dynamic", amplitude, omega, suspension, frictionless)
+    found = solved(record, replace(SHORT, steady=True, settle_periods=None, max_periods=30))
+    assert found["dissipated_energy"] == 0.0
+
+
 @hypothesis_settings(max_examples=300, deadline=None)
 @given(records(), strategies.booleans())
 def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):

@@ -64,7 +64,8 @@ def held_between(x, velocity, base_acceleration, contact, p):
     """Contacts and forces on both sides of a jump, and the share of the lower one at which z'' = 0."""
     low, below, low_unique = closed(x, velocity, base_acceleration, beside_jump(contact, 0), p)
     high, above, high_unique = closed(x, velocity, base_acceleration, beside_jump(contact, 1), p)
-    share = above.acceleration / (above.acceleration - below.acceleration)
+    apart = above.acceleration - below.acceleration
+    share = above.acceleration / apart if apart != 0.0 else 0.5
     return low, below, high, above, share, low_unique and high_unique
 
 

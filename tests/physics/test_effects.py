@@ -20,8 +20,6 @@ SELF_LOCKING = {
     "suspension": {"column_angle": np.radians(-4.0)},
     "friction": {"dynamic": 0.9, "static": 0.9},
 }
-# Slow: a steep ramp under the Coulomb law, see its docstring.
-STEEP = ("coulomb", "column_compliance")
 
 
 def numbers(record, settle_periods=60, rtol=1e-8, periods=2):
@@ -106,8 +104,6 @@ DOUBLED = ("exponential", "end_stop")
 @pytest.mark.parametrize("name", REPEATING)
 @pytest.mark.parametrize("law", LAWS)
 def test_energy_balance_with_every_effect(law, name):
-    if (law, name) == STEEP:
-        pytest.skip("a period costs a million steps")
     found = numbers(with_effect(law, name), 80)
     if (law, name) != DOUBLED:
         assert found["periodicity"] < 1e-6
@@ -299,8 +295,6 @@ def test_any_effects_end_with_a_finite_answer_or_a_reason(law, names, place, bet
 
 @pytest.mark.parametrize(("name", "law"), [(name, LAWS[i % 3]) for i, name in enumerate(EXTENDING)])
 def test_both_solvers_agree_from_the_same_start(name, law):
-    if (law, name) == STEEP:
-        law = "exponential"
     record = with_effect(law, name)
     window = Window(float(record["omega"][0]), 3, 2, 64)
     runs = [solve(record, window, 1e-8, 120.0) for solve in (event_driven.solve, radau.solve)]
