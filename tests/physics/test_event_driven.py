@@ -10,7 +10,7 @@ from wedgesweep import contact, parameters, response, tally
 from wedgesweep.solvers import event_driven, oscillator, radau, steady
 from wedgesweep.solvers.march import OK, workspace
 from wedgesweep.solvers.recorder import Recorder
-from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.solvers.trajectory import CaseError, TimedWindow, Window
 
 
 def respond(record, settle_periods=60, periods=2, rtol=1e-9, solve=event_driven.solve):
@@ -148,3 +148,9 @@ def test_a_locked_wedge_is_told_as_by_radau():
         with pytest.raises(CaseError, match="locks") as caught:
             respond(record, solve=solve)
         assert caught.value.status == "locked"
+
+
+def test_sample_times_of_ones_own_are_refused():
+    window = TimedWindow(OMEGA_N, 1, 1, 0, np.array([0.0, 0.01, 0.013]))
+    with pytest.raises(TypeError, match="radau"):
+        event_driven.solve(parameters.record("coulomb", 1e-3, OMEGA_N), window, 1e-6, 1.0)

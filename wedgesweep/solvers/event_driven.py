@@ -19,7 +19,7 @@ from wedgesweep.solvers.recorder import Recorder
 from wedgesweep.solvers.runge_kutta import FAILED
 from wedgesweep.solvers.steady import LONGEST, settle
 from wedgesweep.solvers.sticking import LOCKED
-from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
+from wedgesweep.solvers.trajectory import CaseError, TimedWindow, Trajectory, Window, empty_samples
 
 MESSAGES = {
     LOCKED: ("locked", "normal forces not unique: the wedge locks"),
@@ -55,8 +55,12 @@ def solve(
 ) -> Trajectory:
     """Run one case; arguments and errors as for ``radau.solve``.
 
-    The compiled loop cannot be interrupted: in place of the time limit it counts steps and switches.
+    The compiled loop cannot be interrupted: in place of the time limit it counts steps and switches. It
+    samples even phases only: a TimedWindow is a TypeError.
     """
+    if isinstance(window, TimedWindow):
+        message = "sample times of one's own are for radau.solve; this solver samples even phases"
+        raise TypeError(message)
     if parameters["extended"][0]:
         outcome, time, run = extended.run(parameters, window, rtol, start)
         _require(outcome, time)
