@@ -7,7 +7,7 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
 import joblib
-from joblib._dask import DaskDistributedBackend
+from joblib._dask import Batch, DaskDistributedBackend
 
 from wedgesweep.backend import parallel
 from wedgesweep.errors import MismatchError, SweepError
@@ -82,7 +82,14 @@ def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -
 
 
 class _Dask(DaskDistributedBackend):
-    """joblib's own waits forever for a chunk that Dask gave up because its workers died each time."""
+    """joblib's own waits forever for a chunk that Dask gave up because its workers died each time.
+
+    And for one that it scattered while there was no worker: chunks are small, and go along with their task.
+    """
+
+    async def _to_func_args(self, func: Any) -> tuple[Batch, list]:
+        tasks = [(f, list(args), dict(kwargs)) for f, args, kwargs in func.items]
+        return Batch(tasks), tasks
 
     def submit(self, func: Any, callback: Callable[[Any], None]) -> Future:
         def pass_on(done: Future) -> None:

@@ -26,9 +26,9 @@ PROMISING = 2
 RECORDED = {
     "small-input": 4,
     "preload": 6,
-    "guide-friction": 4,
+    "guide-friction": 6,
     "fixture-resonance": 5,
-    "column-compliance": 4,
+    "column-compliance": 6,
     "cross-slip": 5,
 }
 
