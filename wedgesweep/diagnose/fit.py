@@ -23,8 +23,9 @@ STEP, AMPLITUDE_STEP = 2e-4, 2e-4
 # An exactly known amplitude, as a relative standard deviation.
 EXACT = 1e-6
 ITERATIONS = 25
-# A fit has arrived when a step promises less than this of Q, absolute and relative.
-ARRIVED, ARRIVED_SHARE = 0.02, 1e-5
+# A fit has arrived when a step promises less than this of Q, or this share of what Q has above noise: far
+# from the data the last digit is of no use.
+ARRIVED, ARRIVED_SHARE = 0.02, 1e-3
 # Damping of a step at the start, and at which it has failed.
 DAMPING, STUCK = 1e-3, 1e8
 # Largest step of one iteration, in widths of the coordinates.
@@ -279,7 +280,8 @@ def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
             break
         equations = model.equations(trial)
         matrix, _ = equations.reduced()
-        better, promised, little = None, np.inf, max(ARRIVED, ARRIVED_SHARE * trial.q)
+        better, promised = None, np.inf
+        little = max(ARRIVED, ARRIVED_SHARE * (trial.q - model.dof))
         while better is None and damping < STUCK:
             step, promised, limited = _step(model, trial.point, equations, damping)
             # A step cut short at a limit may promise nothing; a more damped one still may.
