@@ -65,7 +65,7 @@ def _independent(spectrum: Spectrum) -> Spectrum:
 
 
 def _beside(search: Search, first: Fit, other: str) -> Fit:
-    model = search.model(*first.model.hypothesis.effects, other)
+    model = search.model(*first.effects, other)
     known = first.x[: first.model.size]
     starts = [model.start(first, np.r_[known, x]) for x in search.model(other).hypothesis.starts()]
     return best_of(model, best_amplitudes(model, starts))

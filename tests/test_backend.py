@@ -8,12 +8,11 @@ from functools import partial
 
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 
 from tests import small_sweep
+from tests.command import invoke
 from tests.small_sweep import CASES, CONFIG, assert_same_numbers
 from wedgesweep import cluster as clusters
-from wedgesweep.cli import cli
 from wedgesweep.errors import MismatchError, SweepError
 
 dask = pytest.importorskip("dask")
@@ -46,12 +45,6 @@ def through(client):
 def workers(client):
     """Process id of each worker that is there."""
     return set(client.run(os.getpid).values())
-
-
-def invoke(*arguments, code):
-    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    return result.output
 
 
 @pytest.mark.parametrize("method", ["radau", "event-driven"])

@@ -10,9 +10,9 @@ import time
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 
 from tests import fixture_dataset, fixture_diagnosis, small_sweep
+from tests.command import invoke
 from tests.small_sweep import CONFIG, LOCKED
 from wedgesweep import config, figures
 from wedgesweep.cli import cli
@@ -37,15 +37,6 @@ def drawn_dataset(tmp_path_factory):
     path = tmp_path_factory.mktemp("drawn") / "fixture.nc"
     fixture_dataset.build().to_netcdf(path)
     return path
-
-
-def invoke(*arguments, code=0):
-    """Output (stdout and stderr) of a command, which must end with this exit code."""
-    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
-    if result.exception is not None and not isinstance(result.exception, SystemExit):
-        raise result.exception
-    assert result.exit_code == code, result.output
-    return result.output
 
 
 def run(*arguments, code=0):

@@ -5,11 +5,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
+from tests.command import invoke
 from tests.fixture_measured import MEASURED, lines, write
 from wedgesweep import config, measured, parameters
-from wedgesweep.cli import cli
 from wedgesweep.measured import noise
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
@@ -50,14 +49,6 @@ def here(tmp_path, monkeypatch):
     (tmp_path / "true.toml").write_text(TRUE)
     (tmp_path / "tests.toml").write_text(TESTS)
     return tmp_path
-
-
-def invoke(*arguments, code=0):
-    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
-    if result.exception is not None and not isinstance(result.exception, SystemExit):
-        raise result.exception
-    assert result.exit_code == code, result.output
-    return result.output
 
 
 def synthesize(*more, output="made", code=0):

@@ -71,18 +71,23 @@ def count_onset(tally, is_stuck):
 
 
 @compiled
-def add(tally, t, x, velocity, weight, contact, p):
-    """Add one point of the kept window; ``weight`` (s) as in a quadrature."""
+def add_motion(tally, x, velocity, weight, sticks):
+    """Add what one point of the kept window says without its forces."""
     tally.lowest = min(tally.lowest, x)
     tally.highest = max(tally.highest, x)
     tally.peak_velocity = max(tally.peak_velocity, abs(velocity))
-    sticks = abs(contact.column) != 1
     if weight > 0.0:
         count_onset(tally, 1.0 if sticks else 0.0)
     tally.time += weight
     tally.integral += weight * x
     if sticks:
         tally.stuck_time += weight
+
+
+@compiled
+def add(tally, t, x, velocity, weight, contact, p):
+    """Add one point of the kept window; ``weight`` (s) as in a quadrature."""
+    add_motion(tally, x, velocity, weight, abs(contact.column) != 1)
     if stuck(contact, p):
         return
     base_acceleration = excitation.acceleration(t, p)

@@ -13,7 +13,7 @@ LAG = {"velocity_lag": {"time": 3e-4}}
 def searched(problem, *effects):
     search = Search(problem, effects)
     base = search.base()
-    return search, base, [search.single(effect, base.fit).explanation for effect in effects]
+    return search, base, [search.single(effect, base.fit) for effect in effects]
 
 
 def test_clean_data_leave_chi_squared():

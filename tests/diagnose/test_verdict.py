@@ -14,13 +14,13 @@ DOF, PRICE = 700, 12.6
 
 def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1):
     problem = SimpleNamespace(tests=tests, uncertain=uncertain or {})
-    hypothesis = SimpleNamespace(effects=effects)
-    model = SimpleNamespace(problem=problem, hypothesis=hypothesis, size=numbers * len(effects))
+    model = SimpleNamespace(problem=problem, size=numbers * len(effects))
     fit = SimpleNamespace(
         q=q,
         excess=q - DOF,
         p=float(chi2.sf(q, DOF)),
         model=model,
+        effects=effects,
         values={effect: {"scale": scale} for effect in effects},
     )
     return Explanation(fit, PRICE)

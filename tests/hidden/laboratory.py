@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from click.testing import CliRunner
-
-from wedgesweep.cli import cli
+from tests.command import invoke
 from wedgesweep.config import toml
 
 Numbers = dict[str, dict[str, float]]
@@ -62,14 +60,6 @@ class Found:
     def explanations(self) -> list[set[str]]:
         """The cause and its rivals."""
         return [self.causes, *(set(rival["effects"]) for rival in self.document["rivals"])]
-
-
-def invoke(*arguments: object) -> str:
-    result = CliRunner().invoke(cli, [str(argument) for argument in arguments])
-    if result.exception is not None and not isinstance(result.exception, SystemExit):
-        raise result.exception
-    assert result.exit_code == 0, result.output
-    return result.output
 
 
 def make(hidden: Hidden, here: Path) -> tuple[Path, dict[str, Any]]:

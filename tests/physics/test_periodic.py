@@ -39,7 +39,7 @@ def test_a_warm_start_finds_what_a_cold_start_finds(name):
     cold, warm = respond(rows), respond(rows, first.state, first.map)
     size = np.abs(cold.spectra).max(axis=2)
     assert (np.abs(warm.spectra - cold.spectra).max(axis=2) < 1e-5 * size).all()
-    assert warm.dissipated == pytest.approx(cold.dissipated, rel=1e-5)
+    np.testing.assert_allclose(warm.extremes, cold.extremes, rtol=1e-6)
     assert warm.periods.max() <= 12
     assert np.median(warm.periods) <= 6
 
@@ -57,7 +57,8 @@ def test_it_is_what_a_long_run_ends_in(name):
         size = np.abs(complex_spectra).max(axis=1, keepdims=True)
         assert (np.abs(found.spectra[i] - complex_spectra) < 1e-5 * size).all()
         assert found.stuck[i] == pytest.approx(expected.numbers["stick_fraction"], abs=1e-5)
-        assert found.dissipated[i] == pytest.approx(expected.numbers["dissipated_energy"], rel=1e-5)
+        extremes = [run.tally[name][0] for name in ("lowest", "highest")]
+        np.testing.assert_allclose(found.extremes[i], extremes, rtol=1e-5)
 
 
 def test_a_neighbour_that_is_already_steady_costs_one_period():
@@ -72,7 +73,17 @@ def test_faces_that_age_without_slipping_do_not_keep_a_case_from_being_steady():
     row = parameters.record("coulomb", 1e-6, 0.6 * OMEGA_N, effects={"ageing": {"rate": 0.05, "time": 0.01}})
     found = respond(row)
     assert (found.period[0], found.stuck[0]) == (1, 1.0)
-    assert found.periods[0] <= 2
+    assert found.periods[0] <= 3
+
+
+def test_the_response_of_faces_that_creep_and_age_does_not_depend_on_where_it_started():
+    ageing = {"ageing": {"rate": 0.05, "time": 0.01}}
+    row = parameters.record("static-dynamic", 5e-6, 0.6 * OMEGA_N, effects=ageing)
+    found = respond(row)
+    again = respond(row, found.state, found.map)
+    assert (found.period[0], again.period[0], found.stuck[0]) == (1, 1, 1.0)
+    np.testing.assert_allclose(again.spectra, found.spectra, rtol=1e-6)
+    assert found.periods[0] < 40
 
 
 def test_threads_do_not_disturb_each_other():

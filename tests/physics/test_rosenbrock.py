@@ -61,3 +61,16 @@ def test_what_runs_away_is_not_stepped_over():
     assert rosenbrock._growth(slopes) == pytest.approx(0.5 * (13**0.5 - 3) * 1e6)
     slopes[1, 1] = -9e6
     assert rosenbrock._growth(slopes) < 0.0
+
+
+def test_a_step_that_would_damp_what_runs_away_is_refused():
+    driven = parameters.record(
+        "static-dynamic",
+        1e-4,
+        OMEGA_N,
+        effects={"column_compliance": {"stiffness": 3e5}, "viscous_damping": {"coefficient": -1e6}},
+    )
+    tools, start = room(1e-6), np.zeros(SIZE)
+    rate(0.0, start, ON_RAMPS, driven[0], tools.stages[0])
+    assert rosenbrock.step(0.0, 1e-4, start, ON_RAMPS, driven[0], tools) == np.inf
+    assert rosenbrock.step(0.0, 1e-8, start, ON_RAMPS, driven[0], tools) < np.inf

@@ -12,7 +12,7 @@ from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.next_test import NextTest
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.score import Score
-from wedgesweep.diagnose.search import Explanation, Search
+from wedgesweep.diagnose.search import Explanation, Search, best_of_each
 from wedgesweep.diagnose.spectra import spectrum
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS
@@ -126,20 +126,12 @@ def diagnose(
 
 def explain(search: Search, base: Explanation) -> list[Explanation]:
     """All fits, best first: pairs only where no single effect will do."""
-    singles = search.singles(base.fit)
-    found = [each.explanation for each in singles]
+    found = search.singles(base.fit)
     best = min([base, *found], key=lambda each: each.penalised)
     if best.fit.p < verdict.ADEQUATE and search.problem.tests >= verdict.FEWEST_TESTS:
-        both = pairs.pairs(search, base.fit, singles)
-        found += both + pairs.halves(search, both)
-    return sorted(_best_of_each(found), key=lambda each: each.penalised)
-
-
-def _best_of_each(found: Sequence[Explanation]) -> list[Explanation]:
-    best: dict[frozenset[str], Explanation] = {}
-    for each in sorted(found, key=lambda one: one.penalised):
-        best.setdefault(frozenset(each.effects), each)
-    return list(best.values())
+        both = pairs.pairs(search, base.fit, found)
+        found = found + both + pairs.halves(search, both)
+    return best_of_each(found, lambda each: each.penalised)
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:

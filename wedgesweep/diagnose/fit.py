@@ -79,6 +79,10 @@ class Fit:
     arrived: bool
 
     @property
+    def effects(self) -> tuple[str, ...]:
+        return self.model.hypothesis.effects
+
+    @property
     def q(self) -> float:
         return self.trial.q
 
@@ -324,9 +328,11 @@ def _step(model: Model, point: Point, equations: Equations, damping: float) -> t
     longest = np.max(np.abs(step) / model.width, initial=0.0)
     if longest > LONGEST_STEP:
         step *= LONGEST_STEP / longest
-    within = np.clip(x + step, model.low, model.high) - x
+    aim = np.clip(x + step, model.low, model.high)
+    limited = bool((aim != x + step).any())
+    within = aim - x
     local = equations.local(within, damping)
-    limited = bool((within != step).any() or (np.abs(local[:, 1]) > LONGEST_AMPLITUDE).any())
+    limited = limited or bool((np.abs(local[:, 1]) > LONGEST_AMPLITUDE).any())
     local[:, 1] = np.clip(local[:, 1], -LONGEST_AMPLITUDE, LONGEST_AMPLITUDE)
     promised = equations.promise(within, local)
     return replace(point, x=x + within, amplitude=point.amplitude + local[:, 1]), promised, limited

@@ -59,7 +59,7 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     reached = distances.min(axis=0)
     enough = np.flatnonzero(reached >= ENOUGH)
     best = int(enough[np.argmin(acceleration[enough])]) if enough.size else int(np.argmax(reached))
-    names = [" + ".join(fit.model.hypothesis.effects) or "base" for fit in fits]
+    names = [" + ".join(fit.effects) or "base" for fit in fits]
     i, j = pairs[closest[best]]
     return NextTest(
         float(frequency[best]), float(amplitude[best]), (names[i], names[j]), float(reached[best])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.fit import Fit, Model, Point, refine, restrict
-from wedgesweep.diagnose.search import Explanation, Search, Single, trials_of
+from wedgesweep.diagnose.search import Explanation, Search, best_of_each, trials_of
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
@@ -36,21 +36,21 @@ class Library(NamedTuple):
     changes: np.ndarray
 
 
-def pairs(search: Search, base: Fit, singles: Sequence[Single]) -> list[Explanation]:
+def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Explanation]:
     """The best fits of pairs, best first."""
-    libraries = [_library(base, each) for each in singles]
-    leading = sorted((each.explanation.fit for each in singles), key=lambda fit: fit.q)[:PARTNERS]
+    libraries = [_library(search, base, each.fit) for each in singles]
+    leading = sorted((each.fit for each in singles), key=_misfit)[:PARTNERS]
     beside = [
         (_worst(first), first, other)
         for first in leading
         for other in libraries
-        if (other.effect,) != first.model.hypothesis.effects and len(other.x)
+        if (other.effect,) != first.effects and len(other.x)
     ]
     fits = [fit for fit in search.each(lambda job: _begin(search, *job), beside) if np.isfinite(fit.q)]
     for iterations, entering in ROUNDS:
-        entered = _best_of_each(fits)[:entering]
+        entered = best_of_each(fits, _misfit)[:entering]
         fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
-    found = search.each(lambda fit: _finish(search, base, fit), _best_of_each(fits)[:GOING_ON])
+    found = search.each(lambda fit: _finish(search, base, fit), best_of_each(fits, _misfit)[:GOING_ON])
     return sorted(found, key=lambda each: each.penalised)
 
 
@@ -72,20 +72,24 @@ def _half(search: Search, pair: Fit, effect: str) -> Fit:
     return refine(model, model.trial(start))
 
 
+def _misfit(fit: Fit) -> float:
+    return fit.q
+
+
 def _worst(fit: Fit) -> Fit:
     """A fit on the few tests that it leaves unexplained."""
     return restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
 
 
-def _library(base: Fit, single: Single) -> Library:
+def _library(search: Search, base: Fit, fit: Fit) -> Library:
     """Everything that was simulated of one effect."""
-    fit = single.explanation.fit
-    trials = [trial for trial in (*single.trials, fit.trial) if trial.found]
+    effect = fit.effects[0]
+    trials = [trial for trial in (*search.along[effect], fit.trial) if trial.found]
     size = fit.model.size
     changes = np.array([(base.trial.residual - trial.residual).ravel() for trial in trials])
     x = np.array([trial.point.x[:size] for trial in trials])
     seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
-    return Library(fit.model.hypothesis.effects[0], x[seen], changes[seen] if seen.any() else changes[:0])
+    return Library(effect, x[seen], changes[seen] if seen.any() else changes[:0])
 
 
 def _starts(first: Fit, other: Library) -> np.ndarray:
@@ -99,7 +103,7 @@ def _starts(first: Fit, other: Library) -> np.ndarray:
 
 def _begin(search: Search, few: Fit, first: Fit, other: Library) -> Fit:
     """The best start of a second effect beside a fitted one, on some of the tests."""
-    effects = (*first.model.hypothesis.effects, other.effect)
+    effects = (*first.effects, other.effect)
     model = Model(few.model.problem, search.model(*effects).hypothesis, few.model.reference)
     known = first.x[: first.model.size]
     points = [model.start(few, np.r_[known, x]) for x in _starts(first, other)]
@@ -107,17 +111,9 @@ def _begin(search: Search, few: Fit, first: Fit, other: Library) -> Fit:
     return Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
 
 
-def _best_of_each(begun: Sequence[Fit]) -> list[Fit]:
-    """The best fit of each pair, best first."""
-    best: dict[frozenset[str], Fit] = {}
-    for fit in sorted(begun, key=lambda each: each.q):
-        best.setdefault(frozenset(fit.model.hypothesis.effects), fit)
-    return list(best.values())
-
-
 def _finish(search: Search, base: Fit, first: Fit) -> Explanation:
     """A fit on all tests from one on some of them."""
-    effects = first.model.hypothesis.effects
+    effects = first.effects
     model = search.model(*effects)
     start = model.start(base, first.x[: model.size])
     start = Point(np.r_[first.x[: model.size], start.x[model.size :]], start.amplitude, start.warm)

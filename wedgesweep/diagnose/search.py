@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from math import log
+from typing import TypeVar
 
 import numpy as np
 
@@ -38,19 +39,14 @@ class Explanation:
 
     @property
     def effects(self) -> tuple[str, ...]:
-        return self.fit.model.hypothesis.effects
+        return self.fit.effects
 
     @property
     def penalised(self) -> float:
         return self.fit.q + self.price * self.fit.model.size
 
 
-@dataclass(frozen=True)
-class Single:
-    """The best fit of one effect, and what its responses were over its whole range."""
-
-    explanation: Explanation
-    trials: tuple[Trial, ...]
+Each = TypeVar("Each", Fit, Explanation)
 
 
 class Search:
@@ -69,7 +65,7 @@ class Search:
         self.reference = unknown_reference(problem)
         self.price = log(problem.points.sum()) + PENALTY
         # What was simulated of each effect over its range beside the base model.
-        self.along: dict[str, tuple[Trial, ...]] = {}
+        self.along: dict[str, Sequence[Trial]] = {}
 
     def model(self, *effects: str) -> Model:
         tone = self.problem.tone
@@ -85,18 +81,18 @@ class Search:
         start = best_amplitudes(model, [model.start(None, np.zeros(0))])[0]
         return self.explanation(refine(model, start))
 
-    def single(self, effect: str, base: Fit) -> "Single":
-        """Best fit of one effect, and the trials among which it began."""
+    def single(self, effect: str, base: Fit) -> Explanation:
+        """Best fit of one effect; the trials among which it began are kept in ``along``."""
         model = self.model(effect)
         starts = [model.start(base, x) for x in model.hypothesis.starts()]
         trials = best_amplitudes(model, starts)
-        self.along[effect] = tuple(trials)
+        self.along[effect] = trials
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         fit = best_of(model, trials, FOLLOWED if base.p < POSSIBLE else ((1, 3),))
         self.progress(effect)
-        return Single(self.explanation(fit), tuple(trials))
+        return self.explanation(fit)
 
-    def singles(self, base: Fit) -> list["Single"]:
+    def singles(self, base: Fit) -> list[Explanation]:
         """Best fits of every effect, in their order."""
         return self.each(lambda effect: self.single(effect, base), self.effects)
 
@@ -105,6 +101,14 @@ class Search:
             return [function(item) for item in items]
         with ThreadPoolExecutor(self.threads) as pool:
             return list(pool.map(function, items))
+
+
+def best_of_each(found: Iterable[Each], misfit: Callable[[Each], float]) -> list[Each]:
+    """Of fits or explanations, the best one of each set of effects; sorted, the best first."""
+    best: dict[frozenset[str], Each] = {}
+    for each in sorted(found, key=misfit):
+        best.setdefault(frozenset(each.effects), each)
+    return list(best.values())
 
 
 def trials_of(model: Model, points: Sequence[Point]) -> list[Trial]:

@@ -3,7 +3,8 @@
     mu_s -> mu_s + rate ln(1 + t_stuck/time)                     on both faces
 
 t_stuck is the time since the column face last slipped: |v_c| > v_t, or under the Coulomb law z' != 0,
-where friction lets go at mu_d + rate ln(1 + t_stuck/time). A run begins with t_stuck = 0.
+where friction lets go at mu_d + rate ln(1 + t_stuck/time). A run begins with t_stuck = 0; a steady response
+without slip, whose t_stuck grows for ever, is the one after 100 periods at rest.
 Neutral and default: rate = 0. Time must be given.
 """
 

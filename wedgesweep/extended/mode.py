@@ -5,7 +5,10 @@ static place and Q' (m, m/s), way d of the side frame against its table and d' (
 rest (s) that ages the faces. What an effect does not use stays 0, and 0 is the state at rest.
 """
 
+from math import pi
 from typing import NamedTuple
+
+import numpy as np
 
 from wedgesweep.compiled import compiled, inlined
 from wedgesweep.contact import AT_JUMP
@@ -18,6 +21,27 @@ COLUMN, BOLSTER, GUIDE, DIRECTION, STOP, COLUMN_NORMAL, BOLSTER_NORMAL, CLOCK = 
 SWITCHES = 13
 # What a jump can hold, by their places over 2.
 AXES = 4
+
+
+@inlined
+def unit(place, p):
+    """Unit of a state: share of 1, a forcing period, input amplitude or velocity."""
+    if place == BRISTLE:
+        return 1.0
+    if place == AGE:
+        return 2.0 * pi / p.omega
+    if place in (X, COLUMN_WAY, FRAME_WAY):
+        return p.amplitude
+    return p.amplitude * p.omega
+
+
+@compiled
+def units(p):
+    """Units of all states, shape (SIZE,)."""
+    size = np.empty(SIZE)
+    for place in range(SIZE):
+        size[place] = unit(place, p)
+    return size
 
 
 class Mode(NamedTuple):

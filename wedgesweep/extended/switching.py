@@ -8,7 +8,7 @@ from math import hypot, inf
 
 import numpy as np
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.contact import AT_JUMP, LOOK_AHEAD, ROUNDING
 from wedgesweep.excitation import table_acceleration
 from wedgesweep.extended.faces import bolster_slip, column_slip, cross_velocity, sliding
@@ -183,6 +183,17 @@ def _held_switches(t, y, mode, p, out):
 
 
 @compiled
+def _kinematic_switches(t, y, mode, p, out):
+    """Write the switches that need no forces."""
+    if p.end_stop_stiffness > 0.0:
+        _stop_switches(y[X], mode.stop, p, out)
+    if p.set_valued:
+        out[COLUMN if mode.column > 0 else COLUMN + 1] = mode.column * y[VELOCITY]
+    else:
+        _slip_switches(t, y, mode, p, out)
+
+
+@compiled
 def switches(t, y, mode, p, out):
     """Write the switching functions, shape (SWITCHES,): positive while the mode holds.
 
@@ -194,18 +205,30 @@ def switches(t, y, mode, p, out):
         out[COLUMN] = breakaway(t, y, -1, mode.stop, p)[0]
         out[COLUMN + 1] = -breakaway(t, y, 1, mode.stop, p)[0]
         return
-    if p.end_stop_stiffness > 0.0:
-        _stop_switches(y[X], mode.stop, p, out)
-    if p.set_valued:
-        out[COLUMN if mode.column > 0 else COLUMN + 1] = mode.column * y[VELOCITY]
-    else:
-        _slip_switches(t, y, mode, p, out)
+    _kinematic_switches(t, y, mode, p, out)
     if held(mode):
         _held_switches(t, y, mode, p, out)
     else:
         now = acting(t, y, mode, p)
         out[COLUMN_NORMAL] = mode.column_sign * now.column
         out[BOLSTER_NORMAL] = mode.bolster_sign * now.bolster
+
+
+@inlined
+def _is_kinematic(place, mode, p):
+    if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
+        return False
+    return place >= STOP or abs(branch(mode, place // 2)) != AT_JUMP
+
+
+@compiled
+def one_switch(place, t, y, mode, p, out):
+    """One of the ``switches``, which may be all that is written."""
+    if _is_kinematic(place, mode, p):
+        _kinematic_switches(t, y, mode, p, out)
+    else:
+        switches(t, y, mode, p, out)
+    return out[place]
 
 
 @compiled

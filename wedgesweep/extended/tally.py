@@ -6,7 +6,7 @@ from wedgesweep.extended.jumps import combined
 from wedgesweep.extended.mechanics import forces, riding
 from wedgesweep.extended.mode import VELOCITY, X, held, stuck
 from wedgesweep.extended.power import damping_power, friction_power, supplied_power
-from wedgesweep.tally import count_onset
+from wedgesweep.tally import add_motion
 
 
 @compiled
@@ -23,17 +23,8 @@ def forces_and_power(t, y, mode, p):
 
 @compiled
 def add(tally, t, y, weight, mode, p):
-    """Add one point of the kept window; ``weight`` (s) as in a quadrature. Returns the forces."""
-    tally.lowest = min(tally.lowest, y[X])
-    tally.highest = max(tally.highest, y[X])
-    tally.peak_velocity = max(tally.peak_velocity, abs(y[VELOCITY]))
-    sticks = abs(mode.column) != 1
-    if weight > 0.0:
-        count_onset(tally, 1.0 if sticks else 0.0)
-    tally.time += weight
-    tally.integral += weight * y[X]
-    if sticks:
-        tally.stuck_time += weight
+    """Add one point of the kept window; ``weight`` (s) as in a quadrature."""
+    add_motion(tally, y[X], y[VELOCITY], weight, abs(mode.column) != 1)
     now, power = forces_and_power(t, y, mode, p)
     tally.dissipated += weight * (power + damping_power(y, p))
     tally.supplied += weight * supplied_power(table_acceleration(t, p), y, p)

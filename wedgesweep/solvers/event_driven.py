@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep import response, tally
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import borrowed, compiled
 from wedgesweep.solvers import extended
 from wedgesweep.solvers.extended import STATISTICS
 from wedgesweep.solvers.march import CHATTERING, OK, SWITCHES_PER_PERIOD, begin, march, workspace
@@ -163,6 +163,7 @@ def _settled(start, settle_periods, case, plan, sums, work):
 @compiled
 def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
     """Run all cases of a batch, from ``starts`` (n, 2), into ``batch``."""
+    sums, work, batch = borrowed(sums), borrowed(work), borrowed(batch)
     longest = plan.periods + LONGEST
     x = np.empty(longest * plan.samples_per_period)
     velocity = np.empty_like(x)
@@ -183,7 +184,8 @@ def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
             n = periods * plan.samples_per_period
             keep, end = settled * cycle, (settled + periods) * cycle
             clear(sums)
-            recorder = Recorder(keep, cycle / plan.samples_per_period, sums, x[:n], velocity[:n], contact[:n])
+            step = cycle / plan.samples_per_period
+            recorder = borrowed(Recorder(keep, step, sums, x[:n], velocity[:n], contact[:n]))
             outcome, state = follow_from(first, x0, v0, keep, end, case, recorder, work)
             batch.outcome[i], batch.time[i] = outcome, state.t
             batch.state[i, 0], batch.state[i, 1] = state.x, state.velocity

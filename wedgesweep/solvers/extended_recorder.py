@@ -4,19 +4,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.extended.mode import VELOCITY, X, stuck
 from wedgesweep.extended.tally import add, forces_and_power
 from wedgesweep.solvers.dormand_prince import inside
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample
 from wedgesweep.solvers.sticking import GOLDEN
+from wedgesweep.tally import add_motion
 
 
 class ExtendedRecorder(NamedTuple):
     """Where a run is kept: a tally of shape (1,) and samples at ``start + i step`` (s).
 
     ``x`` and ``velocity`` have shape (n,), ``normal`` (2, n) holds the normal forces on column and bolster
-    face (N; NaN while stuck), ``sticks`` (n,) whether the column face does.
+    face (N; NaN while stuck), ``sticks`` (n,) whether the column face does. With ``normal`` of shape (2, 0)
+    neither samples nor tally tell of forces and energies: that saves half of the time.
     """
 
     start: float
@@ -42,21 +44,32 @@ def _turning_point(share, room):
     return 0.5 * (low + high)
 
 
+@inlined
+def _has_forces(recorder):
+    return recorder.normal.shape[1] > 0
+
+
+@compiled
+def _add(share, t, h, weight, mode, recorder, p, room):
+    """Add the point at a share of a step to the tally; ``weight`` as a share too."""
+    y = inside(share, room)
+    if _has_forces(recorder):
+        add(recorder.tally[0], t + share * h, y, weight * h, mode, p)
+    else:
+        add_motion(recorder.tally[0], y[X], y[VELOCITY], weight * h, abs(mode.column) != 1)
+
+
 @compiled
 def keep(t, h, share, mode, recorder, p, room):
     """Keep a step up to some share of it."""
-    tally = recorder.tally[0]
-    add(tally, t, inside(0.0, room), 0.0, mode, p)
+    _add(0.0, t, h, 0.0, mode, recorder, p, room)
     for node in range(len(NODES)):
-        s = share * NODES[node]
-        add(tally, t + s * h, inside(s, room), share * h * WEIGHTS[node], mode, p)
-    add(tally, t + share * h, inside(share, room), 0.0, mode, p)
+        _add(share * NODES[node], t, h, share * WEIGHTS[node], mode, recorder, p, room)
+    _add(share, t, h, 0.0, mode, recorder, p, room)
     if inside(0.0, room)[VELOCITY] * inside(share, room)[VELOCITY] < 0.0:
-        s = _turning_point(share, room)
-        add(tally, t + s * h, inside(s, room), 0.0, mode, p)
+        _add(_turning_point(share, room), t, h, 0.0, mode, recorder, p, room)
     if room.stages[0, VELOCITY] * room.stages[6, VELOCITY] < 0.0:
-        s = _fastest_point(share, room)
-        add(tally, t + s * h, inside(s, room), 0.0, mode, p)
+        _add(_fastest_point(share, room), t, h, 0.0, mode, recorder, p, room)
     for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
         if i < recorder.x.size:
             time = recorder.start + i * recorder.step
@@ -81,6 +94,8 @@ def put_sample(i, t, y, mode, recorder, p):
     """Store a sample."""
     recorder.x[i], recorder.velocity[i] = y[X], y[VELOCITY]
     recorder.sticks[i] = abs(mode.column) != 1
+    if not _has_forces(recorder):
+        return
     if stuck(mode, p):
         recorder.normal[:, i] = np.nan
     else:

@@ -9,7 +9,7 @@ from math import inf, pi
 from wedgesweep.compiled import compiled
 from wedgesweep.excitation import fastest
 from wedgesweep.extended.mode import SIZE, SWITCHES, stuck
-from wedgesweep.extended.switching import rate, switches, unique
+from wedgesweep.extended.switching import one_switch, rate, switches, unique
 from wedgesweep.solvers import dormand_prince, rosenbrock
 from wedgesweep.solvers.dormand_prince import connect, inside
 from wedgesweep.solvers.extended_recorder import keep
@@ -25,8 +25,7 @@ CLOSE = 1e-14
 
 @compiled
 def _value(share, place, t, h, mode, p, room):
-    switches(t + share * h, inside(share, room), mode, p, room.at_point)
-    return room.at_point[place]
+    return one_switch(place, t + share * h, inside(share, room), mode, p, room.at_point)
 
 
 @compiled
@@ -128,7 +127,7 @@ def first_switch(t, h, mode, last_switch, p, room):
 def _step(t, h, y, mode, implicit, p, room):
     """A step with its dense output; the error over the tolerance."""
     if implicit:
-        room.counts[0] += rosenbrock.STAGES + SIZE + 2
+        room.counts[0] += rosenbrock.STAGES + SIZE + 1
         return rosenbrock.step(t, h, y, mode, p, room)
     room.counts[0] += dormand_prince.STAGES - 1
     error = dormand_prince.step(t, h, y, mode, p, room)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import types
 
 from wedgesweep import parameters, tally
-from wedgesweep.compiled import Pointer, compiled
+from wedgesweep.compiled import Pointer, borrowed, compiled
 from wedgesweep.extended.mode import SIZE, VELOCITY, X
 from wedgesweep.solvers import extended_march, march
 from wedgesweep.solvers.dormand_prince import Room, room
@@ -39,8 +39,8 @@ class Tools(NamedTuple):
     samples_per_period: int
 
 
-def tools(rtol: float, samples_per_period: int, periods: int = LONGEST) -> Tools:
-    """Room for runs that keep at most this many periods."""
+def tools(rtol: float, samples_per_period: int, periods: int = LONGEST, forces: bool = True) -> Tools:
+    """Room for runs that keep at most this many periods; ``forces``: of the extended system too."""
     n = periods * samples_per_period
     return Tools(
         workspace(rtol),
@@ -49,7 +49,7 @@ def tools(rtol: float, samples_per_period: int, periods: int = LONGEST) -> Tools
         np.zeros(n),
         np.zeros(n),
         np.zeros((n, 5), np.int8),
-        np.zeros((2, n)),
+        np.zeros((2, n if forces else 0)),
         np.zeros(n, np.bool_),
         np.zeros(1),
         samples_per_period,
@@ -67,6 +67,7 @@ def clear(sums):
 
 
 def _pass_periods(first, periods, y, case, keeping, tools):
+    y, case, tools = borrowed(y), borrowed(case), borrowed(tools)
     p = case[0]
     cycle = 2.0 * pi / p.omega
     start, stop = first * cycle, (first + periods) * cycle

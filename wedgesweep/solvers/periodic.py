@@ -29,7 +29,7 @@ class Periodic(NamedTuple):
     show them; ``state`` (n, SIZE) at phase 0, ``map`` (n, SIZE, SIZE) the derivative of the map from one
     phase 0 to the next (NaN where it was not needed). ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
     ``period`` (forcing periods; 0: it did not repeat), ``periods`` run, ``extremes`` (n, 2) lowest and
-    highest deflection (m), ``stuck`` share of time, ``dissipated`` (J per forcing period).
+    highest deflection (m), ``stuck`` share of time.
     """
 
     spectra: Any
@@ -40,7 +40,6 @@ class Periodic(NamedTuple):
     periods: Any
     extremes: Any
     stuck: Any
-    dissipated: Any
 
 
 def respond(
@@ -82,9 +81,9 @@ def respond(
         np.zeros(n, np.int64),
         np.full((n, 2), np.nan),
         np.full(n, np.nan),
-        np.full(n, np.nan),
     )
-    _respond_all(parameters, tolerance, most_periods, tools(rtol, samples_per_period), found, passage())
+    bench = tools(rtol, samples_per_period, forces=False)
+    _respond_all(parameters, tolerance, most_periods, bench, found, passage())
     return found
 
 
@@ -119,7 +118,6 @@ def _reduce(i, periods, p, bench, spectra, found):
     one = bench.tally[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time
-    found.dissipated[i] = one.dissipated / periods
 
 
 def samples(
@@ -141,7 +139,7 @@ def samples(
     slowest = float((parameters["velocity_lag_time"] * parameters["omega"]).max()) / (2.0 * pi)
     # The lag of the velocity channel dies out before the kept samples.
     before = min(settle_periods, ceil(LAG_TIMES * slowest))
-    bench = tools(rtol, samples_per_period, before + periods)
+    bench = tools(rtol, samples_per_period, before + periods, forces=False)
     _sample_all(parameters, settle_periods - before, before, periods, bench, x, velocity, state, passage())
     return x, velocity, state
 

@@ -219,9 +219,7 @@ class Extended:
 
     def __init__(self, parameters: np.ndarray) -> None:
         self.parameters, self.p = parameters, parameters[0]
-        length, velocity = self.p["amplitude"], self.p["amplitude"] * self.p["omega"]
-        period = 2.0 * np.pi / self.p["omega"]
-        self.scale = np.array([length, velocity, 1.0, length, velocity, length, velocity, period])
+        self.scale = modes.units(self.p)
 
     def initial(self, t, y):
         return switching.initial(t, y, self.p)

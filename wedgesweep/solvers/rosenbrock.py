@@ -10,9 +10,9 @@ import numpy as np
 
 from wedgesweep.compiled import compiled
 from wedgesweep.extended.faces import bolster_slip, column_slip
-from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY
+from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY, unit
 from wedgesweep.extended.switching import rate
-from wedgesweep.solvers.step_error import over_tolerance, unit
+from wedgesweep.solvers.step_error import over_tolerance
 
 STAGES = 6
 GAMMA = 0.25
@@ -128,9 +128,11 @@ def step(t, h, y, mode, p, room):
     for stage in range(STAGES):
         end[:] = y
         for j in range(stage):
-            if j < STAGES - 1:
-                end += MATRIX[stage, j] * increments[j]
-        rate(t + TIMES[stage] * h, end, mode, p, slope)
+            end += MATRIX[stage, j] * increments[j]
+        if stage == 0:
+            slope[:] = room.stages[0]
+        else:
+            rate(t + TIMES[stage] * h, end, mode, p, slope)
         right[:] = slope + h * SLOPES[stage] * by_time
         for j in range(stage):
             right += COUPLING[stage, j] / h * increments[j]

@@ -21,6 +21,7 @@ from wedgesweep.extended.mode import (
     SIZE,
     VELOCITY,
     X,
+    units,
 )
 from wedgesweep.solvers.march import OK
 from wedgesweep.solvers.passage import LONGEST, clear
@@ -36,22 +37,13 @@ SINGULAR, UNSTABLE = 1e-3, 0.9999
 PATIENCE = 8
 # Above STALE times the last distance J is made anew; with a fresh one more than GAIN is a failure.
 STALE, GAIN = 0.2, 0.5
-# Share of a period by which a time at rest grows if nothing slips, less rounding.
-GROWN = 1.0 - 1e-9
+# Share of a period by which a time at rest grows if nothing slips, less rounding; and the time at rest, in
+# periods, at which a response without slip is taken. It would grow for ever.
+GROWN, RESTED = 1.0 - 1e-9, 100.0
 # Below this distance the next period may be the last one, and is kept.
 NEAR = 1e-3
 # Periods marched of a response with a foreign tone, which never repeats.
 TONE_PERIODS = 30
-
-
-@compiled
-def scales(p):
-    """Units of the states: input amplitude and velocity, a share of 1 and a forcing period."""
-    size = np.empty(SIZE)
-    size[X] = size[COLUMN_WAY] = size[FRAME_WAY] = p.amplitude
-    size[VELOCITY] = size[COLUMN_VELOCITY] = size[FRAME_VELOCITY] = p.amplitude * p.omega
-    size[BRISTLE], size[AGE] = 1.0, 2.0 * pi / p.omega
-    return size
 
 
 @compiled
@@ -72,15 +64,18 @@ def active(y, p):
 
 @compiled
 def _distance(a, b, size):
-    """Largest difference of two states in their units.
+    """Largest difference of two states in their units."""
+    return np.max(np.abs(a - b) / size)
 
-    A time at rest that has grown by a whole period or more tells of faces that did not slip meanwhile:
-    it will grow for ever, and does not count.
-    """
-    apart = np.abs(a - b) / size
-    if a[AGE] - b[AGE] >= GROWN * size[AGE]:
-        apart[AGE] = 0.0
-    return np.max(apart)
+
+@compiled
+def _period(y, parameters, keeping, tools, passage):
+    """Run one period; y moves along. Faces that did not slip in it have been at rest for long."""
+    outcome = passage(0, 1, y, parameters, keeping, tools)
+    cycle = 2.0 * pi / parameters[0].omega
+    if y[AGE] >= GROWN * cycle:
+        y[AGE] = RESTED * cycle
+    return outcome
 
 
 @compiled
@@ -95,7 +90,7 @@ def differences(y, image, moves, size, parameters, jacobian, tools, passage):
         if moves[column]:
             shifted = y.copy()
             shifted[column] += share * size[column]
-            outcome = passage(0, 1, shifted, parameters, False, tools)
+            outcome = _period(shifted, parameters, False, tools, passage)
             run += 1
             if outcome != OK:
                 jacobian[:] = np.nan
@@ -187,7 +182,7 @@ def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
         keeping = last < NEAR or run == 0
         if keeping:
             clear(tools.tally)
-        outcome = passage(0, 1, image, parameters, keeping, tools)
+        outcome = _period(image, parameters, keeping, tools, passage)
         run += 1
         if outcome != OK:
             y[:] = best
@@ -227,7 +222,7 @@ def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
     them, the last ones, the tools have kept. y and J move along.
     """
     p = parameters[0]
-    size = scales(p)
+    size = units(p)
     run = 0
     warm = np.isfinite(y).all()
     if not warm:
@@ -247,7 +242,7 @@ def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
     count = 0
     while run < most:
         past[count % LONGEST] = y
-        outcome = passage(0, 1, y, parameters, False, tools)
+        outcome = _period(y, parameters, False, tools, passage)
         run, count = run + 1, count + 1
         if outcome != OK:
             return outcome, 0, run, 0

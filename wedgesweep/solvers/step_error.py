@@ -2,21 +2,9 @@
 
 from math import sqrt
 
-from wedgesweep.compiled import compiled, inlined
-from wedgesweep.extended.mode import AGE, BRISTLE, COLUMN_WAY, FRAME_WAY, VELOCITY, X
+from wedgesweep.compiled import compiled
+from wedgesweep.extended.mode import AGE, VELOCITY, unit
 from wedgesweep.solvers.runge_kutta import ABSOLUTE
-
-
-@inlined
-def unit(place, p):
-    """Unit of a state: share of 1, input amplitude or velocity, or the time of a radian."""
-    if place == BRISTLE:
-        return 1.0
-    if place == AGE:
-        return 1.0 / p.omega
-    if place in (X, COLUMN_WAY, FRAME_WAY):
-        return p.amplitude
-    return p.amplitude * p.omega
 
 
 @compiled
