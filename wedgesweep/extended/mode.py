@@ -44,6 +44,18 @@ def units(p):
     return size
 
 
+@compiled
+def in_use(p):
+    """Whether a case uses each of the states, shape (SIZE,)."""
+    found = np.zeros(SIZE, np.bool_)
+    found[X] = found[VELOCITY] = True
+    found[BRISTLE] = p.presliding_length > 0.0
+    found[COLUMN_WAY] = found[COLUMN_VELOCITY] = p.column_compliance_stiffness > 0.0
+    found[FRAME_WAY] = found[FRAME_VELOCITY] = p.fixture_stiffness > 0.0
+    found[AGE] = p.ageing_rate > 0.0
+    return found
+
+
 class Mode(NamedTuple):
     """``damper.Contact``, and what the effects add to it.
 

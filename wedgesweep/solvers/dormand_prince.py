@@ -76,6 +76,7 @@ def room(rtol: float) -> Room:
 def step(t, h, y, mode, p, room):
     """One step from y, whose rate is ``room.stages[0]``, to ``room.end``; the error over the tolerance."""
     stages, trial = room.stages, room.trial
+    room.counts[0] += STAGES - 1
     for stage in range(1, STAGES):
         target = room.end if stage == STAGES - 1 else trial
         for i in range(SIZE):

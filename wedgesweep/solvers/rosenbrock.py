@@ -4,13 +4,13 @@ A face that a steep ramp of friction all but holds answers within nanoseconds; a
 be longer than that. Coefficients: Hairer and Wanner, Solving ODEs II (1996), section VI.4.
 """
 
-from math import inf, sqrt
+from math import inf, isfinite, sqrt
 
 import numpy as np
 
 from wedgesweep.compiled import compiled
 from wedgesweep.extended.faces import bolster_slip, column_slip
-from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY, unit
+from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY, in_use, unit
 from wedgesweep.extended.switching import rate
 from wedgesweep.solvers.step_error import over_tolerance
 
@@ -76,12 +76,12 @@ def first_step(p):
 
 
 @compiled
-def _derivatives(t, y, mode, p, room):
-    """The rate's derivatives by the states (SIZE, SIZE) and by time (SIZE,), from differences."""
+def _derivatives(t, y, places, mode, p, room):
+    """The rate's derivatives by the states in use (SIZE, SIZE) and by time (SIZE,), from differences."""
     here, trial, moved = room.stages[0], room.trial, np.empty(SIZE)
     by_state, by_time = np.zeros((SIZE, SIZE)), np.empty(SIZE)
     trial[:] = y
-    for i in range(SIZE):
+    for i in places:
         # A ramp bends within its own width: normal forces depend on friction, and friction on them.
         is_velocity = i in (VELOCITY, COLUMN_VELOCITY, FRAME_VELOCITY)
         size = p.threshold_velocity if is_velocity else max(unit(i, p), abs(y[i]))
@@ -89,11 +89,12 @@ def _derivatives(t, y, mode, p, room):
         change = trial[i] - y[i]
         rate(t, trial, mode, p, moved)
         trial[i] = y[i]
-        for j in range(SIZE):
+        for j in places:
             by_state[j, i] = (moved[j] - here[j]) / change
     change = MOVED / p.omega
     rate(t + change, y, mode, p, moved)
-    by_time[:] = (moved - here) / change
+    for j in range(SIZE):
+        by_time[j] = (moved[j] - here[j]) / change
     return by_state, by_time
 
 
@@ -109,37 +110,54 @@ def _growth(by_state):
 
 
 @compiled
+def _inverse(by_state, places, h):
+    """Inverse of the matrix of all stages, of the states in use."""
+    matrix = np.empty((places.size, places.size))
+    for i in range(places.size):
+        for j in range(places.size):
+            matrix[i, j] = -by_state[places[i], places[j]]
+        matrix[i, i] += 1.0 / (GAMMA * h)
+    if not np.isfinite(matrix).all():
+        matrix[:] = np.nan
+        return matrix
+    return np.linalg.inv(matrix)
+
+
+@compiled
 def step(t, h, y, mode, p, room):
     """One step from y, whose rate is ``room.stages[0]``, to ``room.end``; the error over the tolerance.
 
     Leaves the dense output and, as ``room.stages[-1]``, the rate at the end, as dormand_prince does.
     """
-    by_state, by_time = _derivatives(t, y, mode, p, room)
+    places = np.flatnonzero(in_use(p))
+    room.counts[0] += STAGES + places.size + 1
+    by_state, by_time = _derivatives(t, y, places, mode, p, room)
     if h * _growth(by_state) > LARGEST_GROWTH:
         return inf
-    matrix = -by_state
-    for i in range(SIZE):
-        matrix[i, i] += 1.0 / (GAMMA * h)
-    if not np.isfinite(matrix).all():
-        return inf
-    inverse = np.linalg.inv(matrix)
-    increments, slope, right = np.zeros((STAGES, SIZE)), np.empty(SIZE), np.empty(SIZE)
+    inverse = _inverse(by_state, places, h)
+    increments, slope, right = np.zeros((STAGES, SIZE)), np.empty(SIZE), np.empty(places.size)
     end = room.end
     for stage in range(STAGES):
-        end[:] = y
-        for j in range(stage):
-            end += MATRIX[stage, j] * increments[j]
+        for i in range(SIZE):
+            end[i] = y[i]
+            for j in range(stage):
+                end[i] += MATRIX[stage, j] * increments[j, i]
         if stage == 0:
             slope[:] = room.stages[0]
         else:
             rate(t + TIMES[stage] * h, end, mode, p, slope)
-        right[:] = slope + h * SLOPES[stage] * by_time
-        for j in range(stage):
-            right += COUPLING[stage, j] / h * increments[j]
-        if not np.isfinite(right).all():
-            return inf
-        increments[stage] = inverse @ right
-    end += increments[STAGES - 1]
+        for i in range(places.size):
+            place = places[i]
+            right[i] = slope[place] + h * SLOPES[stage] * by_time[place]
+            for j in range(stage):
+                right[i] += COUPLING[stage, j] / h * increments[j, place]
+        for i in range(places.size):
+            for j in range(places.size):
+                increments[stage, places[i]] += inverse[i, j] * right[j]
+            if not isfinite(increments[stage, places[i]]):
+                return inf
+    for i in range(SIZE):
+        end[i] += increments[STAGES - 1, i]
     rate(t + h, end, mode, p, room.stages[-1])
     _connect(y, increments, room)
     error = increments[STAGES - 1]
@@ -160,8 +178,9 @@ def _off_ramp(error, mode, rtol, p):
 def _connect(y, increments, room):
     """Write what ``dormand_prince.inside`` evaluates: a polynomial of order 3."""
     dense = room.dense
-    dense[0], dense[1], dense[4] = y, room.end - y, 0.0
-    for row in range(2):
-        dense[2 + row] = 0.0
-        for j in range(STAGES - 1):
-            dense[2 + row] += DENSE[row, j] * increments[j]
+    for i in range(SIZE):
+        dense[0, i], dense[1, i], dense[4, i] = y[i], room.end[i] - y[i], 0.0
+        for row in range(2):
+            dense[2 + row, i] = 0.0
+            for j in range(STAGES - 1):
+                dense[2 + row, i] += DENSE[row, j] * increments[j, i]

@@ -11,18 +11,7 @@ from math import pi
 import numpy as np
 
 from wedgesweep.compiled import compiled
-from wedgesweep.extended.mode import (
-    AGE,
-    BRISTLE,
-    COLUMN_VELOCITY,
-    COLUMN_WAY,
-    FRAME_VELOCITY,
-    FRAME_WAY,
-    SIZE,
-    VELOCITY,
-    X,
-    units,
-)
+from wedgesweep.extended.mode import AGE, SIZE, VELOCITY, in_use, units
 from wedgesweep.solvers.march import OK
 from wedgesweep.solvers.passage import LONGEST, clear
 
@@ -52,12 +41,8 @@ def active(y, p):
 
     The time at rest does if the last slip was within the period before.
     """
-    found = np.zeros(SIZE, np.bool_)
-    found[X] = True
+    found = in_use(p)
     found[VELOCITY] = not (p.set_valued and y[VELOCITY] == 0.0)
-    found[BRISTLE] = p.presliding_length > 0.0
-    found[COLUMN_WAY] = found[COLUMN_VELOCITY] = p.column_compliance_stiffness > 0.0
-    found[FRAME_WAY] = found[FRAME_VELOCITY] = p.fixture_stiffness > 0.0
     found[AGE] = 0.0 < y[AGE] * p.omega < 2.0 * pi * GROWN
     return found
 
