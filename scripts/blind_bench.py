@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep import config, parameters, response, tally
-from wedgesweep.config import Config
+from wedgesweep.config import Config, toml
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.march import workspace
 
@@ -38,11 +38,7 @@ class Test(NamedTuple):
 
 def model(law: str, lean: float, effects: dict[str, dict[str, float]] | None = None) -> str:
     """Config text of a system with effects (numbers in key units)."""
-    tables = [
-        f"[effects.{name}]\n" + "".join(f"{key} = {value!r}\n" for key, value in numbers.items())
-        for name, numbers in (effects or {}).items()
-    ]
-    return MODEL.format(law=law, lean=lean) + "".join(tables)
+    return MODEL.format(law=law, lean=lean) + toml.dumps({"effects": effects or {}})
 
 
 def records(system: Config, law: str, tests: list[Test]) -> np.ndarray:

@@ -44,9 +44,9 @@ def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
     directory.mkdir(parents=True)
     try:
         record = _run(one, out, directory, baselines)
-    except (Failed, RuntimeError) as error:
+    except Exception as error:  # whatever it is, the other sets go on
         # No record file: the next run tries again.
-        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": str(error)}
+        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": repr(error)}
     _write(directory / RECORD, record)
     return record
 

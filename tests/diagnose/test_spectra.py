@@ -5,6 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from scipy.stats import gamma
 
 from wedgesweep.diagnose import tone
 from wedgesweep.diagnose.spectra import COMPARED, spectrum
@@ -69,8 +70,38 @@ def spectra_with(rng, foreign):
     return spectra
 
 
-def test_a_foreign_tone_is_found_where_it_is():
-    assert tone.find(spectra_with(np.random.default_rng(3), 0.03)) == pytest.approx(47.3, abs=0.05)
+@pytest.mark.parametrize("amplitude", [0.03, 0.3, 3.0])
+def test_a_foreign_tone_is_found_where_it_is(amplitude):
+    found = tone.find(spectra_with(np.random.default_rng(3), amplitude))
+    assert found.frequency == pytest.approx(47.3, abs=0.05)
+    assert abs(found.frequency - 47.3) < 4.0 * found.std
+
+
+def test_the_frequency_of_a_tone_is_as_uncertain_as_it_says():
+    found = [tone.find(spectra_with(np.random.default_rng(seed), 0.05)) for seed in range(30)]
+    pulls = np.array([(each.frequency - 47.3) / each.std for each in found])
+    assert 0.7 < np.sqrt((pulls**2).mean()) < 1.4
+
+
+def test_the_chance_of_a_tone_is_exact_and_never_ends():
+    power, count = np.array([0.5, 30.0, 40.0, 5000.0]), np.array([1, 24, 6, 24])
+    np.testing.assert_allclose(
+        tone.log_chance(power[:3], count[:3]), gamma.logsf(power[:3], count[:3]), rtol=1e-10
+    )
+    assert -5000.0 < tone.log_chance(power, count)[3] < -4700.0
+
+
+def test_a_tone_beside_a_harmonic_leaves_the_others_alone():
+    """24 Hz: the record cannot tell a tone at 47.3 Hz from the second harmonic."""
+    rng, squares = np.random.default_rng(6), []
+    for _ in range(40):
+        time, channels, truth = record(rng, 24.0)
+        foreign = 0.1 * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
+        found = spectrum(time, channels + foreign, 24.0, 47.3)
+        assert (found.tone, found.covered, found.points) == (None, 2, 4 * (COMPARED - 1))
+        squares.append(2.0 * np.abs(found.mean - truth) ** 2 / found.variance)
+    others = np.delete(np.array(squares), 1, axis=2)
+    assert others.mean() == pytest.approx(2.0, rel=0.1)
 
 
 def test_noise_alone_has_no_tone():

@@ -13,7 +13,11 @@ UNCERTAIN = {"friction_level": 0.07}
 SINGLES = (
     Hidden("guide", "static-dynamic", {"guide_friction": {"force_N": 0.25}}, "ar1"),
     Hidden(
-        "lag", "exponential", {"velocity_lag": {"time_s": 4e-4}}, "adc", uncertain={"friction_level": 0.07}
+        "tone",
+        "exponential",
+        {"stray_vibration": {"acceleration_m_per_s2": 0.4, "frequency_hz": 47.3}},
+        "adc",
+        uncertain={"friction_level": 0.07},
     ),
     Hidden("spring", "coulomb", {"cubic_stiffness": {"coefficient_N_per_mm3": 0.6}}, "differentiated"),
     Hidden("fixture", "static-dynamic", {"fixture_resonance": {"frequency_hz": 90.0, "damping_ratio": 0.1}}),

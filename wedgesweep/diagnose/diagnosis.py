@@ -54,12 +54,8 @@ def problem_of(measurement: Measurement) -> Problem:
     found = [spectrum(t.time, s, f) for t, s, f in zip(tests, signals, frequencies, strict=True)]
     foreign = tone.find(found)
     if foreign is not None:
-        found = [
-            spectrum(test.time, signal, first.frequency, foreign)
-            if first.separates(np.array([foreign]))[0]
-            else first
-            for test, signal, first in zip(tests, signals, found, strict=True)
-        ]
+        at = foreign.frequency
+        found = [spectrum(t.time, s, f, at) for t, s, f in zip(tests, signals, frequencies, strict=True)]
     known = [test.amplitude is not None for test in tests]
     return Problem(
         measurement.model,
@@ -69,7 +65,8 @@ def problem_of(measurement: Measurement) -> Problem:
         np.array([test.amplitude if test.amplitude else np.nan for test in tests]),
         np.array([t.amplitude_std if k else np.inf for t, k in zip(tests, known, strict=True)]),
         dict(measurement.uncertain),
-        foreign,
+        foreign.frequency if foreign else None,
+        foreign.std if foreign else 0.0,
     )
 
 

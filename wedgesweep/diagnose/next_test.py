@@ -52,7 +52,7 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     omega = 2.0 * np.pi * frequency
     amplitude = acceleration / omega**2
     predictions = [_predict(fit, omega, amplitude) for fit in fits]
-    weight = _weights(problem, predictions[0].harmonics, omega)
+    weight = _weights(problem, predictions)
     pairs = list(combinations(range(len(fits)), 2))
     distances = np.array([_distances(predictions[i], predictions[j], weight) for i, j in pairs])
     closest = np.argmin(distances, axis=0)
@@ -88,8 +88,12 @@ def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
     return _Prediction(here, np.concatenate([by_number, by_amplitude], axis=-1), ok)
 
 
-def _weights(problem: Problem, harmonics: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """One over the noise of a real part (n, C, 1), if new tests are as noisy as those made."""
+def _weights(problem: Problem, predictions: Sequence[_Prediction]) -> np.ndarray:
+    """One over the noise of a real part (n, C, 1), if new tests are as noisy as those made.
+
+    The noise goes by the first prediction that there is: a wedge may lock under some of them. Where none is,
+    there is nothing to weigh.
+    """
     level = np.array(
         [
             np.sqrt(s.variance[c].mean() / (np.abs(s.mean[c]) ** 2).sum())
@@ -97,7 +101,10 @@ def _weights(problem: Problem, harmonics: np.ndarray, omega: np.ndarray) -> np.n
             for c in range(s.mean.shape[0])
         ]
     )
-    size = np.sqrt((np.abs(harmonics) ** 2).sum(-1, keepdims=True))
+    size = np.ones((*predictions[0].harmonics.shape[:2], 1))
+    for each in reversed(predictions):
+        own = np.sqrt((np.abs(each.harmonics) ** 2).sum(-1, keepdims=True))
+        size = np.where(each.found[:, None, None], own, size)
     return np.sqrt(2.0) / (np.median(level) * np.maximum(size, 1e-12))
 
 

@@ -19,8 +19,8 @@ class Problem:
 
     ``amplitude`` (T,): input amplitude in m, NaN where unknown; ``amplitude_std`` (T,): relative, 0 where
     exact, inf where unknown. ``uncertain``: numbers of the model with their relative standard deviations.
-    ``tone``: a foreign frequency (Hz) in the records; its complex amplitude is one more column behind the
-    harmonics, with a phase of its own in each test.
+    ``tone``: a foreign frequency (Hz) in the records, known to ``tone_std``; its complex amplitude is one
+    more column behind the harmonics, with a phase of its own in each test.
     """
 
     model: Config
@@ -31,6 +31,7 @@ class Problem:
     amplitude_std: np.ndarray
     uncertain: dict[str, float]
     tone: float | None = None
+    tone_std: float = 0.0
 
     @cached_property
     def omega(self) -> np.ndarray:
@@ -76,8 +77,12 @@ class Problem:
 
     @cached_property
     def weight(self) -> np.ndarray:
-        """One over the noise of a real part, (T, C, H); 0 where absent."""
-        return np.sqrt(2.0 / self._padded([s.variance for s in self.spectra], inf))
+        """One over the noise of a real part, (T, C, H); 0 where absent or covered by a tone."""
+        weight = np.sqrt(2.0 / self._padded([s.variance for s in self.spectra], inf))
+        for row, spectrum in zip(weight, self.spectra, strict=True):
+            if spectrum.covered is not None:
+                row[:, spectrum.covered - 1] = 0.0
+        return weight
 
     @cached_property
     def coherence(self) -> np.ndarray:
@@ -86,7 +91,7 @@ class Problem:
     @cached_property
     def points(self) -> np.ndarray:
         """Real numbers that each test contributes, (T,)."""
-        return np.array([2 * s.mean.size for s in self.spectra])
+        return np.array([s.points for s in self.spectra])
 
     def whiten(self, harmonics: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) over their noise, complex, with the channels' common noise taken out."""

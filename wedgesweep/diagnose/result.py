@@ -16,7 +16,7 @@ from wedgesweep.diagnose import waveforms
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit import Fit
 from wedgesweep.diagnose.gain import Gain
-from wedgesweep.diagnose.search import PENALTY, Explanation
+from wedgesweep.diagnose.search import PENALTY, TONE_FREQUENCY, Explanation
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
@@ -60,7 +60,10 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
             if quantity.search:
                 value = here[name][quantity.key]
                 slope = np.array([_change(quantity, value, m[name][quantity.key]) for m in moved]) / step
-                half = TWO_SIDED * sqrt(max(float(slope @ covariance @ slope), 0.0))
+                std = sqrt(max(float(slope @ covariance @ slope), 0.0))
+                if f"{name}.{quantity.key}" == TONE_FREQUENCY:
+                    std = _change(quantity, value, value + fit.model.problem.tone_std)
+                half = TWO_SIDED * std
                 ends = _interval(quantity, value, half)
                 found[name][quantity.key] = {"value": _finite(value), "ci95": [_finite(end) for end in ends]}
     return found
@@ -160,7 +163,7 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     amplitude = best.amplitudes()
     rows = []
     for t, (name, spectrum) in enumerate(zip(problem.names, problem.spectra, strict=True)):
-        noise = np.sqrt(spectrum.variance.mean(axis=1) * spectrum.samples / 4.0)
+        noise = spectrum.sample_noise
         rows.append(
             {
                 "name": name,
@@ -275,14 +278,17 @@ def dataset(found: Diagnosis) -> xr.Dataset:
     fits = (found.base.fit, found.extended)
     channels, harmonics = problem.shape
     turned = waveforms.measured_from_phase_zero(fits[1])
-    simulated = np.array([fit.trial.harmonics for fit in fits])
+    simulated = np.array([fit.trial.harmonics for fit in fits])[..., :harmonics]
     signal, model_signal = waveforms.waveform(turned), waveforms.waveform(simulated)
     rates = [waveforms.velocity(problem, each) for each in (turned, *simulated)]
     shown = [waveforms.waveform(each) for each in rates]
-    noise = np.where(problem.weight > 0.0, 1.0 / np.where(problem.weight > 0.0, problem.weight, 1.0), np.nan)
+    weight = problem.weight[..., :harmonics]
+    noise = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), np.nan)
     known = ~np.isnan(problem.amplitude)
     energy = np.where(known, waveforms.supplied(fits[0], turned[:, 0, 0]), np.nan)
-    sampled = np.array([np.sqrt(s.variance.mean(axis=1) * s.samples / 4.0) for s in problem.spectra])
+    sampled = np.full((problem.tests, channels), np.nan)
+    for row, spectrum in zip(sampled, problem.spectra, strict=True):
+        row[: spectrum.sample_noise.size] = spectrum.sample_noise
     by_test, by_model = ("test",), ("model", "test")
     parts = ("harmonic", "part")
     variables: dict[str, tuple[tuple[str, ...], Any, str, str]] = {

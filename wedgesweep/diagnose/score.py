@@ -11,7 +11,7 @@ from math import inf
 import numpy as np
 
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import Fit, Trial
+from wedgesweep.diagnose.fit import Fit, Model, Trial
 from wedgesweep.diagnose.problem import real
 from wedgesweep.diagnose.search import Search, trials_of
 from wedgesweep.effects import EFFECTS
@@ -84,8 +84,9 @@ def scores(search: Search, base: Fit) -> list[Score]:
 
 
 def _score(search: Search, base: Fit, effect: str, project: Projector, residual: np.ndarray) -> Score:
-    hypothesis = Hypothesis((effect,))
-    path, trials = _along(search, base, hypothesis)
+    model = search.model(effect)
+    hypothesis = model.hypothesis
+    path, trials = _along(search, base, model)
     changes = [_change(base, each) for each in trials]
     sizes = np.array([np.linalg.norm(each) for each in changes])
     remaining = [project(each) for each in changes]
@@ -99,9 +100,9 @@ def _score(search: Search, base: Fit, effect: str, project: Projector, residual:
     return Score(effect, t2, retention, key, _detectable(hypothesis, path, left**2))
 
 
-def _along(search: Search, base: Fit, hypothesis: Hypothesis) -> tuple[np.ndarray, Sequence[Trial]]:
+def _along(search: Search, base: Fit, model: Model) -> tuple[np.ndarray, Sequence[Trial]]:
     """Points (n, k) along the leading number of an effect, and their responses."""
-    coordinates, model = hypothesis.coordinates, search.model(*hypothesis.effects)
+    hypothesis, coordinates = model.hypothesis, model.hypothesis.coordinates
     known = search.along.get(hypothesis.effects[0])
     told = not np.isinf(base.model.problem.amplitude_std).any()
     if known and told and len(coordinates) == 1 and coordinates[0].logarithmic:

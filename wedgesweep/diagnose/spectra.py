@@ -23,6 +23,8 @@ ORDER = 2
 FOREIGN = 11.5
 # Frequencies this many resolutions (one over the record) apart are told apart.
 RESOLVED = 1.2
+# Closer than this a tone is the harmonic; farther off it leaks into all of them, and is taken out.
+MINGLED = 0.05
 # Two channels whose noise is more coherent than this say the same.
 SAME = 0.98
 
@@ -35,7 +37,8 @@ class Spectrum:
     ``variance`` (channels, harmonics): of one such complex number, real and imaginary part together;
     ``coherence``: of the noise of both channels, complex. ``lines``: noise lines looked at, per channel.
     ``residual`` (channels, n): what is left of the record. ``tone``: a foreign frequency (Hz) whose complex
-    amplitude is the last column of ``mean``, where the record can tell it from the harmonics.
+    amplitude is the last column of ``mean``. A tone that the record cannot tell from a harmonic has none, and
+    that harmonic, ``covered`` (1, 2, ...), says nothing.
     """
 
     frequency: float
@@ -48,6 +51,17 @@ class Spectrum:
     residual: np.ndarray
     level: tuple["Smooth", ...]
     tone: float | None = None
+    covered: int | None = None
+
+    @property
+    def points(self) -> int:
+        """Real numbers that say something."""
+        return 2 * (self.mean.size - (self.covered is not None) * self.mean.shape[0])
+
+    @property
+    def sample_noise(self) -> np.ndarray:
+        """Noise of one sample (channels,), in m and m/s."""
+        return np.sqrt(self.variance.mean(axis=1) * self.samples / 4.0)
 
     @property
     def harmonics(self) -> int:
@@ -72,9 +86,13 @@ class Spectrum:
 
     def separates(self, frequencies: np.ndarray) -> np.ndarray:
         """Whether the record tells these frequencies from the harmonics, in the band of those compared."""
-        offset = np.abs(frequencies - self.frequency * np.round(frequencies / self.frequency))
-        resolved = offset * self.samples * self.interval > RESOLVED
+        resolved = _beside(frequencies, self.frequency) * self.samples * self.interval > RESOLVED
         return resolved & (frequencies < self.frequency * (self.harmonics + 1))
+
+
+def _beside(frequencies: np.ndarray | float, frequency: float) -> np.ndarray:
+    """Distance (Hz) of frequencies from the closest harmonic."""
+    return np.abs(frequencies - frequency * np.round(frequencies / frequency))
 
 
 def regressors(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
@@ -98,10 +116,18 @@ def spectrum(time: np.ndarray, channels: np.ndarray, frequency: float, tone: flo
     fitted, compared = min(REMOVED, highest), min(COMPARED, highest)
     matrix = regressors(time, frequency, fitted)
     at = frequency * np.arange(1, compared + 1)
+    covered = None
     if tone is not None:
-        turn = 2.0 * pi * tone * time
-        matrix = np.concatenate([matrix, np.cos(turn)[:, None], np.sin(turn)[:, None]], axis=1)
-        at = np.r_[at, tone]
+        apart = float(_beside(tone, frequency)) * time[-1]
+        if apart > MINGLED:
+            turn = 2.0 * pi * tone * time
+            matrix = np.concatenate([matrix, np.cos(turn)[:, None], np.sin(turn)[:, None]], axis=1)
+        if apart <= RESOLVED and 0.5 < tone / frequency < compared + 0.5:
+            covered = round(tone / frequency)
+        if apart <= RESOLVED or tone > frequency * (compared + 1):
+            tone = None
+        else:
+            at = np.r_[at, tone]
     # The columns are nearly orthogonal, so that the normal equations lose nothing.
     solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
     mean = (solution[2 : 2 + compared] - 1j * solution[2 + fitted : 2 + fitted + compared]).T
@@ -131,6 +157,7 @@ def spectrum(time: np.ndarray, channels: np.ndarray, frequency: float, tone: flo
         residual,
         tuple(smooth[: len(mean)]),
         tone,
+        covered,
     )
 
 

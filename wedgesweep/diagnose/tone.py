@@ -1,10 +1,12 @@
 """A foreign tone: one frequency that stands out between the harmonics of several tests."""
 
 from collections.abc import Sequence
+from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.stats import gamma
+from scipy.special import gammaln, logsumexp, xlogy
 
 from wedgesweep.diagnose.spectra import BAND, Spectrum
 
@@ -18,8 +20,15 @@ LOWEST = 1.0
 SEVERAL = 2
 
 
-def find(spectra: Sequence[Spectrum]) -> float | None:
-    """Frequency (Hz) of a tone common to all tests, None where there is none.
+class Tone(NamedTuple):
+    """Frequency of a foreign tone and its standard deviation (Hz)."""
+
+    frequency: float
+    std: float
+
+
+def find(spectra: Sequence[Spectrum]) -> Tone | None:
+    """The tone common to all tests, None where there is none.
 
     Multiples of half, a third and so on of the input frequency are no foreign tones but sub-harmonics
     of the response; they lie elsewhere in each test, unless all tests have one frequency.
@@ -30,9 +39,9 @@ def find(spectra: Sequence[Spectrum]) -> float | None:
     power = np.array([_power(s, grid) for s in spectra])
     channels = np.array([s.mean.shape[0] for s in spectra])
     separated = np.array([s.separates(grid) for s in spectra])
-    chance = gamma.logsf(power.sum(axis=0), np.maximum((channels[:, None] * separated).sum(axis=0), 1))
+    chance = log_chance(power.sum(axis=0), (channels[:, None] * separated).sum(axis=0))
     best = int(np.argmin(chance))
-    standing_out = gamma.logsf(power[:, best], channels) < np.log(1e-3)
+    standing_out = log_chance(power[:, best], channels) < np.log(1e-3)
     if chance[best] + np.log(grid.size) > np.log(CHANCE) or standing_out.sum() < min(SEVERAL, len(spectra)):
         return None
     step = grid[1] - grid[0]
@@ -43,7 +52,25 @@ def find(spectra: Sequence[Spectrum]) -> float | None:
         method="bounded",
         options={"xatol": 1e-4 * step},
     )
-    return float(refined.x)
+    return Tone(float(refined.x), _std(seen, float(refined.x)))
+
+
+def _std(spectra: Sequence[Spectrum], frequency: float) -> float:
+    """Least standard deviation of a tone's frequency (Rife and Boorstyn, 1974), all tests together."""
+    durations = np.array([s.samples * s.interval for s in spectra])
+    power = np.array([s.exact_excess_at(np.array([frequency]))[0] for s in spectra])
+    return float(np.sqrt(6.0 / (power @ durations**2)) / (2.0 * pi))
+
+
+def log_chance(power: np.ndarray, count: np.ndarray) -> np.ndarray:
+    """Logarithm of the chance that ``count`` unit exponentials (n,) add up to more than ``power`` (n,).
+
+    Exact however small: scipy's ``gamma.logsf`` ends at -inf, where a strong tone's peak looks flat.
+    """
+    orders = np.arange(max(count.max(), 1))
+    terms = xlogy(orders, power[:, None]) - gammaln(orders + 1.0)
+    terms[orders >= np.maximum(count, 1)[:, None]] = -np.inf
+    return logsumexp(terms, axis=1) - power
 
 
 def _power(spectrum: Spectrum, frequencies: np.ndarray) -> np.ndarray:

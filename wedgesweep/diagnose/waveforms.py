@@ -24,8 +24,9 @@ def waveform(harmonics: np.ndarray) -> np.ndarray:
 
 
 def measured_from_phase_zero(fit: Fit) -> np.ndarray:
-    """Measured harmonics (T, C, H) turned to phase 0 of the input, as a fit found it."""
-    return fit.model.problem.turned(fit.model.problem.measured, -fit.trial.phase)
+    """Measured harmonics (T, C, H), a tone left out, turned to phase 0 of the input as a fit found it."""
+    problem = fit.model.problem
+    return problem.turned(problem.measured, -fit.trial.phase)[..., : problem.shape[1]]
 
 
 def velocity(problem: Problem, harmonics: np.ndarray) -> np.ndarray:
