@@ -14,8 +14,8 @@ SINGLES = (
     Hidden("guide", "static-dynamic", {"guide_friction": {"force_N": 0.25}}, "ar1"),
     Hidden(
         "tone",
-        "exponential",
-        {"stray_vibration": {"acceleration_m_per_s2": 0.4, "frequency_hz": 47.3}},
+        "static-dynamic",
+        {"stray_vibration": {"acceleration_m_per_s2": 1.0, "frequency_hz": 47.3}},
         "adc",
         uncertain={"friction_level": 0.07},
     ),

@@ -161,7 +161,8 @@ class Model:
     def _respond(self, rows: np.ndarray, warm: Warm) -> simulation.Responses:
         harmonics, tone = self.problem.shape[1], self.problem.tone
         if self.toned and tone is not None:
-            return simulation.respond_with_tone(rows, warm, harmonics, tone)
+            times = len(rows) // self.problem.tests
+            return simulation.respond_with_tone(rows, warm, harmonics, tone, self.problem.meetings * times)
         done = simulation.respond(rows, warm, harmonics)
         if tone is None:
             return done

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, pi
+from math import inf, nan, pi
 
 import numpy as np
 
 from wedgesweep.config import Config
+from wedgesweep.diagnose.simulation import Meeting
 from wedgesweep.diagnose.spectra import Spectrum
 
 # Phases at which the best rotation is looked for.
@@ -20,7 +21,8 @@ class Problem:
     ``amplitude`` (T,): input amplitude in m, NaN where unknown; ``amplitude_std`` (T,): relative, 0 where
     exact, inf where unknown. ``uncertain``: numbers of the model with their relative standard deviations.
     ``tone``: a foreign frequency (Hz) in the records, known to ``tone_std``; its complex amplitude is one
-    more column behind the harmonics, with a phase of its own in each test.
+    more column behind the harmonics, with a phase of its own in each test. ``start`` (T,): phase (rad) of the
+    input at the first sample of each record, as a first fit found it.
     """
 
     model: Config
@@ -32,6 +34,16 @@ class Problem:
     uncertain: dict[str, float]
     tone: float | None = None
     tone_std: float = 0.0
+    start: np.ndarray | None = None
+
+    @cached_property
+    def meetings(self) -> tuple[Meeting, ...]:
+        """How input and tone met in each test; the input starts at phase 0 where that is not known yet."""
+        starts = np.zeros(self.tests) if self.start is None else self.start
+        return tuple(
+            Meeting(s.periods, float(start), float(np.angle(s.mean[0, -1])) if s.tone is not None else nan)
+            for s, start in zip(self.spectra, starts, strict=True)
+        )
 
     @cached_property
     def omega(self) -> np.ndarray:
@@ -59,6 +71,7 @@ class Problem:
             spectra=tuple(self.spectra[i] for i in rows),
             amplitude=self.amplitude[rows],
             amplitude_std=self.amplitude_std[rows],
+            start=None if self.start is None else self.start[rows],
         )
 
     def _padded(self, values: list[np.ndarray], fill: float) -> np.ndarray:

@@ -81,16 +81,30 @@ class Search:
         """The model on trial with everything fitted that is unknown about the tests."""
         model = self.model()
         start = best_amplitudes(model, [model.start(None, np.zeros(0))])[0]
-        return self.explanation(refine(model, start))
+        fit = refine(model, start)
+        return self.explanation(self._met(fit))
+
+    def _met(self, fit: Fit) -> Fit:
+        """A fit again, now that the start phases tell how input and foreign tone met in each record."""
+        if self.problem.tone is None:
+            return fit
+        self.problem = replace(self.problem, start=fit.trial.phase)
+        model = self.model(*fit.effects)
+        return refine(model, model.trial(fit.trial.point))
 
     def single(self, effect: str, base: Fit) -> Explanation:
         """Best fit of one effect; the trials among which it began are kept in ``along``."""
         model = self.model(effect)
-        starts = [model.start(base, x) for x in model.hypothesis.starts()]
-        trials = best_amplitudes(model, starts)
+        points = model.hypothesis.starts()
+        trials = best_amplitudes(model, [model.start(base, x) for x in points])
         self.along[effect] = trials
+        if model.toned:
+            # What the base model made of the tone may have led its own numbers far astray.
+            trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         fit = best_of(model, trials, FOLLOWED if base.p < POSSIBLE else ((1, 3),))
+        if model.toned:
+            fit = self._met(fit)
         self.progress(effect)
         return self.explanation(fit)
 

@@ -1,7 +1,8 @@
 """Steady responses of the model on trial to the measured tests, each started from a neighbour's."""
 
+from collections.abc import Sequence
 from functools import lru_cache
-from math import pi
+from math import ceil, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +15,9 @@ from wedgesweep.solvers import periodic
 TOLERANCE, RTOL = 1e-6, 1e-6
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 256
-# Periods run before and over which a response with a foreign tone is evaluated, and its samples.
-TONE_SETTLING, TONE_PERIODS, TONE_SAMPLES = 10, 20, 64
+# Periods run before a response with a foreign tone is evaluated, and its samples per period.
+TONE_SETTLING, TONE_SAMPLES = 10, 64
+LONG = 20.0
 
 
 class Warm(NamedTuple):
@@ -67,26 +69,74 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int) -> Responses:
     return Responses(found.spectra, found.outcome == 0, Warm(found.state, found.map), found.periods)
 
 
-def respond_with_tone(rows: np.ndarray, warm: Warm, harmonics: int, tone: float) -> Responses:
+class Meeting(NamedTuple):
+    """How input and foreign tone met in a record, ``periods`` of the input long.
+
+    At its first sample the input was at the phase ``start`` (rad), the tone in the displacement at ``tone``
+    (rad; NaN where it does not show: then a span of ``LONG`` periods stands for all ways to meet).
+    """
+
+    periods: float
+    start: float
+    tone: float
+
+
+def respond_with_tone(
+    rows: np.ndarray, warm: Warm, harmonics: int, tone: float, meetings: Sequence[Meeting]
+) -> Responses:
     """Responses under a foreign tone (Hz), which do not repeat: harmonics, and the tone in the last column.
 
-    The sums over many periods leave out how tone and input happened to meet in a record.
+    Each row as in its record: first with any phase of the tone, which tells how the response lags behind,
+    then with the phase at which both met.
     """
-    x, velocity, state = periodic.samples(rows, warm.states, TONE_SETTLING, TONE_PERIODS, TONE_SAMPLES, RTOL)
-    found = np.isfinite(x).all(axis=1)
+    rows = rows.copy()
+    meetings = tuple(each if np.isfinite(each.tone) else each._replace(periods=LONG) for each in meetings)
+    shown = np.array([np.isfinite(meeting.tone) for meeting in meetings])
+    spectra, state = _recorded(rows, warm.states, harmonics, tone, meetings)
+    late = np.array([meeting.tone for meeting in meetings]) - np.angle(spectra[:, 0, -1])
+    again = np.flatnonzero(shown & np.isfinite(late))
+    if again.size:
+        rows["stray_vibration_phase"][again] += late[again]
+        chosen = tuple(meetings[i] for i in again)
+        spectra[again], state[again] = _recorded(rows[again], state[again], harmonics, tone, chosen)
+    found = np.isfinite(spectra).all(axis=(1, 2))
+    return Responses(spectra, found, Warm(state, warm.maps), np.full(len(rows), TONE_SETTLING))
+
+
+def _recorded(
+    rows: np.ndarray, states: np.ndarray, harmonics: int, tone: float, meetings: Sequence[Meeting]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Harmonics and tone (n, 2, H + 1) over the span of each record, from phase 0 of the input, and states.
+
+    The tone's phase is that at the first sample of the record.
+    """
     spectra = np.full((len(rows), 2, harmonics + 1), np.nan, complex)
-    for omega in np.unique(rows["omega"]):
-        these = np.flatnonzero((rows["omega"] == omega) & found)
-        signals = -np.stack([x[these], velocity[these]], axis=1)
-        spectra[these] = signals @ _projection(float(omega), tone, harmonics).T
-    return Responses(spectra, found, Warm(state, warm.maps), np.full(len(rows), TONE_SETTLING + TONE_PERIODS))
+    longest = ceil(max((meeting.periods for meeting in meetings), default=0.0)) + 1
+    x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, TONE_SAMPLES, RTOL)
+    turn = 2.0 * pi / TONE_SAMPLES
+    for i, meeting in enumerate(meetings):
+        first = round(meeting.start % (2.0 * pi) / turn)
+        count = round(meeting.periods * TONE_SAMPLES)
+        ratio = 2.0 * pi * tone / float(rows["omega"][i])
+        signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
+        found = signals @ _projection(ratio, harmonics, count).T
+        found[:, :-1] *= np.exp(-1j * np.arange(1, harmonics + 1) * first * turn)
+        # The grid's first sample lies a little beside that of the record.
+        found[:, -1] *= np.exp(1j * ratio * (meeting.start % (2.0 * pi) - first * turn))
+        spectra[i] = found
+    return spectra, state
 
 
 @lru_cache(maxsize=256)
-def _projection(omega: float, tone: float, harmonics: int) -> np.ndarray:
-    """Least-squares fit of mean, harmonics and tone as a matrix (harmonics + 1, samples), complex."""
-    phase = 2.0 * pi * np.arange(TONE_PERIODS * TONE_SAMPLES) / TONE_SAMPLES
-    turns = np.outer(phase, np.r_[np.arange(1, harmonics + 1), 2.0 * pi * tone / omega])
-    matrix = np.concatenate([np.ones((phase.size, 1)), np.cos(turns), np.sin(turns)], axis=1)
-    inverse = np.linalg.pinv(matrix)
-    return inverse[1 : harmonics + 2] - 1j * inverse[harmonics + 2 :]
+def _projection(ratio: float, harmonics: int, samples: int) -> np.ndarray:
+    """Least-squares fit of drift, harmonics and tone as a matrix (harmonics + 1, samples), complex.
+
+    ``ratio``: the tone's frequency over the input's.
+    """
+    phase = 2.0 * pi * np.arange(samples) / TONE_SAMPLES
+    removed = TONE_SAMPLES // 2 - 1
+    turns = np.outer(phase, np.r_[np.arange(1, removed + 1), ratio])
+    slow = np.stack([np.ones(samples), np.linspace(-1.0, 1.0, samples)], axis=1)
+    inverse = np.linalg.pinv(np.concatenate([slow, np.cos(turns), np.sin(turns)], axis=1))
+    kept = np.r_[2 : 2 + harmonics, 2 + removed]
+    return inverse[kept] - 1j * inverse[kept + removed + 1]
