@@ -41,8 +41,7 @@ class Problem:
         """How input and tone met in each test; the input starts at phase 0 where that is not known yet."""
         starts = np.zeros(self.tests) if self.start is None else self.start
         return tuple(
-            Meeting(s.periods, float(start), float(np.angle(s.mean[0, -1])) if s.tone is not None else nan)
-            for s, start in zip(self.spectra, starts, strict=True)
+            Meeting(s.periods, float(start), _phase(s)) for s, start in zip(self.spectra, starts, strict=True)
         )
 
     @cached_property
@@ -145,6 +144,12 @@ class Problem:
             overlap = (self.whitened[..., -1] * simulated[..., -1].conj()).sum(-1)
             turn = np.concatenate([turn, np.exp(1j * np.angle(overlap))[..., None]], axis=-1)
         return simulated * turn[..., None, :]
+
+
+def _phase(spectrum: Spectrum) -> float:
+    """Phase (rad) of a tone in the displacement, NaN where there is none."""
+    seen = spectrum.tone is not None and spectrum.mean[0, -1] != 0.0
+    return float(np.angle(spectrum.mean[0, -1])) if seen else nan
 
 
 def real(values: np.ndarray) -> np.ndarray:

@@ -5,14 +5,15 @@ response, once what phases, amplitudes and uncertain numbers can take up is take
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
+from wedgesweep.diagnose import tone
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import Fit, Model, Trial
-from wedgesweep.diagnose.problem import real
+from wedgesweep.diagnose.fit import TONE, Fit, Model, Trial
+from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.search import Search, trials_of
 from wedgesweep.effects import EFFECTS
 
@@ -80,7 +81,21 @@ def scores(search: Search, base: Fit) -> list[Score]:
     """Score of every effect of a search, in its order."""
     project = Projector(base)
     residual = project(base.trial.residual)
-    return [_score(search, base, effect, project, residual) for effect in search.effects]
+    found = [_score(search, base, effect, project, residual) for effect in search.effects]
+    return [*found, _unheard(search.problem, base)] if search.unheard else found
+
+
+def _unheard(problem: Problem, base: Fit) -> Score:
+    """Score of a foreign tone where none stands out: what would have shown, between the harmonics."""
+    frequency = tone.between(problem.spectra)
+    silent = replace(
+        problem, spectra=tuple(s.with_silence(frequency) for s in problem.spectra), tone=frequency
+    )
+    search = Search(silent, (TONE,))
+    model = search.model()
+    fit = Fit(model, model.trial(base.trial.point), base.covariance, base.arrived)
+    project = Projector(fit)
+    return replace(_score(search, fit, TONE, project, project(fit.trial.residual)), t2=None)
 
 
 def _score(search: Search, base: Fit, effect: str, project: Projector, residual: np.ndarray) -> Score:

@@ -63,7 +63,8 @@ class Search:
     ) -> None:
         self.problem, self.threads, self.progress = problem, threads, progress
         # Where no tone stands out there is nothing to fit one to.
-        self.effects = tuple(name for name in effects if name != TONE or problem.tone is not None)
+        self.unheard = TONE in effects and problem.tone is None
+        self.effects = tuple(name for name in effects if name != TONE or not self.unheard)
         self.reference = unknown_reference(problem)
         self.price = log(problem.points.sum()) + PENALTY
         # What was simulated of each effect over its range beside the base model.

@@ -9,6 +9,7 @@ import numpy as np
 
 from wedgesweep import parameters
 from wedgesweep.config import Config
+from wedgesweep.diagnose.spectra import REMOVED
 from wedgesweep.solvers import periodic
 
 # A model that is this exact adds nothing to the noise of 4 % data (share of the input amplitude).
@@ -16,8 +17,8 @@ TOLERANCE, RTOL = 1e-6, 1e-6
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 256
 # Periods run before a response with a foreign tone is evaluated, and its samples per period.
-TONE_SETTLING, TONE_SAMPLES = 10, 64
-LONG = 20.0
+TONE_SETTLING, TONE_SAMPLES = 10, 256
+LONG = 12.0
 
 
 class Warm(NamedTuple):
@@ -134,9 +135,9 @@ def _projection(ratio: float, harmonics: int, samples: int) -> np.ndarray:
     ``ratio``: the tone's frequency over the input's.
     """
     phase = 2.0 * pi * np.arange(samples) / TONE_SAMPLES
-    removed = TONE_SAMPLES // 2 - 1
-    turns = np.outer(phase, np.r_[np.arange(1, removed + 1), ratio])
+    turns = np.outer(phase, np.r_[np.arange(1, REMOVED + 1), ratio])
     slow = np.stack([np.ones(samples), np.linspace(-1.0, 1.0, samples)], axis=1)
-    inverse = np.linalg.pinv(np.concatenate([slow, np.cos(turns), np.sin(turns)], axis=1))
-    kept = np.r_[2 : 2 + harmonics, 2 + removed]
-    return inverse[kept] - 1j * inverse[kept + removed + 1]
+    matrix = np.concatenate([slow, np.cos(turns), np.sin(turns)], axis=1)
+    inverse = np.linalg.pinv(matrix.T @ matrix, hermitian=True) @ matrix.T
+    kept = np.r_[2 : 2 + harmonics, 2 + REMOVED]
+    return inverse[kept] - 1j * inverse[kept + REMOVED + 1]

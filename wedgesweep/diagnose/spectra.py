@@ -6,7 +6,7 @@ the harmonics, whatever the sampling rate; what is left between them gives the n
 spectrum is smooth.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -83,6 +83,16 @@ class Spectrum:
 
     def _over_noise(self, power: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
         return sum(each / level(frequencies) for each, level in zip(power, self.level, strict=True))
+
+    def with_silence(self, frequency: float) -> "Spectrum":
+        """As if a tone had been looked for at a frequency (Hz), and nothing been there but noise."""
+        if not self.separates(np.array([frequency]))[0]:
+            return self
+        noise = [[4.0 / self.samples * float(level(np.array(frequency)))] for level in self.level]
+        mean = np.concatenate([self.mean, np.zeros((len(self.mean), 1))], axis=1)
+        return replace(
+            self, mean=mean, variance=np.concatenate([self.variance, noise], axis=1), tone=frequency
+        )
 
     def separates(self, frequencies: np.ndarray) -> np.ndarray:
         """Whether the record tells these frequencies from the harmonics, in the band of those compared."""

@@ -55,6 +55,15 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     return Tone(float(refined.x), _std(seen, float(refined.x)))
 
 
+def between(spectra: Sequence[Spectrum]) -> float:
+    """A frequency (Hz) that most tests tell from their harmonics, closest to the middle of theirs."""
+    middle = float(np.exp(np.mean([np.log(s.frequency) for s in spectra])))
+    grid = middle * np.geomspace(0.5, 4.0, 400)
+    telling = np.array([s.separates(grid) for s in spectra]).sum(axis=0)
+    best = np.flatnonzero(telling == telling.max())
+    return float(grid[best[np.argmin(np.abs(np.log(grid[best] / middle)))]])
+
+
 def _std(spectra: Sequence[Spectrum], frequency: float) -> float:
     """Least standard deviation of a tone's frequency (Rife and Boorstyn, 1974), all tests together."""
     durations = np.array([s.samples * s.interval for s in spectra])
