@@ -40,7 +40,7 @@ def drawn(
         variance = np.repeat(4.0 / SAMPLES * (level * rms[:, None]) ** 2, HARMONICS, axis=1)
         noise = rng.normal(size=(2, 2, HARMONICS)) * np.sqrt(variance / 2.0)
         mean = harmonics * turn + noise[0] + 1j * noise[1]
-        flat = tuple(Smooth(np.zeros(3), 1.0) for _ in range(2))
+        flat = tuple(Smooth(np.array([2.0 * np.log(level * each), 0.0, 0.0]), 1.0) for each in rms)
         silent = np.zeros((2, SAMPLES))
         spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
     return Problem(

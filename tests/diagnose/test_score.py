@@ -1,0 +1,31 @@
+"""Scores: what the tests could show of each effect before anything is fitted."""
+
+from tests.diagnose.drawn import drawn
+from wedgesweep.diagnose import score
+from wedgesweep.diagnose.search import Search
+
+EFFECTS = ("velocity_lag", "stray_vibration", "viscous_damping")
+
+
+def scored(effects=None):
+    search = Search(drawn(effects), EFFECTS)
+    return {each.effect: each for each in score.scores(search, search.base().fit)}
+
+
+def test_an_effect_that_is_there_scores_and_one_that_is_not_does_not():
+    lag = {"velocity_lag": {"time": 3e-4}}
+    assert scored(lag)["velocity_lag"].t2 > 100.0
+    assert scored()["velocity_lag"].t2 < 16.0
+
+
+def test_the_weakest_value_is_what_the_tests_would_have_shown():
+    weakest = scored()["velocity_lag"].detectable
+    stronger, weaker = ({"velocity_lag": {"time": factor * weakest}} for factor in (4.0, 0.25))
+    assert scored(stronger)["velocity_lag"].t2 > score.SHOWN > scored(weaker)["velocity_lag"].t2
+
+
+def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():
+    unheard = scored()["stray_vibration"]
+    assert unheard.t2 is None
+    assert unheard.testable
+    assert 0.0 < unheard.detectable < 0.1
