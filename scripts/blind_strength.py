@@ -28,7 +28,9 @@ def harmonics(system: Config, law: str, tests: list[Test]) -> tuple[np.ndarray |
     rows, cold = records(system, law, tests), simulation.cold(len(tests))
     if TONE in system.effects:
         tone = system.effects[TONE]["frequency"]
-        done = simulation.respond_with_tone(rows, cold, COMPARED, tone)
+        # How tone and input meet is drawn later, with the data.
+        anyhow = (simulation.Meeting(PERIODS, 0.0, np.nan),) * len(tests)
+        done = simulation.respond_with_tone(rows, cold, COMPARED, tone, anyhow)
     else:
         tone, done = None, simulation.respond(rows, cold, COMPARED)
     moves = np.abs(done.harmonics[:, 0, 0]) > STANDS_STILL * rows["amplitude"]
