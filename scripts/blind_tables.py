@@ -45,6 +45,12 @@ def baselines_of(records: Sequence[Record]) -> list[str]:
     return list(next((record["baselines"] for record in records if "baselines" in record), {}))
 
 
+def _by_baseline(records: Sequence[Record], name: str, test: Callable[[Any, Any], bool]) -> Share:
+    """Share of the records with baselines in which one of these passes a test of truth and answer."""
+    ran = [record for record in records if "baselines" in record]
+    return share(ran, lambda record: test(record["truth"], record["baselines"][name]))
+
+
 def recovery(sets: Sets) -> list[tuple[float, float, dict[str, Share]]]:
     """Share of singles in which the truth comes out, per bin of excess: (from, to, by method)."""
     methods: dict[str, Callable[[Record], bool]] = {
@@ -52,13 +58,16 @@ def recovery(sets: Sets) -> list[tuple[float, float, dict[str, Share]]]:
         "exact or tied": judge.exact_or_tied,
         "reported": judge.reported,
     }
-    for name in baselines_of(sets.singles):
-        methods[name] = lambda record, name=name: record["baselines"][name] == record["truth"]
+    names = baselines_of(sets.singles)
     rows = []
     for low, high in pairwise(BINS):
         inside = [r for r in sets.singles if low <= r["excess"] < high or (low == 0.0 and r["excess"] < 0.0)]
         if inside:
-            rows.append((low, high, {name: share(inside, test) for name, test in methods.items()}))
+            found = {name: share(inside, test) for name, test in methods.items()}
+            found |= {
+                name: _by_baseline(inside, name, lambda truth, answer: truth == answer) for name in names
+            }
+            rows.append((low, high, found))
     return rows
 
 
@@ -83,10 +92,7 @@ def compared(sets: Sets) -> str:
             records,
             lambda r, test=test: test(r["truth"], judge.causes(r) if r["verdict"] in judge.NAMING else []),
         )
-        others = [
-            share(records, lambda r, name=name, test=test: test(r["truth"], r["baselines"][name]))
-            for name in names
-        ]
+        others = [_by_baseline(records, name, test) for name in names]
         lines.append(f"{label:36}" + "".join(f"{found!s:26}" for found in (own, *others)))
     return "\n".join(lines)
 
