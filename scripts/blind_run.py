@@ -46,7 +46,8 @@ def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
         record = _run(one, out, directory, baselines)
     except Exception as error:  # whatever it is, the other sets go on
         # No record file: the next run tries again.
-        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": repr(error)}
+        failure = f"{type(error).__name__}: {error}"
+        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": failure}
     _write(directory / RECORD, record)
     return record
 

@@ -13,6 +13,9 @@ UNCERTAIN = {"friction_level": 0.07}
 SINGLES = (
     Hidden("guide", "static-dynamic", {"guide_friction": {"force_N": 0.25}}, "ar1"),
     Hidden(
+        "lag", "exponential", {"velocity_lag": {"time_s": 4e-4}}, "adc", uncertain={"friction_level": 0.07}
+    ),
+    Hidden(
         "tone",
         "static-dynamic",
         {"stray_vibration": {"acceleration_m_per_s2": 1.0, "frequency_hz": 47.3}},

@@ -83,15 +83,12 @@ class Search:
         model = self.model()
         start = best_amplitudes(model, [model.start(None, np.zeros(0))])[0]
         fit = refine(model, start)
-        return self.explanation(self._met(fit))
+        self._meet(fit)
+        return self.explanation(fit)
 
-    def _met(self, fit: Fit) -> Fit:
-        """A fit again, now that the start phases tell how input and foreign tone met in each record."""
-        if self.problem.tone is None:
-            return fit
+    def _meet(self, fit: Fit) -> None:
+        """Learn from a fit's start phases how input and foreign tone met in each record."""
         self.problem = replace(self.problem, start=fit.trial.phase)
-        model = self.model(*fit.effects)
-        return refine(model, model.trial(fit.trial.point))
 
     def single(self, effect: str, base: Fit) -> Explanation:
         """Best fit of one effect; the trials among which it began are kept in ``along``."""
@@ -105,7 +102,9 @@ class Search:
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         fit = best_of(model, trials, FOLLOWED if base.p < POSSIBLE else ((1, 3),))
         if model.toned:
-            fit = self._met(fit)
+            self._meet(fit)
+            model = self.model(effect)
+            fit = refine(model, model.trial(fit.trial.point))
         self.progress(effect)
         return self.explanation(fit)
 

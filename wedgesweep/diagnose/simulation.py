@@ -16,9 +16,8 @@ from wedgesweep.solvers import periodic
 TOLERANCE, RTOL = 1e-6, 1e-6
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 256
-# Periods run before a response with a foreign tone is evaluated, and its samples per period.
-TONE_SETTLING, TONE_SAMPLES = 10, 256
-LONG = 12.0
+# Periods run before a response with a foreign tone is evaluated, and over which it is where no record says.
+TONE_SETTLING, LONG = 10, 12.0
 
 
 class Warm(NamedTuple):
@@ -44,7 +43,6 @@ class Responses(NamedTuple):
     harmonics: np.ndarray
     found: np.ndarray
     warm: Warm
-    periods: np.ndarray
 
 
 def cold(cases: int) -> Warm:
@@ -67,7 +65,7 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int) -> Responses:
     found = periodic.respond(
         rows, warm.states, warm.maps, TOLERANCE, MOST_PERIODS, SAMPLES_PER_PERIOD, harmonics, RTOL
     )
-    return Responses(found.spectra, found.outcome == 0, Warm(found.state, found.map), found.periods)
+    return Responses(found.spectra, found.outcome == 0, Warm(found.state, found.map))
 
 
 class Meeting(NamedTuple):
@@ -92,16 +90,15 @@ def respond_with_tone(
     """
     rows = rows.copy()
     meetings = tuple(each if np.isfinite(each.tone) else each._replace(periods=LONG) for each in meetings)
-    shown = np.array([np.isfinite(meeting.tone) for meeting in meetings])
     spectra, state = _recorded(rows, warm.states, harmonics, tone, meetings)
     late = np.array([meeting.tone for meeting in meetings]) - np.angle(spectra[:, 0, -1])
-    again = np.flatnonzero(shown & np.isfinite(late))
+    again = np.flatnonzero(np.isfinite(late))
     if again.size:
         rows["stray_vibration_phase"][again] += late[again]
         chosen = tuple(meetings[i] for i in again)
         spectra[again], state[again] = _recorded(rows[again], state[again], harmonics, tone, chosen)
     found = np.isfinite(spectra).all(axis=(1, 2))
-    return Responses(spectra, found, Warm(state, warm.maps), np.full(len(rows), TONE_SETTLING))
+    return Responses(spectra, found, Warm(state, warm.maps))
 
 
 def _recorded(
@@ -112,18 +109,19 @@ def _recorded(
     The tone's phase is that at the first sample of the record.
     """
     spectra = np.full((len(rows), 2, harmonics + 1), np.nan, complex)
-    longest = ceil(max((meeting.periods for meeting in meetings), default=0.0)) + 1
-    x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, TONE_SAMPLES, RTOL)
-    turn = 2.0 * pi / TONE_SAMPLES
+    longest = ceil(max(meeting.periods for meeting in meetings)) + 1
+    x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, SAMPLES_PER_PERIOD, RTOL)
+    turn = 2.0 * pi / SAMPLES_PER_PERIOD
     for i, meeting in enumerate(meetings):
-        first = round(meeting.start % (2.0 * pi) / turn)
-        count = round(meeting.periods * TONE_SAMPLES)
+        start = meeting.start % (2.0 * pi)
+        first = round(start / turn)
+        count = round(meeting.periods * SAMPLES_PER_PERIOD)
         ratio = 2.0 * pi * tone / float(rows["omega"][i])
         signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
         found = signals @ _projection(ratio, harmonics, count).T
         found[:, :-1] *= np.exp(-1j * np.arange(1, harmonics + 1) * first * turn)
         # The grid's first sample lies a little beside that of the record.
-        found[:, -1] *= np.exp(1j * ratio * (meeting.start % (2.0 * pi) - first * turn))
+        found[:, -1] *= np.exp(1j * ratio * (start - first * turn))
         spectra[i] = found
     return spectra, state
 
@@ -134,7 +132,7 @@ def _projection(ratio: float, harmonics: int, samples: int) -> np.ndarray:
 
     ``ratio``: the tone's frequency over the input's.
     """
-    phase = 2.0 * pi * np.arange(samples) / TONE_SAMPLES
+    phase = 2.0 * pi * np.arange(samples) / SAMPLES_PER_PERIOD
     turns = np.outer(phase, np.r_[np.arange(1, REMOVED + 1), ratio])
     slow = np.stack([np.ones(samples), np.linspace(-1.0, 1.0, samples)], axis=1)
     matrix = np.concatenate([slow, np.cos(turns), np.sin(turns)], axis=1)
