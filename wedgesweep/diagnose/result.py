@@ -289,10 +289,13 @@ def dataset(found: Diagnosis) -> xr.Dataset:
     sampled = np.full((problem.tests, channels), np.nan)
     for row, spectrum in zip(sampled, problem.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise
+    # A channel that a test does not have was nowhere near zero.
+    absent = np.isnan(sampled)[..., None]
+    signal, seen = np.where(absent, np.nan, signal), np.where(absent, np.nan, turned)
     by_test, by_model = ("test",), ("model", "test")
     parts = ("harmonic", "part")
     variables: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
-        "measured_harmonics": (("test", "channel", *parts), _parts(turned), "m or m/s", "measured harmonics"),
+        "measured_harmonics": (("test", "channel", *parts), _parts(seen), "m or m/s", "measured harmonics"),
         "noise_std": (
             ("test", "channel", "harmonic"),
             noise,
