@@ -52,7 +52,7 @@ GROWTH = 1e-3
 OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "stribeck": {"peak": (0.0, 0.4, GROWING)},
     "ageing": {"time_s": (2e-4, 0.3, LOGARITHMIC)},
-    "cross_slip": {"phase_deg": (-175.0, 175.0, EVEN)},
+    "cross_slip": {"phase_deg": (-88.0, 88.0, EVEN)},
     "end_stop": {"stiffness_N_per_mm": (3.0, 800.0, LOGARITHMIC)},
     "input_distortion": {
         "second_phase_deg": (-175.0, 175.0, EVEN),

@@ -38,12 +38,10 @@ def run_chain(chain: list[BlindSet], out: Path, baselines: bool = True) -> list[
 
 def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
     directory = out / one.name
-    if (directory / RECORD).exists():
-        return json.loads((directory / RECORD).read_text())
-    rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
     try:
-        record = _run(one, out, directory, baselines)
+        record = _kept(directory) or _run(one, out, directory)
+        if baselines and "baselines" not in record and "failure" not in record:
+            record = _compared(record, directory)
     except Exception as error:  # whatever it is, the other sets go on
         # No record file: the next run tries again.
         failure = f"{type(error).__name__}: {error}"
@@ -52,13 +50,36 @@ def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
     return record
 
 
+def _kept(directory: Path) -> dict[str, Any] | None:
+    """The record of a set that is finished; what there is of another is thrown away."""
+    if (directory / RECORD).exists():
+        return json.loads((directory / RECORD).read_text())
+    rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    return None
+
+
+def _compared(record: dict[str, Any], directory: Path) -> dict[str, Any]:
+    """A record with what simpler methods name; that of a copied set stays as it is."""
+    if not (directory / DRAFT).exists():
+        return record
+    began = perf_counter()
+    candidates = tuple(json.loads((directory / DRAFT).read_text())["candidates"])
+    named = {
+        name: baseline(directory / DATA / "measured.toml", directory / RESULT, candidates)
+        for name, baseline in BASELINES.items()
+    }
+    seconds = {**record["seconds"], "baselines": round(perf_counter() - began, 1)}
+    return {**record, "baselines": named, "seconds": seconds}
+
+
 def _write(file: Path, document: Any) -> None:
     partial = file.with_suffix(".partial")
     partial.write_text(json.dumps(document, indent=1) + "\n")
     os.replace(partial, file)
 
 
-def _run(one: BlindSet, out: Path, directory: Path, baselines: bool) -> dict[str, Any]:
+def _run(one: BlindSet, out: Path, directory: Path) -> dict[str, Any]:
     took = {}
     began = perf_counter()
     if one.kind == "added" and (poor := _poor(one, out))["next_test"] is None:
@@ -75,9 +96,9 @@ def _run(one: BlindSet, out: Path, directory: Path, baselines: bool) -> dict[str
     (directory / DATA / TRUTH).rename(directory / TRUTH)
     took["synthesize"], began = perf_counter() - began, perf_counter()
     limit = ["--effects", ",".join(draft.candidates)] if one.kind == "unknown" else []
-    measured = directory / DATA / "measured.toml"
-    _wedgesweep("diagnose", measured, "-o", directory / RESULT, "--n-jobs", 1, *limit)
-    took["diagnose"], began = perf_counter() - began, perf_counter()
+    files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
+    _wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *limit)
+    took["diagnose"] = perf_counter() - began
     found = json.loads((directory / RESULT / "diagnosis.json").read_text())
     record = {
         "name": one.name,
@@ -91,12 +112,6 @@ def _run(one: BlindSet, out: Path, directory: Path, baselines: bool) -> dict[str
         "p_extended": found["misfit"]["p_extended"],
         "gain_in_truth": gain_in_truth(draft, found),
     }
-    if baselines:
-        record["baselines"] = {
-            name: baseline(measured, directory / RESULT, draft.candidates)
-            for name, baseline in BASELINES.items()
-        }
-        took["baselines"] = perf_counter() - began
     return {**record, "seconds": {key: round(value, 1) for key, value in took.items()}}
 
 

@@ -28,7 +28,7 @@ class Quantity:
     names the same number in SI. The range is in the unit of the key; ``above`` excludes its end.
     A default that is not finite is none: the key must be given. ``off`` is the number that stands for an
     absent effect, the default unless given. A fit looks for the number within ``search`` (None: it is
-    not fitted), on a scale of its logarithm if ``logarithmic``.
+    not fitted), on a scale of its logarithm if ``logarithmic``. For an angle this range is one ``turn``.
     """
 
     key: str
@@ -64,6 +64,11 @@ class Quantity:
     def angle(self) -> bool:
         """Whether the number is an angle, which comes round again."""
         return self.suffix == "_deg"
+
+    @property
+    def turn(self) -> float:
+        """Change (in the key's unit) after which an angle does the same again; infinite for other numbers."""
+        return self.search[1] - self.search[0] if self.angle and self.search else inf
 
     def fault(self, value: float) -> str | None:
         """Why ``value`` (in the key's unit) cannot be right, or None."""

@@ -1,10 +1,13 @@
 """Fits of problems whose truth is known: chi-squared, intervals, and what each unknown takes up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.diagnose.drawn import AMPLITUDES, drawn
 from wedgesweep.diagnose import gain
+from wedgesweep.diagnose.fit import _smaller, exact
 from wedgesweep.diagnose.search import Search
 
 LAG = {"velocity_lag": {"time": 3e-4}}
@@ -42,6 +45,34 @@ def test_intervals_cover_the_truth():
     assert abs(np.mean(pulls)) < 1.0
 
 
+def test_the_error_of_a_simulation_is_no_information():
+    """A stiff end stop that two tests touch: amplitude, clearance and stiffness are hard to tell apart."""
+    truth = {"end_stop": {"clearance": 3.5e-4, "stiffness": 2e5}}
+    problem = drawn(truth, std=0.015, uncertain={"friction_level": 0.09})
+    spectra = tuple(
+        replace(s, mean=s.mean[:1], variance=s.variance[:1], level=s.level[:1]) for s in problem.spectra
+    )
+    _, _, (stop,) = searched(replace(problem, spectra=spectra), "end_stop")
+    fine = exact(stop.fit)
+    coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
+    np.testing.assert_allclose(coarse, std, rtol=0.1)
+    assert fine.q == pytest.approx(stop.fit.q, abs=0.1)
+
+
+def test_across_a_jump_the_side_without_it_counts():
+    smooth, jump = np.ones((2, 4, 3)), np.ones((2, 4, 3))
+    jump[1, :, 2] = 50.0
+    np.testing.assert_array_equal(_smaller(smooth, jump), smooth)
+    np.testing.assert_array_equal(_smaller(jump, smooth), smooth)
+
+
+def test_both_sides_tell_the_same_of_a_smooth_response():
+    *_, (lag,) = searched(drawn(LAG), "velocity_lag")
+    right, left = (lag.fit.model.tangents(lag.fit.trial, side) for side in (1.0, -1.0))
+    for one, other in zip(right, left, strict=True):
+        assert np.abs(one - other).max() < 0.1 * np.abs(one).max()
+
+
 def test_amplitudes_within_their_prior_are_taken_up():
     _, base, _ = searched(drawn(std=0.02, off=0.02))
     assert base.fit.p > 1e-3
@@ -67,6 +98,18 @@ def test_gain_on_held_out_tests_reaches_the_noise():
     assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
     assert measured.interval is None  # six tests are too few for one
+
+
+def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
+    """Squared misfit of a right model, less what noise should leave."""
+    for std, known, least, most in ((1e-5, True, 1.0, 1.05), (0.5, True, 1.9, 2.0), (0.0, False, 2.0, 2.0)):
+        left = []
+        for seed in range(12):
+            _, base, _ = searched(drawn(seed=seed, std=std, known=known))
+            local = gain._local_numbers(base.fit)
+            assert ((least <= local) & (local <= most)).all()
+            left.append((base.fit.trial.residual**2).sum() - (base.fit.model.problem.points - local).sum())
+        assert np.mean(left) == pytest.approx(0.0, abs=3.0 * np.sqrt(2.0 * 384 / 12))
 
 
 def test_retuning_alone_gains_nothing():

@@ -117,3 +117,26 @@ def test_subharmonics_of_a_response_are_no_foreign_tone():
         channels = channels + 0.1 * np.sin(pi * frequency * time)
         spectra.append(spectrum(time, channels, frequency))
     assert tone.find(spectra) is None
+
+
+def test_lines_of_a_doubled_period_are_neither_noise_nor_harmonics():
+    rng, squares = np.random.default_rng(7), []
+    for _ in range(40):
+        time, channels, truth = record(rng, 5.0)
+        odd = np.arange(1, 12, 2)[:, None]
+        halves = np.cos(pi * 5.0 * odd * time + rng.uniform(0.0, 6.0, odd.shape)).sum(axis=0)
+        found = spectrum(time, channels + 0.05 * halves, 5.0)
+        squares.append(2.0 * np.abs(found.mean - truth) ** 2 / found.variance)
+    assert np.mean(squares) == pytest.approx(2.0, rel=0.08)
+
+
+def test_a_tone_is_not_drawn_to_where_a_record_begins_to_tell_it_from_a_harmonic():
+    """The record at 24 Hz, which shows most of it, tells it from 72 Hz from 75.4 Hz on."""
+    for seed in range(20):
+        rng, spectra = np.random.default_rng(seed), []
+        for frequency, size in ((5.0, 0.0), (11.0, 0.0), (20.0, 0.02), (24.0, 0.04), (32.0, 0.02)):
+            time, channels, _ = record(rng, frequency)
+            foreign = size * np.sin(2.0 * pi * 74.2 * time + rng.uniform(0.0, 6.0))
+            spectra.append(spectrum(time, channels + foreign, frequency))
+        found = tone.find(spectra)
+        assert abs(found.frequency - 74.2) < 4.5 * found.std

@@ -307,3 +307,15 @@ def test_both_solvers_agree_from_the_same_start(name, law):
         assert ours.numbers[number] == pytest.approx(radaus.numbers[number], rel=1e-4), number
     slipping = ~ours.waveforms["stuck"]
     np.testing.assert_array_equal(np.isnan(ours.waveforms["normal_force_column"][slipping]), False)
+
+
+def test_half_a_turn_of_the_slip_across_changes_nothing():
+    ratios = [
+        numbers(
+            with_effect("static-dynamic", "cross_slip", {"velocity": 5e-3, "phase": phase}, 0.8e-3, 0.6),
+            30,
+        )["amplitude_ratio"]
+        for phase in (0.7, 0.7 + np.pi, 0.7 + 0.5 * np.pi)
+    ]
+    assert ratios[1] == pytest.approx(ratios[0], rel=1e-9)
+    assert ratios[2] != pytest.approx(ratios[0], rel=1e-4)

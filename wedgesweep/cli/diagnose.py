@@ -25,6 +25,12 @@ FIGURE_KINDS = ("misfit", "candidates", "gain")
 )
 @N_JOBS
 @click.option("--effects", metavar="A,B,...", help="Only these candidates; default: all.")
+@click.option(
+    "--report/--no-report",
+    "reported",
+    default=True,
+    help="With report.html and figures (default), or the data alone.",
+)
 @click.option("--calibrate", is_flag=True, help="Thresholds by simulation of these very tests (minutes).")
 def diagnose(
     measured: Path,
@@ -32,6 +38,7 @@ def diagnose(
     output: Path | None,
     n_jobs: int | None,
     effects: str | None,
+    reported: bool,
     calibrate: bool,
 ) -> None:
     """Say what the simulation of the data in MEASURED gets wrong, and why.
@@ -50,10 +57,12 @@ def diagnose(
         raise Failure(message)
     found = diagnosis.diagnose(measurement, chosen, jobs(n_jobs), _said, calibrate)
     result.write(found, directory)
-    _draw(directory)
-    page = report.write(directory)
+    written = directory
+    if reported:
+        _draw(directory)
+        written = report.write(directory)
     click.echo(report.sentence(directory))
-    click.echo(f"wrote {page}")
+    click.echo(f"wrote {written}")
 
 
 def _draw(directory: Path) -> None:

@@ -16,8 +16,8 @@ from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
 PHASE = "_phase_deg"
-# Points along one coordinate, and along each of several, at which a fit may start.
-ALONG, TOGETHER = 12, 6
+# Points along the first coordinate, and along each further one, at which a fit may start.
+ALONG, FURTHER = 12, 4
 # The start closest to a neutral value, as a share of the range.
 CLOSEST = 4e-3
 # Effects by name, and their numbers by name (SI) or key (its unit).
@@ -114,8 +114,9 @@ class Hypothesis:
                     other = float(next(rest))
                     values[name][quantity.key] = hypot(value, other)
                     values[name][phase.key] = degrees(atan2(other, value))
-                elif quantity.key.endswith("_deg"):
-                    values[name][quantity.key] = (value + 180.0) % 360.0 - 180.0
+                elif quantity.angle:
+                    low, _ = quantity.search or (0.0, 0.0)
+                    values[name][quantity.key] = low + (value - low) % quantity.turn
                 else:
                     values[name][quantity.key] = exp(value) if quantity.logarithmic else value
         return values
@@ -148,5 +149,6 @@ class Hypothesis:
         neutral = np.clip(np.zeros(len(self.coordinates)), self.low, self.high)
         if len(self.coordinates) > 3:  # amplitudes with phases: linear enough to start at zero
             return neutral[None]
-        points = ALONG if len(self.coordinates) == 1 else TOGETHER
-        return np.array(list(product(*(each.along(points) for each in self.coordinates))))
+        points = [ALONG, *[FURTHER] * (len(self.coordinates) - 1)]
+        ways = (each.along(n) for each, n in zip(self.coordinates, points, strict=False))
+        return np.array(list(product(*ways)))

@@ -1,19 +1,19 @@
 """The whole way from measured tests to a verdict."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from wedgesweep.diagnose import gain, next_test, pairs, score, tone, verdict
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.fit import Fit
+from wedgesweep.diagnose.fit import Fit, exact
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.next_test import NextTest
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.score import Score
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each
-from wedgesweep.diagnose.spectra import spectrum
+from wedgesweep.diagnose.spectra import fitted, spectrum
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS
 from wedgesweep.measured import Measurement, Test
@@ -51,11 +51,9 @@ def problem_of(measurement: Measurement) -> Problem:
     tests = measurement.tests
     frequencies = [t.frequency or estimate_frequency(t.time, t.displacement) for t in tests]
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
-    found = [spectrum(t.time, s, f) for t, s, f in zip(tests, signals, frequencies, strict=True)]
-    foreign = tone.find(found)
-    if foreign is not None:
-        at = foreign.frequency
-        found = [spectrum(t.time, s, f, at) for t, s, f in zip(tests, signals, frequencies, strict=True)]
+    records = [(test.time, s, f) for test, s, f in zip(tests, signals, frequencies, strict=True)]
+    foreign = tone.find([fitted(*each) for each in records])
+    found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
     known = [test.amplitude is not None for test in tests]
     return Problem(
         measurement.model,
@@ -99,6 +97,11 @@ def diagnose(
         simulated = calibrate(base, finding.best, explain, effects, threads, progress)
         thresholds = simulated.thresholds
         finding = verdict.decide(base, explanations, thresholds)
+    if finding.best is not None:
+        progress("exact fit")
+        exactly = search.explanation(exact(finding.best.fit))
+        explanations = [exactly if each is finding.best else each for each in explanations]
+        finding = replace(finding, best=exactly)
     progress("scores")
     scores = score.scores(search, base.fit)
     measured_gain = None

@@ -18,8 +18,9 @@ from wedgesweep.diagnose.simulation import Warm
 
 # The effect that answers to a foreign tone.
 TONE = "stray_vibration"
-# Finite differences: share of a coordinate's width, and of an amplitude.
-STEP, AMPLITUDE_STEP = 2e-4, 2e-4
+# Finite differences: share of a coordinate's width, and of an amplitude. The noise of a simulation looks like
+# information: shorter steps make intervals too narrow where amplitude and effect are hard to tell apart.
+STEP, AMPLITUDE_STEP = 2e-3, 2e-3
 # An exactly known amplitude, as a relative standard deviation.
 EXACT = 1e-6
 ITERATIONS = 25
@@ -114,10 +115,17 @@ class Fit:
 
 
 class Model:
-    """A hypothesis on the tests of a problem: simulates, and knows what is free."""
+    """A hypothesis on the tests of a problem: simulates to a tolerance, and knows what is free."""
 
-    def __init__(self, problem: Problem, hypothesis: Hypothesis, reference: np.ndarray) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        hypothesis: Hypothesis,
+        reference: np.ndarray,
+        tolerance: float = simulation.TOLERANCE,
+    ) -> None:
         self.problem, self.hypothesis, self.reference = problem, hypothesis, reference
+        self.tolerance = tolerance
         self.size = len(hypothesis.coordinates)
         self.toned = problem.tone is not None and TONE in hypothesis.effects
         # An effect on trial is no nuisance at the same time: it is free of its prior.
@@ -162,8 +170,9 @@ class Model:
         harmonics, tone = self.problem.shape[1], self.problem.tone
         if self.toned and tone is not None:
             times = len(rows) // self.problem.tests
-            return simulation.respond_with_tone(rows, warm, harmonics, tone, self.problem.meetings * times)
-        done = simulation.respond(rows, warm, harmonics)
+            meetings = self.problem.meetings * times
+            return simulation.respond_with_tone(rows, warm, harmonics, tone, meetings, self.tolerance)
+        done = simulation.respond(rows, warm, harmonics, self.tolerance)
         if tone is None:
             return done
         silent = np.zeros((len(rows), 2, 1))  # a periodic response has nothing there
@@ -197,26 +206,37 @@ class Model:
     def _prior(self, x: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.r_[amplitude * self.amplitude_weight, (x[self.size :] - 1.0) / self.prior_std]
 
-    def tangents(self, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the residual by the numbers (T, m, k + u) and by phase and amplitude (T, m, 2)."""
+    def tangents(self, trial: Trial, side: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the residual by the numbers (T, m, k + u) and by phase and amplitude (T, m, 2).
+
+        ``side``: to which side (1 or -1) numbers are changed, where the bounds allow it.
+        """
         point, problem = trial.point, self.problem
-        step = STEP * self.width * np.where(point.x + STEP * self.width <= self.high, 1.0, -1.0)
+        step = side * STEP * self.width
+        step = np.where((point.x + step <= self.high) & (point.x + step >= self.low), step, -step)
         x = np.concatenate([point.x + np.diag(step), point.x[None]])
         amplitude = np.repeat(point.amplitude[None], len(x), axis=0)
-        amplitude[-1] += AMPLITUDE_STEP
+        amplitude[-1] += side * AMPLITUDE_STEP
         harmonics, found, _ = self.simulate(x, amplitude, point.warm.repeated(len(x)))
         moved = problem.turned(problem.whiten(harmonics), np.repeat(trial.phase[None], len(x), axis=0))
         here = problem.turned(trial.whitened, trial.phase)
         change = np.where(found[:, :, None, None], here - moved, 0.0)
-        change /= np.r_[step, AMPLITUDE_STEP][:, None, None, None]
+        change /= np.r_[step, side * AMPLITUDE_STEP][:, None, None, None]
         columns = np.moveaxis(real(change), 0, -1)
         orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
         turn = real(-1j * orders * here)
         return columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1)
 
-    def equations(self, trial: Trial) -> "Equations":
-        """Normal equations of a step from a trial."""
+    def equations(self, trial: Trial, cautious: bool = False) -> "Equations":
+        """Normal equations of a step from a trial.
+
+        ``cautious``: with derivatives to the side to which less changes. Across a jump of the response they
+        would be large, and seem to tell a number ever so precisely.
+        """
         by_number, by_test = self.tangents(trial)
+        if cautious:
+            other = self.tangents(trial, -1.0)
+            by_number, by_test = _smaller(by_number, other[0]), _smaller(by_test, other[1])
         tests = self.problem.tests
         inner = np.einsum("tmi,tmj->tij", by_test, by_test)
         inner[:, 1, 1] += self.amplitude_weight**2
@@ -238,6 +258,12 @@ class Model:
         known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
         rest = [known.get(name, 1.0) for name in self.uncertain]
         return Point(np.r_[x, rest], base.trial.point.amplitude, base.trial.point.warm)
+
+
+def _smaller(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Of two derivatives (T, m, k), test by test and number by number, the one of less length."""
+    shorter = (one**2).sum(axis=1) <= (other**2).sum(axis=1)
+    return np.where(shorter[:, None], one, other)
 
 
 @dataclass(frozen=True)
@@ -306,6 +332,16 @@ def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
 def _better(model: Model, trial: Trial, step: Point) -> Trial | None:
     tried = model.trial(step)
     return tried if tried.q < trial.q else None
+
+
+def exact(fit: Fit) -> Fit:
+    """A fit followed on with responses so exact that their error cannot pass for information."""
+    model = Model(fit.model.problem, fit.model.hypothesis, fit.model.reference, simulation.EXACT)
+    found = refine(model, model.trial(fit.trial.point))
+    if not found.trial.found:
+        return fit
+    matrix, _ = model.equations(found.trial, cautious=True).reduced()
+    return replace(found, covariance=_covariance(matrix))
 
 
 def restrict(fit: Fit, rows: np.ndarray) -> Fit:

@@ -96,6 +96,7 @@ class Search:
         points = model.hypothesis.starts()
         trials = best_amplitudes(model, [model.start(base, x) for x in points])
         self.along[effect] = trials
+        trials = _best_along_first(trials)
         if model.toned:
             # What the base model made of the tone may have led its own numbers far astray.
             trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
@@ -126,6 +127,14 @@ def best_of_each(found: Iterable[Each], misfit: Callable[[Each], float]) -> list
     best: dict[frozenset[str], Each] = {}
     for each in sorted(found, key=misfit):
         best.setdefault(frozenset(each.effects), each)
+    return list(best.values())
+
+
+def _best_along_first(trials: Sequence[Trial]) -> list[Trial]:
+    """The best trial at each value of the first number, so that not all that are followed are neighbours."""
+    best: dict[float, Trial] = {}
+    for trial in sorted(trials, key=lambda each: each.q):
+        best.setdefault(float(trial.point.x[0]), trial)
     return list(best.values())
 
 

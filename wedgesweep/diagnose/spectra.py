@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
+from scipy.stats import gamma
 
 # Harmonics that are compared with a simulation, and that are taken out before the noise is measured.
 COMPARED, REMOVED = 16, 40
@@ -21,6 +22,8 @@ PARTS = 8
 ORDER = 2
 # A line this many times above the smooth noise is something else (odds of 1e-5 in noise).
 FOREIGN = 11.5
+# Chance of lines at half multiples of the input frequency in a response that repeats each period.
+DOUBLED = 1e-4
 # Frequencies this many resolutions (one over the record) apart are told apart.
 RESOLVED = 1.2
 # Closer than this a tone is the harmonic; farther off it leaks into all of them, and is taken out.
@@ -54,6 +57,11 @@ class Spectrum:
     covered: int | None = None
 
     @property
+    def duration(self) -> float:
+        """Length of the record (s)."""
+        return self.samples * self.interval
+
+    @property
     def points(self) -> int:
         """Real numbers that say something."""
         return 2 * (self.mean.size - (self.covered is not None) * self.mean.shape[0])
@@ -73,15 +81,7 @@ class Spectrum:
         padded = 8 * self.samples
         transform = np.fft.rfft(self.residual, padded, axis=1)
         bins = np.round(frequencies * self.interval * padded).astype(int)
-        return self._over_noise(np.abs(transform[:, bins]) ** 2 / self.samples, frequencies)
-
-    def exact_excess_at(self, frequencies: np.ndarray) -> np.ndarray:
-        """``excess_at`` without the rounding of frequencies to a fine grid; slow for many of them."""
-        time = np.arange(self.samples) * self.interval
-        power, _ = _periodograms(self.residual, np.exp(2j * pi * np.outer(frequencies, time)))
-        return self._over_noise(power, frequencies)
-
-    def _over_noise(self, power: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
+        power = np.abs(transform[:, bins]) ** 2 / self.samples
         return sum(each / level(frequencies) for each, level in zip(power, self.level, strict=True))
 
     def with_silence(self, frequency: float) -> "Spectrum":
@@ -96,7 +96,7 @@ class Spectrum:
 
     def separates(self, frequencies: np.ndarray) -> np.ndarray:
         """Whether the record tells these frequencies from the harmonics, in the band of those compared."""
-        resolved = _beside(frequencies, self.frequency) * self.samples * self.interval > RESOLVED
+        resolved = _beside(frequencies, self.frequency) * self.duration > RESOLVED
         return resolved & (frequencies < self.frequency * (self.harmonics + 1))
 
 
@@ -120,18 +120,45 @@ def _turns(time: np.ndarray, frequency: float, multiples: int) -> np.ndarray:
 
 def spectrum(time: np.ndarray, channels: np.ndarray, frequency: float, tone: float | None = None) -> Spectrum:
     """Harmonics of the channels, shape (channels, n), of one test; ``time`` (n,) in s, frequencies in Hz."""
+    once = fitted(time, channels, frequency, tone)
+    return fitted(time, channels, frequency, tone, doubled=True) if _doubled(once, tone) else once
+
+
+def _doubled(spectrum: Spectrum, tone: float | None) -> bool:
+    """Whether a response repeats only every other period: odd multiples of half the frequency stand out.
+
+    The strongest of them does not count: it may be a foreign tone. Where a known one is as close to one of
+    them as to be mixed up, what stands out comes from that.
+    """
+    if tone is not None and _beside(tone, 0.5 * spectrum.frequency) * spectrum.duration <= RESOLVED:
+        return False
+    odd = np.arange(1, 2 * spectrum.harmonics + 2, 2)
+    power = np.sort(spectrum.excess_at(0.5 * spectrum.frequency * odd))[:-1]
+    return bool(gamma.sf(power.sum(), power.size * spectrum.mean.shape[0]) < DOUBLED)
+
+
+def fitted(
+    time: np.ndarray, channels: np.ndarray, frequency: float, tone: float | None = None, doubled: bool = False
+) -> Spectrum:
+    """``spectrum`` where it is known whether the period of the response has doubled.
+
+    Then the odd multiples of half the frequency are taken out, as a foreign tone is.
+    """
     time = time - time[0]
     interval = time[-1] / (time.size - 1)
     highest = int(BAND / interval / frequency)
-    fitted, compared = min(REMOVED, highest), min(COMPARED, highest)
-    matrix = regressors(time, frequency, fitted)
+    removed, compared = min(REMOVED, highest), min(COMPARED, highest)
+    columns = [regressors(time, frequency, removed)]
     at = frequency * np.arange(1, compared + 1)
+    if doubled:
+        half = _turns(time, 0.5 * frequency, 2 * compared + 1)[::2].T
+        columns += [half.real, half.imag]
     covered = None
     if tone is not None:
         apart = float(_beside(tone, frequency)) * time[-1]
         if apart > MINGLED:
             turn = 2.0 * pi * tone * time
-            matrix = np.concatenate([matrix, np.cos(turn)[:, None], np.sin(turn)[:, None]], axis=1)
+            columns += [np.cos(turn)[:, None], np.sin(turn)[:, None]]
         if apart <= RESOLVED and 0.5 < tone / frequency < compared + 0.5:
             covered = round(tone / frequency)
         if apart <= RESOLVED or tone > frequency * (compared + 1):
@@ -139,13 +166,14 @@ def spectrum(time: np.ndarray, channels: np.ndarray, frequency: float, tone: flo
         else:
             at = np.r_[at, tone]
     # The columns are nearly orthogonal, so that the normal equations lose nothing.
+    matrix = np.concatenate(columns, axis=1)
     solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
-    mean = (solution[2 : 2 + compared] - 1j * solution[2 + fitted : 2 + fitted + compared]).T
+    mean = (solution[2 : 2 + compared] - 1j * solution[2 + removed : 2 + removed + compared]).T
     if tone is not None:
         mean = np.concatenate([mean, (solution[-2] - 1j * solution[-1])[:, None]], axis=1)
     residual = channels - (matrix @ solution).T
     parts = np.arange(1, PARTS * (compared + 1))
-    parts = parts[parts % PARTS > 0]
+    parts = parts[parts % (PARTS // 2 if doubled else PARTS) > 0]
     lines = frequency * parts / PARTS
     turns = _turns(time, frequency / PARTS, int(parts[-1]))[parts - 1]
     power, product = _periodograms(residual, turns)

@@ -1,14 +1,14 @@
 """A foreign tone: one frequency that stands out between the harmonics of several tests."""
 
 from collections.abc import Sequence
-from math import pi
+from math import ceil, pi
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
-from wedgesweep.diagnose.spectra import BAND, Spectrum
+from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors
 
 # Chance of a tone where there is only noise.
 CHANCE = 1e-4
@@ -16,6 +16,10 @@ CHANCE = 1e-4
 FINE = 4
 # Lowest frequency (Hz) that is looked at: slower than that is drift.
 LOWEST = 1.0
+# Share of a tone that must be no harmonic for its power to count in full.
+MINGLING = 0.05
+# Least bend of the power over a step of the grid: below it the frequency is open.
+LEAST_BEND = 1e-3
 # A tone stands out in at least this many tests.
 SEVERAL = 2
 
@@ -33,7 +37,7 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     Multiples of half, a third and so on of the input frequency are no foreign tones but sub-harmonics
     of the response; they lie elsewhere in each test, unless all tests have one frequency.
     """
-    longest = max(s.samples * s.interval for s in spectra)
+    longest = max(s.duration for s in spectra)
     highest = min(BAND / s.interval for s in spectra)
     grid = np.arange(LOWEST, highest, 1.0 / longest / FINE)
     power = np.array([_power(s, grid) for s in spectra])
@@ -44,15 +48,53 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     standing_out = log_chance(power[:, best], channels) < np.log(1e-3)
     if chance[best] + np.log(grid.size) > np.log(CHANCE) or standing_out.sum() < min(SEVERAL, len(spectra)):
         return None
-    step = grid[1] - grid[0]
-    seen = [s for s, one in zip(spectra, separated[:, best], strict=True) if one]
+    seen = [Joint(s) for s, one in zip(spectra, separated[:, best], strict=True) if one]
+    return _refined(seen, float(grid[best]), float(grid[1] - grid[0]))
+
+
+class Joint:
+    """One test, fitted with its harmonics and a tone at once: that is fair to a tone beside a harmonic."""
+
+    def __init__(self, spectrum: Spectrum) -> None:
+        self.spectrum = spectrum
+        self.time = np.arange(spectrum.samples) * spectrum.interval
+        highest = min(REMOVED, int(BAND / spectrum.interval / spectrum.frequency))
+        self.basis, _ = np.linalg.qr(regressors(self.time, spectrum.frequency, highest))
+
+    def power(self, frequency: float) -> float:
+        """What a tone (Hz) takes off half the squared misfit, summed over channels; about 1 each in noise."""
+        turn = 2.0 * pi * frequency * self.time
+        columns = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        columns -= self.basis @ (self.basis.T @ columns)
+        size = columns.T @ columns + MINGLING * 0.5 * self.time.size * np.eye(2)
+        along = self.spectrum.residual @ columns
+        squares = np.einsum("ci,ic->c", along, np.linalg.solve(size, along.T))
+        level = [float(level(np.array(frequency))) for level in self.spectrum.level]
+        return 0.5 * float((squares / level).sum())
+
+
+def _refined(tests: Sequence[Joint], frequency: float, step: float) -> Tone:
+    """The tone of most power in the same tests, near one found on a grid of ``step`` (Hz).
+
+    On the grid tests come and go as the tone passes their harmonics, which can shift the summit to where
+    one of them comes in. The power is a log-likelihood: its bend at the summit tells the spread.
+    """
+
+    def power(frequency: float) -> float:
+        return sum(test.power(frequency) for test in tests)
+
+    reach = ceil(1.0 / min(test.time[-1] for test in tests) / step)
+    near = frequency + step * np.arange(-reach, reach + 1)
+    highest = max(near[near > 0.5 * frequency], key=power)
     refined = minimize_scalar(
-        lambda f: -sum(s.exact_excess_at(np.array([f]))[0] for s in seen),
-        bounds=(grid[best] - step, grid[best] + step),
+        lambda f: -power(f),
+        bounds=(highest - step, highest + step),
         method="bounded",
         options={"xatol": 1e-4 * step},
     )
-    return Tone(float(refined.x), _std(seen, float(refined.x)))
+    summit = float(refined.x)
+    bend = 2.0 * power(summit) - power(summit - step) - power(summit + step)
+    return Tone(summit, float(step / np.sqrt(max(bend, LEAST_BEND))))
 
 
 def between(spectra: Sequence[Spectrum]) -> float:
@@ -62,13 +104,6 @@ def between(spectra: Sequence[Spectrum]) -> float:
     telling = np.array([s.separates(grid) for s in spectra]).sum(axis=0)
     best = np.flatnonzero(telling == telling.max())
     return float(grid[best[np.argmin(np.abs(np.log(grid[best] / middle)))]])
-
-
-def _std(spectra: Sequence[Spectrum], frequency: float) -> float:
-    """Least standard deviation of a tone's frequency (Rife and Boorstyn, 1974), all tests together."""
-    durations = np.array([s.samples * s.interval for s in spectra])
-    power = np.array([s.exact_excess_at(np.array([frequency]))[0] for s in spectra])
-    return float(np.sqrt(6.0 / (power @ durations**2)) / (2.0 * pi))
 
 
 def log_chance(power: np.ndarray, count: np.ndarray) -> np.ndarray:

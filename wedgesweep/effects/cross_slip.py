@@ -5,7 +5,8 @@
 
 For |V| <= v_t this is the base law's mu_s v/v_t. A column face under ``presliding`` keeps its bristle.
 Under the Coulomb law the faces are regularised: mu_d |V|/v_t up to v_t = 1e-3 mm/s.
-Neutral and default: velocity = 0. Default: phase = 0.
+Neutral and default: velocity = 0. Default: phase = 0. Half a turn of the phase changes nothing: a fit looks
+for it between -90 and 90 degrees.
 """
 
 from wedgesweep.effects.base import NUMERICAL, Effect
@@ -25,7 +26,7 @@ EFFECT = Effect(
             search=(0.1, 200.0),
             logarithmic=True,
         ),
-        Quantity("phase_deg", 0.0, "lead over the velocity of the input", search=(-180.0, 180.0)),
+        Quantity("phase_deg", 0.0, "lead over the velocity of the input", search=(-90.0, 90.0)),
     ),
     extends=("velocity",),
 )

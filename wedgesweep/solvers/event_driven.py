@@ -16,8 +16,9 @@ from wedgesweep.solvers.extended import STATISTICS
 from wedgesweep.solvers.march import CHATTERING, OK, SWITCHES_PER_PERIOD, begin, march, workspace
 from wedgesweep.solvers.passage import clear
 from wedgesweep.solvers.recorder import Recorder
+from wedgesweep.solvers.repetition import LONGEST
 from wedgesweep.solvers.runge_kutta import FAILED
-from wedgesweep.solvers.steady import LONGEST, settle
+from wedgesweep.solvers.steady import settle
 from wedgesweep.solvers.sticking import LOCKED
 from wedgesweep.solvers.trajectory import CaseError, TimedWindow, Trajectory, Window, empty_samples
 

@@ -10,7 +10,8 @@ from wedgesweep import response
 from wedgesweep.extended.mode import SIZE, VELOCITY, X
 from wedgesweep.solvers import settling
 from wedgesweep.solvers.march import OK
-from wedgesweep.solvers.passage import LONGEST, Tools, clear, passage, run_periods, tools
+from wedgesweep.solvers.passage import Tools, clear, passage, run_periods, tools
+from wedgesweep.solvers.repetition import LONGEST
 from wedgesweep.solvers.trajectory import Samples, Trajectory, Window
 
 STATISTICS = ("rate_evaluations", "steps", "switches")

@@ -15,10 +15,8 @@ from wedgesweep.solvers.dormand_prince import Room, room
 from wedgesweep.solvers.extended_recorder import ExtendedRecorder
 from wedgesweep.solvers.march import Work, workspace
 from wedgesweep.solvers.recorder import Recorder
+from wedgesweep.solvers.repetition import LONGEST
 from wedgesweep.solvers.sticking import LOCKED
-
-# Periods that are told apart from a response that does not repeat.
-LONGEST = 8
 
 
 class Tools(NamedTuple):

@@ -14,6 +14,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.extended.mode import SIZE
 from wedgesweep.solvers.march import OK
 from wedgesweep.solvers.passage import clear, passage, tools
+from wedgesweep.solvers.repetition import LONGEST
 from wedgesweep.solvers.settling import settle
 
 __all__ = ["OK", "SIZE", "Periodic", "respond", "samples"]
@@ -95,7 +96,8 @@ def _respond_all(parameters, tolerance, most, bench, found, passage):
         y = found.state[i].copy()
         outcome, period, run, kept = settle(y, found.map[i], case, tolerance, most, bench, True, passage)
         if outcome == OK and not kept:
-            kept = max(period, 1)
+            # Of a response that does not repeat, the mean over as many periods as there is room for.
+            kept = period if period else LONGEST
             clear(bench.tally)
             outcome = passage(run if period == 0 else 0, kept, y, case, True, bench)
             run += kept

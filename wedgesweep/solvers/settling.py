@@ -13,10 +13,9 @@ import numpy as np
 from wedgesweep.compiled import compiled
 from wedgesweep.extended.mode import AGE, SIZE, VELOCITY, in_use, units
 from wedgesweep.solvers.march import OK
-from wedgesweep.solvers.passage import LONGEST, clear
+from wedgesweep.solvers.passage import clear
+from wedgesweep.solvers.repetition import LONGEST, repetition
 
-# States of a longer period differ by this many tolerances from one period to the next.
-APART = 1e4
 # Perturbation of the scaled state for J, at least NOISE times an integrator's tolerance, and the least step
 # that teaches J anything.
 PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e3, 1e-4
@@ -136,24 +135,6 @@ def _update(jacobian, y, image, before, image_before, size):
 
 
 @compiled
-def _repeats(state, past, count, tolerance, size):
-    """Number of periods after which the state came back, 0 if it did not.
-
-    A spiral into a fixed point comes close to itself every few turns: a longer period counts only where
-    the state is far from that of one period before.
-    """
-    last = _distance(state, past[(count - 1) % LONGEST], size)
-    if last <= tolerance:
-        return 1
-    if last < APART * tolerance:
-        return 0
-    for n in range(2, min(count, LONGEST) + 1):
-        if _distance(state, past[(count - n) % LONGEST], size) <= tolerance:
-            return n
-    return 0
-
-
-@compiled
 def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
     """Newton's method from y, with J made where it is not known or not right.
 
@@ -223,7 +204,7 @@ def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
         if outcome != OK:
             # The neighbour's state may lie where this case cannot go: rest is the start that decides.
             y[:] = 0.0
-    past = np.full((LONGEST, SIZE), np.inf)
+    past, back = np.full((LONGEST, SIZE), np.inf), np.empty(LONGEST)
     count = 0
     while run < most:
         past[count % LONGEST] = y
@@ -231,7 +212,9 @@ def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
         run, count = run + 1, count + 1
         if outcome != OK:
             return outcome, 0, run, 0
-        period = _repeats(y, past, count, tolerance, size)
+        for n in range(1, LONGEST + 1):
+            back[n - 1] = _distance(y, past[(count - n) % LONGEST], size)
+        period = repetition(back, tolerance)
         if period:
             return OK, period, run, 0
         if count % PATIENCE == 0:

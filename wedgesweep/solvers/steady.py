@@ -10,14 +10,11 @@ import numpy as np
 
 from wedgesweep.compiled import compiled
 from wedgesweep.solvers.march import OK, begin, march
+from wedgesweep.solvers.repetition import LONGEST, repetition
 from wedgesweep.solvers.sticking import LOCKED
 
-# Periods that are told apart from a response that does not repeat.
-LONGEST = 8
 # Marching comes first; then Newton's method is tried this often (periods).
 PATIENCE = 12
-# States of a longer period differ by this many tolerances from one period to the next.
-APART = 1e4
 # Perturbation of the state for the derivative of the map, and where Newton is not to be trusted.
 PERTURBATION, SINGULAR, UNSTABLE = 1e-6, 1e-3, 0.9999
 
@@ -82,24 +79,6 @@ def _extrapolated(x, last, before):
 
 
 @compiled
-def _repeats(k, state, past, tolerance, p):
-    """Number of periods after which the state came back, 0 if it did not.
-
-    A spiral into a fixed point comes close to itself every few turns: a longer period counts only where
-    the state is far from that of one period before.
-    """
-    last = _distance(state, past[(k - 1) % LONGEST], p)
-    if last <= tolerance:
-        return 1
-    if last < APART * tolerance:
-        return 0
-    for n in range(2, min(k, LONGEST) + 1):
-        if _distance(state, past[(k - n) % LONGEST], p) <= tolerance:
-            return n
-    return 0
-
-
-@compiled
 def settle(x, velocity, parameters, tolerance, most, recorder, work):
     """March from a state at phase 0 until it repeats.
 
@@ -107,7 +86,7 @@ def settle(x, velocity, parameters, tolerance, most, recorder, work):
     periods (0: it did not repeat within ``most`` periods).
     """
     p = parameters[0]
-    past = np.full((LONGEST, 2), np.inf)
+    past, back = np.full((LONGEST, 2), np.inf), np.empty(LONGEST)
     k = 0
     while k < most:
         past[k % LONGEST, 0], past[k % LONGEST, 1] = x, velocity
@@ -116,7 +95,9 @@ def settle(x, velocity, parameters, tolerance, most, recorder, work):
         if outcome != OK:
             return outcome, k, x, velocity, 0
         state = (x, velocity)
-        n = _repeats(k, state, past, tolerance, p)
+        for n in range(1, LONGEST + 1):
+            back[n - 1] = _distance(state, past[(k - n) % LONGEST], p)
+        n = repetition(back, tolerance)
         if n:
             return OK, k, x, velocity, n
         if k % PATIENCE == 0:
