@@ -10,7 +10,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import BAND, COMPARED, Spectrum
+from wedgesweep.diagnose.spectra import BAND, COMPARED, Spectrum, placed
 from wedgesweep.synthesize.noise import AR1_CORRELATION
 
 PERIODS, SAMPLING_HZ = 8.4, 2000.0
@@ -51,17 +51,27 @@ def _spectrum(mean: np.ndarray, frequency: float, tone: float | None, noise: str
     """A record as it would be without noise, but knowing its noise."""
     samples = round(PERIODS / frequency * SAMPLING_HZ)
     count = min(COMPARED, int(BAND * SAMPLING_HZ / frequency))
-    if tone is not None:
-        offset = abs(tone - frequency * round(tone / frequency)) * PERIODS / frequency
-        tone = tone if offset > 1.2 and tone < frequency * (count + 1) else None
-    columns = [*range(count), *([mean.shape[1] - 1] if tone is not None else [])]
+    told, covered = (False, None) if tone is None else placed(tone, frequency, PERIODS / frequency, count)
+    columns = [*range(count), *([mean.shape[1] - 1] if told else [])]
     channels = 1 if noise == "differentiated" else 2
     mean = mean[:channels, columns]
-    at = np.r_[frequency * np.arange(1, count + 1), [tone] if tone is not None else []]
+    at = np.r_[frequency * np.arange(1, count + 1), [tone] if told else []]
     rms = np.sqrt(0.5 * (np.abs(mean) ** 2).sum(axis=1))
     variance = np.array([_variance(at, one, samples, noise, level) for one in rms])
     nothing = np.zeros((channels, 0))
-    return Spectrum(frequency, PERIODS, samples, 1.0 / SAMPLING_HZ, mean, variance, 0j, nothing, (), tone)
+    return Spectrum(
+        frequency,
+        PERIODS,
+        samples,
+        1.0 / SAMPLING_HZ,
+        mean,
+        variance,
+        0j,
+        nothing,
+        (),
+        tone if told else None,
+        covered,
+    )
 
 
 def excess(

@@ -22,7 +22,7 @@ POSSIBLE = 1e-3
 # Effects with states of their own take longest.
 LONGEST = ("column_compliance", "fixture_resonance", "presliding")
 # Input amplitudes that are tried where none is known, over the fundamental of the displacement.
-AMPLITUDES = np.geomspace(0.12, 8.0, 25)
+AMPLITUDES = np.geomspace(0.12, 8.0, 17)
 TONE_FREQUENCY = f"{TONE}.frequency_hz"
 
 
@@ -153,25 +153,28 @@ def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
     unknown = np.isinf(model.problem.amplitude_std)
     if not unknown.any():
         return trials_of(model, points)
-    ladder = np.log(AMPLITUDES)
-    rungs = [
-        replace(point, amplitude=np.where(unknown, rung, point.amplitude))
-        for point in points
-        for rung in ladder
-    ]
-    trials = trials_of(model, rungs)
-    chosen = []
-    for i, point in enumerate(points):
-        mine = trials[i * ladder.size : (i + 1) * ladder.size]
-        misfit = np.array([np.where(each.found_tests, each.by_test, np.inf) for each in mine])
-        best = np.argmin(misfit, axis=0)
-        warm = simulation.Warm(
-            np.array([mine[b].point.warm.states[t] for t, b in enumerate(best)]),
-            np.array([mine[b].point.warm.maps[t] for t, b in enumerate(best)]),
-        )
-        amplitude = np.where(unknown, ladder[best], point.amplitude)
-        chosen.append(Point(point.x, amplitude, warm))
-    return trials_of(model, chosen)
+    best, least = list(points), np.full((len(points), model.problem.tests), np.inf)
+    climbing = list(points)
+    for rung in np.log(AMPLITUDES):
+        # Each rung starts from the response of the one below.
+        at = [replace(each, amplitude=np.where(unknown, rung, each.amplitude)) for each in climbing]
+        trials = trials_of(model, at)
+        climbing = [trial.point for trial in trials]
+        for i, trial in enumerate(trials):
+            misfit = np.where(trial.found_tests, trial.by_test, np.inf)
+            better = misfit < least[i]
+            least[i] = np.where(better, misfit, least[i])
+            best[i] = _tests_of(best[i], trial.point, better)
+    return trials_of(model, best)
+
+
+def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
+    """A point with the amplitudes and states of some tests from another."""
+    warm = simulation.Warm(
+        np.where(chosen[:, None], other.warm.states, one.warm.states),
+        np.where(chosen[:, None, None], other.warm.maps, one.warm.maps),
+    )
+    return Point(one.x, np.where(chosen, other.amplitude, one.amplitude), warm)
 
 
 def best_of(model: Model, trials: Sequence[Trial], followed: Sequence[tuple[int, int]] = FOLLOWED) -> Fit:

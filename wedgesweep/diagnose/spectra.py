@@ -96,13 +96,27 @@ class Spectrum:
 
     def separates(self, frequencies: np.ndarray) -> np.ndarray:
         """Whether the record tells these frequencies from the harmonics, in the band of those compared."""
-        resolved = _beside(frequencies, self.frequency) * self.duration > RESOLVED
-        return resolved & (frequencies < self.frequency * (self.harmonics + 1))
+        return told_apart(frequencies, self.frequency, self.duration, self.harmonics)
 
 
 def _beside(frequencies: np.ndarray | float, frequency: float) -> np.ndarray:
     """Distance (Hz) of frequencies from the closest harmonic."""
     return np.abs(frequencies - frequency * np.round(frequencies / frequency))
+
+
+def told_apart(tones: np.ndarray, frequency: float, duration: float, harmonics: int) -> np.ndarray:
+    """Whether a record (s) tells tones (Hz) from the harmonics, in the band of those that are compared."""
+    resolved = _beside(tones, frequency) * duration > RESOLVED
+    return resolved & (tones < frequency * (harmonics + 1))
+
+
+def placed(tone: float, frequency: float, duration: float, harmonics: int) -> tuple[bool, int | None]:
+    """Whether a record tells a tone from the harmonics that are compared, and else which one it covers."""
+    if told_apart(np.array(tone), frequency, duration, harmonics):
+        return True, None
+    closest = round(tone / frequency)
+    covers = _beside(tone, frequency) * duration <= RESOLVED and 1 <= closest <= harmonics
+    return False, closest if covers else None
 
 
 def regressors(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
@@ -155,16 +169,12 @@ def fitted(
         columns += [half.real, half.imag]
     covered = None
     if tone is not None:
-        apart = float(_beside(tone, frequency)) * time[-1]
-        if apart > MINGLED:
+        told, covered = placed(tone, frequency, time[-1], compared)
+        if _beside(tone, frequency) * time[-1] > MINGLED:
             turn = 2.0 * pi * tone * time
             columns += [np.cos(turn)[:, None], np.sin(turn)[:, None]]
-        if apart <= RESOLVED and 0.5 < tone / frequency < compared + 0.5:
-            covered = round(tone / frequency)
-        if apart <= RESOLVED or tone > frequency * (compared + 1):
-            tone = None
-        else:
-            at = np.r_[at, tone]
+        tone = tone if told else None
+        at = np.r_[at, tone] if told else at
     # The columns are nearly orthogonal, so that the normal equations lose nothing.
     matrix = np.concatenate(columns, axis=1)
     solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
