@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.drawn import AMPLITUDES, drawn
-from wedgesweep.diagnose import gain
+from wedgesweep.diagnose import gain, next_test
 from wedgesweep.diagnose.fit import _smaller, exact
 from wedgesweep.diagnose.search import Search
 
@@ -118,3 +118,20 @@ def test_retuning_alone_gains_nothing():
     base_square, extended, noise = measured.totals()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
+
+
+def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
+    """Covariances as large as 1e30 stand for numbers of which the tests say nothing."""
+    problem = drawn(LAG, known=False)
+    *_, found = searched(problem, "velocity_lag", "displacement_gain")
+    omega, amplitude = 2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1])
+    distances = []
+    for factor in (1.0, 1e30):
+        fits = [replace(each.fit, covariance=factor * each.fit.covariance) for each in found]
+        one, other = (next_test._predict(fit, omega, amplitude) for fit in fits)
+        weight = next_test._weights(problem, [one, other])
+        distances.append(next_test._distances(one, other, weight))
+        np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
+    told, open_ = distances
+    assert (open_ > 0.0).all()
+    assert (open_ < told).all()

@@ -20,6 +20,8 @@ FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0,
 ACCELERATIONS = np.geomspace(0.3, 4.0, 8)
 # Squared distance at which two explanations are told apart.
 ENOUGH = 30.0
+# Largest standard deviation of a number, in widths of its coordinate.
+WIDEST = 10.0
 # How well the amplitude of a new test is taken to be known.
 AMPLITUDE_STD = 0.02
 
@@ -68,10 +70,7 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
 
 def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
     model, problem = fit.model, fit.model.problem
-    spread = (
-        np.linalg.cholesky(fit.covariance + 1e-12 * np.eye(len(fit.x))) if len(fit.x) else np.zeros((0, 0))
-    )
-    step = STEP * model.width
+    spread, step = _spread(fit), STEP * model.width
     points = [fit.x, *(fit.x + step * row for row in np.eye(len(fit.x)))]
     rows = [simulation.records(problem.model, problem.law, model.values(x), omega, amplitude) for x in points]
     louder = rows[0].copy()
@@ -86,6 +85,14 @@ def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
     by_amplitude = change[-1][..., None] / AMPLITUDE_STEP * AMPLITUDE_STD
     ok = done.found & moved.found.reshape(len(rows), -1).all(axis=0)
     return _Prediction(here, np.concatenate([by_number, by_amplitude], axis=-1), ok)
+
+
+def _spread(fit: Fit) -> np.ndarray:
+    """Root (k, k) of the covariance of a fit's numbers, of which none is wider than its range."""
+    std = np.sqrt(np.diag(fit.covariance))
+    share = np.minimum(1.0, WIDEST * fit.model.width / np.maximum(std, 1e-300))
+    values, vectors = np.linalg.eigh(fit.covariance * np.outer(share, share))
+    return vectors * np.sqrt(np.maximum(values, 0.0))
 
 
 def _weights(problem: Problem, predictions: Sequence[_Prediction]) -> np.ndarray:
@@ -121,7 +128,9 @@ def _distances(a: _Prediction, b: _Prediction, weight: np.ndarray) -> np.ndarray
         turned = b.spread[i] * np.exp(1j * orders * turn)[:, None]
         columns += [weight[i] * turned[..., k] for k in range(turned.shape[-1])]
         free = np.stack([real(each[None])[0] for each in columns], axis=1)
-        inner = np.eye(free.shape[1]) + free.T @ free
-        along = free.T @ gap
-        distance[i] = gap @ gap - along @ np.linalg.solve(inner, along)
+        # The least that any change of the numbers leaves, counted in their standard deviations.
+        matrix = np.concatenate([free, np.eye(free.shape[1])])
+        aim = np.concatenate([gap, np.zeros(free.shape[1])])
+        change = np.linalg.lstsq(matrix, aim, rcond=None)[0]
+        distance[i] = ((aim - matrix @ change) ** 2).sum()
     return distance
