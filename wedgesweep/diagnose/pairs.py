@@ -3,13 +3,16 @@
 A weak effect alone may be half of the right pair, so that no effect is dropped for its own fit: beside
 each of the best single fits every other effect is tried. Where it starts is chosen as if responses added;
 what promises most after a few iterations on some of the tests goes on to more of both (successive halving).
+Where none will do, the best pairs begin once more, from starts that are no neighbours.
 """
 
 from collections.abc import Sequence
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.fit import Fit, Model, Point, refine, restrict
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, trials_of
 
@@ -20,6 +23,8 @@ ROUNDS = ((3, 1000), (5, 40))
 GOING_ON = 8
 # Tests that the first look takes.
 FEW = 6
+# Where no pair will do: starting points of a second look at the best pairs, and how many go on from it.
+STARTS_APART, AGAIN = 4, 4
 # Pairs whose misfit is this close to the best have each of their effects fitted alone again.
 CLOSE = 50.0
 # Least change (squared, in noise) of a response that says something.
@@ -38,19 +43,32 @@ class Library(NamedTuple):
 
 def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Explanation]:
     """The best fits of pairs, best first."""
-    libraries = [_library(search, base, each.fit) for each in singles]
-    leading = sorted((each.fit for each in singles), key=_misfit)[:PARTNERS]
-    beside = [
-        (_worst(first), first, other)
-        for first in leading
-        for other in libraries
-        if (other.effect,) != first.effects and len(other.x)
-    ]
-    fits = [fit for fit in search.each(lambda job: _begin(search, *job), beside) if np.isfinite(fit.q)]
+    alone = {each.effects[0]: each.fit for each in singles}
+    libraries = {effect: _library(search, base, fit) for effect, fit in alone.items()}
+    leading = sorted(alone, key=lambda effect: alone[effect].q)[:PARTNERS]
+    beside = [(alone[one], libraries[other]) for one in leading for other in alone if one != other]
+    found = _followed(search, base, beside, False, GOING_ON)
+    if found and found[0].fit.p < verdict.ADEQUATE:
+        ways = [pair for each in found for pair in permutations(each.effects)]
+        beside = [(alone[one], libraries[other]) for one, other in ways]
+        found += _followed(search, base, beside, True, AGAIN)
+    return best_of_each(found, lambda each: each.penalised)
+
+
+def _followed(
+    search: Search, base: Fit, beside: Sequence[tuple[Fit, Library]], apart: bool, going_on: int
+) -> list[Explanation]:
+    """Fits of second effects beside first ones, the best first.
+
+    ``apart``: from several starts of each that are no neighbours.
+    """
+    jobs = [(first, other) for first, other in beside if len(other.x)]
+    begun = search.each(lambda job: _begin(search, job[0], job[1], apart), jobs)
+    fits = [fit for some in begun for fit in some if np.isfinite(fit.q)]
     for iterations, entering in ROUNDS:
-        entered = best_of_each(fits, _misfit)[:entering]
+        entered = fits if apart else best_of_each(fits, _misfit)[:entering]
         fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
-    found = search.each(lambda fit: _finish(search, base, fit), best_of_each(fits, _misfit)[:GOING_ON])
+    found = search.each(lambda fit: _finish(search, base, fit), best_of_each(fits, _misfit)[:going_on])
     return sorted(found, key=lambda each: each.penalised)
 
 
@@ -92,23 +110,32 @@ def _library(search: Search, base: Fit, fit: Fit) -> Library:
     return Library(effect, x[seen], changes[seen] if seen.any() else changes[:0])
 
 
-def _starts(first: Fit, other: Library) -> np.ndarray:
-    """Points (n, k) of the other effect that go best with a fit, if responses add."""
+def _starts(first: Fit, other: Library, apart: bool) -> np.ndarray:
+    """Points (n, k) of the other effect that go best with a fit, if responses add.
+
+    ``apart``: the best one of each value of its last number.
+    """
     residual = first.trial.residual.ravel()
     size, along = (other.changes**2).sum(1), other.changes @ residual
     scale = np.clip(along / size, *SCALES)
-    order = np.argsort(scale**2 * size - 2.0 * scale * along)
-    return other.x[order[:STARTS]]
+    points = other.x[np.argsort(scale**2 * size - 2.0 * scale * along)]
+    if apart and points.shape[1] > 1:
+        _, at = np.unique(points[:, -1], return_index=True)
+        return points[np.sort(at)][:STARTS_APART]
+    return points[: STARTS_APART if apart else STARTS]
 
 
-def _begin(search: Search, few: Fit, first: Fit, other: Library) -> Fit:
-    """The best start of a second effect beside a fitted one, on some of the tests."""
-    effects = (*first.effects, other.effect)
+def _begin(search: Search, first: Fit, other: Library, apart: bool) -> list[Fit]:
+    """Starts of a second effect beside a fitted one, on some of the tests: the best, or all if ``apart``."""
+    effects, few = (*first.effects, other.effect), _worst(first)
     model = Model(few.model.problem, search.model(*effects).hypothesis, few.model.reference)
     known = first.x[: first.model.size]
-    points = [model.start(few, np.r_[known, x]) for x in _starts(first, other)]
-    trial = min(trials_of(model, points), key=lambda each: each.q)
-    return Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
+    points = [model.start(few, np.r_[known, x]) for x in _starts(first, other, apart)]
+    trials = sorted(trials_of(model, points), key=lambda each: each.q)
+    return [
+        Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
+        for trial in (trials if apart else trials[:1])
+    ]
 
 
 def _finish(search: Search, base: Fit, first: Fit) -> Explanation:
