@@ -57,8 +57,8 @@ def told(record):
     return f"{record['name']:12} {truth}: {record['verdict']} {named} ({numbers})"
 
 
-def report(sets, seed, size):
-    """The whole text."""
+def report(sets, seed, size, total):
+    """The whole text; ``total``: how many sets it would have."""
     rows = recovery(sets)
     seconds = [sum(record["seconds"].values()) for record in sets.all]
     diagnoses = sorted(record["seconds"]["diagnose"] for record in sets.all)
@@ -66,6 +66,7 @@ def report(sets, seed, size):
     parts = [
         f"Blind campaign of wedgesweep {__version__}, seed {seed}, size {size:g}: {len(sets.all)} sets, "
         f"{len(sets.failures)} failed.",
+        *([f"Stopped before its end: {total} sets were wanted."] if len(sets.all) < total else []),
         "12 tests x 8 periods, noise 4 % of four kinds, three laws; shares with 95 % Wilson intervals.",
         f"{sum(seconds) / 3600:.1f} hours of one core, all told; a diagnosis takes "
         f"{diagnoses[len(diagnoses) // 2]:.0f} s (median), {diagnoses[-1]:.0f} s (longest) with --n-jobs 1.",
@@ -104,7 +105,7 @@ def main():
     records.sort(key=lambda record: (list(SIZES).index(record["kind"]), record["index"]))
     (out / "records.jsonl").write_text("".join(json.dumps(record) + "\n" for record in records))
     sets = Sets([r for r in records if "failure" not in r], [r for r in records if "failure" in r])
-    text = report(sets, given.seed, given.size)
+    text = report(sets, given.seed, given.size, sum(map(len, wanted)))
     print("\n" + text)
     whole = given.size >= 1.0 and not given.only
     docs = ROOT / "docs" if whole else out

@@ -81,7 +81,7 @@ def scores(search: Search, base: Fit) -> list[Score]:
     """Score of every effect of a search, in its order."""
     project = Projector(base)
     residual = project(base.trial.residual)
-    found = [_score(search, base, effect, project, residual) for effect in search.effects]
+    found = search.each(lambda effect: _score(search, base, effect, project, residual), search.effects)
     return [*found, _unheard(search.problem, base)] if search.unheard else found
 
 
