@@ -8,6 +8,7 @@ spectrum is smooth.
 
 from dataclasses import dataclass, replace
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import gamma
@@ -160,53 +161,74 @@ def fitted(
     """
     time = time - time[0]
     interval = time[-1] / (time.size - 1)
-    highest = int(BAND / interval / frequency)
-    removed, compared = min(REMOVED, highest), min(COMPARED, highest)
-    columns = [regressors(time, frequency, removed)]
-    at = frequency * np.arange(1, compared + 1)
-    if doubled:
-        half = _turns(time, 0.5 * frequency, 2 * compared + 1)[::2].T
-        columns += [half.real, half.imag]
-    covered = None
-    if tone is not None:
-        told, covered = placed(tone, frequency, time[-1], compared)
-        if _beside(tone, frequency) * time[-1] > MINGLED:
-            turn = 2.0 * pi * tone * time
-            columns += [np.cos(turn)[:, None], np.sin(turn)[:, None]]
-        tone = tone if told else None
-        at = np.r_[at, tone] if told else at
+    design = _design(time, interval, frequency, tone, doubled)
     # The columns are nearly orthogonal, so that the normal equations lose nothing.
-    matrix = np.concatenate(columns, axis=1)
+    matrix = design.matrix
     solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
-    mean = (solution[2 : 2 + compared] - 1j * solution[2 + removed : 2 + removed + compared]).T
-    if tone is not None:
-        mean = np.concatenate([mean, (solution[-2] - 1j * solution[-1])[:, None]], axis=1)
+    mean = (solution[design.cosines] - 1j * solution[design.sines]).T
     residual = channels - (matrix @ solution).T
-    parts = np.arange(1, PARTS * (compared + 1))
+    parts = np.arange(1, PARTS * (design.harmonics + 1))
     parts = parts[parts % (PARTS // 2 if doubled else PARTS) > 0]
-    lines = frequency * parts / PARTS
-    turns = _turns(time, frequency / PARTS, int(parts[-1]))[parts - 1]
-    power, product = _periodograms(residual, turns)
-    smooth = [_smooth(lines, each) for each in power]
-    variance = np.array([4.0 / time.size * level(at) for level in smooth])
-    coherence = 0.0j
-    if len(channels) == 2:
-        coherence = _coherence(product, smooth[0](lines), smooth[1](lines))
-        if abs(coherence) > SAME:
-            mean, variance, residual, coherence = mean[:1], variance[:1], residual[:1], 0.0j
+    level, coherence = _noise(time, residual, frequency / PARTS, parts)
+    if abs(coherence) > SAME:
+        mean, residual, level, coherence = mean[:1], residual[:1], level[:1], 0.0j
+    at = frequency * np.arange(1, design.harmonics + 1)
+    at = at if design.tone is None else np.r_[at, design.tone]
     return Spectrum(
         frequency,
         time.size * interval * frequency,
         time.size,
         interval,
         mean,
-        variance,
+        np.array([4.0 / time.size * each(at) for each in level]),
         coherence,
         residual,
-        tuple(smooth[: len(mean)]),
-        tone,
-        covered,
+        level,
+        design.tone,
+        design.covered,
     )
+
+
+class _Design(NamedTuple):
+    """Columns of a fit, and the places of the cosines and sines that are kept; a tone comes last."""
+
+    matrix: np.ndarray
+    cosines: np.ndarray
+    sines: np.ndarray
+    harmonics: int
+    tone: float | None
+    covered: int | None
+
+
+def _design(
+    time: np.ndarray, interval: float, frequency: float, tone: float | None, doubled: bool
+) -> _Design:
+    highest = int(BAND / interval / frequency)
+    removed, kept = min(REMOVED, highest), min(COMPARED, highest)
+    columns = [regressors(time, frequency, removed)]
+    places = np.array([np.arange(2, 2 + kept), np.arange(2 + removed, 2 + removed + kept)])
+    if doubled:
+        half = _turns(time, 0.5 * frequency, 2 * kept + 1)[::2].T
+        columns += [half.real, half.imag]
+    told, covered = (False, None) if tone is None else placed(tone, frequency, time[-1], kept)
+    if tone is not None and _beside(tone, frequency) * time[-1] > MINGLED:
+        turn = np.exp(2j * pi * tone * time)[:, None]
+        columns += [turn.real, turn.imag]
+    matrix = np.concatenate(columns, axis=1)
+    if told:
+        places = np.c_[places, [matrix.shape[1] - 2, matrix.shape[1] - 1]]
+    return _Design(matrix, places[0], places[1], kept, tone if told else None, covered)
+
+
+def _noise(
+    time: np.ndarray, residual: np.ndarray, spacing: float, parts: np.ndarray
+) -> tuple[tuple["Smooth", ...], complex]:
+    """Smooth noise of each channel from lines at multiples ``parts`` of a ``spacing`` (Hz), and coherence."""
+    turns = _turns(time, spacing, int(parts[-1]))[parts - 1]
+    power, product = _periodograms(residual, turns)
+    lines = spacing * parts
+    level = tuple(_smooth(lines, each) for each in power)
+    return level, _coherence(product, level[0](lines), level[1](lines)) if len(level) == 2 else 0.0j
 
 
 def _periodograms(residual: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
