@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from math import isfinite, sqrt
 from pathlib import Path
 
+import numpy as np
 from blind_statistics import Share
 
 Rows = Sequence[tuple[float, float, dict[str, Share]]]
@@ -18,15 +19,18 @@ def draw(rows: Rows, file: Path) -> None:
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(7.0, 4.2), layout="constrained")
-    places = [_middle(low, high) for low, high, _ in rows]
-    for name in rows[0][2]:
+    middles = np.array([_middle(low, high) for low, high, _ in rows])
+    names = list(rows[0][2])
+    # Side by side, so that equal shares stay visible.
+    for name, places in zip(names, middles * np.geomspace(0.9, 1.1, len(names))[:, None], strict=True):
         shares = [found[name] for _, _, found in rows]
         values = [each.value for each in shares]
         if name in ("exact", "exact or tied"):
             ends = [each.wilson for each in shares]
+            # Rounding may put the end of an interval behind a share of 0 or 1.
             errors = [
-                [v - low for v, (low, _) in zip(values, ends, strict=True)],
-                [high - v for v, (_, high) in zip(values, ends, strict=True)],
+                [max(v - low, 0.0) for v, (low, _) in zip(values, ends, strict=True)],
+                [max(high - v, 0.0) for v, (_, high) in zip(values, ends, strict=True)],
             ]
             axes.errorbar(places, values, yerr=errors, marker="o", capsize=3, label=f"diagnosis: {name}")
         elif name == "reported":
@@ -41,7 +45,7 @@ def draw(rows: Rows, file: Path) -> None:
     )
     axes.axvline(800.0, color="0.6", linewidth=0.8)
     axes.grid(alpha=0.3)
-    axes.legend(fontsize="small")
+    figure.legend(fontsize="small", loc="outside lower center", ncols=2, frameon=False)
     figure.savefig(file, dpi=150)
     plt.close(figure)
 
