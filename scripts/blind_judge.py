@@ -1,6 +1,5 @@
 """Compares a verdict with the truth."""
 
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import blind_outside_files as outside
@@ -58,9 +57,8 @@ def coverage(record: Record) -> list[tuple[str, bool]]:
             value, middle = true.get(key), 0.5 * ((low or 0.0) + (high or 0.0))
             if value is None:
                 continue
-            turn = next(q.turn for q in EFFECTS[cause["effect"]].quantities if q.key == key)
-            if isfinite(turn):
-                value += turn * round((middle - value) / turn)
+            quantity = next(q for q in EFFECTS[cause["effect"]].quantities if q.key == key)
+            value = quantity.nearest(value, middle)
             inside = low is not None and high is not None and low <= value <= high
             found.append((f"{cause['effect']}.{key}", inside))
     return found

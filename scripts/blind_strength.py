@@ -10,7 +10,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import BAND, COMPARED, Spectrum, placed
+from wedgesweep.diagnose.spectra import COMPARED, Spectrum, placed, within_band
 from wedgesweep.synthesize.noise import AR1_CORRELATION
 
 PERIODS, SAMPLING_HZ = 8.4, 2000.0
@@ -50,7 +50,7 @@ def _variance(at: np.ndarray, rms: float, samples: int, noise: str, level: float
 def _spectrum(mean: np.ndarray, frequency: float, tone: float | None, noise: str, level: float) -> Spectrum:
     """A record as it would be without noise, but knowing its noise."""
     samples = round(PERIODS / frequency * SAMPLING_HZ)
-    count = min(COMPARED, int(BAND * SAMPLING_HZ / frequency))
+    count = within_band(COMPARED, frequency, 1.0 / SAMPLING_HZ)
     told, covered = (False, None) if tone is None else placed(tone, frequency, PERIODS / frequency, count)
     columns = [*range(count), *([mean.shape[1] - 1] if told else [])]
     channels = 1 if noise == "differentiated" else 2

@@ -28,7 +28,7 @@ class Quantity:
     names the same number in SI. The range is in the unit of the key; ``above`` excludes its end.
     A default that is not finite is none: the key must be given. ``off`` is the number that stands for an
     absent effect, the default unless given. A fit looks for the number within ``search`` (None: it is
-    not fitted), on a scale of its logarithm if ``logarithmic``. For an angle this range is one ``turn``.
+    not fitted), on a scale of its logarithm if ``logarithmic``. For an angle that is one turn about zero.
     """
 
     key: str
@@ -65,10 +65,12 @@ class Quantity:
         """Whether the number is an angle, which comes round again."""
         return self.suffix == "_deg"
 
-    @property
-    def turn(self) -> float:
-        """Change (in the key's unit) after which an angle does the same again; infinite for other numbers."""
-        return self.search[1] - self.search[0] if self.angle and self.search else inf
+    def nearest(self, value: float, other: float) -> float:
+        """The same angle as ``value``, turned to lie closest to ``other``; any other number as it is."""
+        if not (self.angle and self.search):
+            return value
+        turn = self.search[1] - self.search[0]
+        return value - turn * round((value - other) / turn)
 
     def fault(self, value: float) -> str | None:
         """Why ``value`` (in the key's unit) cannot be right, or None."""

@@ -81,7 +81,7 @@ def make(hidden: Hidden, here: Path) -> tuple[Path, dict[str, Any]]:
     return here / "data" / "measured.toml", document
 
 
-def diagnose(measured: Path, output: Path, candidates: list[str] | None = None) -> Found:
-    options = [] if candidates is None else ["--effects", ",".join(candidates)]
-    invoke("diagnose", measured, "-o", output, "--n-jobs", 2, *options)
+def diagnose(measured: Path, output: Path, candidates: list[str] | None = None, *options: str) -> Found:
+    chosen = [] if candidates is None else ["--effects", ",".join(candidates)]
+    invoke("diagnose", measured, "-o", output, "--n-jobs", 2, *chosen, *options)
     return Found(json.loads((output / "diagnosis.json").read_text()), output)

@@ -6,6 +6,7 @@ A quick part of scripts/blind_campaign.py.
 import pytest
 
 from tests.hidden.laboratory import PAPER, Hidden, diagnose, make
+from wedgesweep.diagnose.result import DATASET, EXTENDED, JSON
 from wedgesweep.effects import EFFECTS
 
 NAMED = ("named", "consistent-with")
@@ -68,6 +69,10 @@ def test_in_clean_data_nothing_is_named(tmp_path):
     found = diagnose(measured, tmp_path / "found")
     assert found.verdict == "nothing-missing"
     assert found.document["causes"] == []
+    assert (found.directory / "report.html").exists()
+    again = diagnose(measured, found.directory, ["displacement_gain"], "--no-report")
+    assert len(again.document["candidates"]) < len(found.document["candidates"])
+    assert {file.name for file in again.directory.iterdir()} == {JSON, DATASET, EXTENDED}
 
 
 def test_what_is_not_in_the_library_is_not_named(tmp_path):

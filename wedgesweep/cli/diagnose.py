@@ -7,7 +7,7 @@ import click
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, jobs
 
-FIGURE_KINDS = ("misfit", "candidates", "gain")
+FIGURE_KINDS, FIGURE = ("misfit", "candidates", "gain"), "{}.png"
 
 
 @click.command()
@@ -56,6 +56,7 @@ def diagnose(
         message = f"{directory}: not a directory"
         raise Failure(message)
     found = diagnosis.diagnose(measurement, chosen, jobs(n_jobs), _said, calibrate)
+    _clear(directory)
     result.write(found, directory)
     written = directory
     if reported:
@@ -63,6 +64,14 @@ def diagnose(
         written = report.write(directory)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {written}")
+
+
+def _clear(directory: Path) -> None:
+    """Remove what an older diagnosis drew here: it does not belong to the new one."""
+    from wedgesweep import report
+
+    for name in (report.PAGE, *map(FIGURE.format, FIGURE_KINDS)):
+        (directory / name).unlink(missing_ok=True)
 
 
 def _draw(directory: Path) -> None:
@@ -73,7 +82,7 @@ def _draw(directory: Path) -> None:
     found = diagnosed.read(directory)
     for kind in FIGURE_KINDS:
         try:
-            figures.save(FIGURES[kind].draw(found), directory / f"{kind}.png")
+            figures.save(FIGURES[kind].draw(found), directory / FIGURE.format(kind))
         except ValueError as error:
             click.echo(f"skipped {error}", err=True)
 

@@ -114,11 +114,9 @@ class Hypothesis:
                     other = float(next(rest))
                     values[name][quantity.key] = hypot(value, other)
                     values[name][phase.key] = degrees(atan2(other, value))
-                elif quantity.angle:
-                    low, _ = quantity.search or (0.0, 0.0)
-                    values[name][quantity.key] = low + (value - low) % quantity.turn
                 else:
-                    values[name][quantity.key] = exp(value) if quantity.logarithmic else value
+                    value = exp(value) if quantity.logarithmic else quantity.nearest(value, 0.0)
+                    values[name][quantity.key] = value
         return values
 
     def values(self, x: np.ndarray) -> Values:
@@ -149,6 +147,5 @@ class Hypothesis:
         neutral = np.clip(np.zeros(len(self.coordinates)), self.low, self.high)
         if len(self.coordinates) > 3:  # amplitudes with phases: linear enough to start at zero
             return neutral[None]
-        points = [ALONG, *[FURTHER] * (len(self.coordinates) - 1)]
-        ways = (each.along(n) for each, n in zip(self.coordinates, points, strict=False))
+        ways = [each.along(FURTHER if i else ALONG) for i, each in enumerate(self.coordinates)]
         return np.array(list(product(*ways)))

@@ -141,8 +141,12 @@ class Model:
         """Data less what is fitted without a prior: phases, unknown amplitudes, the hypothesis."""
         problem = self.problem
         unknown = int(np.isinf(problem.amplitude_std).sum())
-        tones = sum(s.tone is not None for s in problem.spectra) if self.toned else 0
-        return int(problem.points.sum()) - problem.tests - unknown - tones - self.size
+        return int(problem.points.sum()) - problem.tests - unknown - int(self.tones.sum()) - self.size
+
+    @property
+    def tones(self) -> np.ndarray:
+        """Whether (T,) a test has a tone that the hypothesis answers to; its phase is free."""
+        return np.array([self.toned and s.tone is not None for s in self.problem.spectra])
 
     def values(self, x: np.ndarray) -> Values:
         nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}
@@ -336,7 +340,7 @@ def _better(model: Model, trial: Trial, step: Point) -> Trial | None:
 
 def exact(fit: Fit) -> Fit:
     """A fit followed on with responses so exact that their error cannot pass for information."""
-    model = Model(fit.model.problem, fit.model.hypothesis, fit.model.reference, simulation.EXACT)
+    model = Model(fit.model.problem, fit.model.hypothesis, fit.model.reference, simulation.TIGHT)
     found = refine(model, model.trial(fit.trial.point))
     if not found.trial.found:
         return fit

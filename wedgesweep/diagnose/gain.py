@@ -115,8 +115,7 @@ def _local_numbers(fit: Fit) -> np.ndarray:
     inner = model.equations(fit.trial).inner
     known = model.amplitude_weight**2
     both = inner[:, 1, 1] - inner[:, 0, 1] ** 2 / inner[:, 0, 0]
-    tones = np.array([model.toned and s.tone is not None for s in model.problem.spectra])
-    return 1.0 + np.clip(1.0 - known / both, 0.0, 1.0) + tones
+    return 1.0 + np.clip(1.0 - known / both, 0.0, 1.0) + model.tones
 
 
 def _held_out(base: Fit, extended: Fit, local: np.ndarray, scheme: str, rows: np.ndarray) -> list[HeldOut]:

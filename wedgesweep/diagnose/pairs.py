@@ -33,30 +33,33 @@ SEEN = 4.0
 SCALES = (0.1, 2.0)
 
 
-class Library(NamedTuple):
-    """Responses of one effect over its range: numbers (n, k), and changes (n, m) from the base model's."""
+class Alone(NamedTuple):
+    """What is known of one effect: its fit, on all tests and on the few that it leaves unexplained.
 
-    effect: str
+    ``x`` (n, k): its numbers over their range; ``changes`` (n, m): what they change of the base responses.
+    """
+
+    fit: Fit
+    few: Fit
     x: np.ndarray
     changes: np.ndarray
 
 
 def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Explanation]:
     """The best fits of pairs, best first."""
-    alone = {each.effects[0]: each.fit for each in singles}
-    libraries = {effect: _library(search, base, fit) for effect, fit in alone.items()}
-    leading = sorted(alone, key=lambda effect: alone[effect].q)[:PARTNERS]
-    beside = [(alone[one], libraries[other]) for one in leading for other in alone if one != other]
+    alone = {each.effects[0]: _alone(search, base, each.fit) for each in singles}
+    leading = sorted(alone, key=lambda effect: alone[effect].fit.q)[:PARTNERS]
+    beside = [(alone[one], alone[other]) for one in leading for other in alone if one != other]
     found = _followed(search, base, beside, False, GOING_ON)
     if found and found[0].fit.p < verdict.ADEQUATE:
         ways = [pair for each in found for pair in permutations(each.effects)]
-        beside = [(alone[one], libraries[other]) for one, other in ways]
+        beside = [(alone[one], alone[other]) for one, other in ways]
         found += _followed(search, base, beside, True, AGAIN)
     return best_of_each(found, lambda each: each.penalised)
 
 
 def _followed(
-    search: Search, base: Fit, beside: Sequence[tuple[Fit, Library]], apart: bool, going_on: int
+    search: Search, base: Fit, beside: Sequence[tuple[Alone, Alone]], apart: bool, going_on: int
 ) -> list[Explanation]:
     """Fits of second effects beside first ones, the best first.
 
@@ -94,23 +97,18 @@ def _misfit(fit: Fit) -> float:
     return fit.q
 
 
-def _worst(fit: Fit) -> Fit:
-    """A fit on the few tests that it leaves unexplained."""
-    return restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
-
-
-def _library(search: Search, base: Fit, fit: Fit) -> Library:
-    """Everything that was simulated of one effect."""
-    effect = fit.effects[0]
-    trials = [trial for trial in (*search.along[effect], fit.trial) if trial.found]
+def _alone(search: Search, base: Fit, fit: Fit) -> Alone:
+    """A single fit with everything that was simulated of its effect."""
+    few = restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
+    trials = [trial for trial in (*search.along[fit.effects[0]], fit.trial) if trial.found]
     size = fit.model.size
     changes = np.array([(base.trial.residual - trial.residual).ravel() for trial in trials])
     x = np.array([trial.point.x[:size] for trial in trials])
     seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
-    return Library(effect, x[seen], changes[seen] if seen.any() else changes[:0])
+    return Alone(fit, few, x[seen], changes[seen] if seen.any() else changes[:0])
 
 
-def _starts(first: Fit, other: Library, apart: bool) -> np.ndarray:
+def _starts(first: Fit, other: Alone, apart: bool) -> np.ndarray:
     """Points (n, k) of the other effect that go best with a fit, if responses add.
 
     ``apart``: the best one of each value of its last number.
@@ -125,17 +123,15 @@ def _starts(first: Fit, other: Library, apart: bool) -> np.ndarray:
     return points[: STARTS_APART if apart else STARTS]
 
 
-def _begin(search: Search, first: Fit, other: Library, apart: bool) -> list[Fit]:
+def _begin(search: Search, first: Alone, other: Alone, apart: bool) -> list[Fit]:
     """Starts of a second effect beside a fitted one, on some of the tests: the best, or all if ``apart``."""
-    effects, few = (*first.effects, other.effect), _worst(first)
-    model = Model(few.model.problem, search.model(*effects).hypothesis, few.model.reference)
-    known = first.x[: first.model.size]
-    points = [model.start(few, np.r_[known, x]) for x in _starts(first, other, apart)]
-    trials = sorted(trials_of(model, points), key=lambda each: each.q)
-    return [
-        Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
-        for trial in (trials if apart else trials[:1])
-    ]
+    fit, few = first.fit, first.few
+    hypothesis = search.model(*fit.effects, *other.fit.effects).hypothesis
+    model = Model(few.model.problem, hypothesis, few.model.reference)
+    known = fit.x[: fit.model.size]
+    trials = trials_of(model, [model.start(few, np.r_[known, x]) for x in _starts(fit, other, apart)])
+    chosen = trials if apart else [min(trials, key=lambda each: each.q)]
+    return [Fit(model, each, np.zeros((each.point.x.size,) * 2), False) for each in chosen]
 
 
 def _finish(search: Search, base: Fit, first: Fit) -> Explanation:

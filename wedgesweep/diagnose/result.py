@@ -3,7 +3,7 @@
 import json
 import os
 from datetime import UTC, datetime
-from math import exp, inf, isfinite, isinf, log, sqrt
+from math import exp, inf, isfinite, log, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -73,15 +73,14 @@ def _change(quantity: Quantity, value: float, moved: float) -> float:
     """Change of a number in the coordinate in which it is fitted."""
     if quantity.logarithmic:
         return log(moved / value)
-    change = moved - value
-    return change if isinf(quantity.turn) else change - quantity.turn * round(change / quantity.turn)
+    return quantity.nearest(moved, value) - value
 
 
 def _interval(quantity: Quantity, value: float, half: float) -> tuple[float, float]:
     """Ends of an interval of half a width ``half`` in the coordinate in which a number is fitted."""
     low, high = quantity.search or (-inf, inf)
     if quantity.angle:
-        half = min(half, 0.5 * quantity.turn)
+        half = min(half, 0.5 * (high - low))
         return value - half, value + half
     if quantity.logarithmic:
         half = min(half, log(high / low))

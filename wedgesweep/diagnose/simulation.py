@@ -9,12 +9,12 @@ import numpy as np
 
 from wedgesweep import parameters
 from wedgesweep.config import Config
-from wedgesweep.diagnose.spectra import REMOVED
+from wedgesweep.diagnose.spectra import REMOVED, regressors
 from wedgesweep.solvers import periodic
 
 # Errors (shares of the input amplitude, and of a step) that add nothing to the noise of 4 % data, and those
 # that add nothing to derivatives either.
-TOLERANCE, EXACT = 1e-6, 1e-8
+TOLERANCE, TIGHT = 1e-6, 1e-8
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 256
 # Periods run before a response with a foreign tone is evaluated, and over which it is where no record says.
@@ -145,10 +145,9 @@ def _projection(ratio: float, harmonics: int, samples: int) -> np.ndarray:
 
     ``ratio``: the tone's frequency over the input's.
     """
-    phase = 2.0 * pi * np.arange(samples) / SAMPLES_PER_PERIOD
-    turns = np.outer(phase, np.r_[np.arange(1, REMOVED + 1), ratio])
-    slow = np.stack([np.ones(samples), np.linspace(-1.0, 1.0, samples)], axis=1)
-    matrix = np.concatenate([slow, np.cos(turns), np.sin(turns)], axis=1)
+    time = np.arange(samples) / SAMPLES_PER_PERIOD
+    turn = np.exp(2j * pi * ratio * time)[:, None]
+    matrix = np.concatenate([regressors(time, 1.0, REMOVED), turn.real, turn.imag], axis=1)
     inverse = np.linalg.pinv(matrix.T @ matrix, hermitian=True) @ matrix.T
-    kept = np.r_[2 : 2 + harmonics, 2 + REMOVED]
-    return inverse[kept] - 1j * inverse[kept + REMOVED + 1]
+    cosines, sines = np.r_[2 : 2 + harmonics, -2], np.r_[2 + REMOVED : 2 + REMOVED + harmonics, -1]
+    return inverse[cosines] - 1j * inverse[sines]

@@ -105,6 +105,11 @@ def _beside(frequencies: np.ndarray | float, frequency: float) -> np.ndarray:
     return np.abs(frequencies - frequency * np.round(frequencies / frequency))
 
 
+def within_band(most: int, frequency: float, interval: float) -> int:
+    """How many harmonics, ``most`` at the most, a record sampled each ``interval`` (s) shows."""
+    return min(most, int(BAND / interval / frequency))
+
+
 def told_apart(tones: np.ndarray, frequency: float, duration: float, harmonics: int) -> np.ndarray:
     """Whether a record (s) tells tones (Hz) from the harmonics, in the band of those that are compared."""
     resolved = _beside(tones, frequency) * duration > RESOLVED
@@ -203,8 +208,7 @@ class _Design(NamedTuple):
 def _design(
     time: np.ndarray, interval: float, frequency: float, tone: float | None, doubled: bool
 ) -> _Design:
-    highest = int(BAND / interval / frequency)
-    removed, kept = min(REMOVED, highest), min(COMPARED, highest)
+    removed, kept = (within_band(most, frequency, interval) for most in (REMOVED, COMPARED))
     columns = [regressors(time, frequency, removed)]
     places = np.array([np.arange(2, 2 + kept), np.arange(2 + removed, 2 + removed + kept)])
     if doubled:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
-from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors
+from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors, within_band
 
 # Chance of a tone where there is only noise.
 CHANCE = 1e-4
@@ -58,7 +58,7 @@ class Joint:
     def __init__(self, spectrum: Spectrum) -> None:
         self.spectrum = spectrum
         self.time = np.arange(spectrum.samples) * spectrum.interval
-        highest = min(REMOVED, int(BAND / spectrum.interval / spectrum.frequency))
+        highest = within_band(REMOVED, spectrum.frequency, spectrum.interval)
         self.basis, _ = np.linalg.qr(regressors(self.time, spectrum.frequency, highest))
 
     def power(self, frequency: float) -> float:
