@@ -21,6 +21,8 @@ friction_law = ["static-dynamic"]
 beta = [1.0]
 amplitude_mm = [0.1]
 """
+# With columns leaning this way friction that is much higher one way locks the wedge.
+LEANING = MODEL + "[suspension]\ncolumn_angle_deg = -2.5\n"
 
 
 def drawn(

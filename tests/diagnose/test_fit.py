@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import AMPLITUDES, drawn
-from wedgesweep.diagnose import gain, next_test
-from wedgesweep.diagnose.fit import _smaller, exact
+from tests.diagnose.drawn import AMPLITUDES, LEANING, drawn
+from wedgesweep import config
+from wedgesweep.diagnose import gain
+from wedgesweep.diagnose.coordinates import Hypothesis
+from wedgesweep.diagnose.fit import STEP, Model, _covariance, _smaller, exact
 from wedgesweep.diagnose.search import Search
 
 LAG = {"velocity_lag": {"time": 3e-4}}
@@ -73,6 +75,34 @@ def test_both_sides_tell_the_same_of_a_smooth_response():
         assert np.abs(one - other).max() < 0.1 * np.abs(one).max()
 
 
+def test_next_to_where_a_wedge_locks_the_near_side_tells():
+    """Without a derivative a number would look as if the tests told nothing of it, or everything."""
+    problem = replace(drawn(), law="coulomb", model=config.parse(LEANING))
+    model = Model(problem, Hypothesis(("directional_friction",)), problem.amplitude)
+
+    def trial(asymmetry):
+        return model.trial(model.start(None, np.array([asymmetry])))
+
+    free, locked = 0.0, 0.4
+    step = STEP * model.width[0]
+    assert trial(free).found
+    assert not trial(locked).found
+    while locked - free > 0.5 * step:
+        middle = 0.5 * (free + locked)
+        free, locked = (middle, locked) if trial(middle).found else (free, middle)
+    beyond, near = (model.tangents(trial(free), side) for side in (1.0, -1.0))
+    assert np.abs(near[0]).max() > 0.0
+    np.testing.assert_array_equal(beyond[0], near[0])
+
+
+def test_what_the_equations_leave_open_is_wide():
+    """A number without any trace, and two that do the same."""
+    covariance = _covariance(np.array([[4.0, 0.0, 0.0], [0.0, 9.0, 9.0], [0.0, 9.0, 9.0]]))
+    assert covariance[0, 0] == pytest.approx(0.25)
+    assert covariance[1, 1] > 1e6
+    assert _covariance(np.diag([4.0, 0.0]))[1, 1] > 1e6
+
+
 def test_amplitudes_within_their_prior_are_taken_up():
     _, base, _ = searched(drawn(std=0.02, off=0.02))
     assert base.fit.p > 1e-3
@@ -118,20 +148,3 @@ def test_retuning_alone_gains_nothing():
     base_square, extended, noise = measured.totals()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
-
-
-def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
-    """Covariances as large as 1e30 stand for numbers of which the tests say nothing."""
-    problem = drawn(LAG, known=False)
-    *_, found = searched(problem, "velocity_lag", "displacement_gain")
-    omega, amplitude = 2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1])
-    distances = []
-    for factor in (1.0, 1e30):
-        fits = [replace(each.fit, covariance=factor * each.fit.covariance) for each in found]
-        one, other = (next_test._predict(fit, omega, amplitude) for fit in fits)
-        weight = next_test._weights(problem, [one, other])
-        distances.append(next_test._distances(one, other, weight))
-        np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
-    told, open_ = distances
-    assert (open_ > 0.0).all()
-    assert (open_ < told).all()

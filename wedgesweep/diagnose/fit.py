@@ -29,6 +29,8 @@ ITERATIONS = 25
 ARRIVED, ARRIVED_SHARE = 0.02, 1e-3
 # Damping of a step at the start, and at which it has failed.
 DAMPING, STUCK = 1e-3, 1e8
+# Eigenvalue of scaled normal equations below which they leave a combination of numbers open.
+OPEN = 1e-12
 # Largest step of one iteration, in widths of the coordinates.
 LONGEST_STEP = 3.0
 # Largest relative step of an input amplitude.
@@ -215,21 +217,30 @@ class Model:
 
         ``side``: to which side (1 or -1) numbers are changed, where the bounds allow it.
         """
+        problem, x = self.problem, trial.point.x
+        steps = np.r_[side * STEP * self.width, side * AMPLITUDE_STEP]
+        low, high = np.append(self.low - x, -np.inf), np.append(self.high - x, np.inf)
+        steps = np.where((low <= steps) & (steps <= high), steps, -steps)
+        change, found = self._changes(trial, np.diag(steps))
+        # Beyond the limit at which a wedge locks there is no response: the near side tells.
+        lost = np.flatnonzero(~found.all(axis=1) & (low <= -steps) & (-steps <= high))
+        if lost.size:
+            near, near_found = self._changes(trial, np.diag(-steps)[lost])
+            change[lost] = np.where(found[lost][..., None], change[lost], -near)
+            found[lost] |= near_found
+        change = np.where(found[..., None], change, 0.0) / steps[:, None, None]
+        columns = np.moveaxis(change, 0, -1)
+        orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
+        turn = real(-1j * orders * problem.turned(trial.whitened, trial.phase))
+        return columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1)
+
+    def _changes(self, trial: Trial, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Changes of the residual (n, T, m) by steps (n, k + u + 1), the last of amplitudes; found or not."""
         point, problem = trial.point, self.problem
-        step = side * STEP * self.width
-        step = np.where((point.x + step <= self.high) & (point.x + step >= self.low), step, -step)
-        x = np.concatenate([point.x + np.diag(step), point.x[None]])
-        amplitude = np.repeat(point.amplitude[None], len(x), axis=0)
-        amplitude[-1] += side * AMPLITUDE_STEP
+        x, amplitude = point.x + steps[:, :-1], point.amplitude + steps[:, -1:]
         harmonics, found, _ = self.simulate(x, amplitude, point.warm.repeated(len(x)))
         moved = problem.turned(problem.whiten(harmonics), np.repeat(trial.phase[None], len(x), axis=0))
-        here = problem.turned(trial.whitened, trial.phase)
-        change = np.where(found[:, :, None, None], here - moved, 0.0)
-        change /= np.r_[step, side * AMPLITUDE_STEP][:, None, None, None]
-        columns = np.moveaxis(real(change), 0, -1)
-        orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
-        turn = real(-1j * orders * here)
-        return columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1)
+        return real(problem.turned(trial.whitened, trial.phase) - moved), found
 
     def equations(self, trial: Trial, cautious: bool = False) -> "Equations":
         """Normal equations of a step from a trial.
@@ -380,5 +391,9 @@ def _step(model: Model, point: Point, equations: Equations, damping: float) -> t
 
 
 def _covariance(matrix: np.ndarray) -> np.ndarray:
-    scale = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    return np.linalg.pinv(matrix / np.outer(scale, scale), rcond=1e-12) / np.outer(scale, scale)
+    """Inverse of the matrix of normal equations; what they say nothing of is wide, not exact."""
+    size = np.sqrt(np.diag(matrix))
+    size = np.where(size > 0.0, size, 1.0)
+    values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
+    inverse = vectors / np.maximum(values, OPEN) @ vectors.T
+    return inverse / np.outer(size, size)

@@ -2,7 +2,9 @@
 
 Each explanation predicts the harmonics of a test that was not made. Their distance counts only what its
 own numbers, as uncertain as the data leave them, and an amplitude that is known to some percent cannot
-take up (Atkinson and Fedorov, 1975, with the fit's covariance as prior).
+take up (Atkinson and Fedorov, 1975, with the fit's covariance as prior). Next to breakaway predictions
+differ by any amount, and a fit to what is measured there has many minima: a test counts as what it
+and its neighbours in amplitude tell at the least.
 """
 
 from collections.abc import Sequence
@@ -10,6 +12,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from scipy.ndimage import minimum_filter1d
 
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.fit import AMPLITUDE_STEP, STEP, Fit
@@ -18,6 +21,8 @@ from wedgesweep.diagnose.problem import Problem, real
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
 # Input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.
 ACCELERATIONS = np.geomspace(0.3, 4.0, 8)
+# Least share of these tests that an explanation must predict; elsewhere its wedge locks.
+PREDICTED = 0.5
 # Squared distance at which two explanations are told apart.
 ENOUGH = 30.0
 # Largest standard deviation of a number, in widths of its coordinate.
@@ -28,7 +33,7 @@ AMPLITUDE_STD = 0.02
 
 @dataclass(frozen=True)
 class NextTest:
-    """A test to make: frequency (Hz), amplitude (m), the two explanations closest there, their distance."""
+    """A test to make: frequency (Hz), amplitude (m), the closest two explanations that it separates."""
 
     frequency: float
     amplitude: float
@@ -46,45 +51,75 @@ class _Prediction:
 
 
 def recommend(fits: Sequence[Fit]) -> NextTest | None:
-    """Test that separates all fits from the first one; None where there is nothing to separate."""
+    """Test that separates most fits from one another; None where there is nothing to separate."""
     if len(fits) < 2:
         return None
-    problem = fits[0].model.problem
     frequency, acceleration = (each.ravel() for each in np.meshgrid(FREQUENCIES, ACCELERATIONS))
     omega = 2.0 * np.pi * frequency
     amplitude = acceleration / omega**2
-    predictions = [_predict(fit, omega, amplitude) for fit in fits]
-    weight = _weights(problem, predictions)
-    pairs = list(combinations(range(len(fits)), 2))
-    distances = np.array([_distances(predictions[i], predictions[j], weight) for i, j in pairs])
-    closest = np.argmin(distances, axis=0)
-    reached = distances.min(axis=0)
-    enough = np.flatnonzero(reached >= ENOUGH)
-    best = int(enough[np.argmin(acceleration[enough])]) if enough.size else int(np.argmax(reached))
-    names = [" + ".join(fit.effects) or "base" for fit in fits]
-    i, j = pairs[closest[best]]
-    return NextTest(
-        float(frequency[best]), float(amplitude[best]), (names[i], names[j]), float(reached[best])
-    )
+    made = [(fit, _predict(fit, omega, amplitude)) for fit in fits]
+    made = [each for each in made if each[1].found.mean() >= PREDICTED]
+    if len(made) < 2:
+        return None
+    weight = _weights(fits[0].model.problem, [prediction for _, prediction in made])
+    pairs = list(combinations(made, 2))
+    distances = np.array([_distances(one, other, weight) for (_, one), (_, other) in pairs])
+    best = _choice(distances)
+    here = distances[:, best]
+    told = np.flatnonzero(here >= ENOUGH) if (here >= ENOUGH).any() else np.arange(len(pairs))
+    closest = int(told[np.argmin(here[told])])
+    (one, _), (other, _) = pairs[closest]
+    names = (" + ".join(one.effects) or "base", " + ".join(other.effects) or "base")
+    return NextTest(float(frequency[best]), float(amplitude[best]), names, float(here[closest]))
+
+
+def _choice(distances: np.ndarray) -> int:
+    """The test (place in the grid) that tells most pairs apart, the cheapest of several.
+
+    ``distances`` (pairs, n). Where none tells any, the one at which the closest pair lies farthest apart.
+    """
+    grid = distances.reshape(len(distances), ACCELERATIONS.size, FREQUENCIES.size)
+    sure = minimum_filter1d(grid, 3, axis=1, mode="nearest")
+    told = (sure >= ENOUGH).sum(axis=0)
+    least = np.where(told == told.max(), sure.min(axis=0), -1.0)
+    if not told.any():
+        return int(np.argmax(least))
+    row = int(np.argmax(told.max(axis=1)))
+    return row * FREQUENCIES.size + int(np.argmax(least[row]))
 
 
 def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
-    model, problem = fit.model, fit.model.problem
-    spread, step = _spread(fit), STEP * model.width
-    points = [fit.x, *(fit.x + step * row for row in np.eye(len(fit.x)))]
-    rows = [simulation.records(problem.model, problem.law, model.values(x), omega, amplitude) for x in points]
-    louder = rows[0].copy()
-    louder["amplitude"] *= 1.0 + AMPLITUDE_STEP
-    done = simulation.respond(np.concatenate(rows[:1]), simulation.cold(omega.size), problem.shape[1])
-    rest = np.concatenate([*rows[1:], louder])
-    moved = simulation.respond(rest, done.warm.repeated(len(rows)), problem.shape[1])
-    here = done.harmonics[:, : problem.shape[0]]
-    there = moved.harmonics[:, : problem.shape[0]].reshape(len(rows), *here.shape)
+    steps = np.diag(np.r_[STEP * fit.model.width, AMPLITUDE_STEP])
+    here, found, warm = _responses(fit, omega, amplitude, 0.0 * steps[:1], simulation.cold(omega.size))
+    there, moved, _ = _responses(fit, omega, amplitude, steps, warm.repeated(len(steps)))
     change = there - here
-    by_number = np.moveaxis(change[:-1], 0, -1) / step @ spread if len(fit.x) else np.zeros((*here.shape, 0))
-    by_amplitude = change[-1][..., None] / AMPLITUDE_STEP * AMPLITUDE_STD
-    ok = done.found & moved.found.reshape(len(rows), -1).all(axis=0)
-    return _Prediction(here, np.concatenate([by_number, by_amplitude], axis=-1), ok)
+    if not moved.all():
+        # Beyond the limit at which a wedge locks there is no response: the near side tells.
+        near, near_moved, _ = _responses(fit, omega, amplitude, -steps, warm.repeated(len(steps)))
+        change = np.where(moved[..., None, None], change, here - near)
+        moved |= near_moved
+    change = np.moveaxis(change, 0, -1) / np.diag(steps)
+    spread = np.concatenate([change[..., :-1] @ _spread(fit), change[..., -1:] * AMPLITUDE_STD], axis=-1)
+    return _Prediction(here[0], spread, found[0] & moved.all(axis=0))
+
+
+def _responses(
+    fit: Fit, omega: np.ndarray, amplitude: np.ndarray, steps: np.ndarray, warm: simulation.Warm
+) -> tuple[np.ndarray, np.ndarray, simulation.Warm]:
+    """Harmonics (j, n, C, H) of n tests with a fit's numbers moved by ``steps`` (j, k + u + 1); found or not.
+
+    The last step is the relative one of the amplitude.
+    """
+    model, problem = fit.model, fit.model.problem
+    rows = [
+        simulation.records(
+            problem.model, problem.law, model.values(fit.x + step[:-1]), omega, amplitude * (1.0 + step[-1])
+        )
+        for step in steps
+    ]
+    done = simulation.respond(np.concatenate(rows), warm, problem.shape[1])
+    harmonics = done.harmonics[:, : problem.shape[0]].reshape(len(steps), omega.size, *problem.shape)
+    return harmonics, done.found.reshape(len(steps), -1), done.warm
 
 
 def _spread(fit: Fit) -> np.ndarray:

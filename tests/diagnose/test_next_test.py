@@ -1,0 +1,102 @@
+"""Recommended tests are worth making: they tell explanations apart, and their data can be fitted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.drawn import LEANING, drawn
+from wedgesweep import config
+from wedgesweep.diagnose import next_test, simulation
+from wedgesweep.diagnose.coordinates import Hypothesis
+from wedgesweep.diagnose.fit import Fit, Model
+from wedgesweep.diagnose.next_test import ACCELERATIONS, ENOUGH, FREQUENCIES, _choice
+from wedgesweep.diagnose.search import Search
+
+SHAPE = (ACCELERATIONS.size, FREQUENCIES.size)
+FAR = 10.0 * ENOUGH
+
+
+def explained(effect, values, std):
+    """A Coulomb fit of one effect, its numbers known to some standard deviations."""
+    problem = replace(drawn(), law="coulomb", model=config.parse(LEANING))
+    model = Model(problem, Hypothesis((effect,)), problem.amplitude)
+    x = model.hypothesis.at({effect: values})
+    trial = model.trial(model.start(None, x))
+    return Fit(model, trial, np.diag(np.atleast_1d(std)) ** 2.0, True)
+
+
+def gain(fit, test, factor):
+    """Fundamental of the response over the input, at a test whose amplitude is off by a factor."""
+    omega, amplitude = (np.array([each]) for each in (2.0 * np.pi * test.frequency, factor * test.amplitude))
+    problem = fit.model.problem
+    rows = simulation.records(problem.model, problem.law, fit.model.values(fit.x), omega, amplitude)
+    return abs(simulation.respond(rows, simulation.cold(1), 1).harmonics[0, 0, 0]) / amplitude[0]
+
+
+@pytest.fixture(scope="module")
+def suspects():
+    return [
+        explained("friction_level", {"scale": 0.74}, 0.01),
+        explained("bolster_stiffness", {"scale": 1.18}, 0.01),
+    ]
+
+
+def test_the_next_test_makes_every_suspect_move(suspects):
+    """Next to breakaway Coulomb predictions are as far apart as one likes, and as hard to fit."""
+    test = next_test.recommend(suspects)
+    assert test.distance >= ENOUGH
+    assert set(test.separates) == {"friction_level", "bolster_stiffness"}
+    for fit in suspects:
+        assert gain(fit, test, 0.8) > 0.5 * gain(fit, test, 1.0) > 0.0
+
+
+def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
+    locking = explained("directional_friction", {"asymmetry": 0.4}, 0.01)
+    assert not next_test._predict(locking, np.array([60.0]), np.array([1e-3])).found.any()
+    assert next_test.recommend([*suspects, locking]) == next_test.recommend(suspects)
+    assert next_test.recommend([suspects[0], locking]) is None
+
+
+def test_one_suspect_needs_no_test(suspects):
+    assert next_test.recommend(suspects[:1]) is None
+
+
+def test_the_cheapest_test_is_chosen_that_would_do_with_a_neighbour_s_amplitude():
+    distances = np.zeros((1, *SHAPE))
+    distances[0, 0, 0] = FAR  # alone
+    distances[0, 3:, 4] = FAR
+    distances[0, 5:, 7] = 2.0 * FAR
+    assert _choice(distances.reshape(1, -1)) == np.ravel_multi_index((4, 4), SHAPE)
+
+
+def test_a_pair_that_nothing_tells_apart_does_not_spoil_the_others():
+    distances = np.zeros((2, *SHAPE))
+    distances[0, 1:4, 2] = FAR
+    distances[1, 6, 9] = 0.5 * ENOUGH
+    assert _choice(distances.reshape(2, -1)) == np.ravel_multi_index((2, 2), SHAPE)
+
+
+def test_where_none_tells_enough_the_farthest_is_chosen():
+    distances = np.full((2, *SHAPE), 0.1)
+    distances[:, 5:, 6] = 0.4 * ENOUGH
+    assert _choice(distances.reshape(2, -1)) in np.ravel_multi_index(([6, 7], [6, 6]), SHAPE)
+
+
+def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
+    """Covariances as large as 1e30 stand for numbers of which the tests say nothing."""
+    problem = drawn({"velocity_lag": {"time": 3e-4}}, known=False)
+    search = Search(problem, ("velocity_lag", "displacement_gain"))
+    base = search.base().fit
+    found = [search.single(effect, base).fit for effect in search.effects]
+    omega, amplitude = 2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1])
+    distances = []
+    for factor in (1.0, 1e30):
+        fits = [replace(fit, covariance=factor * fit.covariance) for fit in found]
+        one, other = (next_test._predict(fit, omega, amplitude) for fit in fits)
+        weight = next_test._weights(problem, [one, other])
+        distances.append(next_test._distances(one, other, weight))
+        np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
+    told, open_ = distances
+    assert (open_ > 0.0).all()
+    assert (open_ < told).all()
