@@ -3,15 +3,18 @@
 from math import pi
 
 import numpy as np
+from scipy.optimize import root_scalar
 
-from wedgesweep import contact as contacts
-from wedgesweep.compiled import compiled
-from wedgesweep.damper import Contact
+from wedgesweep.diagnose.accelerations import accelerations
 from wedgesweep.diagnose.fit import Fit
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.simulation import records
 
 PHASES = 256
+# A harmonic counts as far as its square is above this many times its noise.
+HEARD = 4.0
+# First guess at the mean of a motion, over its peak-to-peak.
+FIRST_PLACE = 0.01
 # A plateau is where the velocity stays below this share of its peak.
 PLATEAU = 0.05
 
@@ -32,10 +35,12 @@ def measured_from_phase_zero(fit: Fit) -> np.ndarray:
 def velocity(problem: Problem, harmonics: np.ndarray) -> np.ndarray:
     """Velocity harmonics (T, H), from the displacement where there is no velocity channel."""
     derived = 1j * problem.omega[:, None] * problem.orders * harmonics[:, 0]
-    if problem.shape[0] == 1:
-        return derived
-    has = np.array([s.mean.shape[0] == 2 for s in problem.spectra])
-    return np.where(has[:, None], harmonics[:, -1], derived)
+    return np.where(_has_velocity(problem), harmonics[:, -1], derived)
+
+
+def _has_velocity(problem: Problem) -> np.ndarray:
+    """Whether (T, 1) tests have a velocity channel."""
+    return np.array([[s.mean.shape[0] == 2] for s in problem.spectra])
 
 
 def peak_to_peak(displacement: np.ndarray) -> np.ndarray:
@@ -61,37 +66,42 @@ def supplied(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
 def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     """Force on the bolster (N, shape (T, PHASES)) that the measured motion has and the model lacks.
 
-    The measured acceleration less that of the model in the same state, times the mass that moves.
+    The measured acceleration less that of the model in the same state, times the mass that moves. Both in
+    the harmonics that stand above the noise: the others, times omega^2 h^2, would hide the force. The
+    bolster's mean place, which no test tells, is where the model has no mean acceleration.
     """
     problem, rows = fit.model.problem, _rows(fit)
+    heard = _heard(problem)
     rate = velocity(problem, harmonics)
-    x, v = -waveform(harmonics[:, 0]), -waveform(rate)
-    a = -waveform(1j * problem.omega[:, None] * problem.orders * rate)
-    return np.array([_leftover(rows[t : t + 1], x[t], v[t], a[t]) for t in range(problem.tests)])
+    x, v = -waveform(heard * harmonics[:, 0]), -waveform(heard * rate)
+    model = np.array([_in_place(rows[t : t + 1], x[t], v[t]) for t in range(problem.tests)])
+    simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : problem.shape[1] + 1]
+    measured = -1j * problem.omega[:, None] * problem.orders * rate
+    moved = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] ** 2
+    return moved[:, None] * waveform(heard * (measured - simulated))
+
+
+def _in_place(one: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """The model's acceleration about the mean place at which it averages to zero."""
+    acceleration = np.empty_like(x)
+
+    def mean(place: float) -> float:
+        accelerations(one, x + place, v, acceleration)
+        return float(acceleration.mean())
+
+    place = root_scalar(mean, x0=0.0, x1=FIRST_PLACE * np.ptp(x), method="secant", maxiter=20).root
+    mean(place)
+    return acceleration
+
+
+def _heard(problem: Problem) -> np.ndarray:
+    """Share (T, H) of the harmonics of the velocity that is no noise, by Wiener's rule."""
+    above = 0.5 * (np.abs(problem.measured) * problem.weight)[..., : problem.shape[1]] ** 2
+    share = 1.0 - HEARD / np.maximum(above, HEARD)
+    return np.where(_has_velocity(problem), share[:, -1], share[:, 0])
 
 
 def _rows(fit: Fit) -> np.ndarray:
     problem = fit.model.problem
     values = fit.model.values(fit.x)
     return records(problem.model, problem.law, values, problem.omega, fit.amplitudes())
-
-
-@compiled
-def _accelerations(parameters, x, v, out):
-    """Write the model's z'' in states on an even grid over one period."""
-    p = parameters[0]
-    for i in range(x.size):
-        t = 2.0 * pi / p.omega * i / x.size
-        contact, _ = contacts.initial(t, x[i], v[i], p)
-        base = -p.amplitude * p.omega**2 * np.sin(p.omega * t)
-        if contacts.stuck(contact, p):
-            out[i] = 0.0
-        else:
-            out[i] = contacts.acting(x[i], v[i], base, Contact(*contact), p).acceleration
-
-
-def _leftover(one: np.ndarray, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-    model = np.empty(x.size)
-    _accelerations(one, x, v, model)
-    moved = one["bolster_mass"] + 2.0 * one["wedge_mass"] * one["column_ratio"] ** 2
-    return moved * (a - model)
