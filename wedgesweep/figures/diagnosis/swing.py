@@ -43,6 +43,7 @@ def draw(found: Diagnosed) -> Figure:
             ax.plot(frequency[rows], values, **{**look.dot(model), **look.line(model), "linewidth": 0.8})
     if data["measured_peak_to_peak"].max() > 20.0 * data["measured_peak_to_peak"].min():
         ax.set_yscale("log")
+        style.log_ticks(ax.yaxis)
     ax.margins(x=0.12)
     style.label([ax], "frequency [Hz]", "peak-to-peak of $x-y$ [mm]")
     look.legend(figure, found, dots=True)
