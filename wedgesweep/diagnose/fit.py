@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.coordinates import Hypothesis, Values
@@ -104,7 +104,7 @@ class Fit:
     @property
     def p(self) -> float:
         """Probability of a misfit this large if the model is right."""
-        return float(chi2.sf(self.q, self.dof))
+        return float(chdtrc(self.dof, self.q))
 
     @property
     def values(self) -> Values:

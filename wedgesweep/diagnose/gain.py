@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm, t
+from scipy.special import ndtr, stdtrit
 
 from wedgesweep.diagnose.fit import Fit, Model, Point, Trial, refine, restrict
 
@@ -84,7 +84,7 @@ class Gain:
         drawn = np.random.default_rng(0).integers(0, len(tests), (RESAMPLED, len(tests)))
         base, extended, noise = sums[drawn].sum(axis=1).T
         removed = np.where(base > noise, (base - extended) / np.where(base > noise, base - noise, 1.0), 0.0)
-        tail = norm.sf(np.sqrt(len(tests) / (len(tests) - 1.0)) * t.isf(0.025, len(tests) - 1))
+        tail = ndtr(np.sqrt(len(tests) / (len(tests) - 1.0)) * stdtrit(len(tests) - 1, 0.025))
         low, high = np.quantile(removed, [tail, 1.0 - tail])
         return [float(low), float(high)]
 

@@ -11,7 +11,7 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import gamma
+from scipy.special import gammaincc
 
 # Harmonics that are compared with a simulation, and that are taken out before the noise is measured.
 COMPARED, REMOVED = 16, 40
@@ -154,7 +154,7 @@ def _doubled(spectrum: Spectrum, tone: float | None) -> bool:
         return False
     odd = np.arange(1, 2 * spectrum.harmonics + 2, 2)
     power = np.sort(spectrum.excess_at(0.5 * spectrum.frequency * odd))[:-1]
-    return bool(gamma.sf(power.sum(), power.size * spectrum.mean.shape[0]) < DOUBLED)
+    return bool(gammaincc(power.size * spectrum.mean.shape[0], power.sum()) < DOUBLED)
 
 
 def fitted(
