@@ -3,7 +3,8 @@
 A weak effect alone may be half of the right pair, so that no effect is dropped for its own fit: beside
 each of the best single fits every other effect is tried. Where it starts is chosen as if responses added;
 what promises most after a few iterations on some of the tests goes on to more of both (successive halving).
-Where none will do, the best pairs begin once more, from starts that are no neighbours.
+Where none will do, effects that only show in pairs are tried beside every other as well, and the best pairs
+begin once more, from starts that are no neighbours.
 """
 
 from collections.abc import Sequence
@@ -23,7 +24,7 @@ ROUNDS = ((3, 1000), (5, 40))
 GOING_ON = 8
 # Tests that the first look takes.
 FEW = 6
-# Where no pair will do: starting points of a second look at the best pairs, and how many go on from it.
+# Where no pair will do: starting points of another look at the best pairs, and how many pairs are the best.
 STARTS_APART, AGAIN = 4, 4
 # Pairs whose misfit is this close to the best have each of their effects fitted alone again.
 CLOSE = 50.0
@@ -51,11 +52,27 @@ def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Exp
     leading = sorted(alone, key=lambda effect: alone[effect].fit.q)[:PARTNERS]
     beside = [(alone[one], alone[other]) for one in leading for other in alone if one != other]
     found = _followed(search, base, beside, False, GOING_ON)
-    if found and found[0].fit.p < verdict.ADEQUATE:
-        ways = [pair for each in found for pair in permutations(each.effects)]
+    if _none_will_do(found):
+        # Alone they stood behind, beside others they show: each may be the first of a pair, too.
+        shown = dict.fromkeys(effect for each in found[:AGAIN] for effect in each.effects)
+        beside = [
+            (alone[one], alone[other]) for one in shown for other in alone if one not in (*leading, other)
+        ]
+        found = best_of_each(found + _followed(search, base, beside, False, GOING_ON), _penalised)
+    if _none_will_do(found):
+        ways = [pair for each in found[:GOING_ON] for pair in permutations(each.effects)]
         beside = [(alone[one], alone[other]) for one, other in ways]
         found += _followed(search, base, beside, True, AGAIN)
-    return best_of_each(found, lambda each: each.penalised)
+    return best_of_each(found, _penalised)
+
+
+def _none_will_do(found: Sequence[Explanation]) -> bool:
+    """Whether the best of the pairs, if there is any, is no explanation."""
+    return bool(found) and found[0].fit.p < verdict.ADEQUATE
+
+
+def _penalised(each: Explanation) -> float:
+    return each.penalised
 
 
 def _followed(
@@ -72,7 +89,7 @@ def _followed(
         entered = fits if apart else best_of_each(fits, _misfit)[:entering]
         fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
     found = search.each(lambda fit: _finish(search, base, fit), best_of_each(fits, _misfit)[:going_on])
-    return sorted(found, key=lambda each: each.penalised)
+    return sorted(found, key=_penalised)
 
 
 def halves(search: Search, both: Sequence[Explanation]) -> list[Explanation]:
