@@ -177,6 +177,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
             "excess_base": base - dof,
             "p_base": float(chi2.sf(base, dof)),
             "p_extended": float(chi2.sf(extended, dof - 2 * len(attempt))),
+            "p_where_it_shows": float(chi2.sf(extended, dof - 2 * len(attempt))),
             "tests": _tests(data, known),
         },
         "gain": _gain(held_out),

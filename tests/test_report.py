@@ -125,7 +125,7 @@ SAID = {
     "consistent-with": ("The tests are consistent with", NAMED, "evidence is weak"),
     "tied": ("Two explanations", "(guide_friction, behind by 3.2)", "24 Hz and 0.1 mm would tell them apart"),
     "data-insufficient": ("cannot show what", "24 Hz and 0.1 mm", "stribeck from guide_friction"),
-    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, is still off by"),
+    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, leaves an error of"),
 }
 
 
@@ -137,6 +137,26 @@ def test_sentence(verdict, tmp_path):
         assert words in sentence
     # One sentence: a stop only inside numbers and at the end.
     assert not re.search(r"\.\s", sentence)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "change", "words"),
+    [
+        ("consistent-with", {"misfit": {"excess_base": 300.0}}, "(excess misfit 300 over noise)"),
+        (
+            "consistent-with",
+            {"misfit": {"excess_base": 3000.0, "p_where_it_shows": 0.002}},
+            "(it leaves more than noise in the tests that show it, p = 0.002)",
+        ),
+        ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
+    ],
+)
+def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, verdict)
+    for part, values in change.items():
+        document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert words in plain(report.sentence(tmp_path))
 
 
 @pytest.mark.usefixtures("no_pictures")

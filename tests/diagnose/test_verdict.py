@@ -2,24 +2,26 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from scipy.stats import chi2
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.search import Explanation
-from wedgesweep.diagnose.verdict import Thresholds, decide
+from wedgesweep.diagnose.verdict import Thresholds, decide, on_unseen_tests, where_it_shows
 
 DOF, PRICE = 700, 12.6
 
 
-def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1):
-    problem = SimpleNamespace(tests=tests, uncertain=uncertain or {})
+def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None):
+    problem = SimpleNamespace(tests=tests, uncertain=uncertain or {}, dof=np.full(tests, DOF / tests))
     model = SimpleNamespace(problem=problem, size=numbers * len(effects))
     fit = SimpleNamespace(
         q=q,
         excess=q - DOF,
         p=float(chi2.sf(q, DOF)),
         model=model,
+        trial=SimpleNamespace(by_test=np.full(tests, q / tests) if by_test is None else by_test),
         effects=effects,
         values={effect: {"scale": scale} for effect in effects},
     )
@@ -43,6 +45,39 @@ def test_a_strong_cause_is_named():
 def test_weak_evidence_is_only_consistent():
     found = verdict_of(explained(1000.0), explained(705.0, "stribeck"), explained(800.0, "preload"))
     assert found.verdict == "consistent-with"
+
+
+def shared(there, elsewhere):
+    """Squared misfits of two tests that show something, and of ten that do not."""
+    return np.r_[np.full(2, there), np.full(10, elsewhere)]
+
+
+def test_tests_that_show_nothing_cannot_make_up_for_a_misfit():
+    """Over all tests it is noise, and in those that the cause is for it is not."""
+    base = shared(2000.0, DOF / 12)
+    right, wrong = shared(DOF / 12, DOF / 12), shared(95.0, 52.0)
+    named = [
+        verdict_of(explained(base.sum(), by_test=base), explained(q.sum(), "stribeck", by_test=q)).verdict
+        for q in (right, wrong)
+    ]
+    assert named == ["named", "consistent-with"]
+    assert chi2.sf(wrong.sum(), DOF) > verdict.ADEQUATE
+
+
+def test_where_nothing_shows_all_that_is_left_counts():
+    quiet = explained(600.0)
+    assert where_it_shows(quiet.fit, quiet.fit) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("interval", "expected"),
+    [([0.9, 1.02], "named"), ([0.0, 1.0], "named"), ([-0.3, 1.0], "none-of-mine"), (None, "named")],
+)
+def test_a_cause_that_may_make_unseen_tests_worse_is_none(interval, expected):
+    base, best = explained(5000.0), explained(705.0, "stribeck")
+    found = on_unseen_tests(verdict_of(base, best), base, interval)
+    assert (found.verdict, found.best) == (expected, best)
+    assert (found.cause is None) == (expected == "none-of-mine")
 
 
 def test_equally_good_explanations_are_tied():

@@ -108,6 +108,7 @@ def diagnose(
     if finding.best is not None and problem.tests > 1:
         progress("held-out tests")
         measured_gain = gain.measure(base.fit, finding.best.fit, search.each)
+        finding = verdict.on_unseen_tests(finding, base, measured_gain.interval)
     progress("next test")
     following = next_test.recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(

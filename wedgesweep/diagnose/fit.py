@@ -141,9 +141,7 @@ class Model:
     @property
     def dof(self) -> int:
         """Data less what is fitted without a prior: phases, unknown amplitudes, the hypothesis."""
-        problem = self.problem
-        unknown = int(np.isinf(problem.amplitude_std).sum())
-        return int(problem.points.sum()) - problem.tests - unknown - int(self.tones.sum()) - self.size
+        return int(self.problem.dof.sum()) - int(self.tones.sum()) - self.size
 
     @property
     def tones(self) -> np.ndarray:

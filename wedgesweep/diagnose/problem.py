@@ -105,6 +105,11 @@ class Problem:
         """Real numbers that each test contributes, (T,)."""
         return np.array([s.points for s in self.spectra])
 
+    @property
+    def dof(self) -> np.ndarray:
+        """Points of each test less its start phase, and its amplitude where that is unknown, (T,)."""
+        return self.points - 1 - np.isinf(self.amplitude_std)
+
     def whiten(self, harmonics: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) over their noise, complex, with the channels' common noise taken out."""
         scaled = harmonics[..., : self.shape[0], :] * self.weight

@@ -17,6 +17,7 @@ from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit import Fit
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.search import PENALTY, TONE_FREQUENCY, Explanation
+from wedgesweep.diagnose.verdict import where_it_shows
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
@@ -124,6 +125,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             "excess_base": _finite(base.fit.excess),
             "p_base": _finite(base.fit.p),
             "p_extended": _finite(best.fit.p),
+            "p_where_it_shows": _finite(where_it_shows(base.fit, best.fit)),
             "tests": _tests(found),
         },
         "gain": _gain(found.gain),
@@ -174,7 +176,7 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
                 "noise_velocity_mm_per_s": 1e3 * noise[1] if noise.size > 1 else None,
                 "q_base": _finite(base.trial.by_test[t]),
                 "q_extended": _finite(best.trial.by_test[t]),
-                "dof": int(problem.points[t]) - 1 - int(np.isinf(problem.amplitude_std[t])),
+                "dof": int(problem.dof[t]),
             }
         )
     return rows

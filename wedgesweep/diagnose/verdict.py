@@ -3,6 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from scipy.special import chdtrc
+
+from wedgesweep.diagnose.fit import Fit
 from wedgesweep.diagnose.search import Explanation
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
@@ -17,6 +21,8 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 GAP = 10.0
 # Least probability of the misfit that an explanation leaves: to be named, and to be an explanation at all.
 ADEQUATE, POSSIBLE = 0.01, 1e-5
+# Share of the base model's excess whose tests a cause must explain for themselves.
+SHOWN = 0.9
 # Excess chi-squared of the base model that it takes to name a cause.
 STRONG = 800.0
 # With fewer tests no cause can be checked on a test that it was not fitted to.
@@ -93,8 +99,32 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    strong = base.fit.excess >= thresholds.strong and best.fit.p >= ADEQUATE
+    adequate = min(best.fit.p, where_it_shows(base.fit, best.fit)) >= ADEQUATE
+    strong = base.fit.excess >= thresholds.strong and adequate
     return Finding(NAMED if strong else CONSISTENT, best, ())
+
+
+def where_it_shows(base: Fit, fit: Fit) -> float:
+    """Probability of what a fit leaves in the tests that hold most of the base model's excess.
+
+    Tests in which nothing shows cannot make up for it there with less noise than they should have.
+    """
+    dof = fit.model.problem.dof
+    excess = np.maximum(base.trial.by_test - dof, 0.0)
+    order = np.argsort(-excess)
+    most = int(np.searchsorted(np.cumsum(excess[order]), SHOWN * excess.sum()))
+    rows = order[: most + 1]
+    return float(chdtrc(max(dof[rows].sum() - fit.model.size, 1), fit.trial.by_test[rows].sum()))
+
+
+def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[float] | None) -> Finding:
+    """The finding, unless its cause may well make worse what it was not fitted to.
+
+    ``interval``: 95 % interval of the excess that the cause removes there, None if there is none.
+    """
+    if finding.verdict in (NAMED, CONSISTENT) and interval is not None and interval[0] < 0.0:
+        return Finding(_nobody(base), finding.best, finding.rivals)
+    return finding
 
 
 def _nobody(base: Explanation) -> str:

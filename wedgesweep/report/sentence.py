@@ -18,7 +18,7 @@ def _nothing(found: Diagnosed) -> str:
     tests = words.counted(found.data.sizes["test"], "test")
     return (
         f"Nothing is missing: over {tests} the simulation is off by {_error(found, 'base')}, which is what "
-        f"noise alone leaves (p = {words.probability(misfit['p_base'])})."
+        f"noise alone leaves ({words.p_value(misfit['p_base'])})."
     )
 
 
@@ -32,10 +32,17 @@ def _named(found: Diagnosed) -> str:
 
 def _consistent(found: Diagnosed) -> str:
     return (
-        f"The tests are consistent with {_causes(found)}, but the evidence is weak "
-        f"(excess misfit {digits.number(found.document['misfit']['excess_base'])} over noise); "
+        f"The tests are consistent with {_causes(found)}, but the evidence is weak ({_weakness(found)}); "
         f"{_improvement(found)}."
     )
+
+
+def _weakness(found: Diagnosed) -> str:
+    misfit, strong = found.document["misfit"], found.document["method"]["strong_excess"]
+    if strong is None or misfit["excess_base"] < strong:
+        return f"excess misfit {digits.number(misfit['excess_base'])} over noise"
+    p = min(misfit["p_extended"], misfit["p_where_it_shows"])
+    return f"it leaves more than noise in the tests that show it, {words.p_value(p)}"
 
 
 def _tied(found: Diagnosed) -> str:
@@ -62,14 +69,21 @@ def _insufficient(found: Diagnosed) -> str:
 def _none(found: Diagnosed) -> str:
     tried = [each for each in found.document["candidates"] if each["effects"]]
     single = words.counted(len([each for each in tried if len(each["effects"]) == 1]), "candidate")
-    best = (
-        f"; the best attempt, {words.together(found.added)}, is still off by {_error(found, 'extended')}"
-        if found.added
-        else ""
-    )
     return (
         f"Something is wrong, the simulation is off by {_error(found, 'base')}, and none of the {single}, "
-        f"alone or in pairs, explains it{best}."
+        f"alone or in pairs, explains it{_attempt(found)}."
+    )
+
+
+def _attempt(found: Diagnosed) -> str:
+    if not found.added:
+        return ""
+    gain = found.document["gain"]
+    worse = gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
+    unseen = ", and may make tests worse that it was not fitted to" if worse else ""
+    return (
+        f"; the best attempt, {words.together(found.added)}, leaves an error of "
+        f"{_error(found, 'extended')}{unseen}"
     )
 
 

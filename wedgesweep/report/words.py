@@ -30,6 +30,12 @@ def probability(p: float | None) -> str:
     return NONE if p is None else "< 0.001" if p < 1e-3 else f"{p:.2g}"
 
 
+def p_value(p: float | None) -> str:
+    """As it is told: p = 0.02, p < 0.001."""
+    told = probability(p)
+    return f"p {told}" if told.startswith("<") else f"p = {told}"
+
+
 def listing(words: Sequence[str], last: str = "and") -> str:
     """Words as a sentence takes them: a, b and c."""
     return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

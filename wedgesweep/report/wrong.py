@@ -63,17 +63,13 @@ def _ratio(test: dict[str, Any], model: str) -> float:
 def _overall(found: Diagnosed) -> str:
     misfit = found.document["misfit"]
     tests = words.counted(found.data.sizes["test"], "test")
+    p_base = words.p_value(misfit["p_base"]).replace(" ", digits.NO_BREAK)
     return (
         f"Over {tests}, with start phases, amplitudes and uncertain numbers fitted, the base model leaves a "
         f"misfit of Q = {digits.number(misfit['chi2_base'])} on {misfit['dof']} degrees of freedom; noise "
-        f"alone leaves about {misfit['dof']} (p{digits.NO_BREAK}{_equals(misfit['p_base'])}). That is an "
+        f"alone leaves about {misfit['dof']} ({p_base}). That is an "
         f"error of {words.times_noise(misfit['chi2_base'], misfit['dof'])}."
     )
-
-
-def _equals(p: float | None) -> str:
-    text = words.probability(p).replace(" ", digits.NO_BREAK)
-    return text if text.startswith("<") else f"={digits.NO_BREAK}{text}"
 
 
 def _worst(found: Diagnosed) -> str:
