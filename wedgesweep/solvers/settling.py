@@ -54,10 +54,13 @@ def _distance(a, b, size):
 
 @compiled
 def _period(y, parameters, keeping, tools, passage):
-    """Run one period; y moves along. Faces that did not slip in it have been at rest for long."""
+    """Run one period; y moves along.
+
+    Faces that did not slip in as many periods as a response may have will never do so.
+    """
     outcome = passage(0, 1, y, parameters, keeping, tools)
     cycle = 2.0 * pi / parameters[0].omega
-    if y[AGE] >= GROWN * cycle:
+    if y[AGE] >= LONGEST * GROWN * cycle:
         y[AGE] = RESTED * cycle
     return outcome
 
