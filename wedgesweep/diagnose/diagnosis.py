@@ -126,12 +126,15 @@ def diagnose(
 
 
 def explain(search: Search, base: Explanation) -> list[Explanation]:
-    """All fits, best first: pairs only where no single effect will do."""
+    """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     found = search.singles(base.fit)
     best = min([base, *found], key=lambda each: each.penalised)
     if best.fit.p < verdict.ADEQUATE and search.problem.tests >= verdict.FEWEST_TESTS:
         both = pairs.pairs(search, base.fit, found)
         found = found + both + pairs.halves(search, both)
+        best = min(found, key=lambda each: each.penalised)
+        if best.fit.p < verdict.ADEQUATE:
+            found = found + search.everywhere()
     return best_of_each(found, lambda each: each.penalised)
 
 

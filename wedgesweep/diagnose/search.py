@@ -115,6 +115,18 @@ class Search:
         found = dict(zip(order, self.each(lambda effect: self.single(effect, base), order), strict=True))
         return [found[effect] for effect in self.effects]
 
+    def everywhere(self) -> list[Explanation]:
+        """Singles again, from every value of their first number at which they were tried.
+
+        Next to breakaway a single test can make the start of the right way look worse than all others.
+        """
+        return self.each(self._from_everywhere, self.effects)
+
+    def _from_everywhere(self, effect: str) -> Explanation:
+        trials = _best_along_first(self.along[effect])
+        self.progress(f"{effect}, from everywhere")
+        return self.explanation(best_of(self.model(effect), trials, ((len(trials), 8), (2, 8))))
+
     def each(self, function: Callable, items: Iterable) -> list:
         if self.threads == 1:
             return [function(item) for item in items]

@@ -1,0 +1,39 @@
+"""Where the search for an explanation goes on, and where it ends."""
+
+import pytest
+
+from tests.diagnose.drawn import drawn
+from wedgesweep.diagnose import diagnosis
+from wedgesweep.diagnose.search import Search
+
+CANDIDATES = ("displacement_gain", "velocity_lag")
+
+
+@pytest.mark.parametrize(
+    ("truth", "looked"),
+    [({"velocity_lag": {"time": 3e-4}}, False), ({"bolster_mass": {"scale": 1.05}}, True)],
+)
+def test_all_starts_are_followed_only_where_nothing_will_do(truth, looked, monkeypatch):
+    followed = []
+    everywhere = Search.everywhere
+
+    def told(self):
+        followed.extend(everywhere(self))
+        return followed
+
+    monkeypatch.setattr(Search, "everywhere", told)
+    search = Search(drawn(truth), CANDIDATES)
+    found = diagnosis.explain(search, search.base())
+    assert [each.effects for each in followed] == [(name,) for name in CANDIDATES if looked]
+    single = {each.effects: each.fit.q for each in found if len(each.effects) == 1}
+    for each in followed:
+        assert single[each.effects] <= each.fit.q
+
+
+def test_the_right_way_is_found_though_its_start_looks_worst():
+    truth = 3e-4
+    search = Search(drawn({"velocity_lag": {"time": truth}}), ("velocity_lag",))
+    base = search.base().fit
+    search.single("velocity_lag", base)
+    search.along["velocity_lag"] = sorted(search.along["velocity_lag"], key=lambda trial: trial.q)[-3:]
+    assert search.everywhere()[0].fit.x[0] == pytest.approx(truth, rel=0.05)
