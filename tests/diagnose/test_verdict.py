@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose import diagnosis, verdict
 from wedgesweep.diagnose.search import Explanation
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_unseen_tests, where_it_shows
 
@@ -127,3 +127,15 @@ def test_calibrated_thresholds_replace_the_general_ones():
     base, best = explained(1000.0), explained(705.0, "stribeck")
     assert verdict_of(base, best, thresholds=Thresholds(strong=0.0)).verdict == "named"
     assert verdict_of(base, best, thresholds=Thresholds(least_gain=1000.0)).verdict != "named"
+
+
+def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
+    base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
+    worse = explained(900.0, "stribeck").fit
+    monkeypatch.setattr(diagnosis, "exact", lambda fit: worse if fit is first.fit else fit)
+    search = SimpleNamespace(progress=lambda step: None, explanation=lambda fit: Explanation(fit, PRICE))
+    tied = verdict_of(base, first, second)
+    assert tied.verdict == "tied"
+    found, order = diagnosis._exactly(search, base, tied, [first, second], verdict.DEFAULT)
+    assert (found.verdict, found.best.effects) == ("named", ("preload",))
+    assert [each.fit.q for each in order] == [709.0, 900.0]

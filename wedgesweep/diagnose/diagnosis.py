@@ -1,7 +1,7 @@
 """The whole way from measured tests to a verdict."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -97,11 +97,7 @@ def diagnose(
         simulated = calibrate(base, finding.best, explain, effects, threads, progress)
         thresholds = simulated.thresholds
         finding = verdict.decide(base, explanations, thresholds)
-    if finding.best is not None:
-        progress("exact fit")
-        exactly = search.explanation(exact(finding.best.fit))
-        explanations = [exactly if each is finding.best else each for each in explanations]
-        finding = replace(finding, best=exactly)
+    finding, explanations = _exactly(search, base, finding, explanations, thresholds)
     progress("scores")
     scores = score.scores(search, base.fit)
     measured_gain = None
@@ -123,6 +119,23 @@ def diagnose(
         thresholds,
         simulated.as_dict() if simulated else None,
     )
+
+
+def _exactly(
+    search: Search, base: Explanation, finding: Finding, found: list[Explanation], thresholds: Thresholds
+) -> tuple[Finding, list[Explanation]]:
+    """The finding with its best explanation fitted exactly, and all explanations, best first.
+
+    One that was only the best for the error of its responses gives way to the next.
+    """
+    done: list[Explanation] = []
+    while finding.best is not None and not any(finding.best is each for each in done):
+        search.progress(f"exact fit of {' + '.join(finding.best.effects)}")
+        done.append(search.explanation(exact(finding.best.fit)))
+        found = [done[-1] if each is finding.best else each for each in found]
+        found.sort(key=lambda each: each.penalised)
+        finding = verdict.decide(base, found, thresholds)
+    return finding, found
 
 
 def explain(search: Search, base: Explanation) -> list[Explanation]:

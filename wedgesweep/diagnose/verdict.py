@@ -122,7 +122,7 @@ def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[floa
 
     ``interval``: 95 % interval of the excess that the cause removes there, None if there is none.
     """
-    if finding.verdict in (NAMED, CONSISTENT) and interval is not None and interval[0] < 0.0:
+    if finding.cause is not None and interval is not None and interval[0] < 0.0:
         return Finding(_nobody(base), finding.best, finding.rivals)
     return finding
 
