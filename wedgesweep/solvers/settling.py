@@ -56,12 +56,17 @@ def _distance(a, b, size):
 def _period(y, parameters, keeping, tools, passage):
     """Run one period; y moves along.
 
-    Faces that did not slip in as many periods as a response may have will never do so.
+    Faces that did not slip in a period after which all else came back will never do so, and neither will
+    those that did not in as many periods as a response may have.
     """
+    before = y.copy()
     outcome = passage(0, 1, y, parameters, keeping, tools)
-    cycle = 2.0 * pi / parameters[0].omega
-    if y[AGE] >= LONGEST * GROWN * cycle:
-        y[AGE] = RESTED * cycle
+    p = parameters[0]
+    cycle = 2.0 * pi / p.omega
+    if y[AGE] >= GROWN * cycle:
+        before[AGE] = y[AGE]
+        if y[AGE] >= LONGEST * GROWN * cycle or _distance(y, before, units(p)) <= NEAR:
+            y[AGE] = RESTED * cycle
     return outcome
 
 
