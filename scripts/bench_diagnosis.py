@@ -34,8 +34,8 @@ HIDDEN = {
     },
 }
 LAWS = ("coulomb", "static-dynamic", "exponential")
-# Steps that are told one by one, as parts.
-PARTS = ("base model", "scores", "held-out tests", "next test")
+# Parts that are told as they begin; of the others each fit is told as it ends.
+BEGUN = ("base model", "exact fit", "scores", "held-out tests", "next test")
 
 said = []
 
@@ -70,23 +70,27 @@ def whole(file, folder):
 
 
 def parts(file):
-    """Verdict and seconds of each part: base model, singles, pairs, and what follows."""
+    """Verdict and seconds of each part: base model, singles, pairs, singles again, and what follows."""
     times = [("", time.perf_counter())]
     found = diagnosis.diagnose(
         measured.read(file), threads=JOBS, progress=lambda step: times.append((step, time.perf_counter()))
     )
     times.append(("end", time.perf_counter()))
-    spent = dict.fromkeys(("base model", "singles", "pairs", *PARTS[1:]), 0.0)
-    part = "base model"
+    spent = dict.fromkeys((BEGUN[0], "singles", "pairs", "singles again", *BEGUN[1:]), 0.0)
+    part = BEGUN[0]
     for (step, before), (following, after) in pairwise(times):
-        if step in PARTS:  # told as it begins
-            part = step
-        elif " + " in following:
-            part = "pairs"
-        elif following not in PARTS and following != "end":
-            part = "singles"
+        part = next((each for each in BEGUN if step.startswith(each)), None) or ended(following) or part
         spent[part] += after - before
     return found.finding.verdict, spent
+
+
+def ended(step):
+    """The part of a step that is told as it ends, None if it is not."""
+    if step.startswith((*BEGUN, "end")):
+        return None
+    if step.endswith("from everywhere"):
+        return "singles again"
+    return "pairs" if " + " in step else "singles"
 
 
 def main():

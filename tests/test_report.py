@@ -125,7 +125,7 @@ SAID = {
     "consistent-with": ("The tests are consistent with", NAMED, "evidence is weak"),
     "tied": ("Two explanations", "(guide_friction, behind by 3.2)", "24 Hz and 0.1 mm would tell them apart"),
     "data-insufficient": ("cannot show what", "24 Hz and 0.1 mm", "stribeck from guide_friction"),
-    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, leaves an error of"),
+    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, is still off by"),
 }
 
 

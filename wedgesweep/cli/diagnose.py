@@ -7,7 +7,7 @@ import click
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, jobs
 
-FIGURE_KINDS, FIGURE = ("misfit", "candidates", "gain"), "{}.png"
+FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
 
 
 @click.command()
@@ -70,7 +70,7 @@ def _clear(directory: Path) -> None:
     """Remove what an older diagnosis drew here: it does not belong to the new one."""
     from wedgesweep import report
 
-    for name in (report.PAGE, *map(FIGURE.format, FIGURE_KINDS)):
+    for name in (report.PAGE, *FIGURE_FILES.values()):
         (directory / name).unlink(missing_ok=True)
 
 
@@ -80,9 +80,9 @@ def _draw(directory: Path) -> None:
     from wedgesweep.figures.diagnosis import FIGURES
 
     found = diagnosed.read(directory)
-    for kind in FIGURE_KINDS:
+    for kind, file in FIGURE_FILES.items():
         try:
-            figures.save(FIGURES[kind].draw(found), directory / FIGURE.format(kind))
+            figures.save(FIGURES[kind].draw(found), directory / file)
         except ValueError as error:
             click.echo(f"skipped {error}", err=True)
 

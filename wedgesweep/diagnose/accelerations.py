@@ -2,9 +2,8 @@
 
 from math import pi
 
-import numpy as np
-
 from wedgesweep import contact as contacts
+from wedgesweep import excitation
 from wedgesweep.compiled import compiled
 from wedgesweep.damper import Contact
 
@@ -19,7 +18,7 @@ def accelerations(parameters, x, v, out):
     for i in range(x.size):
         t = 2.0 * pi / p.omega * i / x.size
         contact, _ = contacts.initial(t, x[i], v[i], p)
-        base = -p.amplitude * p.omega**2 * np.sin(p.omega * t)
+        base = excitation.acceleration(t, p)
         if contacts.stuck(contact, p):
             out[i] = 0.0
         else:

@@ -5,6 +5,7 @@ each test its start phase and its input amplitude. Phases have a closed way out 
 amplitudes are local to a test, so that each step solves for them test by test.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -219,15 +220,8 @@ class Model:
         steps = np.r_[side * STEP * self.width, side * AMPLITUDE_STEP]
         low, high = np.append(self.low - x, -np.inf), np.append(self.high - x, np.inf)
         steps = np.where((low <= steps) & (steps <= high), steps, -steps)
-        change, found = self._changes(trial, np.diag(steps))
-        # Beyond the limit at which a wedge locks there is no response: the near side tells.
-        lost = np.flatnonzero(~found.all(axis=1) & (low <= -steps) & (-steps <= high))
-        if lost.size:
-            near, near_found = self._changes(trial, np.diag(-steps)[lost])
-            change[lost] = np.where(found[lost][..., None], change[lost], -near)
-            found[lost] |= near_found
-        change = np.where(found[..., None], change, 0.0) / steps[:, None, None]
-        columns = np.moveaxis(change, 0, -1)
+        back = (low <= -steps) & (-steps <= high)
+        columns, _ = derivatives(lambda moved: self._changes(trial, moved), steps, back)
         orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
         turn = real(-1j * orders * problem.turned(trial.whitened, trial.phase))
         return columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1)
@@ -271,6 +265,29 @@ class Model:
         known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
         rest = [known.get(name, 1.0) for name in self.uncertain]
         return Point(np.r_[x, rest], base.trial.point.amplitude, base.trial.point.warm)
+
+
+def derivatives(
+    changes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], steps: np.ndarray, back: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives (T, ..., n) of responses by n numbers, 0 where there is none, and whether (n, T) there is.
+
+    ``changes``: what steps (j, n) change in each response (j, T, ...), and whether (j, T) it was found;
+    ``steps`` (n,): of each number; ``back`` (n,): whether it may be changed to the other side.
+    """
+    change, found = changes(np.diag(steps))
+    # Beyond the limit at which a wedge locks there is no response: the near side tells.
+    lost = np.flatnonzero(~found.all(axis=1) & back)
+    if lost.size:
+        near, near_found = changes(np.diag(-steps)[lost])
+        change[lost] = np.where(_beside(found[lost], near), change[lost], -near)
+        found[lost] |= near_found
+    return np.moveaxis(np.where(_beside(found, change), change, 0.0), 0, -1) / steps, found
+
+
+def _beside(found: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """``found`` (j, T) with as many axes as ``values`` (j, T, ...)."""
+    return found.reshape(*found.shape, *[1] * (values.ndim - found.ndim))
 
 
 def _smaller(one: np.ndarray, other: np.ndarray) -> np.ndarray:

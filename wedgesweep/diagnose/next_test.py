@@ -15,7 +15,7 @@ import numpy as np
 from scipy.ndimage import minimum_filter1d
 
 from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.fit import AMPLITUDE_STEP, STEP, Fit
+from wedgesweep.diagnose.fit import AMPLITUDE_STEP, STEP, Fit, derivatives
 from wedgesweep.diagnose.problem import Problem, real
 
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
@@ -89,16 +89,15 @@ def _choice(distances: np.ndarray) -> int:
 
 
 def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
-    steps = np.diag(np.r_[STEP * fit.model.width, AMPLITUDE_STEP])
-    here, found, warm = _responses(fit, omega, amplitude, 0.0 * steps[:1], simulation.cold(omega.size))
-    there, moved, _ = _responses(fit, omega, amplitude, steps, warm.repeated(len(steps)))
-    change = there - here
-    if not moved.all():
-        # Beyond the limit at which a wedge locks there is no response: the near side tells.
-        near, near_moved, _ = _responses(fit, omega, amplitude, -steps, warm.repeated(len(steps)))
-        change = np.where(moved[..., None, None], change, here - near)
-        moved |= near_moved
-    change = np.moveaxis(change, 0, -1) / np.diag(steps)
+    steps = np.r_[STEP * fit.model.width, AMPLITUDE_STEP]
+    nothing = np.zeros((1, steps.size))
+    here, found, warm = _responses(fit, omega, amplitude, nothing, simulation.cold(omega.size))
+
+    def changes(moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        there, found, _ = _responses(fit, omega, amplitude, moves, warm.repeated(len(moves)))
+        return there - here, found
+
+    change, moved = derivatives(changes, steps, np.full(steps.size, True))
     spread = np.concatenate([change[..., :-1] @ _spread(fit), change[..., -1:] * AMPLITUDE_STD], axis=-1)
     return _Prediction(here[0], spread, found[0] & moved.all(axis=0))
 

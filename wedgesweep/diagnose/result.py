@@ -363,7 +363,7 @@ def dataset(found: Diagnosis) -> xr.Dataset:
             "force on the bolster that the base model lacks",
         ),
         "q": (by_model, np.array([fit.trial.by_test for fit in fits]), "1", "squared misfit over noise"),
-        "dof": (by_test, problem.points - 1, "1", "degrees of freedom"),
+        "dof": (by_test, problem.dof, "1", "degrees of freedom"),
     }
     data = {
         name: (dims, values, {"units": unit, "long_name": text})

@@ -17,6 +17,8 @@ from wedgesweep.diagnose.problem import Problem
 PENALTY = 6.0
 # Starting points that are followed, and for how many iterations; the best of the last go on to the end.
 FOLLOWED = ((4, 3), (2, 4))
+# How the starts are followed once more, all of them at first, where nothing will do.
+AGAIN = ((None, 8), (2, 8))
 # Least probability of the base model's misfit at which it may do without a cause.
 POSSIBLE = 1e-3
 # Effects with states of their own take longest.
@@ -125,7 +127,7 @@ class Search:
     def _from_everywhere(self, effect: str) -> Explanation:
         trials = _best_along_first(self.along[effect])
         self.progress(f"{effect}, from everywhere")
-        return self.explanation(best_of(self.model(effect), trials, ((len(trials), 8), (2, 8))))
+        return self.explanation(best_of(self.model(effect), trials, AGAIN))
 
     def each(self, function: Callable, items: Iterable) -> list:
         if self.threads == 1:
@@ -189,7 +191,9 @@ def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
     return Point(one.x, np.where(chosen, other.amplitude, one.amplitude), warm)
 
 
-def best_of(model: Model, trials: Sequence[Trial], followed: Sequence[tuple[int, int]] = FOLLOWED) -> Fit:
+def best_of(
+    model: Model, trials: Sequence[Trial], followed: Sequence[tuple[int | None, int]] = FOLLOWED
+) -> Fit:
     """Follow the best few trials a little way, the best of these further, the best of those to the end."""
     for entering, iterations in followed:
         leading = sorted(trials, key=lambda each: each.q)[:entering]

@@ -81,10 +81,8 @@ def _attempt(found: Diagnosed) -> str:
     gain = found.document["gain"]
     worse = gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
     unseen = ", and may make tests worse that it was not fitted to" if worse else ""
-    return (
-        f"; the best attempt, {words.together(found.added)}, leaves an error of "
-        f"{_error(found, 'extended')}{unseen}"
-    )
+    error = _error(found, "extended")
+    return f"; the best attempt, {words.together(found.added)}, is still off by {error}{unseen}"
 
 
 TEMPLATES = {
