@@ -7,7 +7,7 @@ import pytest
 
 from tests.diagnose.drawn import AMPLITUDES, LEANING, drawn
 from wedgesweep import config
-from wedgesweep.diagnose import gain
+from wedgesweep.diagnose import fit, gain
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.fit import STEP, Model, _covariance, _smaller, exact
 from wedgesweep.diagnose.search import Search
@@ -73,6 +73,49 @@ def test_both_sides_tell_the_same_of_a_smooth_response():
     right, left = (lag.fit.model.tangents(lag.fit.trial, side) for side in (1.0, -1.0))
     for one, other in zip(right, left, strict=True):
         assert np.abs(one - other).max() < 0.1 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("effects", [("velocity_lag",), ("velocity_lag", "friction_level")])
+def test_carried_derivatives_agree_with_the_step_and_nothing_else(effects):
+    problem = drawn(LAG, std=0.02, off=0.02)
+    model = Model(problem, Hypothesis(effects), problem.amplitude)
+    start = model.trial(model.start(None, 0.5 * (model.low + model.high)))
+    shorter = replace(
+        start.point, x=start.point.x + 0.3 * model.width, amplitude=np.full(problem.tests, 0.01)
+    )
+    reached = model.trial(shorter)
+    before = model.tangents(start)
+    after = model.carried(before, start, reached)
+
+    def along(tangents, numbers, turned, amplitude):
+        return (
+            tangents.by_number @ numbers
+            + tangents.by_test[..., 0] * turned[:, None]
+            + tangents.by_test[..., 1] * amplitude
+        )
+
+    numbers = 0.3 * model.width
+    step = along(after, numbers, reached.phase - start.phase, 0.01)
+    np.testing.assert_allclose(
+        step, reached.residual - start.residual, atol=1e-9 * np.abs(start.residual).max()
+    )
+    # Across the step (in widths) nothing was learned.
+    other = -((numbers / model.width) ** 2).sum() * fit.LONGEST_AMPLITUDE**2 / 0.01
+    still = np.zeros(problem.tests)
+    np.testing.assert_allclose(
+        along(after, numbers, still, other), along(before, numbers, still, other), rtol=1e-9, atol=1e-9
+    )
+    # What the phase does is known.
+    np.testing.assert_array_equal(after.by_test[..., 0], model.tangents(reached).by_test[..., 0])
+
+
+def test_where_derivatives_are_carried_a_fit_ends_the_same(monkeypatch):
+    problem = drawn(LAG, std=0.02, off=0.02)
+    _, _, (carried,) = searched(problem, "velocity_lag")
+    monkeypatch.setattr(fit, "TRUSTED", np.inf)
+    _, _, (own,) = searched(problem, "velocity_lag")
+    assert carried.fit.q == pytest.approx(own.fit.q, abs=2.0 * fit.ARRIVED)
+    np.testing.assert_allclose(carried.fit.covariance, own.fit.covariance, rtol=0.05)
 
 
 def test_next_to_where_a_wedge_locks_the_near_side_tells():

@@ -8,6 +8,7 @@ amplitudes are local to a test, so that each step solves for them test by test.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import chdtrc
@@ -24,10 +25,12 @@ TONE = "stray_vibration"
 STEP, AMPLITUDE_STEP = 2e-3, 2e-3
 # An exactly known amplitude, as a relative standard deviation.
 EXACT = 1e-6
-ITERATIONS = 25
+ITERATIONS = 40
 # A fit has arrived when a step promises less than this of Q, or this share of what Q has above noise: far
 # from the data the last digit is of no use.
 ARRIVED, ARRIVED_SHARE = 0.02, 1e-3
+# Share of its promise that a step must keep for the derivatives to be carried on by its secant.
+TRUSTED = 0.1
 # Damping of a step at the start, and at which it has failed.
 DAMPING, STUCK = 1e-3, 1e8
 # Eigenvalue of scaled normal equations below which they leave a combination of numbers open.
@@ -115,6 +118,13 @@ class Fit:
     def amplitudes(self) -> np.ndarray:
         """Input amplitudes (T,) in m."""
         return self.model.reference * np.exp(self.trial.point.amplitude)
+
+
+class Tangents(NamedTuple):
+    """Derivatives of the residual by the numbers (T, m, k + u), and by phase and amplitude (T, m, 2)."""
+
+    by_number: np.ndarray
+    by_test: np.ndarray
 
 
 class Model:
@@ -211,20 +221,42 @@ class Model:
     def _prior(self, x: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.r_[amplitude * self.amplitude_weight, (x[self.size :] - 1.0) / self.prior_std]
 
-    def tangents(self, trial: Trial, side: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the residual by the numbers (T, m, k + u) and by phase and amplitude (T, m, 2).
+    def tangents(self, trial: Trial, side: float = 1.0) -> Tangents:
+        """Derivatives of the residual, from a simulation of each step.
 
         ``side``: to which side (1 or -1) numbers are changed, where the bounds allow it.
         """
-        problem, x = self.problem, trial.point.x
+        x = trial.point.x
         steps = np.r_[side * STEP * self.width, side * AMPLITUDE_STEP]
         low, high = np.append(self.low - x, -np.inf), np.append(self.high - x, np.inf)
         steps = np.where((low <= steps) & (steps <= high), steps, -steps)
         back = (low <= -steps) & (-steps <= high)
         columns, _ = derivatives(lambda moved: self._changes(trial, moved), steps, back)
+        return Tangents(columns[..., :-1], np.stack([self._turn(trial), columns[..., -1]], axis=-1))
+
+    def _turn(self, trial: Trial) -> np.ndarray:
+        """Derivative of the residual by the start phase (T, m)."""
+        problem = self.problem
         orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
-        turn = real(-1j * orders * problem.turned(trial.whitened, trial.phase))
-        return columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1)
+        return real(-1j * orders * problem.turned(trial.whitened, trial.phase))
+
+    def carried(self, tangents: Tangents, trial: Trial, reached: Trial) -> Tangents:
+        """Derivatives where a step has led: the least change of them that agrees with it (Broyden, 1965).
+
+        Test by test, in widths of the coordinates; that by the phase is known.
+        """
+        step = np.empty((self.problem.tests, len(self.width) + 1))
+        step[:, :-1] = reached.point.x - trial.point.x
+        step[:, -1] = reached.point.amplitude - trial.point.amplitude
+        turn = self._turn(reached)
+        turned = np.angle(np.exp(1j * (reached.phase - trial.phase)))
+        columns = np.concatenate([tangents.by_number, tangents.by_test[..., 1:]], axis=-1)
+        told = np.einsum("tmk,tk->tm", columns, step) + turn * turned[:, None]
+        miss = reached.residual - trial.residual - told
+        weighed = step / np.r_[self.width, LONGEST_AMPLITUDE] ** 2
+        square = np.maximum((weighed * step).sum(axis=1, keepdims=True), np.finfo(float).tiny)
+        columns = columns + miss[..., None] * (weighed / square)[:, None]
+        return Tangents(columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1))
 
     def _changes(self, trial: Trial, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Changes of the residual (n, T, m) by steps (n, k + u + 1), the last of amplitudes; found or not."""
@@ -234,16 +266,16 @@ class Model:
         moved = problem.turned(problem.whiten(harmonics), np.repeat(trial.phase[None], len(x), axis=0))
         return real(problem.turned(trial.whitened, trial.phase) - moved), found
 
-    def equations(self, trial: Trial, cautious: bool = False) -> "Equations":
-        """Normal equations of a step from a trial.
+    def cautious(self, trial: Trial) -> Tangents:
+        """Derivatives to the side to which less changes.
 
-        ``cautious``: with derivatives to the side to which less changes. Across a jump of the response they
-        would be large, and seem to tell a number ever so precisely.
+        Across a jump of the response they would be large, and seem to tell a number ever so precisely.
         """
-        by_number, by_test = self.tangents(trial)
-        if cautious:
-            other = self.tangents(trial, -1.0)
-            by_number, by_test = _smaller(by_number, other[0]), _smaller(by_test, other[1])
+        return Tangents(*map(_smaller, self.tangents(trial), self.tangents(trial, -1.0)))
+
+    def equations(self, trial: Trial, tangents: Tangents | None = None) -> "Equations":
+        """Normal equations of a step from a trial, with its own derivatives if none are given."""
+        by_number, by_test = self.tangents(trial) if tangents is None else tangents
         tests = self.problem.tests
         inner = np.einsum("tmi,tmj->tij", by_test, by_test)
         inner[:, 1, 1] += self.amplitude_weight**2
@@ -333,13 +365,19 @@ class Equations:
 
 
 def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
-    """Follow a trial to the nearest minimum of Q within the bounds."""
+    """Follow a trial to the nearest minimum of Q within the bounds.
+
+    Derivatives are carried along while steps keep their promises; where it ends they are its own.
+    """
     trial, damping, arrived = start, DAMPING, False
     matrix = np.zeros((len(model.low), len(model.low)))
+    tangents, own = None, True
     for _ in range(iterations):
         if not trial.found:
             break
-        equations = model.equations(trial)
+        if tangents is None:
+            tangents, own = model.tangents(trial), True
+        equations = model.equations(trial, tangents)
         matrix, _ = equations.reduced()
         better, promised = None, np.inf
         little = max(ARRIVED, ARRIVED_SHARE * (trial.q - model.dof))
@@ -349,12 +387,19 @@ def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
             if promised < little and not limited:
                 break
             better = _better(model, trial, step) if promised >= little else None
+            if better is None and not own:
+                break
             if better is None:
                 damping *= 8.0
+        if better is None and not own:
+            tangents = None
+            continue
         if better is None:
             arrived = promised < little
             break
         gained = trial.q - better.q
+        kept = gained > TRUSTED * promised
+        tangents, own = model.carried(tangents, trial, better) if kept else None, False
         trial, damping = better, max(damping / (8.0 if gained > 0.5 * promised else 1.0), 1e-9)
     return Fit(model, trial, _covariance(matrix), arrived)
 
@@ -370,7 +415,7 @@ def exact(fit: Fit) -> Fit:
     found = refine(model, model.trial(fit.trial.point))
     if not found.trial.found:
         return fit
-    matrix, _ = model.equations(found.trial, cautious=True).reduced()
+    matrix, _ = model.equations(found.trial, model.cautious(found.trial)).reduced()
     return replace(found, covariance=_covariance(matrix))
 
 

@@ -22,6 +22,8 @@ PARTNERS, STARTS = 8, 2
 # Rounds of improvement on some of the tests: iterations, and how many pairs enter; then all tests.
 ROUNDS = ((3, 1000), (5, 40))
 GOING_ON = 8
+# Where one pair will do, others with this many times its misfit go no further; a few always do.
+BEHIND, SEVERAL = 5.0, 4
 # Tests that the first look takes.
 FEW = 6
 # Where no pair will do: starting points of another look at the best pairs, and how many pairs are the best.
@@ -86,10 +88,19 @@ def _followed(
     begun = search.each(lambda job: _begin(search, job[0], job[1], apart), jobs)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.q)]
     for iterations, entering in ROUNDS:
-        entered = fits if apart else best_of_each(fits, _misfit)[:entering]
+        entered = fits if apart else _hopeful(fits)[:entering]
         fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
-    found = search.each(lambda fit: _finish(search, base, fit), best_of_each(fits, _misfit)[:going_on])
+    found = search.each(lambda fit: _finish(search, base, fit), _hopeful(fits)[:going_on])
     return sorted(found, key=_penalised)
+
+
+def _hopeful(fits: Sequence[Fit]) -> list[Fit]:
+    """The best fit of each pair, the best first, without those that are far behind one that will do."""
+    found = best_of_each(fits, lambda fit: fit.q)
+    if not found or found[0].p < verdict.ADEQUATE:
+        return found
+    near = [fit for fit in found if fit.q < BEHIND * found[0].q]
+    return found[: max(len(near), SEVERAL)]
 
 
 def halves(search: Search, both: Sequence[Explanation]) -> list[Explanation]:
@@ -108,10 +119,6 @@ def _half(search: Search, pair: Fit, effect: str) -> Fit:
     model = search.model(effect)
     start = model.start(pair, model.hypothesis.at(pair.values))
     return refine(model, model.trial(start))
-
-
-def _misfit(fit: Fit) -> float:
-    return fit.q
 
 
 def _alone(search: Search, base: Fit, fit: Fit) -> Alone:
