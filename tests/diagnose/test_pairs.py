@@ -1,5 +1,7 @@
 """Pairs are found even where their effects do not show alone."""
 
+from types import SimpleNamespace
+
 from tests.diagnose.drawn import drawn
 from wedgesweep.diagnose import pairs
 from wedgesweep.diagnose.search import Search
@@ -18,3 +20,20 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
     best = pairs.pairs(search, base, singles)[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
+
+
+def fits(*misfits, p):
+    """Stand-ins of fits to several pairs; ``p``: probability of the best one's misfit."""
+    return [
+        SimpleNamespace(q=q, p=p if q == min(misfits) else 0.0, effects=(str(i), "other"))
+        for i, q in enumerate(misfits)
+    ]
+
+
+def test_only_what_is_far_behind_a_pair_that_will_do_is_given_up():
+    far = 2.0 * pairs.BEHIND * 100.0
+    near = 0.9 * pairs.BEHIND * 100.0
+    several = fits(far, 100.0, *[near] * pairs.SEVERAL, far, p=0.5)
+    assert [fit.q for fit in pairs._hopeful(several)] == [100.0, *[near] * pairs.SEVERAL]
+    assert len(pairs._hopeful(fits(100.0, *[far] * 9, p=0.5))) == pairs.SEVERAL
+    assert len(pairs._hopeful(fits(100.0, *[far] * 9, p=1e-6))) == 10

@@ -19,8 +19,8 @@ from wedgesweep.diagnose.search import Explanation, Search, best_of_each, trials
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
-# Rounds of improvement on some of the tests: iterations, and how many pairs enter; then all tests.
-ROUNDS = ((3, 1000), (5, 40))
+# Rounds of improvement on some of the tests: iterations of all pairs, then of so many; then all tests.
+FIRST_ROUND, SECOND_ROUND, ENTERING = 3, 5, 40
 GOING_ON = 8
 # Where one pair will do, others with this many times its misfit go no further; a few always do.
 BEHIND, SEVERAL = 5.0, 4
@@ -87,16 +87,23 @@ def _followed(
     jobs = [(first, other) for first, other in beside if len(other.x)]
     begun = search.each(lambda job: _begin(search, job[0], job[1], apart), jobs)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.q)]
-    for iterations, entering in ROUNDS:
-        entered = fits if apart else _hopeful(fits)[:entering]
-        fits = search.each(lambda fit, n=iterations: refine(fit.model, fit.trial, n), entered)
+    fits = _further(search, fits if apart else _best_of_pairs(fits), FIRST_ROUND)
+    fits = _further(search, fits if apart else _hopeful(fits)[:ENTERING], SECOND_ROUND)
     found = search.each(lambda fit: _finish(search, base, fit), _hopeful(fits)[:going_on])
     return sorted(found, key=_penalised)
 
 
+def _further(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
+    return search.each(lambda fit: refine(fit.model, fit.trial, iterations), fits)
+
+
+def _best_of_pairs(fits: Sequence[Fit]) -> list[Fit]:
+    return best_of_each(fits, lambda fit: fit.q)
+
+
 def _hopeful(fits: Sequence[Fit]) -> list[Fit]:
     """The best fit of each pair, the best first, without those that are far behind one that will do."""
-    found = best_of_each(fits, lambda fit: fit.q)
+    found = _best_of_pairs(fits)
     if not found or found[0].p < verdict.ADEQUATE:
         return found
     near = [fit for fit in found if fit.q < BEHIND * found[0].q]
