@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import drawn
+from tests.diagnose.drawn import AMPLITUDES, drawn
 from wedgesweep.diagnose import waveforms
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.fit import Fit, Model
+from wedgesweep.diagnose.search import Search
 
 DAMPING, DRY = 8.0, 0.1
 DAMPER = {"viscous_damping": {"coefficient": DAMPING}}
@@ -51,3 +52,17 @@ def test_nothing_is_left_of_the_right_model(level):
     """What noise and the jumps of friction leave is small beside what such a damper would."""
     force, v = seen(level, {})
     assert left(force + DAMPING * v, DAMPING * v) < 0.3
+
+
+def test_the_energy_of_measured_tests_is_that_of_the_true_system():
+    """A heavier bolster on inputs that are not quite those stated: the base model takes both up elsewhere."""
+    heavier, off = {"bolster_mass": {"scale": 1.1}}, 0.03
+    problem = drawn(heavier, std=0.05, off=off)
+    search = Search(problem, ("bolster_mass",))
+    base = search.base().fit
+    extended = search.single("bolster_mass", base).fit
+    model = Model(problem, Hypothesis(("bolster_mass",)), (1.0 + off) * AMPLITUDES)
+    true = Fit(model, model.trial(model.start(None, np.array([1.1]))), np.zeros((1, 1)), True)
+    energy = waveforms.supplied(true, true.trial.harmonics[:, 0, 0])
+    np.testing.assert_allclose(waveforms.measured_energy(extended), energy, rtol=0.03)
+    assert np.abs(waveforms.measured_energy(base) / energy - 1.0).max() > 0.1

@@ -63,6 +63,14 @@ def supplied(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     return pi * moved * one["amplitude"] * one["omega"] ** 2 * fundamental.real
 
 
+def measured_energy(fit: Fit) -> np.ndarray:
+    """Energy (J, shape (T,)) that the base put in per period of the measured tests.
+
+    No record tells the input's phase: it is the fit's, as are amplitudes and the mass that moves.
+    """
+    return supplied(fit, measured_from_phase_zero(fit)[:, 0, 0])
+
+
 def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     """Force on the bolster (N, shape (T, PHASES)) that the measured motion has and the model lacks.
 
