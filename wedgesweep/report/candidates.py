@@ -63,11 +63,11 @@ def _best(candidates: list[dict[str, Any]]) -> float | None:
 def _summary(found: Diagnosed) -> str:
     effects = [each["effects"] for each in found.document["candidates"]]
     pairs = sum(len(each) > 1 for each in effects)
-    tried = [words.counted(sum(len(each) == 1 for each in effects), "single candidate")]
-    tried += [words.counted(pairs, "pair")] if pairs else []
+    singles = words.counted(sum(len(each) == 1 for each in effects), "single candidate")
+    of_pairs = f", and {words.counted(pairs, 'pair')}, those that looked best on some of the tests"
     failed = sum(each["status"] == "failed" for each in found.document["candidates"])
     told = f" {words.counted(failed, 'fit')} failed." if failed else ""
-    return f"Beside the base model, {words.listing(tried)} were tried.{told}"
+    return f"Beside the base model {singles} were fitted{of_pairs if pairs else ''}.{told}"
 
 
 def _ranking(found: Diagnosed) -> str:
