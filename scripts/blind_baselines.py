@@ -10,7 +10,7 @@ import xarray as xr
 
 from wedgesweep import measured
 from wedgesweep.diagnose import diagnosis
-from wedgesweep.diagnose.fit import Fit
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Explanation, Search, best_amplitudes, best_of
 from wedgesweep.diagnose.spectra import Spectrum
 

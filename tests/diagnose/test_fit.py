@@ -7,10 +7,12 @@ import pytest
 
 from tests.diagnose.drawn import AMPLITUDES, LEANING, drawn
 from wedgesweep import config
-from wedgesweep.diagnose import fit, gain
+from wedgesweep.diagnose import gain, refine
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import STEP, Model, _covariance, _smaller, exact
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.refine import _covariance, exact
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.tangents import AMPLITUDE_WIDTH, STEP, _smaller, carried, tangents_of
 
 LAG = {"velocity_lag": {"time": 3e-4}}
 
@@ -70,7 +72,7 @@ def test_across_a_jump_the_side_without_it_counts():
 
 def test_both_sides_tell_the_same_of_a_smooth_response():
     *_, (lag,) = searched(drawn(LAG), "velocity_lag")
-    right, left = (lag.fit.model.tangents(lag.fit.trial, side) for side in (1.0, -1.0))
+    right, left = (tangents_of(lag.fit.model, lag.fit.trial, side) for side in (1.0, -1.0))
     for one, other in zip(right, left, strict=True):
         assert np.abs(one - other).max() < 0.1 * np.abs(one).max()
 
@@ -84,8 +86,8 @@ def test_carried_derivatives_agree_with_the_step_and_nothing_else(effects):
         start.point, x=start.point.x + 0.3 * model.width, amplitude=np.full(problem.tests, 0.01)
     )
     reached = model.trial(shorter)
-    before = model.tangents(start)
-    after = model.carried(before, start, reached)
+    before = tangents_of(model, start)
+    after = carried(model, before, start, reached)
 
     def along(tangents, numbers, turned, amplitude):
         return (
@@ -100,21 +102,21 @@ def test_carried_derivatives_agree_with_the_step_and_nothing_else(effects):
         step, reached.residual - start.residual, atol=1e-9 * np.abs(start.residual).max()
     )
     # Across the step (in widths) nothing was learned.
-    other = -((numbers / model.width) ** 2).sum() * fit.LONGEST_AMPLITUDE**2 / 0.01
+    other = -((numbers / model.width) ** 2).sum() * AMPLITUDE_WIDTH**2 / 0.01
     still = np.zeros(problem.tests)
     np.testing.assert_allclose(
         along(after, numbers, still, other), along(before, numbers, still, other), rtol=1e-9, atol=1e-9
     )
     # What the phase does is known.
-    np.testing.assert_array_equal(after.by_test[..., 0], model.tangents(reached).by_test[..., 0])
+    np.testing.assert_array_equal(after.by_test[..., 0], tangents_of(model, reached).by_test[..., 0])
 
 
 def test_where_derivatives_are_carried_a_fit_ends_the_same(monkeypatch):
     problem = drawn(LAG, std=0.02, off=0.02)
     _, _, (carried,) = searched(problem, "velocity_lag")
-    monkeypatch.setattr(fit, "TRUSTED", np.inf)
+    monkeypatch.setattr(refine, "TRUSTED", np.inf)
     _, _, (own,) = searched(problem, "velocity_lag")
-    assert carried.fit.q == pytest.approx(own.fit.q, abs=2.0 * fit.ARRIVED)
+    assert carried.fit.q == pytest.approx(own.fit.q, abs=2.0 * refine.ARRIVED)
     np.testing.assert_allclose(carried.fit.covariance, own.fit.covariance, rtol=0.05)
 
 
@@ -133,7 +135,7 @@ def test_next_to_where_a_wedge_locks_the_near_side_tells():
     while locked - free > 0.5 * step:
         middle = 0.5 * (free + locked)
         free, locked = (middle, locked) if trial(middle).found else (free, middle)
-    beyond, near = (model.tangents(trial(free), side) for side in (1.0, -1.0))
+    beyond, near = (tangents_of(model, trial(free), side) for side in (1.0, -1.0))
     assert np.abs(near[0]).max() > 0.0
     np.testing.assert_array_equal(beyond[0], near[0])
 

@@ -9,7 +9,7 @@ from tests.diagnose.drawn import LEANING, drawn
 from wedgesweep import config
 from wedgesweep.diagnose import next_test, simulation
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import Fit, Model
+from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test import ACCELERATIONS, ENOUGH, FREQUENCIES, _choice
 from wedgesweep.diagnose.search import Search
 

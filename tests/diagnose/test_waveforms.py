@@ -8,7 +8,7 @@ import pytest
 from tests.diagnose.drawn import AMPLITUDES, drawn
 from wedgesweep.diagnose import waveforms
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import Fit, Model
+from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.search import Search
 
 DAMPING, DRY = 8.0, 0.1

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.fit import Fit
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Explanation, Search
 

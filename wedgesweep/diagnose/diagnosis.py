@@ -7,10 +7,11 @@ import numpy as np
 
 from wedgesweep.diagnose import gain, next_test, pairs, score, tone, verdict
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.fit import Fit, exact
 from wedgesweep.diagnose.gain import Gain
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test import NextTest
 from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.refine import exact
 from wedgesweep.diagnose.score import Score
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each
 from wedgesweep.diagnose.spectra import fitted, spectrum

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, stdtrit
 
-from wedgesweep.diagnose.fit import Fit, Model, Point, Trial, refine, restrict
+from wedgesweep.diagnose.equations import equations_of
+from wedgesweep.diagnose.model import Fit, Model, Point, Trial
+from wedgesweep.diagnose.refine import refine, restrict
 
 # Iterations that adapt a fit to fewer tests, and the phase and amplitude to a held-out one.
 ADAPT, LOCAL = 6, 4
@@ -112,7 +114,7 @@ def groups(values: np.ndarray) -> list[np.ndarray]:
 def _local_numbers(fit: Fit) -> np.ndarray:
     """Numbers (T,) that each test determines: phase, and amplitude as far as it is not known before."""
     model = fit.model
-    inner = model.equations(fit.trial).inner
+    inner = equations_of(model, fit.trial).inner
     known = model.amplitude_weight**2
     both = inner[:, 1, 1] - inner[:, 0, 1] ** 2 / inner[:, 0, 0]
     return 1.0 + np.clip(1.0 - known / both, 0.0, 1.0) + model.tones
@@ -156,7 +158,7 @@ def predict(fit: Fit, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def _moved(model: Model, trial: Trial, unknown: np.ndarray) -> Point:
     """Point with each amplitude moved: by its prior and data, or to match the fundamental."""
     point = trial.point
-    equations = model.equations(trial)
+    equations = equations_of(model, trial)
     step = equations.local(np.zeros(len(point.x)), 0.0)[:, 1]
     measured = np.abs(model.problem.measured[:, 0, 0])
     simulated = np.abs(trial.harmonics[:, 0, 0])

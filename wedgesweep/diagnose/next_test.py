@@ -15,8 +15,9 @@ import numpy as np
 from scipy.ndimage import minimum_filter1d
 
 from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.fit import AMPLITUDE_STEP, STEP, Fit, derivatives
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.problem import Problem, real
+from wedgesweep.diagnose.tangents import AMPLITUDE_STEP, STEP, derivatives
 
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
 # Input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.fit import Fit, Model, Point, refine, restrict
+from wedgesweep.diagnose.model import Fit, Model, Point
+from wedgesweep.diagnose.refine import refine, restrict
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, trials_of
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.

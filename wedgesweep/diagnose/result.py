@@ -14,8 +14,8 @@ from wedgesweep import __version__
 from wedgesweep.config import toml
 from wedgesweep.diagnose import waveforms
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.fit import Fit
 from wedgesweep.diagnose.gain import Gain
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import PENALTY, TONE_FREQUENCY, Explanation
 from wedgesweep.diagnose.verdict import where_it_shows
 from wedgesweep.effects import EFFECTS

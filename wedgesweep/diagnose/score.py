@@ -12,9 +12,10 @@ import numpy as np
 
 from wedgesweep.diagnose import tone
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import TONE, Fit, Model, Trial
+from wedgesweep.diagnose.model import TONE, Fit, Model, Trial
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.search import Search, trials_of
+from wedgesweep.diagnose.tangents import tangents_of
 from wedgesweep.effects import EFFECTS
 
 # Share of a signal that must survive the nuisances for an effect to be testable.
@@ -49,7 +50,7 @@ class Projector:
     """Takes out of a change of the responses what the nuisances of a fit can imitate."""
 
     def __init__(self, fit: Fit) -> None:
-        by_number, by_test = fit.model.tangents(fit.trial)
+        by_number, by_test = tangents_of(fit.model, fit.trial)
         tests, points, numbers = by_number.shape
         local = np.zeros((tests, points, tests, 2))
         local[np.arange(tests), :, np.arange(tests)] = by_test

@@ -10,8 +10,9 @@ import numpy as np
 
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.fit import TONE, Fit, Model, Point, Trial, refine
+from wedgesweep.diagnose.model import TONE, Fit, Model, Point, Trial
 from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.refine import refine
 
 # What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
 PENALTY = 6.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.fit import Fit
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Explanation
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (

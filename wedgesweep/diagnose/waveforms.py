@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import root_scalar
 
 from wedgesweep.diagnose.accelerations import accelerations
-from wedgesweep.diagnose.fit import Fit
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.simulation import records
 

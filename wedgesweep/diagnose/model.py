@@ -1,0 +1,204 @@
+"""A hypothesis on the tests of a problem: what it simulates at a point, and how far that is from the data.
+
+Unknown are the numbers of the hypothesis, the uncertain numbers of the model with their priors, and of
+each test its start phase and its input amplitude. Phases have a closed way out (``Problem.start_phase``).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.special import chdtrc
+
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.coordinates import Hypothesis, Values
+from wedgesweep.diagnose.problem import Problem, real
+from wedgesweep.diagnose.simulation import Warm
+
+# The effect that answers to a foreign tone.
+TONE = "stray_vibration"
+# An exactly known amplitude, as a relative standard deviation.
+EXACT = 1e-6
+
+
+@dataclass(frozen=True)
+class Point:
+    """A guess: numbers ``x`` (k + u,) of hypothesis and uncertain model, ``amplitude`` (T,) in logarithm."""
+
+    x: np.ndarray
+    amplitude: np.ndarray
+    warm: Warm
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left."""
+
+    point: Point
+    whitened: np.ndarray
+    harmonics: np.ndarray
+    phase: np.ndarray
+    residual: np.ndarray
+    prior: np.ndarray
+    found_tests: np.ndarray
+
+    @property
+    def found(self) -> bool:
+        return bool(self.found_tests.all())
+
+    @cached_property
+    def by_test(self) -> np.ndarray:
+        """Squared misfit of each test, its amplitude's prior included (T,)."""
+        return (self.residual**2).sum(-1) + self.prior[: len(self.residual)] ** 2
+
+    @cached_property
+    def q(self) -> float:
+        return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``trial.point.x``."""
+
+    model: "Model"
+    trial: Trial
+    covariance: np.ndarray
+    arrived: bool
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return self.model.hypothesis.effects
+
+    @property
+    def q(self) -> float:
+        return self.trial.q
+
+    @property
+    def dof(self) -> int:
+        return self.model.dof
+
+    @property
+    def excess(self) -> float:
+        return self.q - self.dof
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.trial.point.x
+
+    @property
+    def p(self) -> float:
+        """Probability of a misfit this large if the model is right."""
+        return float(chdtrc(self.dof, self.q))
+
+    @property
+    def values(self) -> Values:
+        """Numbers of the hypothesis in key units."""
+        return self.model.hypothesis.in_key_units(self.x[: self.model.size])
+
+    def amplitudes(self) -> np.ndarray:
+        """Input amplitudes (T,) in m."""
+        return self.model.reference * np.exp(self.trial.point.amplitude)
+
+
+class Model:
+    """A hypothesis on the tests of a problem: simulates to a tolerance, and knows what is free."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        hypothesis: Hypothesis,
+        reference: np.ndarray,
+        tolerance: float = simulation.TOLERANCE,
+    ) -> None:
+        self.problem, self.hypothesis, self.reference = problem, hypothesis, reference
+        self.tolerance = tolerance
+        self.size = len(hypothesis.coordinates)
+        self.toned = problem.tone is not None and TONE in hypothesis.effects
+        # An effect on trial is no nuisance at the same time: it is free of its prior.
+        self.uncertain = {k: s for k, s in problem.uncertain.items() if k not in hypothesis.effects}
+        self.low = np.r_[hypothesis.low, [0.2] * len(self.uncertain)]
+        self.high = np.r_[hypothesis.high, [5.0] * len(self.uncertain)]
+        self.width = np.r_[hypothesis.width, [0.1] * len(self.uncertain)]
+        self.prior_std = np.array(list(self.uncertain.values()))
+        self.amplitude_weight = 1.0 / np.maximum(problem.amplitude_std, EXACT)
+
+    @property
+    def dof(self) -> int:
+        """Data less what is fitted without a prior: phases, unknown amplitudes, the hypothesis."""
+        return int(self.problem.dof.sum()) - int(self.tones.sum()) - self.size
+
+    @property
+    def tones(self) -> np.ndarray:
+        """Whether (T,) a test has a tone that the hypothesis answers to; its phase is free."""
+        return np.array([self.toned and s.tone is not None for s in self.problem.spectra])
+
+    def values(self, x: np.ndarray) -> Values:
+        nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}
+        return {**nuisance, **self.hypothesis.values(x[: self.size])}
+
+    def simulate(
+        self, x: np.ndarray, amplitude: np.ndarray, warm: Warm
+    ) -> tuple[np.ndarray, np.ndarray, Warm]:
+        """Harmonics (n, T, C, H) of points ``x`` (n, k + u) and log ``amplitude`` (n, T); found or not."""
+        problem = self.problem
+        rows = np.concatenate(
+            [
+                simulation.records(
+                    problem.model, problem.law, self.values(each), problem.omega, self.reference * np.exp(a)
+                )
+                for each, a in zip(x, amplitude, strict=True)
+            ]
+        )
+        done = self._respond(rows, warm)
+        shape = (len(x), problem.tests)
+        harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : problem.shape[0]]
+        return harmonics, done.found.reshape(shape), done.warm
+
+    def _respond(self, rows: np.ndarray, warm: Warm) -> simulation.Responses:
+        harmonics, tone = self.problem.shape[1], self.problem.tone
+        if self.toned and tone is not None:
+            times = len(rows) // self.problem.tests
+            meetings = self.problem.meetings * times
+            return simulation.respond_with_tone(rows, warm, harmonics, tone, meetings, self.tolerance)
+        done = simulation.respond(rows, warm, harmonics, self.tolerance)
+        if tone is None:
+            return done
+        silent = np.zeros((len(rows), 2, 1))  # a periodic response has nothing there
+        return done._replace(harmonics=np.concatenate([done.harmonics, silent], axis=-1))
+
+    def trials(self, x: np.ndarray, amplitude: np.ndarray, warm: Warm) -> list[Trial]:
+        """Simulate n points; the warm start of each is T rows of ``warm``."""
+        problem = self.problem
+        harmonics, found, after = self.simulate(x, amplitude, warm)
+        harmonics = np.where(found[:, :, None, None], harmonics, 0.0)
+        whitened = problem.whiten(harmonics)
+        phase = problem.start_phase(whitened)
+        residual = real(problem.whitened - problem.turned(whitened, phase))
+        n = problem.tests
+        return [
+            Trial(
+                Point(x[i], amplitude[i], after.of(slice(i * n, (i + 1) * n))),
+                whitened[i],
+                harmonics[i],
+                phase[i],
+                residual[i],
+                self._prior(x[i], amplitude[i]),
+                found[i],
+            )
+            for i in range(len(x))
+        ]
+
+    def trial(self, point: Point) -> Trial:
+        return self.trials(point.x[None], point.amplitude[None], point.warm)[0]
+
+    def _prior(self, x: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        return np.r_[amplitude * self.amplitude_weight, (x[self.size :] - 1.0) / self.prior_std]
+
+    def start(self, base: "Fit | None", x: np.ndarray) -> Point:
+        """Point with the numbers of the hypothesis and everything else as a base fit has it."""
+        if base is None:
+            nothing = np.zeros(self.problem.tests)
+            return Point(np.r_[x, np.ones(len(self.uncertain))], nothing, simulation.cold(nothing.size))
+        known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
+        rest = [known.get(name, 1.0) for name in self.uncertain]
+        return Point(np.r_[x, rest], base.trial.point.amplitude, base.trial.point.warm)

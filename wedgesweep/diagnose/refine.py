@@ -1,0 +1,121 @@
+"""Weighted least squares of a hypothesis and all that is unknown beside it (Levenberg and Marquardt).
+
+Amplitudes are local to a test, so that each step solves for them test by test.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.equations import Equations, equations_of
+from wedgesweep.diagnose.model import Fit, Model, Point, Trial
+from wedgesweep.diagnose.tangents import AMPLITUDE_WIDTH, carried, cautious, tangents_of
+
+ITERATIONS = 40
+# A fit has arrived when a step promises less than this of Q, or this share of what Q has above noise: far
+# from the data the last digit is of no use.
+ARRIVED, ARRIVED_SHARE = 0.02, 1e-3
+# Share of its promise that a step must keep for the derivatives to be carried on by its secant.
+TRUSTED = 0.1
+# Damping of a step at the start, and at which it has failed.
+DAMPING, STUCK = 1e-3, 1e8
+# Eigenvalue of scaled normal equations below which they leave a combination of numbers open.
+OPEN = 1e-12
+# Largest step of one iteration, in widths of the coordinates.
+LONGEST_STEP = 3.0
+
+
+def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
+    """Follow a trial to the nearest minimum of Q within the bounds.
+
+    Derivatives are carried along while steps keep their promises; where it ends they are its own.
+    """
+    trial, damping, arrived = start, DAMPING, False
+    matrix = np.zeros((len(model.low), len(model.low)))
+    tangents, own = None, True
+    for _ in range(iterations):
+        if not trial.found:
+            break
+        if tangents is None:
+            tangents, own = tangents_of(model, trial), True
+        equations = equations_of(model, trial, tangents)
+        matrix, _ = equations.reduced()
+        better, promised = None, np.inf
+        little = max(ARRIVED, ARRIVED_SHARE * (trial.q - model.dof))
+        while better is None and damping < STUCK:
+            step, promised, limited = _step(model, trial.point, equations, damping)
+            # A step cut short at a limit may promise nothing; a more damped one still may.
+            if promised < little and not limited:
+                break
+            better = _better(model, trial, step) if promised >= little else None
+            if better is None and not own:
+                break
+            if better is None:
+                damping *= 8.0
+        if better is None and not own:
+            tangents = None
+            continue
+        if better is None:
+            arrived = promised < little
+            break
+        gained = trial.q - better.q
+        kept = gained > TRUSTED * promised
+        tangents, own = carried(model, tangents, trial, better) if kept else None, False
+        trial, damping = better, max(damping / (8.0 if gained > 0.5 * promised else 1.0), 1e-9)
+    return Fit(model, trial, _covariance(matrix), arrived)
+
+
+def _better(model: Model, trial: Trial, step: Point) -> Trial | None:
+    tried = model.trial(step)
+    return tried if tried.q < trial.q else None
+
+
+def exact(fit: Fit) -> Fit:
+    """A fit followed on with responses so exact that their error cannot pass for information."""
+    model = Model(fit.model.problem, fit.model.hypothesis, fit.model.reference, simulation.TIGHT)
+    found = refine(model, model.trial(fit.trial.point))
+    if not found.trial.found:
+        return fit
+    matrix, _ = equations_of(model, found.trial, cautious(model, found.trial)).reduced()
+    return replace(found, covariance=_covariance(matrix))
+
+
+def restrict(fit: Fit, rows: np.ndarray) -> Fit:
+    """The same point on some of a fit's tests."""
+    model = Model(fit.model.problem.subset(rows), fit.model.hypothesis, fit.model.reference[rows])
+    point = fit.trial.point
+    trial = model.trial(Point(point.x, point.amplitude[rows], point.warm.of(rows)))
+    return Fit(model, trial, fit.covariance, fit.arrived)
+
+
+def _step(model: Model, point: Point, equations: Equations, damping: float) -> tuple[Point, float, bool]:
+    """The point after a damped step, what it promises to take off Q, and whether a limit cut it short."""
+    x = point.x
+    matrix, gradient = equations.reduced(damping)
+    free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
+    step = np.zeros(len(x))
+    if free.any():
+        inner = matrix[np.ix_(free, free)]
+        scale = np.diag(np.diag(inner) + 1e-12 * (1.0 + np.trace(inner)))
+        step[free] = -np.linalg.solve(inner + damping * scale, gradient[free])
+    longest = np.max(np.abs(step) / model.width, initial=0.0)
+    if longest > LONGEST_STEP:
+        step *= LONGEST_STEP / longest
+    aim = np.clip(x + step, model.low, model.high)
+    limited = bool((aim != x + step).any())
+    within = aim - x
+    local = equations.local(within, damping)
+    limited = limited or bool((np.abs(local[:, 1]) > AMPLITUDE_WIDTH).any())
+    local[:, 1] = np.clip(local[:, 1], -AMPLITUDE_WIDTH, AMPLITUDE_WIDTH)
+    promised = equations.promise(within, local)
+    return replace(point, x=x + within, amplitude=point.amplitude + local[:, 1]), promised, limited
+
+
+def _covariance(matrix: np.ndarray) -> np.ndarray:
+    """Inverse of the matrix of normal equations; what they say nothing of is wide, not exact."""
+    size = np.sqrt(np.diag(matrix))
+    size = np.where(size > 0.0, size, 1.0)
+    values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
+    inverse = vectors / np.maximum(values, OPEN) @ vectors.T
+    return inverse / np.outer(size, size)

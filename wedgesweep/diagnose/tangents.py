@@ -1,0 +1,108 @@
+"""How the misfit of a trial changes with everything that is unknown."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep.diagnose.model import Model, Trial
+from wedgesweep.diagnose.problem import real
+
+# Finite differences: share of a coordinate's width, and of an amplitude. The noise of a simulation looks like
+# information: shorter steps make intervals too narrow where amplitude and effect are hard to tell apart.
+STEP, AMPLITUDE_STEP = 2e-3, 2e-3
+# An input amplitude's width, relative.
+AMPLITUDE_WIDTH = 0.1
+
+
+class Tangents(NamedTuple):
+    """Derivatives of the residual by the numbers (T, m, k + u), and by phase and amplitude (T, m, 2)."""
+
+    by_number: np.ndarray
+    by_test: np.ndarray
+
+
+def tangents_of(model: Model, trial: Trial, side: float = 1.0) -> Tangents:
+    """Derivatives of the residual, from a simulation of each step.
+
+    ``side``: to which side (1 or -1) numbers are changed, where the bounds allow it.
+    """
+    x = trial.point.x
+    steps = np.r_[side * STEP * model.width, side * AMPLITUDE_STEP]
+    low, high = np.append(model.low - x, -np.inf), np.append(model.high - x, np.inf)
+    steps = np.where((low <= steps) & (steps <= high), steps, -steps)
+    back = (low <= -steps) & (-steps <= high)
+    columns, _ = derivatives(lambda moved: _changes(model, trial, moved), steps, back)
+    return Tangents(columns[..., :-1], np.stack([_turn(model, trial), columns[..., -1]], axis=-1))
+
+
+def cautious(model: Model, trial: Trial) -> Tangents:
+    """Derivatives to the side to which less changes.
+
+    Across a jump of the response they would be large, and seem to tell a number ever so precisely.
+    """
+    return Tangents(*map(_smaller, tangents_of(model, trial), tangents_of(model, trial, -1.0)))
+
+
+def carried(model: Model, before: Tangents, trial: Trial, reached: Trial) -> Tangents:
+    """Derivatives where a step has led: the least change of them that agrees with it (Broyden, 1965).
+
+    Test by test, in widths of the coordinates; that by the phase is known.
+    """
+    step = np.empty((model.problem.tests, len(model.width) + 1))
+    step[:, :-1] = reached.point.x - trial.point.x
+    step[:, -1] = reached.point.amplitude - trial.point.amplitude
+    turn = _turn(model, reached)
+    turned = np.angle(np.exp(1j * (reached.phase - trial.phase)))
+    columns = np.concatenate([before.by_number, before.by_test[..., 1:]], axis=-1)
+    told = np.einsum("tmk,tk->tm", columns, step) + turn * turned[:, None]
+    miss = reached.residual - trial.residual - told
+    weighed = step / np.r_[model.width, AMPLITUDE_WIDTH] ** 2
+    square = np.maximum((weighed * step).sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    columns = columns + miss[..., None] * (weighed / square)[:, None]
+    return Tangents(columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1))
+
+
+def _turn(model: Model, trial: Trial) -> np.ndarray:
+    """Derivative of the residual by the start phase (T, m)."""
+    problem = model.problem
+    orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
+    return real(-1j * orders * problem.turned(trial.whitened, trial.phase))
+
+
+def _changes(model: Model, trial: Trial, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Changes of the residual (n, T, m) by steps (n, k + u + 1), the last of amplitudes; found or not."""
+    point, problem = trial.point, model.problem
+    x, amplitude = point.x + steps[:, :-1], point.amplitude + steps[:, -1:]
+    harmonics, found, _ = model.simulate(x, amplitude, point.warm.repeated(len(x)))
+    moved = problem.turned(problem.whiten(harmonics), np.repeat(trial.phase[None], len(x), axis=0))
+    return real(problem.turned(trial.whitened, trial.phase) - moved), found
+
+
+def derivatives(
+    changes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], steps: np.ndarray, back: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives (T, ..., n) of responses by n numbers, 0 where there is none, and whether (n, T) there is.
+
+    ``changes``: what steps (j, n) change in each response (j, T, ...), and whether (j, T) it was found;
+    ``steps`` (n,): of each number; ``back`` (n,): whether it may be changed to the other side.
+    """
+    change, found = changes(np.diag(steps))
+    # Beyond the limit at which a wedge locks there is no response: the near side tells.
+    lost = np.flatnonzero(~found.all(axis=1) & back)
+    if lost.size:
+        near, near_found = changes(np.diag(-steps)[lost])
+        change[lost] = np.where(_beside(found[lost], near), change[lost], -near)
+        found[lost] |= near_found
+    return np.moveaxis(np.where(_beside(found, change), change, 0.0), 0, -1) / steps, found
+
+
+def _beside(found: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """``found`` (j, T) with as many axes as ``values`` (j, T, ...)."""
+    return found.reshape(*found.shape, *[1] * (values.ndim - found.ndim))
+
+
+def _smaller(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Of two derivatives (T, m, k), test by test and number by number, the one of less length."""
+    shorter = (one**2).sum(axis=1) <= (other**2).sum(axis=1)
+    return np.where(shorter[:, None], one, other)
