@@ -99,9 +99,13 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    adequate = min(best.fit.p, where_it_shows(base.fit, best.fit)) >= ADEQUATE
-    strong = base.fit.excess >= thresholds.strong and adequate
+    strong = base.fit.excess >= thresholds.strong and _adequate(base, best)
     return Finding(NAMED if strong else CONSISTENT, best, ())
+
+
+def _adequate(base: Explanation, best: Explanation) -> bool:
+    """Whether an explanation leaves noise only, over all tests and where there was more."""
+    return min(best.fit.p, where_it_shows(base.fit, best.fit)) >= ADEQUATE
 
 
 def where_it_shows(base: Fit, fit: Fit) -> float:
@@ -120,11 +124,13 @@ def where_it_shows(base: Fit, fit: Fit) -> float:
 def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[float] | None) -> Finding:
     """The finding, unless its cause may well make worse what it was not fitted to.
 
+    Then none is the cause, or if it leaves noise only, too few tests show it for others to confirm it.
     ``interval``: 95 % interval of the excess that the cause removes there, None if there is none.
     """
-    if finding.cause is not None and interval is not None and interval[0] < 0.0:
-        return Finding(_nobody(base), finding.best, finding.rivals)
-    return finding
+    if finding.cause is None or interval is None or interval[0] >= 0.0:
+        return finding
+    unconfirmed = INSUFFICIENT if _adequate(base, finding.cause) else _nobody(base)
+    return Finding(unconfirmed, finding.best, finding.rivals)
 
 
 def _nobody(base: Explanation) -> str:
