@@ -10,6 +10,7 @@ import numpy as np
 from wedgesweep import config
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.spectra import Smooth, Spectrum
 
 FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])
@@ -21,6 +22,8 @@ friction_law = ["static-dynamic"]
 beta = [1.0]
 amplitude_mm = [0.1]
 """
+# One effect that shows in all of them.
+LAG = {"velocity_lag": {"time": 3e-4}}
 # With columns leaning this way friction that is much higher one way locks the wedge.
 LEANING = MODEL + "[suspension]\ncolumn_angle_deg = -2.5\n"
 
@@ -54,3 +57,10 @@ def drawn(
         np.full(stated.size, std if known else np.inf),
         uncertain or {},
     )
+
+
+def searched(problem, *effects):
+    """Search, base model and the best fit of each effect."""
+    search = Search(problem, effects)
+    base = search.base()
+    return search, base, [search.single(effect, base.fit) for effect in effects]

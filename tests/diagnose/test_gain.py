@@ -1,0 +1,35 @@
+"""Gain on tests that a fit has not seen: all of it where the cause is right, none where there is none."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.drawn import LAG, drawn, searched
+from wedgesweep.diagnose import gain
+
+
+def test_gain_on_held_out_tests_reaches_the_noise():
+    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    measured = gain.measure(base.fit, lag.fit, lambda function, items: list(map(function, items)))
+    assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
+    assert measured.excess_removed > 0.95
+    assert measured.interval is None  # six tests are too few for one
+
+
+def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
+    """Squared misfit of a right model, less what noise should leave."""
+    for std, known, least, most in ((1e-5, True, 1.0, 1.05), (0.5, True, 1.9, 2.0), (0.0, False, 2.0, 2.0)):
+        left = []
+        for seed in range(12):
+            _, base, _ = searched(drawn(seed=seed, std=std, known=known))
+            local = gain._local_numbers(base.fit)
+            assert ((least <= local) & (local <= most)).all()
+            left.append((base.fit.trial.residual**2).sum() - (base.fit.model.problem.points - local).sum())
+        assert np.mean(left) == pytest.approx(0.0, abs=3.0 * np.sqrt(2.0 * 384 / 12))
+
+
+def test_retuning_alone_gains_nothing():
+    _, base, (lag,) = searched(drawn(), "velocity_lag")
+    measured = gain.measure(base.fit, lag.fit, lambda function, items: list(map(function, items)))
+    base_square, extended, noise = measured.totals()
+    assert extended == pytest.approx(base_square, rel=0.02)
+    assert base_square == pytest.approx(noise, rel=0.2)
