@@ -224,3 +224,11 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
     with pytest.raises(SweepError, match="damaged"):
         report.write(tmp_path)
     assert {each.name for each in tmp_path.iterdir()} == {diagnosed.JSON, diagnosed.DATASET}
+
+
+def test_the_page_is_the_same_from_one_process_and_from_two(tmp_path):
+    fixture_diagnosis.write(tmp_path, "nothing-missing", tests=2)
+    one, two = (report.write(tmp_path, n_jobs).read_text(encoding="utf-8") for n_jobs in (1, 2))
+    assert one == two
+    assert one.count("<figure>") > 5
+    assert "<!--" not in one

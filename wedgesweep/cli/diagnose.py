@@ -1,11 +1,16 @@
 """diagnose: measured data in, a named cause (or an honest refusal) out."""
 
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, jobs
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnosed import Diagnosed
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
 
@@ -60,8 +65,8 @@ def diagnose(
     result.write(found, directory)
     written = directory
     if reported:
-        _draw(directory)
-        written = report.write(directory)
+        _draw(directory, jobs(n_jobs))
+        written = report.write(directory, jobs(n_jobs))
     click.echo(report.sentence(directory))
     click.echo(f"wrote {written}")
 
@@ -74,17 +79,27 @@ def _clear(directory: Path) -> None:
         (directory / name).unlink(missing_ok=True)
 
 
-def _draw(directory: Path) -> None:
+def _draw(directory: Path, n_jobs: int) -> None:
     """Write the figures beside the data; one that the tests cannot fill is left out."""
-    from wedgesweep import diagnosed, figures
-    from wedgesweep.figures.diagnosis import FIGURES
+    from wedgesweep import diagnosed
+    from wedgesweep.figures import diagnosis, forked
 
-    found = diagnosed.read(directory)
-    for kind, file in FIGURE_FILES.items():
-        try:
-            figures.save(FIGURES[kind].draw(found), directory / file)
-        except ValueError as error:
-            click.echo(f"skipped {error}", err=True)
+    _ = diagnosis.FIGURES  # loaded here, once, and not in every process
+    save = partial(_save, diagnosed.read(directory), directory)
+    for problem in filter(None, forked.each(save, FIGURE_FILES, n_jobs)):
+        click.echo(f"skipped {problem}", err=True)
+
+
+def _save(found: "Diagnosed", directory: Path, kind: str) -> str | None:
+    """Write a figure; returns why the tests cannot fill it, if they cannot."""
+    from wedgesweep import figures
+    from wedgesweep.figures import diagnosis
+
+    try:
+        figures.save(diagnosis.FIGURES[kind].draw(found), directory / FIGURE_FILES[kind])
+    except ValueError as error:
+        return str(error)
+    return None
 
 
 def _said(step: str) -> None:

@@ -9,14 +9,17 @@ from wedgesweep.report import sentence as sentences
 PAGE = "report.html"
 
 
-def write(directory: Path) -> Path:
-    """Make report.html from the diagnosis in a directory; raises InputError if there is none."""
+def write(directory: Path, n_jobs: int = 1) -> Path:
+    """Make report.html from the diagnosis in a directory; raises InputError if there is none.
+
+    ``n_jobs``: processes that draw.
+    """
     from wedgesweep.report import page
 
     file = directory / PAGE
     partial = directory / f".{PAGE}.partial"
     try:
-        partial.write_text(page.render(diagnosed.read(directory)), encoding="utf-8")
+        partial.write_text(page.render(diagnosed.read(directory), n_jobs), encoding="utf-8")
         os.replace(partial, file)
     finally:
         partial.unlink(missing_ok=True)

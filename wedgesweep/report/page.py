@@ -28,8 +28,8 @@ CONTENTS = {
 }
 
 
-def render(found: Diagnosed) -> str:
-    """HTML of the whole page; it needs no other file."""
+def render(found: Diagnosed, n_jobs: int = 1) -> str:
+    """HTML of the whole page, drawn by ``n_jobs`` processes; it needs no other file."""
     draw = Pictures(found)
     content = html.join(
         [
@@ -48,7 +48,7 @@ def render(found: Diagnosed) -> str:
     return Template(_read("page.html")).substitute(
         title=html.text(f"Diagnosis of {found.document['title']}"),
         style=_read("style.css"),
-        content=content,
+        content=draw.fill(content, n_jobs),
     )
 
 
