@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tests.diagnose.drawn import AMPLITUDES, LAG, drawn, searched
-from wedgesweep.diagnose import refine
 from wedgesweep.diagnose.refine import _covariance, exact
 
 
@@ -48,15 +47,6 @@ def test_the_error_of_a_simulation_is_no_information():
     coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
     np.testing.assert_allclose(coarse, std, rtol=0.1)
     assert fine.q == pytest.approx(stop.fit.q, abs=0.1)
-
-
-def test_where_derivatives_are_carried_a_fit_ends_the_same(monkeypatch):
-    problem = drawn(LAG, std=0.02, off=0.02)
-    _, _, (carried,) = searched(problem, "velocity_lag")
-    monkeypatch.setattr(refine, "TRUSTED", np.inf)
-    _, _, (own,) = searched(problem, "velocity_lag")
-    assert carried.fit.q == pytest.approx(own.fit.q, abs=2.0 * refine.ARRIVED)
-    np.testing.assert_allclose(carried.fit.covariance, own.fit.covariance, rtol=0.05)
 
 
 def test_what_the_equations_leave_open_is_wide():

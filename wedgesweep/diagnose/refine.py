@@ -10,36 +10,30 @@ import numpy as np
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.equations import Equations, equations_of
 from wedgesweep.diagnose.model import Fit, Model, Point, Trial
-from wedgesweep.diagnose.tangents import AMPLITUDE_WIDTH, carried, cautious, tangents_of
+from wedgesweep.diagnose.tangents import cautious
 
-ITERATIONS = 40
+ITERATIONS = 25
 # A fit has arrived when a step promises less than this of Q, or this share of what Q has above noise: far
 # from the data the last digit is of no use.
 ARRIVED, ARRIVED_SHARE = 0.02, 1e-3
-# Share of its promise that a step must keep for the derivatives to be carried on by its secant.
-TRUSTED = 0.1
 # Damping of a step at the start, and at which it has failed.
 DAMPING, STUCK = 1e-3, 1e8
 # Eigenvalue of scaled normal equations below which they leave a combination of numbers open.
 OPEN = 1e-12
 # Largest step of one iteration, in widths of the coordinates.
 LONGEST_STEP = 3.0
+# Largest relative step of an input amplitude.
+LONGEST_AMPLITUDE = 0.1
 
 
 def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
-    """Follow a trial to the nearest minimum of Q within the bounds.
-
-    Derivatives are carried along while steps keep their promises; where it ends they are its own.
-    """
+    """Follow a trial to the nearest minimum of Q within the bounds."""
     trial, damping, arrived = start, DAMPING, False
     matrix = np.zeros((len(model.low), len(model.low)))
-    tangents, own = None, True
     for _ in range(iterations):
         if not trial.found:
             break
-        if tangents is None:
-            tangents, own = tangents_of(model, trial), True
-        equations = equations_of(model, trial, tangents)
+        equations = equations_of(model, trial)
         matrix, _ = equations.reduced()
         better, promised = None, np.inf
         little = max(ARRIVED, ARRIVED_SHARE * (trial.q - model.dof))
@@ -49,19 +43,12 @@ def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
             if promised < little and not limited:
                 break
             better = _better(model, trial, step) if promised >= little else None
-            if better is None and not own:
-                break
             if better is None:
                 damping *= 8.0
-        if better is None and not own:
-            tangents = None
-            continue
         if better is None:
             arrived = promised < little
             break
         gained = trial.q - better.q
-        kept = gained > TRUSTED * promised
-        tangents, own = carried(model, tangents, trial, better) if kept else None, False
         trial, damping = better, max(damping / (8.0 if gained > 0.5 * promised else 1.0), 1e-9)
     return Fit(model, trial, _covariance(matrix), arrived)
 
@@ -106,8 +93,8 @@ def _step(model: Model, point: Point, equations: Equations, damping: float) -> t
     limited = bool((aim != x + step).any())
     within = aim - x
     local = equations.local(within, damping)
-    limited = limited or bool((np.abs(local[:, 1]) > AMPLITUDE_WIDTH).any())
-    local[:, 1] = np.clip(local[:, 1], -AMPLITUDE_WIDTH, AMPLITUDE_WIDTH)
+    limited = limited or bool((np.abs(local[:, 1]) > LONGEST_AMPLITUDE).any())
+    local[:, 1] = np.clip(local[:, 1], -LONGEST_AMPLITUDE, LONGEST_AMPLITUDE)
     promised = equations.promise(within, local)
     return replace(point, x=x + within, amplitude=point.amplitude + local[:, 1]), promised, limited
 

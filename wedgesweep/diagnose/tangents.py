@@ -11,8 +11,6 @@ from wedgesweep.diagnose.problem import real
 # Finite differences: share of a coordinate's width, and of an amplitude. The noise of a simulation looks like
 # information: shorter steps make intervals too narrow where amplitude and effect are hard to tell apart.
 STEP, AMPLITUDE_STEP = 2e-3, 2e-3
-# An input amplitude's width, relative.
-AMPLITUDE_WIDTH = 0.1
 
 
 class Tangents(NamedTuple):
@@ -42,25 +40,6 @@ def cautious(model: Model, trial: Trial) -> Tangents:
     Across a jump of the response they would be large, and seem to tell a number ever so precisely.
     """
     return Tangents(*map(_smaller, tangents_of(model, trial), tangents_of(model, trial, -1.0)))
-
-
-def carried(model: Model, before: Tangents, trial: Trial, reached: Trial) -> Tangents:
-    """Derivatives where a step has led: the least change of them that agrees with it (Broyden, 1965).
-
-    Test by test, in widths of the coordinates; that by the phase is known.
-    """
-    step = np.empty((model.problem.tests, len(model.width) + 1))
-    step[:, :-1] = reached.point.x - trial.point.x
-    step[:, -1] = reached.point.amplitude - trial.point.amplitude
-    turn = _turn(model, reached)
-    turned = np.angle(np.exp(1j * (reached.phase - trial.phase)))
-    columns = np.concatenate([before.by_number, before.by_test[..., 1:]], axis=-1)
-    told = np.einsum("tmk,tk->tm", columns, step) + turn * turned[:, None]
-    miss = reached.residual - trial.residual - told
-    weighed = step / np.r_[model.width, AMPLITUDE_WIDTH] ** 2
-    square = np.maximum((weighed * step).sum(axis=1, keepdims=True), np.finfo(float).tiny)
-    columns = columns + miss[..., None] * (weighed / square)[:, None]
-    return Tangents(columns[..., :-1], np.stack([turn, columns[..., -1]], axis=-1))
 
 
 def _turn(model: Model, trial: Trial) -> np.ndarray:
