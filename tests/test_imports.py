@@ -41,7 +41,7 @@ ONLY_IN = {
     "matplotlib": ("figures/",),
     "joblib": (
         *("backend.py", "cluster.py", "sweep.py", "synthesize/", "cli/"),
-        *("reproduce/chandiramani.py", "figures/forked.py"),
+        "reproduce/chandiramani.py",
     ),
     "distributed": ("cluster.py",),
     "wedgesweep.cli": ("cli/", "__main__.py"),

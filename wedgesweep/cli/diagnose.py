@@ -10,6 +10,8 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, jobs
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from wedgesweep.diagnosed import Diagnosed
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
@@ -60,13 +62,14 @@ def diagnose(
     if directory.exists() and not directory.is_dir():
         message = f"{directory}: not a directory"
         raise Failure(message)
-    found = diagnosis.diagnose(measurement, chosen, jobs(n_jobs), _said, calibrate)
+    processors = jobs(n_jobs)
+    found = diagnosis.diagnose(measurement, chosen, processors, _said, calibrate)
     _clear(directory)
     result.write(found, directory)
     written = directory
     if reported:
-        _draw(directory, jobs(n_jobs))
-        written = report.write(directory, jobs(n_jobs))
+        _draw(directory, processors)
+        written = report.write(directory, processors)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {written}")
 
@@ -82,21 +85,22 @@ def _clear(directory: Path) -> None:
 def _draw(directory: Path, n_jobs: int) -> None:
     """Write the figures beside the data; one that the tests cannot fill is left out."""
     from wedgesweep import diagnosed
-    from wedgesweep.figures import diagnosis, forked
+    from wedgesweep.figures import forked
+    from wedgesweep.figures.diagnosis import FIGURES
 
-    _ = diagnosis.FIGURES  # loaded here, once, and not in every process
-    save = partial(_save, diagnosed.read(directory), directory)
-    for problem in filter(None, forked.each(save, FIGURE_FILES, n_jobs)):
+    wanted = [(FIGURES[kind].draw, directory / file) for kind, file in FIGURE_FILES.items()]
+    save = partial(_save, diagnosed.read(directory))
+    for problem in filter(None, forked.each(save, wanted, n_jobs)):
         click.echo(f"skipped {problem}", err=True)
 
 
-def _save(found: "Diagnosed", directory: Path, kind: str) -> str | None:
+def _save(found: "Diagnosed", wanted: "tuple[Callable, Path]") -> str | None:
     """Write a figure; returns why the tests cannot fill it, if they cannot."""
     from wedgesweep import figures
-    from wedgesweep.figures import diagnosis
 
+    draw, file = wanted
     try:
-        figures.save(diagnosis.FIGURES[kind].draw(found), directory / FIGURE_FILES[kind])
+        figures.save(draw(found), file)
     except ValueError as error:
         return str(error)
     return None

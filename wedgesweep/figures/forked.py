@@ -2,9 +2,8 @@
 
 import multiprocessing
 from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
-
-import joblib
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -16,6 +15,7 @@ def each(function: Callable[[Item], Result], items: Iterable[Item], n_jobs: int)
     matplotlib keeps the interpreter to itself, so that it takes processes: forks of this one, which have
     loaded all that it has. Where there are none, new ones would take longer to start than to draw.
     """
-    forked = multiprocessing.get_start_method() == "fork"
-    pool = joblib.Parallel(n_jobs if forked else 1, backend="multiprocessing", batch_size=1)
-    return pool(joblib.delayed(function)(item) for item in items)
+    if n_jobs == 1 or multiprocessing.get_start_method() != "fork":
+        return [function(item) for item in items]
+    with ProcessPoolExecutor(n_jobs, multiprocessing.get_context("fork")) as pool:
+        return list(pool.map(function, items))

@@ -2,7 +2,7 @@
 
 import re
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -37,16 +37,18 @@ class Pictures:
 
     def fill(self, page: Markup, n_jobs: int) -> Markup:
         """The page with its figures in their places."""
-        _ = diagnosis.FIGURES  # loaded here, once, and not in every process
-        drawn = forked.each(partial(_draw, self.found), self.wanted, n_jobs)
+        modules = diagnosis.FIGURES
+        wanted = [(modules[picture.kind].draw, picture) for picture in self.wanted]
+        drawn = forked.each(partial(_draw, self.found), wanted, n_jobs)
         return Markup(re.sub("<!-- figure ([0-9]+) -->", lambda place: drawn[int(place[1])], page))
 
 
-def _draw(found: Diagnosed, picture: Picture) -> Markup:
+def _draw(found: Diagnosed, wanted: tuple[Callable, Picture]) -> Markup:
     """A figure with its caption; what the tests cannot fill becomes a sentence that says why."""
+    draw, picture = wanted
     options = {} if picture.tests is None else {"tests": picture.tests}
     try:
-        figure = diagnosis.FIGURES[picture.kind].draw(found, **options)
+        figure = draw(found, **options)
     except ValueError as error:
         return html.paragraph(f"No figure: {error}.", class_="note")
     width, height = (round(PIXELS_PER_INCH * side) for side in figure.get_size_inches())
