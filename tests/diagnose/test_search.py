@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.diagnose.drawn import drawn
+from tests.diagnose.drawn import drawn, searched
 from wedgesweep.diagnose import diagnosis
 from wedgesweep.diagnose.search import Search
 
@@ -32,8 +32,6 @@ def test_all_starts_are_followed_only_where_nothing_will_do(truth, looked, monke
 
 def test_the_right_way_is_found_though_its_start_looks_worst():
     truth = 3e-4
-    search = Search(drawn({"velocity_lag": {"time": truth}}), ("velocity_lag",))
-    base = search.base().fit
-    search.single("velocity_lag", base)
+    search, _, _ = searched(drawn({"velocity_lag": {"time": truth}}), "velocity_lag")
     search.along["velocity_lag"] = sorted(search.along["velocity_lag"], key=lambda trial: trial.q)[-3:]
     assert search.everywhere()[0].fit.x[0] == pytest.approx(truth, rel=0.05)

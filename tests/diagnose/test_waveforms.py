@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import AMPLITUDES, drawn
-from wedgesweep.diagnose import waveforms
+from tests.diagnose.drawn import AMPLITUDES, drawn, searched
+from wedgesweep import response
+from wedgesweep.diagnose import simulation, waveforms
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
-from wedgesweep.diagnose.search import Search
+from wedgesweep.solvers import event_driven
+from wedgesweep.solvers.trajectory import Window
 
 DAMPING, DRY = 8.0, 0.1
 DAMPER = {"viscous_damping": {"coefficient": DAMPING}}
@@ -54,15 +56,29 @@ def test_nothing_is_left_of_the_right_model(level):
     assert left(force + DAMPING * v, DAMPING * v) < 0.3
 
 
+def test_the_base_supplies_what_friction_takes():
+    problem = drawn()
+    model = Model(problem, Hypothesis(()), problem.amplitude)
+    fit = Fit(model, model.trial(model.start(None, np.zeros(0))), np.zeros((0, 0)), True)
+    supplied = waveforms.supplied(fit, fit.trial.harmonics[:, 0, 0])
+    records = simulation.records(problem.model, problem.law, {}, problem.omega, problem.amplitude)
+    for energy, record in zip(supplied, np.split(records, problem.tests), strict=True):
+        run = event_driven.solve(record, Window(float(record["omega"][0]), 60, 2, 256), 1e-9, 60.0)
+        taken = response.evaluate(run, record, 1).numbers["dissipated_energy"]
+        assert energy == pytest.approx(taken, rel=1e-4)
+
+
 def test_the_energy_of_measured_tests_is_that_of_the_true_system():
     """A heavier bolster on inputs that are not quite those stated: the base model takes both up elsewhere."""
     heavier, off = {"bolster_mass": {"scale": 1.1}}, 0.03
     problem = drawn(heavier, std=0.05, off=off)
-    search = Search(problem, ("bolster_mass",))
-    base = search.base().fit
-    extended = search.single("bolster_mass", base).fit
+    _, base, (extended,) = searched(problem, "bolster_mass")
     model = Model(problem, Hypothesis(("bolster_mass",)), (1.0 + off) * AMPLITUDES)
     true = Fit(model, model.trial(model.start(None, np.array([1.1]))), np.zeros((1, 1)), True)
     energy = waveforms.supplied(true, true.trial.harmonics[:, 0, 0])
-    np.testing.assert_allclose(waveforms.measured_energy(extended), energy, rtol=0.03)
-    assert np.abs(waveforms.measured_energy(base) / energy - 1.0).max() > 0.1
+
+    def measured(fit):
+        return waveforms.supplied(fit, waveforms.measured_from_phase_zero(fit)[:, 0, 0])
+
+    np.testing.assert_allclose(measured(extended.fit), energy, rtol=0.03)
+    assert np.abs(measured(base.fit) / energy - 1.0).max() > 0.1

@@ -4,6 +4,7 @@ A quick part of scripts/blind_campaign.py.
 """
 
 import pytest
+import xarray as xr
 
 from tests.hidden.laboratory import PAPER, Hidden, diagnose, make
 from wedgesweep.diagnose.result import DATASET, EXTENDED, JSON
@@ -62,6 +63,9 @@ def test_a_strong_cause_is_named_with_its_numbers(hidden, tmp_path):
     assert_near_truth(found, truth["effects"])
     assert found.document["misfit"]["p_extended"] > 1e-3
     assert found.document["gain"]["excess_removed"] > 0.8
+    with xr.open_dataset(found.directory / DATASET) as ds:
+        energy = ds["simulated_energy"].sel(model="extended") / ds["measured_energy"]
+        assert float(energy.median()) == pytest.approx(1.0, abs=0.02)
 
 
 def test_in_clean_data_nothing_is_named(tmp_path):

@@ -286,7 +286,7 @@ def dataset(found: Diagnosis) -> xr.Dataset:
     weight = problem.weight[..., :harmonics]
     noise = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), np.nan)
     known = ~np.isnan(problem.amplitude)
-    energy = np.where(known, waveforms.measured_energy(fits[1]), np.nan)
+    energy = np.where(known, waveforms.supplied(fits[1], turned[:, 0, 0]), np.nan)
     sampled = np.full((problem.tests, channels), np.nan)
     for row, spectrum in zip(sampled, problem.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise

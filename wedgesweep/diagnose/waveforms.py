@@ -56,19 +56,13 @@ def plateau(rate: np.ndarray) -> np.ndarray:
 def supplied(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     """Energy (J, shape (T,)) that the base puts in per period, from the displacement's fundamental (T,).
 
-    The work of the inertia forces that PHYSICS.md balances with friction: pi m a omega^2 Re D_1.
+    Amplitudes and the mass that moves are the fit's. So must be the phase of a fundamental that was measured:
+    no record tells the input's. It is the work of the inertia forces that PHYSICS.md balances with friction,
+    pi m a omega^2 Re D_1.
     """
     one = _rows(fit)
     moved = one["bolster_mass"] + 2.0 * one["wedge_mass"] * one["column_ratio"] * one["cos_column"]
     return pi * moved * one["amplitude"] * one["omega"] ** 2 * fundamental.real
-
-
-def measured_energy(fit: Fit) -> np.ndarray:
-    """Energy (J, shape (T,)) that the base put in per period of the measured tests.
-
-    No record tells the input's phase: it is the fit's, as are amplitudes and the mass that moves.
-    """
-    return supplied(fit, measured_from_phase_zero(fit)[:, 0, 0])
 
 
 def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:

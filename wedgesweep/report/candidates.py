@@ -64,10 +64,12 @@ def _summary(found: Diagnosed) -> str:
     effects = [each["effects"] for each in found.document["candidates"]]
     pairs = sum(len(each) > 1 for each in effects)
     singles = words.counted(sum(len(each) == 1 for each in effects), "single candidate")
-    of_pairs = f", and {words.counted(pairs, 'pair')}, those that looked best on some of the tests"
+    best = (
+        f", and {words.counted(pairs, 'pair')}, those that looked best on some of the tests" if pairs else ""
+    )
     failed = sum(each["status"] == "failed" for each in found.document["candidates"])
     told = f" {words.counted(failed, 'fit')} failed." if failed else ""
-    return f"Beside the base model {singles} were fitted{of_pairs if pairs else ''}.{told}"
+    return f"Beside the base model {singles} were fitted{best}.{told}"
 
 
 def _ranking(found: Diagnosed) -> str:
