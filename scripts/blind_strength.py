@@ -11,6 +11,7 @@ from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.spectra import COMPARED, Spectrum, placed, within_band
+from wedgesweep.solvers.periodic import at_rest
 from wedgesweep.synthesize.noise import AR1_CORRELATION
 
 PERIODS, SAMPLING_HZ = 8.4, 2000.0
@@ -25,7 +26,7 @@ def harmonics(system: Config, law: str, tests: list[Test]) -> tuple[np.ndarray |
 
     None in their place where one does not exist or does not move.
     """
-    rows, cold = records(system, law, tests), simulation.cold(len(tests))
+    rows, cold = records(system, law, tests), at_rest(len(tests))
     if TONE in system.effects:
         tone = system.effects[TONE]["frequency"]
         # How tone and input meet is drawn later, with the data.

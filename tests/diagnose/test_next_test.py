@@ -12,6 +12,7 @@ from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test import ACCELERATIONS, ENOUGH, FREQUENCIES, _choice
 from wedgesweep.diagnose.search import Search
+from wedgesweep.solvers.periodic import at_rest
 
 SHAPE = (ACCELERATIONS.size, FREQUENCIES.size)
 FAR = 10.0 * ENOUGH
@@ -31,7 +32,7 @@ def gain(fit, test, factor):
     omega, amplitude = (np.array([each]) for each in (2.0 * np.pi * test.frequency, factor * test.amplitude))
     problem = fit.model.problem
     rows = simulation.records(problem.model, problem.law, fit.model.values(fit.x), omega, amplitude)
-    return abs(simulation.respond(rows, simulation.cold(1), 1).harmonics[0, 0, 0]) / amplitude[0]
+    return abs(simulation.respond(rows, at_rest(1), 1).harmonics[0, 0, 0]) / amplitude[0]
 
 
 @pytest.fixture(scope="module")

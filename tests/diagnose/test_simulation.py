@@ -26,7 +26,7 @@ def rows(phase):
 @pytest.mark.parametrize("begin", [0, 77, 400])
 def test_input_and_tone_meet_as_in_the_record(begin):
     """Records that begin anywhere, under a tone of any phase, have the harmonics that are simulated."""
-    at_rest = np.full((3, periodic.SIZE), np.nan)
+    at_rest = periodic.at_rest(3).state
     x, velocity, _ = periodic.samples(rows(1.9), at_rest, 30, 10, PER_PERIOD, 1e-8)
     count = round(PERIODS * PER_PERIOD)
     signals = -np.stack([x, velocity], axis=1)
@@ -41,7 +41,7 @@ def test_input_and_tone_meet_as_in_the_record(begin):
         meetings.append(simulation.Meeting(PERIODS, start, float(np.angle(found.mean[0, -1]))))
         turned_back = np.exp(-1j * start * np.arange(1, 17))
         measured.append(found.mean * np.r_[turned_back, 1.0])
-    done = simulation.respond_with_tone(rows(0.0), simulation.cold(3), 16, TONE, meetings)
+    done = simulation.respond_with_tone(rows(0.0), periodic.at_rest(3), 16, TONE, meetings)
     for simulated, real in zip(done.harmonics, measured, strict=True):
         for one, other in zip(simulated, real, strict=True):
             assert np.abs(one[:-1] - other[:-1]).max() < 2e-3 * np.abs(other).max()

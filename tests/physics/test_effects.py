@@ -180,8 +180,8 @@ def test_directional_friction_mirrors(law):
             friction={"dynamic": 0.2, "static": 0.25},
             effects={"directional_friction": {"asymmetry": asymmetry}},
         )
-        cold = np.full((1, periodic.SIZE), np.nan), np.full((1, periodic.SIZE, periodic.SIZE), np.nan)
-        found = periodic.respond(record, *cold, 1e-8, 400, 256, 7, 1e-9)
+        cold = periodic.at_rest(1)
+        found = periodic.respond(record, cold, 1e-8, 400, 256, 7, 1e-9)
         assert found.outcome[0] == periodic.OK
         return found.extremes[0]
 
@@ -244,7 +244,7 @@ def test_springs_without_a_place_to_rest_are_told():
 def test_a_foreign_tone_shows_at_its_frequency_and_has_a_phase_of_its_own():
     beta, omega = 0.6, 0.6 * OMEGA_N
     tone = 5.5 * omega / (2 * pi)
-    cold = np.full((1, periodic.SIZE), np.nan)
+    cold = periodic.at_rest(1).state
     spectra = []
     for phase in (0.0, pi / 2):
         record = with_effect(
@@ -284,12 +284,12 @@ def test_any_effects_end_with_a_finite_answer_or_a_reason(law, names, place, bet
         friction={"dynamic": dynamic},
         effects={name: typical(name, place) for name in names},
     )
-    cold = np.full((1, periodic.SIZE), np.nan), np.full((1, periodic.SIZE, periodic.SIZE), np.nan)
-    found = periodic.respond(record, *cold, 1e-6, 30, 128, 5, 1e-6)
+    cold = periodic.at_rest(1)
+    found = periodic.respond(record, cold, 1e-6, 30, 128, 5, 1e-6)
     assert np.isfinite(found.spectra[0]).all() == (found.outcome[0] == periodic.OK)
     # The proof that a wedge never locks is not needed to find that it does.
     record["never_locks"] = 0.0
-    again = periodic.respond(record, *cold, 1e-6, 30, 128, 5, 1e-6)
+    again = periodic.respond(record, cold, 1e-6, 30, 128, 5, 1e-6)
     assert (again.outcome[0] == periodic.OK) == (found.outcome[0] == periodic.OK)
 
 

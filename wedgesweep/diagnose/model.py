@@ -13,7 +13,7 @@ from scipy.special import chdtrc
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.coordinates import Hypothesis, Values
 from wedgesweep.diagnose.problem import Problem, real
-from wedgesweep.diagnose.simulation import Warm
+from wedgesweep.solvers.periodic import Warm, at_rest
 
 # The effect that answers to a foreign tone.
 TONE = "stray_vibration"
@@ -198,7 +198,7 @@ class Model:
         """Point with the numbers of the hypothesis and everything else as a base fit has it."""
         if base is None:
             nothing = np.zeros(self.problem.tests)
-            return Point(np.r_[x, np.ones(len(self.uncertain))], nothing, simulation.cold(nothing.size))
+            return Point(np.r_[x, np.ones(len(self.uncertain))], nothing, at_rest(nothing.size))
         known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
         rest = [known.get(name, 1.0) for name in self.uncertain]
         return Point(np.r_[x, rest], base.trial.point.amplitude, base.trial.point.warm)

@@ -18,6 +18,7 @@ from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.tangents import AMPLITUDE_STEP, STEP, derivatives
+from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
 # Input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.
@@ -92,7 +93,7 @@ def _choice(distances: np.ndarray) -> int:
 def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
     steps = np.r_[STEP * fit.model.width, AMPLITUDE_STEP]
     nothing = np.zeros((1, steps.size))
-    here, found, warm = _responses(fit, omega, amplitude, nothing, simulation.cold(omega.size))
+    here, found, warm = _responses(fit, omega, amplitude, nothing, at_rest(omega.size))
 
     def changes(moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         there, found, _ = _responses(fit, omega, amplitude, moves, warm.repeated(len(moves)))

@@ -11,6 +11,7 @@ from wedgesweep import parameters
 from wedgesweep.config import Config
 from wedgesweep.diagnose.spectra import REMOVED, regressors
 from wedgesweep.solvers import periodic
+from wedgesweep.solvers.periodic import Warm
 
 # Errors (shares of the input amplitude, and of a step) that add nothing to the noise of 4 % data, and those
 # that add nothing to derivatives either.
@@ -19,20 +20,6 @@ MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 256
 # Periods run before a response with a foreign tone is evaluated, and over which it is where no record says.
 TONE_SETTLING, LONG = 10, 12.0
-
-
-class Warm(NamedTuple):
-    """Where steady responses were found: states (n, k) at phase 0 and derivatives (n, k, k) of the map."""
-
-    states: np.ndarray
-    maps: np.ndarray
-
-    def repeated(self, times: int) -> "Warm":
-        return Warm(np.tile(self.states, (times, 1)), np.tile(self.maps, (times, 1, 1)))
-
-    def of(self, rows: np.ndarray | slice) -> "Warm":
-        """Some of the rows."""
-        return Warm(self.states[rows], self.maps[rows])
 
 
 class Responses(NamedTuple):
@@ -46,12 +33,6 @@ class Responses(NamedTuple):
     warm: Warm
 
 
-def cold(cases: int) -> Warm:
-    """No neighbour: start from rest."""
-    size = periodic.SIZE
-    return Warm(np.full((cases, size), np.nan), np.full((cases, size, size), np.nan))
-
-
 def records(model: Config, law: str, values: dict, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Parameter records of some tests, shape (n,): ``omega`` (rad/s) and ``amplitude`` (m) of shape (n,)."""
     effects = {**model.effects, **values}
@@ -63,10 +44,8 @@ def records(model: Config, law: str, values: dict, omega: np.ndarray, amplitude:
 
 def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
     """Steady responses of parameter records, shape (n,)."""
-    found = periodic.respond(
-        rows, warm.states, warm.maps, tolerance, MOST_PERIODS, SAMPLES_PER_PERIOD, harmonics, tolerance
-    )
-    return Responses(found.spectra, found.outcome == 0, Warm(found.state, found.map))
+    found = periodic.respond(rows, warm, tolerance, MOST_PERIODS, SAMPLES_PER_PERIOD, harmonics, tolerance)
+    return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
 
 
 class Meeting(NamedTuple):
@@ -96,7 +75,7 @@ def respond_with_tone(
     """
     rows = rows.copy()
     meetings = tuple(each if np.isfinite(each.tone) else each._replace(periods=LONG) for each in meetings)
-    spectra, state = _recorded(rows, warm.states, harmonics, tone, meetings, tolerance)
+    spectra, state = _recorded(rows, warm.state, harmonics, tone, meetings, tolerance)
     late = np.array([meeting.tone for meeting in meetings]) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(late))
     if again.size:
@@ -106,7 +85,7 @@ def respond_with_tone(
             rows[again], state[again], harmonics, tone, chosen, tolerance
         )
     found = np.isfinite(spectra).all(axis=(1, 2))
-    return Responses(spectra, found, Warm(state, warm.maps))
+    return Responses(spectra, found, warm._replace(state=state))
 
 
 def _recorded(

@@ -62,11 +62,9 @@ def respond(
     records: np.ndarray, accuracy: Accuracy, before: Periodic | None = None, harmonics: int = HARMONICS
 ) -> Periodic:
     """Steady responses, from rest or from the states of others; shape (n,)."""
-    size = periodic.SIZE
-    states = np.full((len(records), size), np.nan) if before is None else before.state
-    maps = np.full((len(records), size, size), np.nan) if before is None else before.map
+    warm = periodic.at_rest(len(records)) if before is None else before.warm
     tolerance, most, rtol = accuracy
-    return periodic.respond(records, states, maps, tolerance, most, SAMPLES_PER_PERIOD, harmonics, rtol)
+    return periodic.respond(records, warm, tolerance, most, SAMPLES_PER_PERIOD, harmonics, rtol)
 
 
 def record(records: np.ndarray, amplitudes: np.ndarray, accuracy: Accuracy) -> tuple[Recording, Recording]:

@@ -41,22 +41,25 @@ def run_batch(parameters, settle_periods, starts, plan, rtol: float, batch) -> N
     for i in range(len(parameters)):
         y = np.zeros(SIZE)
         y[[X, VELOCITY]] = starts[i]
+        near = int(np.any(y))
         if plan.chain and before is not None:
-            y[:] = before
-        _run_case(i, y, parameters[i : i + 1], int(settle_periods[i]), plan, bench, batch)
+            y[:], near = before, int(batch.period[i - 1])
+        _run_case(i, y, near, parameters[i : i + 1], int(settle_periods[i]), plan, bench, batch)
         before = y if batch.outcome[i] == OK else None
         batch.state[i] = y[[X, VELOCITY]]
 
 
-def _run_case(i: int, y: np.ndarray, case: np.ndarray, settle: int, plan, bench: Tools, batch) -> None:
-    """Settle, keep and reduce one case; y moves along."""
+def _run_case(
+    i: int, y: np.ndarray, near: int, case: np.ndarray, settle: int, plan, bench: Tools, batch
+) -> None:
+    """Settle, keep and reduce one case; y moves along. ``near``: period of a response close to y, else 0."""
     bench.room.counts[:] = 0
     outcome, period = OK, -1
     bench.reached[0] = 0.0
     if plan.steady:
         unknown = np.full((SIZE, SIZE), np.nan)
         outcome, period, settle, _ = settling.settle(
-            y, unknown, case, plan.tolerance, plan.most, bench, bool(np.any(y)), passage()
+            y, near, unknown, case, plan.tolerance, plan.most, bench, passage()
         )
     elif settle:
         outcome = run_periods(passage(), 0, settle, y, case, False, bench)

@@ -4,6 +4,7 @@ Works alike for the base model, whose states are the first two of the extended s
 effect. See settling.py for the way to a steady state.
 """
 
+from collections.abc import Sequence
 from math import ceil, pi
 from typing import Any, NamedTuple
 
@@ -17,27 +18,64 @@ from wedgesweep.solvers.passage import clear, passage, tools
 from wedgesweep.solvers.repetition import LONGEST
 from wedgesweep.solvers.settling import settle
 
-__all__ = ["OK", "SIZE", "Periodic", "respond", "samples"]
+__all__ = ["OK", "SIZE", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
 
 # Time constants after which the lag of the velocity channel has forgotten how it began.
 LAG_TIMES = 16.0
+
+
+class Warm(NamedTuple):
+    """Where steady responses were found, a row a case, and so where to look for those of their neighbours.
+
+    ``state`` (n, SIZE) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
+    periods (0: it does not repeat), ``map`` (n, SIZE, SIZE) the derivative of the state a period later by
+    that at phase 0 (NaN: unknown).
+    """
+
+    state: Any
+    period: Any
+    map: Any
+
+    def repeated(self, times: int) -> "Warm":
+        """All rows so many times, one after the other."""
+        return Warm(*(np.concatenate([each] * times) for each in self))
+
+    def of(self, rows: Any) -> "Warm":
+        """Some of the rows."""
+        return Warm(*(each[rows] for each in self))
+
+    def where(self, chosen: np.ndarray, other: "Warm") -> "Warm":
+        """Rows from another where they are chosen (n,), else the own ones."""
+        rows = np.flatnonzero(chosen)
+        found = Warm(*(each.copy() for each in self))
+        for mine, its in zip(found, other, strict=True):
+            mine[rows] = its[rows]
+        return found
+
+
+def at_rest(cases: int) -> Warm:
+    """No neighbour."""
+    return Warm(
+        np.full((cases, SIZE), np.nan), np.zeros(cases, np.int64), np.full((cases, SIZE, SIZE), np.nan)
+    )
+
+
+def joined(some: Sequence[Warm]) -> Warm:
+    """Rows of all, one after the other."""
+    return Warm(*map(np.concatenate, zip(*some, strict=True)))
 
 
 class Periodic(NamedTuple):
     """Steady responses, a row a case (SI units); NaN where there is none.
 
     ``spectra`` (n, 2, H), complex: D_h, h = 1..H, of displacement x - y = -z and of its rate, as the sensors
-    show them; ``state`` (n, SIZE) at phase 0, ``map`` (n, SIZE, SIZE) the derivative of the map from one
-    phase 0 to the next (NaN where it was not needed). ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
-    ``period`` (forcing periods; 0: it did not repeat), ``periods`` run, ``extremes`` (n, 2) lowest and
-    highest deflection (m), ``stuck`` share of time.
+    show them; ``warm``: where they were found. ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
+    ``periods`` run, ``extremes`` (n, 2) lowest and highest deflection (m), ``stuck`` share of time.
     """
 
     spectra: Any
-    state: Any
-    map: Any
+    warm: Warm
     outcome: Any
-    period: Any
     periods: Any
     extremes: Any
     stuck: Any
@@ -45,8 +83,7 @@ class Periodic(NamedTuple):
 
 def respond(
     parameters: np.ndarray,
-    states: np.ndarray,
-    maps: np.ndarray,
+    warm: Warm,
     tolerance: float,
     most_periods: int,
     samples_per_period: int,
@@ -59,10 +96,8 @@ def respond(
     ----------
     parameters : structured array, shape (n,)
         See parameters.record.
-    states : ndarray, shape (n, SIZE)
-        States at phase 0 to start from; a row with NaN starts at rest.
-    maps : ndarray, shape (n, SIZE, SIZE)
-        Derivatives of the map there, as an earlier response returned them; NaN where unknown.
+    warm : Warm, n rows
+        Where to start from.
     tolerance : float
         Change of the state per repetition, over input amplitude and velocity, that counts as steady.
     most_periods : int
@@ -75,9 +110,7 @@ def respond(
     n = len(parameters)
     found = Periodic(
         np.full((n, 2, harmonics), np.nan, np.complex128),
-        np.array(states, dtype=float),
-        np.array(maps, dtype=float),
-        np.zeros(n, np.int64),
+        Warm(*(each.copy() for each in warm)),
         np.zeros(n, np.int64),
         np.zeros(n, np.int64),
         np.full((n, 2), np.nan),
@@ -93,18 +126,20 @@ def _respond_all(parameters, tolerance, most, bench, found, passage):
     spectra = np.empty((2, found.spectra.shape[2], 2))
     for i in range(parameters.size):
         case = parameters[i : i + 1]
-        y = found.state[i].copy()
-        outcome, period, run, kept = settle(y, found.map[i], case, tolerance, most, bench, True, passage)
+        y, before = found.warm.state[i].copy(), found.warm.period[i]
+        outcome, period, run, kept = settle(
+            y, before, found.warm.map[i], case, tolerance, most, bench, passage
+        )
         if outcome == OK and not kept:
             # Of a response that does not repeat, the mean over as many periods as there is room for.
             kept = period if period else LONGEST
             clear(bench.tally)
             outcome = passage(run if period == 0 else 0, kept, y, case, True, bench)
             run += kept
-        found.outcome[i], found.period[i], found.periods[i] = outcome, period, run
-        found.state[i] = y
+        found.outcome[i], found.periods[i] = outcome, run
+        found.warm.state[i], found.warm.period[i] = y, period
         if outcome != OK:
-            found.state[i] = np.nan
+            found.warm.state[i] = np.nan
         else:
             _reduce(i, kept, case[0], bench, spectra, found)
 

@@ -1,6 +1,8 @@
-"""The way to a steady state: march, and Newton's method on the map from one phase 0 to the next.
+"""The way to a steady state: march, and Newton's method on the map from one phase 0 to another.
 
-The map's derivative J comes from differences, or from a neighbour; Broyden's update (1965) keeps it
+The map goes over as many forcing periods as the response seems to take, or a neighbour's does: one case may
+have several responses that all are stable, and a state belongs to the one to which it goes by itself. The
+map's derivative J comes from differences, or from a neighbour; Broyden's update (1965) keeps it
 right from one step to the next. Steps of Newton's method must bring the state ever closer to its own
 image, or the run goes back to where marching had come. A response that J calls unstable, or whose mean
 position is free, is left to marching.
@@ -23,6 +25,9 @@ PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e3, 1e-4
 SINGULAR, UNSTABLE = 1e-3, 0.9999
 # Periods that are marched before Newton's method is tried, from rest and after it has failed.
 PATIENCE = 8
+# A response seems to take several periods where its state comes back this many times closer after them than
+# after one.
+RHYTHM = 10.0
 # Above STALE times the last distance J is made anew; with a fresh one more than GAIN is a failure.
 STALE, GAIN = 0.2, 0.5
 # Share of a period by which a time at rest grows if nothing slips, less rounding; and the time at rest, in
@@ -35,14 +40,14 @@ TONE_PERIODS = 30
 
 
 @compiled
-def active(y, p):
-    """Which states carry over to the next period; not the velocity of a bolster that is held at phase 0.
+def active(y, p, periods):
+    """Which states carry over from phase 0 to the one some periods later.
 
-    The time at rest does if the last slip was within the period before.
+    Not the velocity of a bolster that is held then; the time at rest does if the last slip was in between.
     """
     found = in_use(p)
     found[VELOCITY] = not (p.set_valued and y[VELOCITY] == 0.0)
-    found[AGE] = 0.0 < y[AGE] * p.omega < 2.0 * pi * GROWN
+    found[AGE] = 0.0 < y[AGE] * p.omega < 2.0 * pi * periods * GROWN
     return found
 
 
@@ -53,17 +58,17 @@ def _distance(a, b, size):
 
 
 @compiled
-def _period(y, parameters, keeping, tools, passage):
-    """Run one period; y moves along.
+def _run(y, periods, parameters, keeping, tools, passage):
+    """Run some periods; y moves along.
 
-    Faces that did not slip in a period after which all else came back will never do so, and neither will
+    Faces that did not slip in periods after which all else came back will never do so, and neither will
     those that did not in as many periods as a response may have.
     """
     before = y.copy()
-    outcome = passage(0, 1, y, parameters, keeping, tools)
+    outcome = passage(0, periods, y, parameters, keeping, tools)
     p = parameters[0]
     cycle = 2.0 * pi / p.omega
-    if y[AGE] >= GROWN * cycle:
+    if y[AGE] >= periods * GROWN * cycle:
         before[AGE] = y[AGE]
         if y[AGE] >= LONGEST * GROWN * cycle or _distance(y, before, units(p)) <= NEAR:
             y[AGE] = RESTED * cycle
@@ -71,7 +76,7 @@ def _period(y, parameters, keeping, tools, passage):
 
 
 @compiled
-def differences(y, image, moves, size, parameters, jacobian, tools, passage):
+def differences(y, image, periods, moves, size, parameters, jacobian, tools, passage):
     """Write J at y, whose image is known; returns the outcome and the periods it took."""
     jacobian[:] = 0.0
     run = 0
@@ -82,8 +87,8 @@ def differences(y, image, moves, size, parameters, jacobian, tools, passage):
         if moves[column]:
             shifted = y.copy()
             shifted[column] += share * size[column]
-            outcome = _period(shifted, parameters, False, tools, passage)
-            run += 1
+            outcome = _run(shifted, periods, parameters, False, tools, passage)
+            run += periods
             if outcome != OK:
                 jacobian[:] = np.nan
                 return outcome, run
@@ -143,10 +148,10 @@ def _update(jacobian, y, image, before, image_before, size):
 
 
 @compiled
-def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
-    """Newton's method from y, with J made where it is not known or not right.
+def chase(y, periods, jacobian, parameters, tolerance, most, size, tools, passage):
+    """Newton's method from y for a state that comes back, with J made where it is not known or not right.
 
-    Returns whether y repeats now, the outcome and the periods run, of which the last is kept if so.
+    Returns whether y repeats now, the outcome and the periods run, of which the last ones are kept if so.
     Where it fails y is the state with the shortest way to its own image that it has come to.
     """
     before, image_before, best = y.copy(), y.copy(), y.copy()
@@ -156,8 +161,8 @@ def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
         keeping = last < NEAR or run == 0
         if keeping:
             clear(tools.tally)
-        outcome = _period(image, parameters, keeping, tools, passage)
-        run += 1
+        outcome = _run(image, periods, parameters, keeping, tools, passage)
+        run += periods
         if outcome != OK:
             y[:] = best
             return False, outcome, run
@@ -165,16 +170,16 @@ def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
         if now <= tolerance and keeping:
             y[:] = image
             return True, OK, run
-        moves = active(image, parameters[0])
+        moves = active(image, parameters[0], periods)
         if now < shortest:
             shortest = now
             best[:] = image
-        if run > 1 and np.isfinite(jacobian).all():
+        if run > periods and np.isfinite(jacobian).all():
             _update(jacobian, y, image, before, image_before, size)
-        if now > STALE * last or (run == 1 and not _trusted(jacobian, moves)):
+        if now > STALE * last or (run == periods and not _trusted(jacobian, moves)):
             if fresh and now > GAIN * last:
                 break
-            outcome, more = differences(y, image, moves, size, parameters, jacobian, tools, passage)
+            outcome, more = differences(y, image, periods, moves, size, parameters, jacobian, tools, passage)
             run += more
             fresh = True
             if outcome != OK or not _trusted(jacobian, moves):
@@ -188,27 +193,52 @@ def chase(y, jacobian, parameters, tolerance, most, size, tools, passage):
 
 
 @compiled
-def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
+def _rhythm(back):
+    """Periods that a response seems to take, from the distances (LONGEST,) of its state from those before."""
+    for n in range(2, LONGEST + 1):
+        if back[n - 1] * RHYTHM < back[0]:
+            return n
+    return 1
+
+
+@compiled
+def _found(y, periods, jacobian, parameters, tolerance, most, size, tools, passage):
+    """Period of the response that Newton's method finds from y, 0 if none; the outcome, and the periods run.
+
+    It looks for one of so many periods, and keeps as many.
+    """
+    found, outcome, run = chase(y, periods, jacobian, parameters, tolerance, most, size, tools, passage)
+    if not found or periods == 1:
+        return int(found), outcome, run
+    image = y.copy()
+    if _run(image, 1, parameters, False, tools, passage) == OK and _distance(image, y, size) <= tolerance:
+        jacobian[:] = np.nan
+        return 1, OK, run + 1
+    return periods, OK, run + 1
+
+
+@compiled
+def settle(y, periods, jacobian, parameters, tolerance, most, tools, passage):
     """Find a state at phase 0 that repeats, from y (rest where it is NaN) and J (NaN: unknown).
 
-    ``near``: y is thought to lie close to it, so that Newton's method comes first. Returns the outcome,
-    the period of the response in forcing periods (0: it did not repeat), the periods run, and how many of
-    them, the last ones, the tools have kept. y and J move along.
+    ``periods``: if y is thought to lie close to it, so that Newton's method comes first, what the response
+    takes there; else 0. Returns the outcome, the period of the response in forcing periods (0: it did not
+    repeat), the periods run, and how many of them, the last ones but for checks, the tools have kept.
+    y and J move along; J is that over a period of the response.
     """
     p = parameters[0]
     size = units(p)
     run = 0
-    warm = np.isfinite(y).all()
-    if not warm:
-        y[:] = 0.0
+    if not np.isfinite(y).all():
+        y[:], periods = 0.0, 0
         jacobian[:] = np.nan
     if p.stray_vibration_acceleration != 0.0:
         most = min(most, TONE_PERIODS)
         return passage(0, most, y, parameters, False, tools), 0, most, 0
-    if warm and near:
-        found, outcome, run = chase(y, jacobian, parameters, tolerance, most, size, tools, passage)
-        if found:
-            return OK, 1, run, 1
+    if periods:
+        period, outcome, run = _found(y, periods, jacobian, parameters, tolerance, most, size, tools, passage)
+        if period:
+            return OK, period, run, periods
         if outcome != OK:
             # The neighbour's state may lie where this case cannot go: rest is the start that decides.
             y[:] = 0.0
@@ -216,7 +246,7 @@ def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
     count = 0
     while run < most:
         past[count % LONGEST] = y
-        outcome = _period(y, parameters, False, tools, passage)
+        outcome = _run(y, 1, parameters, False, tools, passage)
         run, count = run + 1, count + 1
         if outcome != OK:
             return outcome, 0, run, 0
@@ -224,15 +254,17 @@ def settle(y, jacobian, parameters, tolerance, most, tools, near, passage):
             back[n - 1] = _distance(y, past[(count - n) % LONGEST], size)
         period = repetition(back, tolerance)
         if period:
+            if period != periods:
+                jacobian[:] = np.nan
             return OK, period, run, 0
         if count % PATIENCE == 0:
-            trial = y.copy()
+            trial, periods = y.copy(), _rhythm(back)
             jacobian[:] = np.nan
-            found, outcome, more = chase(
-                trial, jacobian, parameters, tolerance, most - run, size, tools, passage
+            period, outcome, more = _found(
+                trial, periods, jacobian, parameters, tolerance, most - run, size, tools, passage
             )
             run += more
-            if found:
+            if period:
                 y[:] = trial
-                return OK, 1, run, 1
+                return OK, period, run, periods
     return OK, 0, run, 0
