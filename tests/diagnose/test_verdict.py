@@ -122,6 +122,21 @@ def test_a_pair_must_beat_its_parts():
     assert verdict_of(explained(5000.0), single, pair).cause is pair
 
 
+@pytest.mark.parametrize(("others", "expected"), [(3, "named"), (4, "data-insufficient")])
+def test_a_pair_that_many_others_imitate_is_not_named(others, expected):
+    """A spring that is no candidate, to which many pairs come close."""
+    pair = explained(640.0, "bolster_mass", "wedge_stiffness")
+    near = [explained(700.0 + i, "bolster_mass", name) for i, name in enumerate("abcd"[:others])]
+    far = [explained(1000.0 + i, "bolster_mass", name) for i, name in enumerate("efghij")]
+    found = verdict_of(explained(5000.0), pair, *near, *far)
+    assert (found.verdict, len(found.rivals)) == (expected, 4 if others == 4 else 0)
+
+
+def test_a_single_cause_is_named_whatever_pairs_can_imitate():
+    pairs = [explained(715.0 + i, "preload", name) for i, name in enumerate("abcdef")]
+    assert verdict_of(explained(5000.0), explained(690.0, "stribeck"), *pairs).verdict == "named"
+
+
 @pytest.mark.parametrize(("scale", "named"), [(1.1, False), (1.4, True)])
 def test_an_uncertain_number_is_a_cause_beyond_three_deviations(scale, named):
     found = verdict_of(

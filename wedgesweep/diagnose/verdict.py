@@ -27,7 +27,8 @@ SHOWN = 0.9
 STRONG = 800.0
 # With fewer tests no cause can be checked on a test that it was not fitted to.
 FEWEST_TESTS = 3
-# With more explanations than this in a tie the tests show that something is wrong, but not what.
+# With this many rivals the tests show that something is wrong, but not what. A pair's are all that leave
+# noise only.
 MOST_TIED = 4
 # An uncertain number is a cause only if it is this many of its standard deviations off.
 UNCERTAIN = 3.0
@@ -95,6 +96,10 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     if best.fit.p < POSSIBLE:
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
+    if len(best.effects) > 1 and len(rivals) < MOST_TIED:
+        # What many pairs can imitate may well be none of them: then the closest is only that.
+        others = tuple(each for each in order[1:] if each.fit.p >= ADEQUATE)
+        rivals = others if len(others) >= MOST_TIED else rivals
     if len(rivals) >= MOST_TIED or base.fit.model.problem.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:

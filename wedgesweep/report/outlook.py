@@ -43,7 +43,7 @@ def rivals(found: Diagnosed) -> Markup:
         for each in found.document["rivals"]
     ]
     told = (
-        html.table("Explanations that fit as well", ("explanation", "meaning", "behind by"), rows, 2)
+        html.table("Other explanations that will do", ("explanation", "meaning", "behind by"), rows, 2)
         if rows
         else html.paragraph(_alone(found))
     )
