@@ -12,6 +12,7 @@ from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.spectra import Smooth, Spectrum
+from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])
 AMPLITUDES = 1e-3 * np.array([1.5, 0.6, 0.16, 0.11, 0.09, 0.06])
@@ -29,15 +30,28 @@ LEANING = MODEL + "[suspension]\ncolumn_angle_deg = -2.5\n"
 
 
 def drawn(
-    effects=None, seed=0, level=0.04, std=0.02, uncertain=None, known=True, off=0.0, tests=slice(None)
+    effects=None,
+    seed=0,
+    level=0.04,
+    std=0.02,
+    uncertain=None,
+    known=True,
+    off=0.0,
+    tests=slice(None),
+    bench=(FREQUENCIES, AMPLITUDES),
+    law="static-dynamic",
+    model=MODEL,
 ) -> Problem:
-    """Problem of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated."""
+    """Problem of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated.
+
+    ``bench``: frequencies (Hz) and stated amplitudes (m) of all the tests that may be chosen.
+    """
     rng = np.random.default_rng(seed)
-    model = config.parse(MODEL)
-    frequencies, stated = FREQUENCIES[tests], AMPLITUDES[tests]
+    model = config.parse(model)
+    frequencies, stated = (each[tests] for each in bench)
     omega = 2.0 * pi * frequencies
-    rows = simulation.records(model, "static-dynamic", effects or {}, omega, stated * (1.0 + off))
-    exact = simulation.respond(rows, simulation.cold(omega.size), HARMONICS).harmonics
+    rows = simulation.records(model, law, effects or {}, omega, stated * (1.0 + off))
+    exact = simulation.respond(rows, at_rest(omega.size), HARMONICS).harmonics
     spectra = []
     for frequency, harmonics in zip(frequencies, exact, strict=True):
         turn = np.exp(1j * np.arange(1, HARMONICS + 1) * rng.uniform(0.0, 2.0 * pi))
@@ -50,12 +64,26 @@ def drawn(
         spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
     return Problem(
         model,
-        "static-dynamic",
+        law,
         tuple(f"{f:g} Hz" for f in frequencies),
         tuple(spectra),
         stated if known else np.full(stated.size, np.nan),
         np.full(stated.size, std if known else np.inf),
         uncertain or {},
+    )
+
+
+def next_to_breakaway() -> Problem:
+    """Stribeck friction and a damper, with a test (8.155 Hz) that sticks if friction is a bit more."""
+    return drawn(
+        {"stribeck": {"peak": 1.21402e-3, "velocity": 0.379124e-3}, "viscous_damping": {"coefficient": 2.4}},
+        bench=(
+            np.array([4.879, 4.879, 8.155, 20.899, 23.426, 23.426]),
+            1e-3 * np.array([1.16747, 3.61623, 0.39398, 0.08038, 0.06212, 0.16268]),
+        ),
+        std=0.001,
+        law="exponential",
+        model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
     )
 
 

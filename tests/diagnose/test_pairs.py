@@ -2,8 +2,11 @@
 
 from types import SimpleNamespace
 
-from tests.diagnose.drawn import drawn
+import numpy as np
+
+from tests.diagnose.drawn import drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import pairs
+from wedgesweep.diagnose.refine import refine
 from wedgesweep.diagnose.search import Search
 
 # More preload and less friction: alone, neither explains as much as another mass.
@@ -20,6 +23,16 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
     best = pairs.pairs(search, base, singles)[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
+
+
+def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
+    """By every start of the damper that was tried a test sticks."""
+    search, base, (_, damper) = searched(next_to_breakaway(), "stribeck", "viscous_damping")
+    model = search.model("stribeck")
+    stribeck = refine(model, model.trial(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
+    first, other = (pairs._alone(search, base.fit, fit) for fit in (stribeck, damper.fit))
+    (begun,) = pairs._begin(search, first, other, False)
+    assert begun.q < pairs.BEHIND * first.few.q
 
 
 def fits(*misfits, p):

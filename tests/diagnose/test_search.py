@@ -1,5 +1,6 @@
 """Where the search for an explanation goes on, and where it ends."""
 
+import numpy as np
 import pytest
 
 from tests.diagnose.drawn import drawn, searched
@@ -35,3 +36,16 @@ def test_the_right_way_is_found_though_its_start_looks_worst():
     search, _, _ = searched(drawn({"velocity_lag": {"time": truth}}), "velocity_lag")
     search.along["velocity_lag"] = sorted(search.along["velocity_lag"], key=lambda trial: trial.q)[-3:]
     assert search.everywhere()[0].fit.x[0] == pytest.approx(truth, rel=0.05)
+
+
+def test_what_leads_the_base_model_far_astray_begins_without_it():
+    """Faces that creep where the base model's stick: it moves only with far less friction or input."""
+    length = 1.03e-6
+    bench = np.array([20.0, 30.0, 6.0]), 1e-3 * np.array([0.0663, 0.0471, 0.2133])
+    problem = drawn(
+        {"presliding": {"length": length}}, bench=bench, std=0.01, uncertain={"friction_level": 0.02}
+    )
+    _, base, (found,) = searched(problem, "presliding")
+    assert np.abs(base.fit.trial.prior).max() > 10.0
+    assert found.fit.p > 1e-3
+    assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)

@@ -142,6 +142,11 @@ class Hypothesis:
                     x.append(log(value) if quantity.logarithmic else value)
         return np.array(x)
 
+    def mild(self, x: np.ndarray) -> np.ndarray:
+        """A point (k,) with neutral numbers, but for logarithms, whose neutral value may be infinite."""
+        neutral = np.clip([each.neutral for each in self.coordinates], self.low, self.high)
+        return np.where([each.logarithmic for each in self.coordinates], x, neutral)
+
     def starts(self) -> np.ndarray:
         """Points from which a fit may start, shape (n, k)."""
         neutral = np.clip(np.zeros(len(self.coordinates)), self.low, self.high)

@@ -142,14 +142,20 @@ def _exactly(
 def explain(search: Search, base: Explanation) -> list[Explanation]:
     """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     found = search.singles(base.fit)
-    best = min([base, *found], key=lambda each: each.penalised)
-    if best.fit.p < verdict.ADEQUATE and search.problem.tests >= verdict.FEWEST_TESTS:
-        both = pairs.pairs(search, base.fit, found)
-        found = found + both + pairs.halves(search, both)
-        best = min(found, key=lambda each: each.penalised)
-        if best.fit.p < verdict.ADEQUATE:
-            found = found + search.everywhere()
+    if search.problem.tests >= verdict.FEWEST_TESTS:
+        if _none_will_do([base, *found]):
+            found = search.around(found)
+        if _none_will_do([base, *found]):
+            both = pairs.pairs(search, base.fit, found)
+            found = found + both + pairs.halves(search, both)
+            if _none_will_do(found):
+                found = found + search.everywhere()
     return best_of_each(found, lambda each: each.penalised)
+
+
+def _none_will_do(found: Sequence[Explanation]) -> bool:
+    """Whether the best of explanations leaves more than noise."""
+    return min(found, key=lambda each: each.penalised).fit.p < verdict.ADEQUATE
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.model import Fit, Model, Point
+from wedgesweep.diagnose.model import Fit, Model, Point, Trial
 from wedgesweep.diagnose.refine import refine, restrict
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, trials_of
 
@@ -23,7 +23,8 @@ PARTNERS, STARTS = 8, 2
 # Rounds of improvement on some of the tests: iterations of all pairs, then of so many; then all tests.
 FIRST_ROUND, SECOND_ROUND, ENTERING = 3, 5, 40
 GOING_ON = 8
-# Where one pair will do, others with this many times its misfit go no further; a few always do.
+# Where one pair will do, others with this many times its misfit go no further; a few always do. A start is
+# that far behind the fit beside which it is, too.
 BEHIND, SEVERAL = 5.0, 4
 # Tests that the first look takes.
 FEW = 6
@@ -91,7 +92,8 @@ def _followed(
     fits = _further(search, fits if apart else _best_of_pairs(fits), FIRST_ROUND)
     fits = _further(search, fits if apart else _hopeful(fits)[:ENTERING], SECOND_ROUND)
     found = search.each(lambda fit: _finish(search, base, fit), _hopeful(fits)[:going_on])
-    return sorted(found, key=_penalised)
+    found = sorted(found, key=_penalised)
+    return search.around(found) if _none_will_do(found) else found
 
 
 def _further(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
@@ -161,7 +163,14 @@ def _begin(search: Search, first: Alone, other: Alone, apart: bool) -> list[Fit]
     hypothesis = search.model(*fit.effects, *other.fit.effects).hypothesis
     model = Model(few.model.problem, hypothesis, few.model.reference)
     known = fit.x[: fit.model.size]
-    trials = trials_of(model, [model.start(few, np.r_[known, x]) for x in _starts(fit, other, apart)])
+
+    def tried(points: np.ndarray) -> list[Trial]:
+        return trials_of(model, [model.start(few, np.r_[known, x]) for x in points])
+
+    trials = tried(_starts(fit, other, apart))
+    if not apart and min(each.q for each in trials) > BEHIND * few.q:
+        # Responses do not add where a test sticks that slid: what acts least leaves them where they are.
+        trials += tried(other.fit.model.hypothesis.mild(other.x[np.argmin((other.changes**2).sum(1))])[None])
     chosen = trials if apart else [min(trials, key=lambda each: each.q)]
     return [Fit(model, each, np.zeros((each.point.x.size,) * 2), False) for each in chosen]
 

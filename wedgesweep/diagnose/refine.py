@@ -38,7 +38,7 @@ def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
         better, promised = None, np.inf
         little = max(ARRIVED, ARRIVED_SHARE * (trial.q - model.dof))
         while better is None and damping < STUCK:
-            step, promised, limited = _step(model, trial.point, equations, damping)
+            step, promised, limited = damped(model, trial.point, equations, damping)
             # A step cut short at a limit may promise nothing; a more damped one still may.
             if promised < little and not limited:
                 break
@@ -76,7 +76,7 @@ def restrict(fit: Fit, rows: np.ndarray) -> Fit:
     return Fit(model, trial, fit.covariance, fit.arrived)
 
 
-def _step(model: Model, point: Point, equations: Equations, damping: float) -> tuple[Point, float, bool]:
+def damped(model: Model, point: Point, equations: Equations, damping: float) -> tuple[Point, float, bool]:
     """The point after a damped step, what it promises to take off Q, and whether a limit cut it short."""
     x = point.x
     matrix, gradient = equations.reduced(damping)

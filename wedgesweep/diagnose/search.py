@@ -8,11 +8,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose import detour
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.model import TONE, Fit, Model, Point, Trial
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import refine
+from wedgesweep.solvers.periodic import joined
 
 # What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
 PENALTY = 6.0
@@ -20,8 +21,12 @@ PENALTY = 6.0
 FOLLOWED = ((4, 3), (2, 4))
 # How the starts are followed once more, all of them at first, where nothing will do.
 AGAIN = ((None, 8), (2, 8))
+# Best explanations that look for a way around what holds them up, where none will do.
+DETOURS = 8
 # Least probability of the base model's misfit at which it may do without a cause.
 POSSIBLE = 1e-3
+# Standard deviations from its prior at which an amplitude or uncertain number of the base model is no start.
+ASTRAY = 10.0
 # Effects with states of their own take longest.
 LONGEST = ("column_compliance", "fixture_resonance", "presliding")
 # Input amplitudes that are tried where none is known, over the fundamental of the displacement.
@@ -100,8 +105,8 @@ class Search:
         trials = best_amplitudes(model, [model.start(base, x) for x in points])
         self.along[effect] = trials
         trials = _best_along_first(trials)
-        if model.toned:
-            # What the base model made of the tone may have led its own numbers far astray.
+        if model.toned or np.abs(base.trial.prior).max(initial=0.0) > ASTRAY:
+            # What the base model made of the effect has led its own numbers far astray, or may have.
             trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         fit = best_of(model, trials, FOLLOWED if base.p < POSSIBLE else ((1, 3),))
@@ -117,6 +122,12 @@ class Search:
         order = sorted(self.effects, key=lambda effect: effect not in LONGEST)
         found = dict(zip(order, self.each(lambda effect: self.single(effect, base), order), strict=True))
         return [found[effect] for effect in self.effects]
+
+    def around(self, found: Sequence[Explanation]) -> list[Explanation]:
+        """Explanations, the best ones of them without what held up their fits."""
+        best = sorted(found, key=lambda each: each.penalised)[:DETOURS]
+        again = self.each(lambda each: self.explanation(detour.around(each.fit)), best)
+        return best_of_each([*again, *found], lambda each: each.penalised)
 
     def everywhere(self) -> list[Explanation]:
         """Singles again, from every value of their first number at which they were tried.
@@ -155,10 +166,7 @@ def _best_along_first(trials: Sequence[Trial]) -> list[Trial]:
 
 def trials_of(model: Model, points: Sequence[Point]) -> list[Trial]:
     """Simulate many points at once."""
-    warm = simulation.Warm(
-        np.concatenate([each.warm.states for each in points]),
-        np.concatenate([each.warm.maps for each in points]),
-    )
+    warm = joined([each.warm for each in points])
     x = np.array([each.x for each in points]).reshape(len(points), -1)
     return model.trials(x, np.array([each.amplitude for each in points]), warm)
 
@@ -185,10 +193,7 @@ def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
 
 def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
     """A point with the amplitudes and states of some tests from another."""
-    warm = simulation.Warm(
-        np.where(chosen[:, None], other.warm.states, one.warm.states),
-        np.where(chosen[:, None, None], other.warm.maps, one.warm.maps),
-    )
+    warm = one.warm.where(chosen, other.warm)
     return Point(one.x, np.where(chosen, other.amplitude, one.amplitude), warm)
 
 

@@ -1,0 +1,47 @@
+"""Fits that a single test holds up, on systems of the blind campaign."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.drawn import LAG, drawn, next_to_breakaway, searched
+from wedgesweep.diagnose import detour
+from wedgesweep.diagnose.coordinates import Hypothesis
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.refine import refine
+from wedgesweep.diagnose.search import Search
+
+
+def refined(problem, effects, x):
+    """Fit of effects from their numbers (k,) on, beside the base model's fit."""
+    model = Model(problem, Hypothesis(effects), problem.amplitude)
+    base = Search(problem, ()).base().fit
+    return refine(model, model.trial(model.start(base, np.asarray(x, float))))
+
+
+def test_around_a_test_next_to_breakaway():
+    held_up = refined(next_to_breakaway(), ("stribeck", "viscous_damping"), (6e-3, -0.43, 0.0))
+    assert held_up.p < 1e-9
+    found = detour.around(held_up)
+    assert found.p > 0.01
+    assert found.x[2] == pytest.approx(2.4, rel=0.05)
+
+
+def test_around_a_test_that_has_two_responses():
+    """The second one repeats after two periods from rest, and after one from where the base model leads."""
+    hertz = np.array([5.181, 5.181, 8.196, 10.615, 19.306, 28.203])
+    amplitude = 1e-3 * np.array([0.77024, 2.89193, 0.78434, 0.22942, 0.10986, 0.04951])
+    tones = {"second": 3.07453e-4, "second_phase": -1.8564, "third": 5.56403e-4, "third_phase": 2.79555}
+    problem = drawn({"input_distortion": tones}, bench=(hertz, amplitude), std=0.007, level=0.01)
+    held_up = refined(problem, ("input_distortion",), np.zeros(4))
+    assert (held_up.trial.point.warm.period == 1).all()
+    assert held_up.p < 1e-9
+    found = detour.around(held_up)
+    np.testing.assert_array_equal(found.trial.point.warm.period, [1, 2, 1, 1, 1, 1])
+    assert found.p > 0.01
+    fitted = found.model.values(found.x)["input_distortion"]
+    assert {name: fitted[name] for name in tones} == pytest.approx(tones, rel=0.05)
+
+
+def test_what_nothing_holds_up_stays():
+    _, _, (lag,) = searched(drawn(LAG), "velocity_lag")
+    assert detour.around(lag.fit) is lag.fit

@@ -1,0 +1,55 @@
+"""A way around tests that keep a fit from going on.
+
+The misfit of a test next to breakaway rises steeply to one side, and a test that has several stable responses
+may be on the wrong one: a fit goes on with that of its neighbour, a rig starts at rest. Such tests are left
+out until the others have said where to look.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from wedgesweep.diagnose.equations import equations_of
+from wedgesweep.diagnose.model import Fit, Point
+from wedgesweep.diagnose.refine import damped, refine, restrict
+from wedgesweep.solvers.periodic import at_rest
+
+# A response is another one if its squared misfit differs by more than this (share, and beside it).
+OTHERWISE = 0.05, 1.0
+# Damping that keeps a step finite where the tests leave a number open.
+LEAST_DAMPING = 1e-6
+# A test is in the way if its squared misfit grows by this factor.
+WORSE = 2.0
+# Tests that may be left out, as a share of all.
+MOST = 1.0 / 3.0
+
+
+def around(fit: Fit) -> Fit:
+    """The fit, or a better one that was found without the tests that held it up."""
+    if fit.model.toned or not fit.trial.found:
+        return fit
+    left_out = _elsewhere_from_rest(fit) | _in_the_way(fit)
+    if not 0 < left_out.sum() <= MOST * left_out.size:
+        return fit
+    rows = np.flatnonzero(~left_out)
+    few = restrict(fit, rows)
+    point = refine(few.model, few.trial).trial.point
+    amplitude = np.zeros(left_out.size)
+    amplitude[rows] = point.amplitude
+    warm = fit.trial.point.warm.where(left_out, at_rest(left_out.size))
+    again = refine(fit.model, fit.model.trial(Point(point.x, amplitude, warm)))
+    return min(fit, again, key=lambda each: each.q)
+
+
+def _elsewhere_from_rest(fit: Fit) -> np.ndarray:
+    """Whether (T,) a test has another response from rest."""
+    point = replace(fit.trial.point, warm=at_rest(fit.model.problem.tests))
+    rest = fit.model.trial(point)
+    return rest.found_tests & ~np.isclose(rest.by_test, fit.trial.by_test, *OTHERWISE)
+
+
+def _in_the_way(fit: Fit) -> np.ndarray:
+    """Whether (T,) a test gets much worse by the step that is best for all if responses are linear."""
+    step, _, _ = damped(fit.model, fit.trial.point, equations_of(fit.model, fit.trial), LEAST_DAMPING)
+    tried = fit.model.trial(step)
+    return ~tried.found_tests | (tried.by_test > WORSE * fit.trial.by_test)
