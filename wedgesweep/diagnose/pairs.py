@@ -92,8 +92,7 @@ def _followed(
     fits = _further(search, fits if apart else _best_of_pairs(fits), FIRST_ROUND)
     fits = _further(search, fits if apart else _hopeful(fits)[:ENTERING], SECOND_ROUND)
     found = search.each(lambda fit: _finish(search, base, fit), _hopeful(fits)[:going_on])
-    found = sorted(found, key=_penalised)
-    return search.around(found) if _none_will_do(found) else found
+    return search.around(found)
 
 
 def _further(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:

@@ -19,14 +19,16 @@ from wedgesweep.solvers.periodic import joined
 PENALTY = 6.0
 # Starting points that are followed, and for how many iterations; the best of the last go on to the end.
 FOLLOWED = ((4, 3), (2, 4))
+# Times the base model's misfit at which an effect that was followed a little way goes no further alone.
+HOPELESS = 100.0
 # How the starts are followed once more, all of them at first, where nothing will do.
 AGAIN = ((None, 8), (2, 8))
-# Best explanations that look for a way around what holds them up, where none will do.
+# Best explanations of which those that leave more than noise look for a way around what holds them up.
 DETOURS = 8
-# Least probability of the base model's misfit at which it may do without a cause.
+# Least probability of a misfit at which a model may do.
 POSSIBLE = 1e-3
-# Standard deviations from its prior at which an amplitude or uncertain number of the base model is no start.
-ASTRAY = 10.0
+# Relative error of a stated input amplitude that is no measurement's, but the base model's.
+ASTRAY = 0.3
 # Effects with states of their own take longest.
 LONGEST = ("column_compliance", "fixture_resonance", "presliding")
 # Input amplitudes that are tried where none is known, over the fundamental of the displacement.
@@ -105,11 +107,12 @@ class Search:
         trials = best_amplitudes(model, [model.start(base, x) for x in points])
         self.along[effect] = trials
         trials = _best_along_first(trials)
-        if model.toned or np.abs(base.trial.prior).max(initial=0.0) > ASTRAY:
+        if model.toned or _astray(base):
             # What the base model made of the effect has led its own numbers far astray, or may have.
             trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
         # Where the base model will do, a cause could only be weak: one start is as good as another.
-        fit = best_of(model, trials, FOLLOWED if base.p < POSSIBLE else ((1, 3),))
+        followed = FOLLOWED if base.p < POSSIBLE else ((1, 3),)
+        fit = best_of(model, trials, followed, HOPELESS * base.q)
         if model.toned:
             self._meet(fit)
             model = self.model(effect)
@@ -124,8 +127,9 @@ class Search:
         return [found[effect] for effect in self.effects]
 
     def around(self, found: Sequence[Explanation]) -> list[Explanation]:
-        """Explanations, the best ones of them without what held up their fits."""
+        """Explanations, the best first, and the best ones of them without what held up their fits."""
         best = sorted(found, key=lambda each: each.penalised)[:DETOURS]
+        best = [each for each in best if each.fit.p < POSSIBLE]
         again = self.each(lambda each: self.explanation(detour.around(each.fit)), best)
         return best_of_each([*again, *found], lambda each: each.penalised)
 
@@ -154,6 +158,12 @@ def best_of_each(found: Iterable[Each], misfit: Callable[[Each], float]) -> list
     for each in sorted(found, key=misfit):
         best.setdefault(frozenset(each.effects), each)
     return list(best.values())
+
+
+def _astray(base: Fit) -> bool:
+    """Whether a base model makes up for what it lacks by inputs that are far from those stated."""
+    stated = np.isfinite(base.model.problem.amplitude_std)
+    return bool((np.abs(base.trial.point.amplitude[stated]) > ASTRAY).any())
 
 
 def _best_along_first(trials: Sequence[Trial]) -> list[Trial]:
@@ -198,12 +208,20 @@ def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
 
 
 def best_of(
-    model: Model, trials: Sequence[Trial], followed: Sequence[tuple[int | None, int]] = FOLLOWED
+    model: Model,
+    trials: Sequence[Trial],
+    followed: Sequence[tuple[int | None, int]] = FOLLOWED,
+    limit: float = np.inf,
 ) -> Fit:
-    """Follow the best few trials a little way, the best of these further, the best of those to the end."""
+    """Follow the best few trials a little way, the best of these further, the best of those to the end.
+
+    ``limit``: misfit that the first few iterations must get below.
+    """
     for entering, iterations in followed:
         leading = sorted(trials, key=lambda each: each.q)[:entering]
         fits = [refine(model, trial, iterations) for trial in leading]
         trials = [fit.trial for fit in fits]
-    best = min(fits, key=lambda fit: fit.q)
+        best = min(fits, key=lambda fit: fit.q)
+        if best.q > limit:
+            return best
     return best if best.arrived else refine(model, best.trial)

@@ -177,7 +177,7 @@ def chase(y, periods, jacobian, parameters, tolerance, most, size, tools, passag
         if run > periods and np.isfinite(jacobian).all():
             _update(jacobian, y, image, before, image_before, size)
         if now > STALE * last or (run == periods and not _trusted(jacobian, moves)):
-            if fresh and now > GAIN * last:
+            if (fresh and now > GAIN * last) or run + periods * (1 + moves.sum()) > most:
                 break
             outcome, more = differences(y, image, periods, moves, size, parameters, jacobian, tools, passage)
             run += more
