@@ -188,6 +188,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
         "method": {
             "penalty_per_parameter": 12.6,
             "gap": 10.0,
+            "enough_distance": 30.0,
             "strong_excess": 800.0,
             "dof": dof,
             "harmonics": HARMONICS,

@@ -149,6 +149,8 @@ def test_sentence(verdict, tmp_path):
             "(it leaves more than noise in the tests that show it, p = 0.002)",
         ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
+        ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
+        ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),
     ],
 )
 def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
@@ -157,6 +159,29 @@ def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
         document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
+
+
+def test_how_many_explanations_will_do_is_told(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
+    document["rivals"] = [{"effects": ["preload"], "gap": 3.0}, {"effects": ["stribeck"], "gap": 5.0}]
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert "cannot show what: 3 explanations will do; next test" in plain(report.sentence(tmp_path))
+
+
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.parametrize(
+    ("distance", "words"),
+    [
+        (31.0, "would tell stribeck from guide_friction"),
+        (29.0, "would not tell stribeck from guide_friction"),
+    ],
+)
+def test_a_test_that_does_not_tell_for_sure_is_not_said_to(distance, words, tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "tied")
+    document["next_test"]["distance"] = distance
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    assert words in text.replace("\u00a0", " ")
 
 
 @pytest.mark.usefixtures("no_pictures")

@@ -16,6 +16,7 @@ from wedgesweep.diagnose import waveforms
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.next_test import ENOUGH
 from wedgesweep.diagnose.search import PENALTY, TONE_FREQUENCY, Explanation
 from wedgesweep.diagnose.verdict import where_it_shows
 from wedgesweep.effects import EFFECTS
@@ -149,6 +150,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": {
             "penalty_per_parameter": PENALTY + log(problem.points.sum()),
             "gap": found.thresholds.gap,
+            "enough_distance": ENOUGH,
             "strong_excess": _finite(found.thresholds.strong),
             "least_gain": found.thresholds.least_gain,
             "dof": base.fit.dof,

@@ -62,13 +62,18 @@ def following(found: Diagnosed) -> Markup:
     if test is None:
         told: Markup | str = NOTHING_TO_MEASURE[found.verdict]
     else:
+        (one, other), enough = test["separates"], found.document["method"]["enough_distance"]
+        would, best = (
+            (f"would tell {one} from {other}", "It is the cheapest one that does.")
+            if words.tells(found.document)
+            else (f"would not tell {one} from {other} for sure", "No test within reach tells more.")
+        )
         told = html.join(
             [
                 "A test at ",
                 html.element("strong", words.following(test)),
-                f" input amplitude would tell {' from '.join(test['separates'])}: their responses there are "
-                f"{digits.number(test['distance'])} apart (squared, over noise; 30 is enough). It is the "
-                "cheapest one that does.",
+                f" input amplitude {would}: their responses there are {digits.number(test['distance'])} "
+                f"apart (squared, over noise; {digits.number(enough)} is enough). {best}",
             ],
             "",
         )

@@ -60,10 +60,16 @@ def _rival(rival: Mapping[str, Any]) -> str:
 
 
 def _insufficient(found: Diagnosed) -> str:
+    tests = words.counted(found.data.sizes["test"], "test")
     return (
-        f"Something is wrong, the simulation is off by {_error(found, 'base')}, but these "
-        f"{words.counted(found.data.sizes['test'], 'test')} cannot show what{_would_tell(found)}."
+        f"Something is wrong, the simulation is off by {_error(found, 'base')}, but these {tests} cannot "
+        f"show what{_many(found)}{_would_tell(found)}."
     )
+
+
+def _many(found: Diagnosed) -> str:
+    rivals = len(found.document["rivals"])
+    return f": {1 + rivals} explanations will do" if rivals else ""
 
 
 def _none(found: Diagnosed) -> str:
@@ -136,6 +142,8 @@ def _would_tell(found: Diagnosed, what: str = "") -> str:
     following = found.document["next_test"]
     if following is None:
         return ""
+    if not words.tells(found.document):
+        return f"; no test would tell for sure, {words.following(following)} still is the best one to make"
     if what:
         return f"; a test at {words.following(following)} would tell {what} apart"
     return (

@@ -116,6 +116,11 @@ def counted(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
+def tells(document: Mapping[str, Any]) -> bool:
+    """Whether a diagnosis recommends a test that tells explanations apart, not only the best there is."""
+    return document["next_test"]["distance"] >= document["method"]["enough_distance"]
+
+
 def following(test: Mapping[str, Any]) -> str:
     """The recommended test."""
     return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {short(test['amplitude_mm'], 3)}{NO_BREAK}mm"
