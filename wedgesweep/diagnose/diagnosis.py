@@ -142,14 +142,13 @@ def _exactly(
 def explain(search: Search, base: Explanation) -> list[Explanation]:
     """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     found = search.singles(base.fit)
-    if search.problem.tests >= verdict.FEWEST_TESTS:
-        if _none_will_do([base, *found]):
-            found = search.around(found)
-        if _none_will_do([base, *found]):
-            both = pairs.pairs(search, base.fit, found)
-            found = found + both + pairs.halves(search, both)
-            if _none_will_do(found):
-                found = found + search.everywhere()
+    if _none_will_do([base]):
+        found = search.around(found)
+    if _none_will_do([base, *found]) and search.problem.tests >= verdict.FEWEST_TESTS:
+        both = pairs.pairs(search, base.fit, found)
+        found = found + both + pairs.halves(search, both)
+        if _none_will_do(found):
+            found = found + search.everywhere()
     return best_of_each(found, lambda each: each.penalised)
 
 
