@@ -148,6 +148,11 @@ def test_sentence(verdict, tmp_path):
             {"misfit": {"excess_base": 3000.0, "p_where_it_shows": 0.002}},
             "(it leaves more than noise in the tests that show it, p = 0.002)",
         ),
+        (
+            "consistent-with",
+            {"rivals": [{"effects": ["preload"], "gap": 30.0}]},
+            "(preload would leave no more than noise, too)",
+        ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
         ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
         ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),
@@ -156,7 +161,10 @@ def test_sentence(verdict, tmp_path):
 def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     for part, values in change.items():
-        document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
+        merged = (
+            {**(document[part] or {"excess_removed": 0.9}), **values} if isinstance(values, dict) else values
+        )
+        document[part] = merged
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 

@@ -158,9 +158,9 @@ def _none_will_do(found: Sequence[Explanation]) -> bool:
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should tell apart: a tie, or what comes closest where the verdict abstains."""
-    if finding.verdict == verdict.TIED and finding.best is not None:
-        return [finding.best.fit, *(each.fit for each in finding.rivals)]
+    """Fits that a next test should tell apart: a cause and its rivals, or without one what comes closest."""
+    if finding.cause is not None:
+        return [finding.cause.fit, *(each.fit for each in finding.rivals)]
     if finding.verdict == verdict.INSUFFICIENT:
         return [each.fit for each in verdict.ranked(explanations, thresholds.gap)[:COMPARED]]
     return []

@@ -27,8 +27,7 @@ SHOWN = 0.9
 STRONG = 800.0
 # With fewer tests no cause can be checked on a test that it was not fitted to.
 FEWEST_TESTS = 3
-# With this many rivals the tests show that something is wrong, but not what. A pair's are all that leave
-# noise only.
+# With this many rivals the tests show that something is wrong, but not what.
 MOST_TIED = 4
 # An uncertain number is a cause only if it is this many of its standard deviations off.
 UNCERTAIN = 3.0
@@ -51,7 +50,7 @@ DEFAULT = Thresholds()
 
 @dataclass(frozen=True)
 class Finding:
-    """A verdict with the best explanation, and those that the data cannot tell from it."""
+    """A verdict with the best explanation, and those that will do as well, or that leave noise only, too."""
 
     verdict: str
     best: Explanation | None
@@ -96,16 +95,21 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     if best.fit.p < POSSIBLE:
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
-    if len(best.effects) > 1 and len(rivals) < MOST_TIED:
-        # What many pairs can imitate may well be none of them: then the closest is only that.
-        others = tuple(each for each in order[1:] if each.fit.p >= ADEQUATE)
-        rivals = others if len(others) >= MOST_TIED else rivals
+    # What others can imitate may be none of them: then the closest one is only that.
+    others = tuple(each for each in order[1:] if each.fit.p >= ADEQUATE and not _contains(each, best))
+    if len(best.effects) > 1 and len(others) >= MOST_TIED:
+        return Finding(INSUFFICIENT, best, others)
     if len(rivals) >= MOST_TIED or base.fit.model.problem.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    strong = base.fit.excess >= thresholds.strong and _adequate(base, best)
-    return Finding(NAMED if strong else CONSISTENT, best, ())
+    if base.fit.excess < thresholds.strong or not _adequate(base, best):
+        return Finding(CONSISTENT, best, ())
+    return Finding(CONSISTENT if others else NAMED, best, others)
+
+
+def _contains(each: Explanation, other: Explanation) -> bool:
+    return set(other.effects) <= set(each.effects)
 
 
 def _adequate(base: Explanation, best: Explanation) -> bool:

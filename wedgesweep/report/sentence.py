@@ -38,6 +38,9 @@ def _consistent(found: Diagnosed) -> str:
 
 
 def _weakness(found: Diagnosed) -> str:
+    if rivals := found.document["rivals"]:
+        others = words.listing([words.together(each["effects"]) for each in rivals])
+        return f"{others} would leave no more than noise, too{_would_tell(found, 'them')}"
     misfit, strong = found.document["misfit"], found.document["method"]["strong_excess"]
     if strong is None or misfit["excess_base"] < strong:
         return f"excess misfit {digits.number(misfit['excess_base'])} over noise"
@@ -120,7 +123,7 @@ def _error(found: Diagnosed, model: str) -> str:
 def _improvement(found: Diagnosed) -> str:
     """Before and after, on all tests and on held-out ones."""
     before, after = _error(found, "base"), _error(found, "extended")
-    it = "the first" if found.document["rivals"] else "it" if len(found.added) == 1 else "them"
+    it = "the first" if found.verdict == "tied" else "it" if len(found.added) == 1 else "them"
     return (
         f"with {it} the error falls from {before.removesuffix(' times the noise')} to {after}{_gain(found)}"
     )
