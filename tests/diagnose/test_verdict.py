@@ -87,6 +87,15 @@ def test_a_cause_that_may_make_unseen_tests_worse_is_none(q, interval, expected)
     assert (found.cause is None) == (expected in ("data-insufficient", "none-of-mine"))
 
 
+def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confirm():
+    base = explained(830.0)
+    assert verdict.POSSIBLE < base.fit.p < verdict.ADEQUATE
+    found = verdict_of(base, explained(780.0, "stribeck"))
+    assert found.verdict == "consistent-with"
+    assert on_unseen_tests(found, base, [-0.3, 1.0]).verdict == "nothing-missing"
+    assert on_unseen_tests(found, base, [0.1, 1.0]).verdict == "consistent-with"
+
+
 def test_equally_good_explanations_are_tied():
     found = verdict_of(explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload"))
     assert found.verdict == "tied"

@@ -106,6 +106,7 @@ def diagnose(
         progress("held-out tests")
         measured_gain = gain.measure(base.fit, finding.best.fit, search.each)
         finding = verdict.on_unseen_tests(finding, base, measured_gain.interval)
+        measured_gain = measured_gain if finding.best is not None else None
     progress("next test")
     following = next_test.recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
