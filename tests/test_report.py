@@ -148,11 +148,6 @@ def test_sentence(verdict, tmp_path):
             {"misfit": {"excess_base": 3000.0, "p_where_it_shows": 0.002}},
             "(it leaves more than noise in the tests that show it, p = 0.002)",
         ),
-        (
-            "consistent-with",
-            {"rivals": [{"effects": ["preload"], "gap": 30.0}]},
-            "(preload would leave no more than noise, too)",
-        ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
         ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
         ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),
@@ -161,19 +156,23 @@ def test_sentence(verdict, tmp_path):
 def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     for part, values in change.items():
-        merged = (
-            {**(document[part] or {"excess_removed": 0.9}), **values} if isinstance(values, dict) else values
-        )
-        document[part] = merged
+        document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
-def test_how_many_explanations_will_do_is_told(tmp_path):
-    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
-    document["rivals"] = [{"effects": ["preload"], "gap": 3.0}, {"effects": ["stribeck"], "gap": 5.0}]
+@pytest.mark.parametrize(
+    ("verdict", "rivals", "words"),
+    [
+        ("consistent-with", ["preload"], "(preload would leave no more than noise, too)"),
+        ("data-insufficient", ["preload", "stribeck"], "cannot show what: 3 explanations will do; next test"),
+    ],
+)
+def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, verdict)
+    document["rivals"] = [{"effects": [effect], "gap": 30.0} for effect in rivals]
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
-    assert "cannot show what: 3 explanations will do; next test" in plain(report.sentence(tmp_path))
+    assert words in plain(report.sentence(tmp_path))
 
 
 @pytest.mark.usefixtures("no_pictures")

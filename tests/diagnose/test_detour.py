@@ -5,16 +5,14 @@ import pytest
 
 from tests.diagnose.drawn import LAG, drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import detour
-from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.refine import refine
 from wedgesweep.diagnose.search import Search
 
 
 def refined(problem, effects, x):
     """Fit of effects from their numbers (k,) on, beside the base model's fit."""
-    model = Model(problem, Hypothesis(effects), problem.amplitude)
-    base = Search(problem, ()).base().fit
+    search = Search(problem, effects)
+    model, base = search.model(*effects), search.base().fit
     return refine(model, model.trial(model.start(base, np.asarray(x, float))))
 
 

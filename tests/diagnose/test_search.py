@@ -49,3 +49,10 @@ def test_what_leads_the_base_model_far_astray_begins_without_it():
     assert np.abs(base.fit.trial.point.amplitude).max() > 1.0
     assert found.fit.p > 1e-3
     assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
+
+
+def test_a_tone_that_nobody_hears_leaves_nothing_to_fit():
+    search = Search(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
+    base = search.base()
+    assert base.fit.p < 1e-9
+    assert diagnosis.explain(search, base) == []

@@ -13,7 +13,7 @@ from wedgesweep.diagnose.next_test import NextTest
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import exact
 from wedgesweep.diagnose.score import Score
-from wedgesweep.diagnose.search import Explanation, Search, best_of_each
+from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
 from wedgesweep.diagnose.spectra import fitted, spectrum
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS
@@ -135,7 +135,7 @@ def _exactly(
         search.progress(f"exact fit of {' + '.join(finding.best.effects)}")
         done.append(search.explanation(exact(finding.best.fit)))
         found = [done[-1] if each is finding.best else each for each in found]
-        found.sort(key=lambda each: each.penalised)
+        found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
     return finding, found
 
@@ -143,19 +143,14 @@ def _exactly(
 def explain(search: Search, base: Explanation) -> list[Explanation]:
     """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     found = search.singles(base.fit)
-    if _none_will_do([base]):
+    if verdict.none_will_do([base]):
         found = search.around(found)
-    if _none_will_do([base, *found]) and search.problem.tests >= verdict.FEWEST_TESTS:
+    if verdict.none_will_do([base, *found]) and search.problem.tests >= verdict.FEWEST_TESTS:
         both = pairs.pairs(search, base.fit, found)
         found = found + both + pairs.halves(search, both)
-        if _none_will_do(found):
+        if verdict.none_will_do(found):
             found = found + search.everywhere()
-    return best_of_each(found, lambda each: each.penalised)
-
-
-def _none_will_do(found: Sequence[Explanation]) -> bool:
-    """Whether the best of explanations leaves more than noise."""
-    return min(found, key=lambda each: each.penalised).fit.p < verdict.ADEQUATE
+    return best_of_each(found, penalised)
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:

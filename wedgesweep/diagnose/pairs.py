@@ -16,7 +16,7 @@ import numpy as np
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.model import Fit, Model, Point, Trial
 from wedgesweep.diagnose.refine import refine, restrict
-from wedgesweep.diagnose.search import Explanation, Search, best_of_each, trials_of
+from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised, trials_of
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
@@ -56,27 +56,18 @@ def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Exp
     leading = sorted(alone, key=lambda effect: alone[effect].fit.q)[:PARTNERS]
     beside = [(alone[one], alone[other]) for one in leading for other in alone if one != other]
     found = _followed(search, base, beside, False, GOING_ON)
-    if _none_will_do(found):
+    if verdict.none_will_do(found):
         # Alone they stood behind, beside others they show: each may be the first of a pair, too.
         shown = dict.fromkeys(effect for each in found[:AGAIN] for effect in each.effects)
         beside = [
             (alone[one], alone[other]) for one in shown for other in alone if one not in (*leading, other)
         ]
-        found = best_of_each(found + _followed(search, base, beside, False, GOING_ON), _penalised)
-    if _none_will_do(found):
+        found = best_of_each(found + _followed(search, base, beside, False, GOING_ON), penalised)
+    if verdict.none_will_do(found):
         ways = [pair for each in found[:GOING_ON] for pair in permutations(each.effects)]
         beside = [(alone[one], alone[other]) for one, other in ways]
         found += _followed(search, base, beside, True, AGAIN)
-    return best_of_each(found, _penalised)
-
-
-def _none_will_do(found: Sequence[Explanation]) -> bool:
-    """Whether the best of the pairs, if there is any, is no explanation."""
-    return bool(found) and found[0].fit.p < verdict.ADEQUATE
-
-
-def _penalised(each: Explanation) -> float:
-    return each.penalised
+    return best_of_each(found, penalised)
 
 
 def _followed(

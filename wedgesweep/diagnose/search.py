@@ -26,7 +26,7 @@ AGAIN = ((None, 8), (2, 8))
 # Best explanations of which those that leave more than noise look for a way around what holds them up.
 DETOURS = 8
 # Least probability of a misfit at which a model may do.
-POSSIBLE = 1e-3
+LIKELY = 1e-3
 # Relative error of a stated input amplitude that is no measurement's, but the base model's.
 ASTRAY = 0.3
 # Effects with states of their own take longest.
@@ -56,6 +56,11 @@ class Explanation:
     @property
     def penalised(self) -> float:
         return self.fit.q + self.price * self.fit.model.size
+
+
+def penalised(each: Explanation) -> float:
+    """What explanations are ranked by."""
+    return each.penalised
 
 
 Each = TypeVar("Each", Fit, Explanation)
@@ -111,7 +116,7 @@ class Search:
             # What the base model made of the effect has led its own numbers far astray, or may have.
             trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
         # Where the base model will do, a cause could only be weak: one start is as good as another.
-        followed = FOLLOWED if base.p < POSSIBLE else ((1, 3),)
+        followed = FOLLOWED if base.p < LIKELY else ((1, 3),)
         fit = best_of(model, trials, followed, HOPELESS * base.q)
         if model.toned:
             self._meet(fit)
@@ -128,10 +133,10 @@ class Search:
 
     def around(self, found: Sequence[Explanation]) -> list[Explanation]:
         """Explanations, the best first, and the best ones of them without what held up their fits."""
-        best = sorted(found, key=lambda each: each.penalised)[:DETOURS]
-        best = [each for each in best if each.fit.p < POSSIBLE]
+        best = sorted(found, key=penalised)[:DETOURS]
+        best = [each for each in best if each.fit.p < LIKELY]
         again = self.each(lambda each: self.explanation(detour.around(each.fit)), best)
-        return best_of_each([*again, *found], lambda each: each.penalised)
+        return best_of_each([*again, *found], penalised)
 
     def everywhere(self) -> list[Explanation]:
         """Singles again, from every value of their first number at which they were tried.

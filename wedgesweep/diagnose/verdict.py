@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.search import Explanation
+from wedgesweep.diagnose.search import Explanation, penalised
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
     "nothing-missing",
@@ -72,9 +72,15 @@ def eligible(each: Explanation) -> bool:
     )
 
 
+def none_will_do(found: Sequence[Explanation]) -> bool:
+    """Whether even the best of explanations, if there is any, leaves more than noise."""
+    best = min(found, key=penalised, default=None)
+    return best is not None and best.fit.p < ADEQUATE
+
+
 def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
     """Explanations best first; a pair that hardly beats one of its own effects is left out."""
-    allowed = sorted(filter(eligible, explanations), key=lambda each: each.penalised)
+    allowed = sorted(filter(eligible, explanations), key=penalised)
     alone = {each.effects[0]: each.penalised for each in allowed if len(each.effects) == 1}
     return [
         each

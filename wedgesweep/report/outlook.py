@@ -83,8 +83,8 @@ def following(found: Diagnosed) -> Markup:
 NOTHING_TO_MEASURE = {
     "nothing-missing": "Nothing needs to be measured: the model explains these tests.",
     "named": "No further test is needed to name the cause.",
-    "consistent-with": "There is no rival to separate; more periods or larger inputs would make the "
-    "evidence stronger, or show what else is wrong.",
+    "consistent-with": "There is no rival that a test would separate; more periods or larger inputs would "
+    "make the evidence stronger, or show what else is wrong.",
     "tied": "No test within reach of the bench tells the tied explanations apart.",
     "data-insufficient": "No single test was found that would tell the candidates apart.",
     "none-of-mine": "No test can name an effect that is not among the candidates; the leftover force above "

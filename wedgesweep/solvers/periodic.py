@@ -46,10 +46,9 @@ class Warm(NamedTuple):
 
     def where(self, chosen: np.ndarray, other: "Warm") -> "Warm":
         """Rows from another where they are chosen (n,), else the own ones."""
-        rows = np.flatnonzero(chosen)
         found = Warm(*(each.copy() for each in self))
         for mine, its in zip(found, other, strict=True):
-            mine[rows] = its[rows]
+            mine[chosen] = its[chosen]
         return found
 
 
