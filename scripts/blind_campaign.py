@@ -63,10 +63,12 @@ def report(sets, seed, size, total):
     seconds = [sum(record["seconds"].values()) for record in sets.all]
     diagnoses = sorted(record["seconds"]["diagnose"] for record in sets.all)
     methods = list(rows[0][2]) if rows else []
+    hiding = ", ".join(f"{record['name']} ({'+'.join(record['truth'])})" for record in sets.hiding)
     parts = [
         f"Blind campaign of wedgesweep {__version__}, seed {seed}, size {size:g}: {len(sets.all)} sets, "
         f"{len(sets.failures)} failed.",
         *([f"Stopped before its end: {total} sets were wanted."] if len(sets.all) < total else []),
+        *([f"Not counted, as the effect does not show (excess < 100): {hiding}."] if hiding else []),
         "12 tests x 8 periods, noise 4 % of four kinds, three laws; shares with 95 % Wilson intervals.",
         f"{sum(seconds) / 3600:.1f} hours of one core, all told; a diagnosis takes "
         f"{diagnoses[len(diagnoses) // 2]:.0f} s (median), {diagnoses[-1]:.0f} s (longest) with --n-jobs 1.",

@@ -14,17 +14,25 @@ STRONG, WEAK = 800.0, 100.0
 
 
 class Sets(NamedTuple):
-    """Records by what they were made for; singles are sorted by the excess that the diagnosis reports."""
+    """Records by what they were made for; singles are sorted by the excess that the diagnosis reports.
+
+    An effect whose excess is below the weakest level hides by chance of what else was drawn (a friction
+    level a bit smaller, and nothing sticks): such sets are told, but no goal counts them.
+    """
 
     all: list[Record]
     failures: list[Record]
 
     def of(self, kind: str) -> list[Record]:
-        return [record for record in self.all if record["kind"] == kind]
+        return [record for record in self.all if record["kind"] == kind and _shows(record)]
+
+    @property
+    def hiding(self) -> list[Record]:
+        return [record for record in self.all if not _shows(record)]
 
     @property
     def singles(self) -> list[Record]:
-        return self.of("strong") + self.of("weak")
+        return [record for record in self.all if record["kind"] in ("strong", "weak")]
 
     @property
     def strong(self) -> list[Record]:
@@ -37,6 +45,10 @@ class Sets(NamedTuple):
     @property
     def right(self) -> list[Record]:
         return [record for record in self.singles if judge.exact(record)]
+
+
+def _shows(record: Record) -> bool:
+    return not record["truth"] or bool(record["excess"] >= WEAK)
 
 
 class Goal(NamedTuple):

@@ -20,7 +20,7 @@ BAND = 0.4
 # The noise is looked at between harmonics, at multiples of this part of the input frequency.
 PARTS = 8
 # Order of the polynomial, in log frequency, that the logarithm of the noise spectrum follows.
-ORDER = 2
+ORDER = 3
 # A line this many times above the smooth noise is something else (odds of 1e-5 in noise).
 FOREIGN = 11.5
 # Chance of lines at half multiples of the input frequency in a response that repeats each period.
@@ -89,7 +89,7 @@ class Spectrum:
         """As if a tone had been looked for at a frequency (Hz), and nothing been there but noise."""
         if not self.separates(np.array([frequency]))[0]:
             return self
-        noise = [[4.0 / self.samples * float(level(np.array(frequency)))] for level in self.level]
+        noise = [4.0 / self.samples * level.fair(np.array([frequency])) for level in self.level]
         mean = np.concatenate([self.mean, np.zeros((len(self.mean), 1))], axis=1)
         return replace(
             self, mean=mean, variance=np.concatenate([self.variance, noise], axis=1), tone=frequency
@@ -185,7 +185,7 @@ def fitted(
         time.size,
         interval,
         mean,
-        np.array([4.0 / time.size * each(at) for each in level]),
+        np.array([4.0 / time.size * each.fair(at) for each in level]),
         coherence,
         residual,
         level,
@@ -231,7 +231,9 @@ def _noise(
     turns = _turns(time, spacing, int(parts[-1]))[parts - 1]
     power, product = _periodograms(residual, turns)
     lines = spacing * parts
-    level = tuple(_smooth(lines, each) for each in power)
+    # Lines closer than the record resolves say in part the same.
+    same = max(1.0, 1.0 / (spacing * time[-1]))
+    level = tuple(_smooth(lines, each, same) for each in power)
     return level, _coherence(product, level[0](lines), level[1](lines)) if len(level) == 2 else 0.0j
 
 
@@ -243,19 +245,36 @@ def _periodograms(residual: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, 
 
 
 class Smooth:
-    """A noise spectrum whose logarithm is a polynomial in the logarithm of frequency."""
+    """A noise spectrum whose logarithm is a polynomial in the logarithm of frequency.
 
-    def __init__(self, coefficients: np.ndarray, reference: float) -> None:
+    ``covariance`` (n, n): of its coefficients, where they are estimates.
+    """
+
+    def __init__(
+        self, coefficients: np.ndarray, reference: float, covariance: np.ndarray | None = None
+    ) -> None:
         self.coefficients, self.reference = coefficients, reference
+        self.covariance = np.zeros((coefficients.size,) * 2) if covariance is None else covariance
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        return np.exp(np.polynomial.polynomial.polyval(np.log(frequency / self.reference), self.coefficients))
+        return np.exp(self._powers(frequency) @ self.coefficients)
+
+    def fair(self, frequency: np.ndarray) -> np.ndarray:
+        """Level by which squares of the same noise are 1 on average.
+
+        One over an estimate is too large on average, by the estimate's relative variance.
+        """
+        powers = self._powers(frequency)
+        return self(frequency) * (1.0 + ((powers @ self.covariance) * powers).sum(axis=-1))
+
+    def _powers(self, frequency: np.ndarray) -> np.ndarray:
+        return np.log(frequency / self.reference)[..., None] ** np.arange(self.coefficients.size)
 
 
-def _smooth(lines: np.ndarray, power: np.ndarray) -> Smooth:
+def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> Smooth:
     """Maximum likelihood for powers that scatter exponentially around a smooth spectrum.
 
-    Lines that stand out are left out and the rest is fitted again.
+    Lines that stand out are left out and the rest is fitted again. ``same``: lines that say what one does.
     """
     reference = float(np.sqrt(lines[0] * lines[-1]))
     design = np.polynomial.polynomial.polyvander(np.log(lines / reference), ORDER)
@@ -275,7 +294,7 @@ def _smooth(lines: np.ndarray, power: np.ndarray) -> Smooth:
         if (kept == ~stands_out).all():
             break
         kept = ~stands_out
-    return Smooth(coefficients.copy(), reference)
+    return Smooth(coefficients, reference, same * np.linalg.inv(design[kept].T @ design[kept]))
 
 
 def _coherence(product: np.ndarray, first: np.ndarray, second: np.ndarray) -> complex:
