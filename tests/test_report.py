@@ -162,6 +162,19 @@ def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("candidates", "words"),
+    [(0, "there is no candidate that would show"), (1, "the one candidate does not explain it")],
+)
+def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
+    document["candidates"] = [each for each in document["candidates"] if len(each["effects"]) == 1][
+        :candidates
+    ]
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert words in plain(report.sentence(tmp_path))
+
+
+@pytest.mark.parametrize(
     ("verdict", "rivals", "words"),
     [
         ("consistent-with", ["preload"], "(preload would leave no more than noise, too)"),

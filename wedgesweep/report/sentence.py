@@ -76,12 +76,21 @@ def _many(found: Diagnosed) -> str:
 
 
 def _none(found: Diagnosed) -> str:
-    tried = [each for each in found.document["candidates"] if each["effects"]]
-    single = words.counted(len([each for each in tried if len(each["effects"]) == 1]), "candidate")
     return (
-        f"Something is wrong, the simulation is off by {_error(found, 'base')}, and none of the {single}, "
-        f"alone or in pairs, explains it{_attempt(found)}."
+        f"Something is wrong, the simulation is off by {_error(found, 'base')}, and {_unexplained(found)}"
+        f"{_attempt(found)}."
     )
+
+
+def _unexplained(found: Diagnosed) -> str:
+    singles = [each for each in found.document["candidates"] if len(each["effects"]) == 1]
+    match len(singles):
+        case 0:
+            return "there is no candidate that would show in these tests"
+        case 1:
+            return "the one candidate does not explain it"
+        case many:
+            return f"none of the {many} candidates, alone or in pairs, explains it"
 
 
 def _attempt(found: Diagnosed) -> str:
