@@ -1,4 +1,4 @@
-"""The implicit steps on steep ramps of friction: order, dense output, and no step over what runs away."""
+"""The implicit steps x, dense output, and no step over what runs away."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,9 @@ from tests.physics.cases import OMEGA_N
 from wedgesweep import parameters
 from wedgesweep.extended.mode import SIZE, Mode
 from wedgesweep.extended.switching import rate
-from wedgesweep.solvers import dormand_prince, rosenbrock
+from wedgesweep.solvers import dormand_prince, extended, periodic, rosenbrock
 from wedgesweep.solvers.dormand_prince import inside, room
+from wedgesweep.solvers.trajectory import Window
 
 ON_RAMPS = Mode(0, 0, 0, 1, 1, 0, 0, 1)
 
@@ -46,6 +47,42 @@ def test_order_on_a_gentle_ramp(place, order):
             half = after(dormand_prince, gentle, start, 4e-3 * (1 - 0.5 / steps), 512)[0]
             errors.append(np.abs(middle - half).max())
     assert np.log2(errors[0] / errors[1]) > order - 0.3
+
+
+def work(case, rtol):
+    """Rate evaluations of five periods from rest."""
+    window = Window(float(case["omega"][0]), 0, 5, 64)
+    return extended.run(case, window, rtol, (0.0, 0.0))[2].statistics["rate_evaluations"]
+
+
+def test_steps_become_shorter_with_the_tolerance_as_the_order_says():
+    soft = parameters.record(
+        "coulomb", 1e-4, 1.4 * OMEGA_N, effects={"column_compliance": {"stiffness": 1e4}}
+    )
+    # One over the fourth root of 1e-2 is 3.2; derivatives off by 1e-5 made it 30.
+    assert work(soft, 1e-8) < 4.0 * work(soft, 1e-6)
+
+
+def test_bristles_become_no_work_as_they_become_short():
+    cases = [
+        parameters.record("coulomb", 3e-4, OMEGA_N, effects={"presliding": {"length": length}})
+        for length in (1e-6, 1e-8)
+    ]
+    long, short = (work(case, 1e-6) for case in cases)
+    assert short < 3.0 * long
+
+
+def test_short_bristles_are_friction_that_holds_but_for_the_time_of_their_way():
+    base = parameters.record("coulomb", 3e-4, OMEGA_N)
+    true = periodic.respond(base, periodic.at_rest(1), 1e-9, 400, 256, 8, 1e-9).spectra[0]
+    apart = []
+    for length in (4e-8, 1e-8):
+        case = parameters.record("coulomb", 3e-4, OMEGA_N, effects={"presliding": {"length": length}})
+        found = periodic.respond(case, periodic.at_rest(1), 1e-6, 400, 256, 8, 1e-6)
+        apart.append(np.abs(found.spectra[0] - true).max() / np.abs(true).max())
+    # From a turn the slip grows evenly: the way takes a time as its square root.
+    assert apart[0] < 0.01
+    assert apart[0] / apart[1] == pytest.approx(2.0, rel=0.01)
 
 
 def test_long_steps_on_a_steep_ramp_end_where_short_ones_do():

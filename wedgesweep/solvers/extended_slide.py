@@ -147,8 +147,8 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
     implicit = rosenbrock.stiff(mode, p)
     if implicit and last_switch >= 0:
         h = min(h, rosenbrock.first_step(p))
-    exponent = -0.25 if implicit else -0.2
     while t < stop:
+        exponent = -0.25 if implicit else -0.2
         h = min(h, longest)
         taken = min(h, stop - t)
         error = _step(t, taken, y, mode, implicit, p, room)
@@ -176,6 +176,7 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
             y[i], room.stages[0, i] = room.end[i], room.stages[-1, i]
         room.at_start[:] = room.at_end
         last_switch = -1
+        implicit = implicit or rosenbrock.outrun(taken, y, p)
         grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
         h = max(h, grown) if taken < h else grown
     return stop, -1, h
