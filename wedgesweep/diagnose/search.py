@@ -29,6 +29,8 @@ DETOURS = 8
 LIKELY = 1e-3
 # Relative error of a stated input amplitude that is no measurement's, but the base model's.
 ASTRAY = 0.3
+# Then fits begin with iterations in which it is no further off than this.
+AS_STATED, HELD = 8, 1e-4
 # Effects with states of their own take longest.
 LONGEST = ("column_compliance", "fixture_resonance", "presliding")
 # Input amplitudes that are tried where none is known, over the fundamental of the displacement.
@@ -115,6 +117,8 @@ class Search:
         if model.toned or _astray(base):
             # What the base model made of the effect has led its own numbers far astray, or may have.
             trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
+        if _astray(base):
+            trials = trials + [_as_stated(model, trial) for trial in _leading(trials, FOLLOWED[0][0])]
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         followed = FOLLOWED if base.p < LIKELY else ((1, 3),)
         fit = best_of(model, trials, followed, HOPELESS * base.q)
@@ -171,6 +175,19 @@ def _astray(base: Fit) -> bool:
     return bool((np.abs(base.trial.point.amplitude[stated]) > ASTRAY).any())
 
 
+def _as_stated(model: Model, trial: Trial) -> Trial:
+    """Where a trial leads while the input amplitudes stay those stated."""
+    std = model.problem.amplitude_std
+    held = replace(model.problem, amplitude_std=np.where(np.isinf(std), std, np.minimum(std, HELD)))
+    strict = Model(held, model.hypothesis, model.reference, model.tolerance)
+    found = refine(strict, strict.trial(trial.point), AS_STATED)
+    return model.trial(found.trial.point)
+
+
+def _leading(trials: Sequence[Trial], entering: int | None) -> list[Trial]:
+    return sorted(trials, key=lambda each: each.q)[:entering]
+
+
 def _best_along_first(trials: Sequence[Trial]) -> list[Trial]:
     """The best trial at each value of the first number, so that not all that are followed are neighbours."""
     best: dict[float, Trial] = {}
@@ -223,8 +240,7 @@ def best_of(
     ``limit``: misfit that the first few iterations must get below.
     """
     for entering, iterations in followed:
-        leading = sorted(trials, key=lambda each: each.q)[:entering]
-        fits = [refine(model, trial, iterations) for trial in leading]
+        fits = [refine(model, trial, iterations) for trial in _leading(trials, entering)]
         trials = [fit.trial for fit in fits]
         best = min(fits, key=lambda fit: fit.q)
         if best.q > limit:

@@ -20,7 +20,7 @@ from wedgesweep.solvers.repetition import LONGEST, repetition
 
 # Perturbation of the scaled state for J, at least NOISE times an integrator's tolerance, and the least step
 # that teaches J anything.
-PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e3, 1e-4
+PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e2, 1e-4
 # Where Newton's method is not to be trusted: determinant of I - J, largest eigenvalue of J.
 SINGULAR, UNSTABLE = 1e-3, 0.9999
 # Periods that are marched before Newton's method is tried, from rest and after it has failed.
