@@ -116,9 +116,10 @@ class Search:
         trials = _best_along_first(trials)
         if model.toned or _astray(base):
             # What the base model made of the effect has led its own numbers far astray, or may have.
-            trials = trials + best_amplitudes(model, [model.start(None, x) for x in points])
-        if _astray(base):
-            trials = trials + [_as_stated(model, trial) for trial in _leading(trials, FOLLOWED[0][0])]
+            fresh = best_amplitudes(model, [model.start(None, x) for x in points])
+            trials = trials + fresh
+            if _astray(base):
+                trials = trials + [_as_stated(model, trial) for trial in _leading(fresh, FOLLOWED[0][0])]
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         followed = FOLLOWED if base.p < LIKELY else ((1, 3),)
         fit = best_of(model, trials, followed, HOPELESS * base.q)
