@@ -188,6 +188,17 @@ def test_faults_of_the_document(tmp_path, fault):
     assert found[0].startswith(str(tmp_path))
 
 
+@pytest.mark.parametrize("start", [0.0, 0.8, 3.2, 4.0])
+def test_a_tone_that_modulates_the_response_is_no_other_frequency(tmp_path, start):
+    t, d, v = vibration(periods=8.4)
+    noise_alone = d - np.cos(phase := 2.0 * np.pi * FREQUENCY * t + 0.7) - 0.3 * np.sin(3.0 * phase)
+    beat = 2.0 * np.pi * 0.8 * t / t[-1] + start
+    phase += 0.06 * np.sin(beat)
+    d = (1.0 + 0.06 * np.cos(beat)) * (np.cos(phase) + 0.3 * np.sin(3.0 * phase)) + noise_alone
+    csv = ["t,d,v", *(f"{a:.4f},{b:.6g},{c:.6g}" for a, b, c in zip(t, d, v, strict=True))]
+    assert measured.read(fixture_measured.write(tmp_path, csv=csv)).tests[0].frequency == FREQUENCY
+
+
 @pytest.mark.parametrize("fault", CSV_FAULTS)
 def test_faults_of_the_data(tmp_path, fault):
     csv, words = CSV_FAULTS[fault]

@@ -5,6 +5,7 @@ from math import isnan
 from wedgesweep.measured import frequency
 from wedgesweep.measured.frequency import Tone
 from wedgesweep.measured.measurement import Test
+from wedgesweep.measured.noise import of_channel
 
 FEWEST_PERIODS = 4
 # A last period that lacks less than this share counts as whole: frequencies are rounded, too.
@@ -14,6 +15,9 @@ NEGLIGIBLE = 2e-3
 # A stated frequency is compared with the nearest line this many inverse record lengths around it; further
 # off a line leaks less than this share of its amplitude into it.
 LOBE, LEAKAGE = 1.5, 0.3
+# A wrong frequency leaves this many times the variance that the right one leaves. Less may come from a tone
+# beside a harmonic: it modulates the whole response, and over a short record that looks like another one.
+WORSE = 3.0
 
 
 def frequency_faults(test: Test, file: str, at: str) -> list[str]:
@@ -38,12 +42,18 @@ def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:
     stated = test.frequency
     if stated is None:
         return []
-    actual = tone.frequency if tone.differs(stated) else stated
+    actual = tone.frequency if tone.differs(stated) and _worse(test, stated, tone.frequency) else stated
     if actual == stated and not frequency.stands_out(test.time, test.displacement, stated):
         actual = _elsewhere(test, stated)
     if abs(actual / stated - 1.0) < NEGLIGIBLE:
         return []
     return [f"{at}.frequency_hz: {stated:.6g}, but {file} vibrates at {actual:.6g} Hz; correct one of them"]
+
+
+def _worse(test: Test, stated: float, other: float) -> bool:
+    """Whether a record repeats much better at another frequency (Hz) than at the one stated."""
+    here, there = (of_channel(test.time, test.displacement, each).std for each in (stated, other))
+    return here**2 > WORSE * there**2
 
 
 def _elsewhere(test: Test, stated: float) -> float:
