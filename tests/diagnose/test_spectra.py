@@ -63,12 +63,16 @@ def test_a_second_channel_that_says_nothing_new_is_dropped():
     assert found.mean.shape[0] == 1
 
 
-def spectra_with(rng, foreign):
-    """Spectra of five tests, all with one foreign tone of a given amplitude at 47.3 Hz."""
+def spectra_with(rng, foreign, image=0.0):
+    """Spectra of five tests, all with one foreign tone of a given amplitude at 47.3 Hz.
+
+    ``image``: amplitude of a line at 16.7 Hz that the last test alone has.
+    """
     spectra = []
     for frequency in (5.0, 8.0, 11.0, 20.0, 32.0):
         time, channels, _ = record(rng, frequency)
         channels = channels + foreign * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
+        channels += (frequency == 32.0) * image * np.sin(2.0 * pi * 16.7 * time)
         spectra.append(spectrum(time, channels, frequency))
     return spectra
 
@@ -78,6 +82,14 @@ def test_a_foreign_tone_is_found_where_it_is(amplitude):
     found = tone.find(spectra_with(np.random.default_rng(3), amplitude))
     assert found.frequency == pytest.approx(47.3, abs=0.05)
     assert abs(found.frequency - 47.3) < 4.0 * found.std
+
+
+def test_lines_of_one_response_alone_neither_hide_a_tone_nor_are_one():
+    found = tone.find(spectra_with(np.random.default_rng(4), 0.03, image=1.0))
+    assert found.frequency == pytest.approx(47.3, abs=0.1)
+    assert [tone.find(spectra_with(np.random.default_rng(seed), 0.0, image=1.0)) for seed in range(12)] == [
+        None
+    ] * 12
 
 
 def test_the_frequency_of_a_tone_is_as_uncertain_as_it_says():

@@ -20,8 +20,6 @@ LOWEST = 1.0
 MINGLING = 0.05
 # Least bend of the power over a step of the grid: below it the frequency is open.
 LEAST_BEND = 1e-3
-# A tone stands out in at least this many tests.
-SEVERAL = 2
 
 
 class Tone(NamedTuple):
@@ -41,15 +39,25 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     highest = min(BAND / s.interval for s in spectra)
     grid = np.arange(LOWEST, highest, 1.0 / longest / FINE)
     power = np.array([_power(s, grid) for s in spectra])
-    channels = np.array([s.mean.shape[0] for s in spectra])
     separated = np.array([s.separates(grid) for s in spectra])
-    chance = log_chance(power.sum(axis=0), (channels[:, None] * separated).sum(axis=0))
+    chance = _chance_beside_strongest(power, np.array([[s.mean.shape[0]] for s in spectra]) * separated)
     best = int(np.argmin(chance))
-    standing_out = log_chance(power[:, best], channels) < np.log(1e-3)
-    if chance[best] + np.log(grid.size) > np.log(CHANCE) or standing_out.sum() < min(SEVERAL, len(spectra)):
+    if chance[best] + np.log(grid.size) > np.log(CHANCE):
         return None
     seen = [Joint(s) for s, one in zip(spectra, separated[:, best], strict=True) if one]
     return _refined(seen, float(grid[best]), float(grid[1] - grid[0]))
+
+
+def _chance_beside_strongest(power: np.ndarray, count: np.ndarray) -> np.ndarray:
+    """Logarithm of the chance (n,) of powers of so many channels (T, n), but for the test that shows most.
+
+    A tone also makes lines elsewhere, where it meets the harmonics of one response: no other test has those.
+    What counts is what the other tests show together, or one of them by itself.
+    """
+    order = np.argsort(power, axis=0)[:-1] if len(power) > 1 else np.zeros((1, power.shape[1]), int)
+    power, count = (np.take_along_axis(each, order, axis=0) for each in (power, count))
+    together = log_chance(power.sum(axis=0), count.sum(axis=0))
+    return np.minimum(together, log_chance(power[-1], count[-1]))
 
 
 class Joint:
