@@ -43,10 +43,14 @@ def vibration(
     return t, d + NOISE * random.normal(size=t.size), v + NOISE * omega * random.normal(size=t.size)
 
 
+def csv_lines(*columns: np.ndarray) -> list[str]:
+    """Time, displacement and velocity as the lines of a CSV file."""
+    return ["t,d,v", *(f"{t:.4f},{d:.6g},{v:.6g}" for t, d, v in zip(*columns, strict=True))]
+
+
 def lines(*arguments: float, **more: float) -> list[str]:
     """``vibration`` as the lines of a CSV file."""
-    rows = zip(*vibration(*arguments, **more), strict=True)
-    return ["t,d,v", *(f"{t:.4f},{d:.6g},{v:.6g}" for t, d, v in rows)]
+    return csv_lines(*vibration(*arguments, **more))
 
 
 def write(

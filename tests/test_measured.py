@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests import fixture_measured
-from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, lines, vibration
+from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, csv_lines, lines, vibration
 from wedgesweep import measured
 from wedgesweep.measured import noise
 from wedgesweep.measured.declarations import SCALES
@@ -195,8 +195,8 @@ def test_a_tone_that_modulates_the_response_is_no_other_frequency(tmp_path, star
     beat = 2.0 * np.pi * 0.8 * t / t[-1] + start
     phase += 0.06 * np.sin(beat)
     d = (1.0 + 0.06 * np.cos(beat)) * (np.cos(phase) + 0.3 * np.sin(3.0 * phase)) + noise_alone
-    csv = ["t,d,v", *(f"{a:.4f},{b:.6g},{c:.6g}" for a, b, c in zip(t, d, v, strict=True))]
-    assert measured.read(fixture_measured.write(tmp_path, csv=csv)).tests[0].frequency == FREQUENCY
+    path = fixture_measured.write(tmp_path, csv=csv_lines(t, d, v))
+    assert measured.read(path).tests[0].frequency == FREQUENCY
 
 
 @pytest.mark.parametrize("fault", CSV_FAULTS)

@@ -38,8 +38,8 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     longest = max(s.duration for s in spectra)
     highest = min(BAND / s.interval for s in spectra)
     grid = np.arange(LOWEST, highest, 1.0 / longest / FINE)
-    power = np.array([_power(s, grid) for s in spectra])
     separated = np.array([s.separates(grid) for s in spectra])
+    power = np.where(separated, [s.excess_at(grid) for s in spectra], 0.0)
     chance = _chance_beside_strongest(power, np.array([[s.mean.shape[0]] for s in spectra]) * separated)
     best = int(np.argmin(chance))
     if chance[best] + np.log(grid.size) > np.log(CHANCE):
@@ -123,8 +123,3 @@ def log_chance(power: np.ndarray, count: np.ndarray) -> np.ndarray:
     terms = xlogy(orders, power[:, None]) - gammaln(orders + 1.0)
     terms[orders >= np.maximum(count, 1)[:, None]] = -np.inf
     return logsumexp(terms, axis=1) - power
-
-
-def _power(spectrum: Spectrum, frequencies: np.ndarray) -> np.ndarray:
-    """Power over the noise, 0 where a harmonic is too close."""
-    return np.where(spectrum.separates(frequencies), spectrum.excess_at(frequencies), 0.0)

@@ -93,18 +93,26 @@ def step(t, h, y, mode, p, room):
 
 
 @compiled
-def connect(h, y, room):
-    """Prepare ``inside`` for the step from y that was just made."""
+def connect_cubic(h, y, room):
+    """Prepare ``inside`` for a step from y: the cubic with the states and rates of both ends."""
     dense, stages = room.dense, room.stages
     for i in range(SIZE):
         rise = room.end[i] - y[i]
         bend = h * stages[0, i] - rise
         dense[0, i], dense[1, i], dense[2, i] = y[i], rise, bend
         dense[3, i] = rise - h * stages[STAGES - 1, i] - bend
+        dense[4, i] = 0.0
+
+
+@compiled
+def connect(h, y, room):
+    """Prepare ``inside`` for the step from y that was just made."""
+    connect_cubic(h, y, room)
+    for i in range(SIZE):
         last = 0.0
         for j in range(STAGES):
-            last += DENSE[j] * stages[j, i]
-        dense[4, i] = h * last
+            last += DENSE[j] * room.stages[j, i]
+        room.dense[4, i] = h * last
 
 
 @compiled

@@ -12,6 +12,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.extended.faces import bolster_slip, column_slip
 from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY, in_use, unit
 from wedgesweep.extended.switching import rate
+from wedgesweep.solvers.dormand_prince import connect_cubic
 from wedgesweep.solvers.step_error import over_tolerance
 
 STAGES = 6
@@ -88,10 +89,8 @@ def _derivatives(t, y, places, mode, p, room):
         if i in (VELOCITY, COLUMN_VELOCITY, FRAME_VELOCITY):
             # A ramp bends within its own width, as normal forces depend on friction and friction on them. A
             # smaller move there is lost in velocities that are large: then the order of the method is, too.
-            high, low = (
-                y[i] + ON_BOTH_SIDES * p.threshold_velocity,
-                y[i] - ON_BOTH_SIDES * p.threshold_velocity,
-            )
+            side = ON_BOTH_SIDES * p.threshold_velocity
+            high, low = y[i] + side, y[i] - side
             trial[i] = low
             rate(t, trial, mode, p, lower)
         else:
@@ -170,7 +169,8 @@ def step(t, h, y, mode, p, room):
     for i in range(SIZE):
         end[i] += increments[STAGES - 1, i]
     rate(t + h, end, mode, p, room.stages[-1])
-    _connect(h, y, room)
+    # RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9.
+    connect_cubic(h, y, room)
     error = increments[STAGES - 1]
     rtol = TIGHTER * room.rtol
     return max(over_tolerance(error, y, end, rtol, p), _off_ramp(error, mode, rtol, p))
@@ -183,18 +183,3 @@ def _off_ramp(error, mode, rtol, p):
     bolster = abs(bolster_slip(error, p)) if mode.bolster == 0 else 0.0
     largest = max(column, bolster)
     return largest / (ON_RAMP * rtol * p.threshold_velocity)
-
-
-@compiled
-def _connect(h, y, room):
-    """Write what ``dormand_prince.inside`` evaluates: the cubic with the states and rates of both ends.
-
-    RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9.
-    """
-    dense = room.dense
-    for i in range(SIZE):
-        way = room.end[i] - y[i]
-        dense[0, i], dense[1, i] = y[i], way
-        dense[2, i] = h * room.stages[0, i] - way
-        dense[3, i] = way - h * room.stages[-1, i] - dense[2, i]
-        dense[4, i] = 0.0
