@@ -2,8 +2,8 @@
 
 Every set is made and diagnosed through the command line; the truth is compared afterwards. Finished sets are
 kept in the directory, so that a campaign can be stopped (Ctrl-C) and goes on where it was. At full size it
-takes hours. Writes docs/blind_campaign.txt and docs/blind-recovery.png (with --size below 1: into the
-directory only).
+takes hours. Writes docs/blind_campaign.txt and .jsonl (the records) and docs/blind-recovery.png (with --size
+below 1: into the directory only).
 """
 
 import argparse
@@ -14,7 +14,7 @@ import blind_judge as judge
 import blind_picture
 import joblib
 from blind_goals import Sets, goals
-from blind_run import ROOT, run_chain
+from blind_run import RECORD, ROOT, run_chain, write
 from blind_sets import KINDS, SIZES, chains
 from blind_tables import compared, confusion, mistakes, recovery
 
@@ -31,8 +31,22 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=2, help="sets at the same time")
     parser.add_argument("-o", "--output", type=Path, help="directory; default: out/blind-SEED")
     parser.add_argument("--no-baselines", dest="baselines", action="store_false")
+    parser.add_argument("--records", type=Path, help="sets finished elsewhere (.jsonl): not made again")
     parser.add_argument("--tables", action="store_true", help="no new sets: the tables of those there are")
     return parser.parse_args()
+
+
+def unpack(file, seed, out):
+    """Put records of sets that were finished elsewhere where those of sets finished here are."""
+    for line in file.read_text().splitlines():
+        record = json.loads(line)
+        if record["seed"] != seed:
+            message = f"{file}: {record['name']} is of seed {record['seed']}, not {seed}"
+            raise SystemExit(message)
+        directory = out / record["name"]
+        if not (directory / RECORD).exists():
+            directory.mkdir(parents=True, exist_ok=True)
+            write(directory / RECORD, record)
 
 
 def run(wanted, out, jobs, baselines):
@@ -95,9 +109,11 @@ def main():
     given = arguments()
     out = given.output or ROOT / "out" / f"blind-{given.seed}"
     wanted = chains(given.seed, given.size, tuple(given.only))
+    if given.records:
+        unpack(given.records, given.seed, out)
     if given.tables:
         names = [one.name for chain in wanted for one in chain]
-        files = [out / name / "record.json" for name in names]
+        files = [out / name / RECORD for name in names]
         records = [json.loads(file.read_text()) for file in files if file.exists()]
     else:
         records = run(wanted, out, given.jobs, given.baselines)
@@ -105,13 +121,13 @@ def main():
         message = f"{out}: no finished sets"
         raise SystemExit(message)
     records.sort(key=lambda record: (list(SIZES).index(record["kind"]), record["index"]))
-    (out / "records.jsonl").write_text("".join(json.dumps(record) + "\n" for record in records))
     sets = Sets([r for r in records if "failure" not in r], [r for r in records if "failure" in r])
     text = report(sets, given.seed, given.size, sum(map(len, wanted)))
     print("\n" + text)
     whole = given.size >= 1.0 and not given.only
     docs = ROOT / "docs" if whole else out
     (docs / "blind_campaign.txt").write_text(text)
+    (docs / "blind_campaign.jsonl").write_text("".join(json.dumps(r) + "\n" for r in sets.all))
     if rows := recovery(sets):
         blind_picture.draw(rows, docs / "blind-recovery.png")
 

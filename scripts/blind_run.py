@@ -46,7 +46,7 @@ def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
         # No record file: the next run tries again.
         failure = f"{type(error).__name__}: {error}"
         return {"name": one.name, "kind": one.kind, "index": one.index, "failure": failure}
-    _write(directory / RECORD, record)
+    write(directory / RECORD, record)
     return record
 
 
@@ -73,7 +73,8 @@ def _compared(record: dict[str, Any], directory: Path) -> dict[str, Any]:
     return {**record, "baselines": named, "seconds": seconds}
 
 
-def _write(file: Path, document: Any) -> None:
+def write(file: Path, document: Any) -> None:
+    """Write a JSON file whole or not at all."""
     partial = file.with_suffix(".partial")
     partial.write_text(json.dumps(document, indent=1) + "\n")
     os.replace(partial, file)
@@ -86,7 +87,7 @@ def _run(one: BlindSet, out: Path, directory: Path) -> dict[str, Any]:
         # Nothing to add: the verdict on the poor set stands.
         return {**poor, "name": one.name, "kind": one.kind}
     draft, plan = _draft(one, out)
-    _write(directory / DRAFT, asdict(draft))
+    write(directory / DRAFT, asdict(draft))
     took["draw"], began = perf_counter() - began, perf_counter()
     if draft.foreign:
         outside.make(draft, LEVEL, one.number, directory / DATA)
@@ -100,10 +101,13 @@ def _run(one: BlindSet, out: Path, directory: Path) -> dict[str, Any]:
     _wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *limit)
     took["diagnose"] = perf_counter() - began
     found = json.loads((directory / RESULT / "diagnosis.json").read_text())
+    if found["gain"]:
+        del found["gain"]["held_out"]  # test by test: too long for a record
     record = {
         "name": one.name,
         "kind": one.kind,
         "index": one.index,
+        "seed": one.seed,
         "truth": sorted(draft.hidden) or ([draft.foreign["name"]] if draft.foreign else []),
         "numbers": draft.hidden,
         **{key: getattr(draft, key) for key in ("law", "lean", "noise", "spread", "uncertain", "expected")},
