@@ -5,6 +5,7 @@ import pytest
 
 from tests.diagnose.drawn import LAG, drawn, searched
 from wedgesweep.diagnose import gain
+from wedgesweep.diagnose.gain import Gain, HeldOut
 
 
 def test_gain_on_held_out_tests_reaches_the_noise():
@@ -33,3 +34,23 @@ def test_retuning_alone_gains_nothing():
     base_square, extended, noise = measured.totals()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
+
+
+POINTS = 32
+
+
+def predicted(*squares):
+    """Gain over twelve tests: these (base, extended) and for the rest nothing that could be removed."""
+    noise = np.random.default_rng(2).chisquare(POINTS - 1, 12 - len(squares))
+    both = [*squares, *((q, q + 0.3) for q in noise)]
+    return Gain(tuple(HeldOut(i, "frequency", b, e, POINTS, 1.0) for i, (b, e) in enumerate(both)))
+
+
+def test_tests_in_which_nothing_shows_do_not_make_an_effect_uncertain_that_shows_in_few():
+    low, high = predicted((6000.0, 42.0), (3200.0, 26.0), (210.0, 31.0)).interval
+    assert 0.95 < low < high < 1.05
+
+
+def test_an_effect_that_one_test_denies_is_uncertain():
+    assert predicted((6000.0, 42.0), (3200.0, 6200.0), (210.0, 31.0)).interval[0] < 0.0
+    assert predicted((300.0, 340.0)).interval[0] < 0.0

@@ -17,6 +17,8 @@ ALIKE = 0.02
 RESAMPLED = 2000
 # With fewer tests an interval would be a pretence.
 FEWEST = 8
+# Tests drawn with less than this share of the excess hold nothing that could be removed.
+SHOWS = 0.1
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,8 @@ class Gain:
     def interval(self) -> list[float] | None:
         """95 % interval of ``excess_removed`` from tests drawn again, both schemes of a test together.
 
+        Where few tests show the effect many draws have none of them: what little there is to explain is
+        noise then, and its share that is removed says nothing. They do not count.
         Few tests scatter less when drawn again than they did when they were made, which the quantiles make
         up for (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
         """
@@ -85,7 +89,9 @@ class Gain:
         )
         drawn = np.random.default_rng(0).integers(0, len(tests), (RESAMPLED, len(tests)))
         base, extended, noise = sums[drawn].sum(axis=1).T
-        removed = np.where(base > noise, (base - extended) / np.where(base > noise, base - noise, 1.0), 0.0)
+        excess = base - noise
+        shows = excess > max(SHOWS * (sums[:, 0] - sums[:, 2]).sum(), 0.0)
+        removed = (base - extended)[shows] / excess[shows] if shows.any() else np.zeros(1)
         tail = ndtr(np.sqrt(len(tests) / (len(tests) - 1.0)) * stdtrit(len(tests) - 1, 0.025))
         low, high = np.quantile(removed, [tail, 1.0 - tail])
         return [float(low), float(high)]
