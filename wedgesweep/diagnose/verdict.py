@@ -20,7 +20,7 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 # Penalised misfits closer than this cannot be told apart.
 GAP = 10.0
 # Least probability of the misfit that an explanation leaves: to be named, and to be an explanation at all.
-ADEQUATE, POSSIBLE = 0.01, 1e-5
+ADEQUATE, POSSIBLE = 0.01, 1e-4
 # Share of the base model's excess whose tests a cause must explain for themselves.
 SHOWN = 0.9
 # Excess chi-squared of the base model that it takes to name a cause.
@@ -98,7 +98,10 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
             return Finding(NOTHING, None, ())
         return Finding(_nobody(base), order[0] if order else None, ())
     best = order[0]
-    if best.fit.p < POSSIBLE:
+    strong = base.fit.excess >= thresholds.strong
+    left = _left(base, best)
+    # Where little shows, noise has a part in where: those tests hold more of it than others.
+    if (left if strong else best.fit.p) < POSSIBLE:
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
     # What others can imitate may be none of them: then the closest one is only that.
@@ -109,7 +112,7 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    if base.fit.excess < thresholds.strong or not _adequate(base, best):
+    if not strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
     return Finding(CONSISTENT if others else NAMED, best, others)
 
@@ -118,9 +121,9 @@ def _contains(each: Explanation, other: Explanation) -> bool:
     return set(other.effects) <= set(each.effects)
 
 
-def _adequate(base: Explanation, best: Explanation) -> bool:
-    """Whether an explanation leaves noise only, over all tests and where there was more."""
-    return min(best.fit.p, where_it_shows(base.fit, best.fit)) >= ADEQUATE
+def _left(base: Explanation, best: Explanation) -> float:
+    """Probability of what an explanation leaves, over all tests or where there was more: the smaller one."""
+    return min(best.fit.p, where_it_shows(base.fit, best.fit))
 
 
 def where_it_shows(base: Fit, fit: Fit) -> float:
@@ -147,7 +150,7 @@ def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[floa
         return finding
     if base.fit.p >= POSSIBLE:
         return Finding(NOTHING, None, ())
-    unconfirmed = INSUFFICIENT if _adequate(base, finding.cause) else _nobody(base)
+    unconfirmed = INSUFFICIENT if _left(base, finding.cause) >= ADEQUATE else _nobody(base)
     return Finding(unconfirmed, finding.best, finding.rivals)
 
 

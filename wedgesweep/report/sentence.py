@@ -99,8 +99,11 @@ def _attempt(found: Diagnosed) -> str:
     gain = found.document["gain"]
     worse = gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
     unseen = ", and may make tests worse that it was not fitted to" if worse else ""
+    misfit = found.document["misfit"]
+    where = misfit["p_where_it_shows"]
+    there = f" ({words.p_value(where)} in the tests that show it)" if where < misfit["p_extended"] else ""
     error = _error(found, "extended")
-    return f"; the best attempt, {words.together(found.added)}, is still off by {error}{unseen}"
+    return f"; the best attempt, {words.together(found.added)}, is still off by {error}{there}{unseen}"
 
 
 TEMPLATES = {
