@@ -25,8 +25,6 @@ PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e2, 1e-4
 SINGULAR, UNSTABLE = 1e-3, 0.9999
 # Periods that are marched before Newton's method is tried, from rest and after it has failed.
 PATIENCE = 8
-# Periods after which a response is given up that comes on from a neighbour's that did not repeat either.
-RESIGNED = 24
 # A response seems to take several periods where its state comes back this many times closer after them than
 # after one.
 RHYTHM = 10.0
@@ -231,15 +229,12 @@ def settle(y, periods, jacobian, parameters, tolerance, most, tools, passage):
     p = parameters[0]
     size = units(p)
     run = 0
-    known = np.isfinite(y).all()
-    if not known:
+    if not np.isfinite(y).all():
         y[:], periods = 0.0, 0
         jacobian[:] = np.nan
     if p.stray_vibration_acceleration != 0.0:
         most = min(most, TONE_PERIODS)
         return passage(0, most, y, parameters, False, tools), 0, most, 0
-    if known and not periods:
-        most = min(most, RESIGNED)
     if periods:
         period, outcome, run = _found(y, periods, jacobian, parameters, tolerance, most, size, tools, passage)
         if period:
