@@ -30,7 +30,9 @@ def arguments():
     )
     parser.add_argument("--jobs", type=int, default=2, help="sets at the same time")
     parser.add_argument("-o", "--output", type=Path, help="directory; default: out/blind-SEED")
-    parser.add_argument("--no-baselines", dest="baselines", action="store_false")
+    parser.add_argument(
+        "--aic-every", type=int, default=5, help="sets of a kind per one with forward selection by AIC (slow)"
+    )
     parser.add_argument("--records", type=Path, help="sets finished elsewhere (.jsonl): not made again")
     parser.add_argument("--tables", action="store_true", help="no new sets: the tables of those there are")
     return parser.parse_args()
@@ -49,12 +51,12 @@ def unpack(file, seed, out):
             write(directory / RECORD, record)
 
 
-def run(wanted, out, jobs, baselines):
+def run(wanted, out, jobs, aic_every):
     """Records of all sets, told one by one as they are finished."""
     out.mkdir(parents=True, exist_ok=True)
     pool = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered")
     records, total = [], sum(map(len, wanted))
-    for chain in pool(joblib.delayed(run_chain)(each, out, baselines) for each in wanted):
+    for chain in pool(joblib.delayed(run_chain)(each, out, aic_every) for each in wanted):
         for record in chain:
             records.append(record)
             print(f"{len(records):3d}/{total} {told(record)}", flush=True)
@@ -116,7 +118,7 @@ def main():
         files = [out / name / RECORD for name in names]
         records = [json.loads(file.read_text()) for file in files if file.exists()]
     else:
-        records = run(wanted, out, given.jobs, given.baselines)
+        records = run(wanted, out, given.jobs, given.aic_every)
     if not records:
         message = f"{out}: no finished sets"
         raise SystemExit(message)

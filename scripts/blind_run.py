@@ -12,7 +12,7 @@ from typing import Any
 
 import blind_bench as bench
 import blind_outside_files as outside
-from blind_baselines import BASELINES
+from blind_baselines import BASELINES, SLOW
 from blind_bench import Test
 from blind_draft import LEVEL, Draft, draw
 from blind_judge import gain_in_truth
@@ -31,17 +31,16 @@ class Failed(Exception):
     """A set that did not come to a verdict."""
 
 
-def run_chain(chain: list[BlindSet], out: Path, baselines: bool = True) -> list[dict[str, Any]]:
+def run_chain(chain: list[BlindSet], out: Path, aic_every: int) -> list[dict[str, Any]]:
     """Records of sets that need one another; finished ones are kept. A failure is a record, too."""
-    return [record_of(one, out, baselines) for one in chain]
+    return [record_of(one, out, aic_every) for one in chain]
 
 
-def record_of(one: BlindSet, out: Path, baselines: bool) -> dict[str, Any]:
+def record_of(one: BlindSet, out: Path, aic_every: int) -> dict[str, Any]:
     directory = out / one.name
     try:
         record = _kept(directory) or _run(one, out, directory)
-        if baselines and "baselines" not in record:
-            record = _compared(record, directory)
+        record = _compared(record, directory, one.index % aic_every == 0)
     except Exception as error:  # whatever it is, the other sets go on
         # No record file: the next run tries again.
         failure = f"{type(error).__name__}: {error}"
@@ -59,18 +58,18 @@ def _kept(directory: Path) -> dict[str, Any] | None:
     return None
 
 
-def _compared(record: dict[str, Any], directory: Path) -> dict[str, Any]:
-    """A record with what simpler methods name; that of a copied set stays as it is."""
-    if not (directory / DRAFT).exists():
+def _compared(record: dict[str, Any], directory: Path, slowly: bool) -> dict[str, Any]:
+    """A record with what simpler methods name; that of a set made elsewhere, or copied, stays as it is."""
+    found = dict(record.get("baselines", {}))
+    wanted = [name for name in BASELINES if name not in found and (slowly or name != SLOW)]
+    if not wanted or not (directory / DRAFT).exists():
         return record
     began = perf_counter()
     candidates = tuple(json.loads((directory / DRAFT).read_text())["candidates"])
-    named = {
-        name: baseline(directory / DATA / "measured.toml", directory / RESULT, candidates)
-        for name, baseline in BASELINES.items()
-    }
+    for name in wanted:
+        found[name] = BASELINES[name](directory / DATA / "measured.toml", directory / RESULT, candidates)
     seconds = {**record["seconds"], "baselines": round(perf_counter() - began, 1)}
-    return {**record, "baselines": named, "seconds": seconds}
+    return {**record, "baselines": found, "seconds": seconds}
 
 
 def write(file: Path, document: Any) -> None:

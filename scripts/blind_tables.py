@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import blind_judge as judge
+from blind_baselines import BASELINES
 from blind_goals import Sets
 from blind_statistics import Share, share
 
@@ -42,12 +43,12 @@ def _answer(record: Record) -> str:
 
 
 def baselines_of(records: Sequence[Record]) -> list[str]:
-    return list(next((record["baselines"] for record in records if "baselines" in record), {}))
+    return [name for name in BASELINES if any(name in record.get("baselines", {}) for record in records)]
 
 
 def _by_baseline(records: Sequence[Record], name: str, test: Callable[[Any, Any], bool]) -> Share:
-    """Share of the records with baselines in which one of these passes a test of truth and answer."""
-    ran = [record for record in records if "baselines" in record]
+    """Share of the records with a baseline in which this passes a test of truth and answer."""
+    ran = [record for record in records if name in record.get("baselines", {})]
     return share(ran, lambda record: test(record["truth"], record["baselines"][name]))
 
 
