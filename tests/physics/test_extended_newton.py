@@ -12,6 +12,8 @@ from wedgesweep.extended import rest, switching
 from wedgesweep.extended.jumps import settled
 from wedgesweep.extended.mode import AGE, BRISTLE, SIZE, VELOCITY
 from wedgesweep.friction import LAW_NAMES
+from wedgesweep.solvers import radau
+from wedgesweep.solvers.trajectory import Window
 
 
 def record_of(law, generator, names, column_angle=0.07):
@@ -107,3 +109,16 @@ def test_the_run_begins_where_nothing_moves_without_friction(name):
     mode, _ = switching.initial(0.0, y, record[0])
     switching.rate(0.0, y, mode, record[0], slope)
     assert np.abs(slope[:7]).max() < 1e-8
+
+
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_a_run_begins_in_the_direction_that_the_input_drives_not_that_of_rounding(law):
+    """At phase 0 forces balance; a moment later the side frame falls behind, and z grows."""
+    for scale in np.linspace(0.8, 1.2, 11):
+        effects = {"bolster_stiffness": {"scale": scale}, "directional_friction": {"asymmetry": -0.09}}
+        record = parameters.record(law, 5e-5, 180.0, effects=effects)
+        mode, unique = switching.initial(0.0, np.zeros(SIZE), record[0])
+        assert unique
+        assert mode.direction == 1
+        window = Window(180.0, 1, 1, 16)
+        assert np.isfinite(radau.solve(record, window, 1e-4, 60.0).samples.x).all()

@@ -101,6 +101,9 @@ def _direction_at(t, y, mode, p):
     """The mode with the direction of z', and whether it is unique."""
     if p.directional_friction_asymmetry == 0.0:
         return closed(t, y, mode, p)
+    if y[VELOCITY] == 0.0:
+        # Where a run begins forces balance but for rounding: what comes next decides.
+        t += LOOK_AHEAD / p.omega
     upward, now, unique = closed(t, y, with_branch(mode, 3, 1, p), p)
     if y[VELOCITY] > 0.0 or (y[VELOCITY] == 0.0 and now.acceleration > 0.0):
         return upward, now, unique

@@ -181,7 +181,8 @@ class _Run:
     def _switches_ahead(self, t: float, y: np.ndarray, mode: Mode) -> np.ndarray:
         """Switches a moment later, when one that is passing zero has left the rounding behind."""
         moment = LOOK_AHEAD / self.window.omega
-        y = y + moment * self.pieces.rate(t, y, mode)
+        # Half-way: where a run begins the rate itself is rounding.
+        y = y + moment * self.pieces.rate(t + 0.5 * moment, y, mode)
         return self.pieces.switches(t + moment, y, mode)
 
     def _just_passed(self, place: int) -> bool:
