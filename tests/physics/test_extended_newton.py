@@ -12,7 +12,7 @@ from wedgesweep.extended import rest, switching
 from wedgesweep.extended.jumps import settled
 from wedgesweep.extended.mode import AGE, BRISTLE, SIZE, VELOCITY
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.solvers import radau
+from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Window
 
 
@@ -122,3 +122,16 @@ def test_a_run_begins_in_the_direction_that_the_input_drives_not_that_of_roundin
         assert mode.direction == 1
         window = Window(180.0, 1, 1, 16)
         assert np.isfinite(radau.solve(record, window, 1e-4, 60.0).samples.x).all()
+
+
+@pytest.mark.parametrize("phase", [0.5, 2.0, 4.0])
+def test_a_start_to_one_side_that_soon_turns_to_the_other_is_resolved(phase):
+    """A foreign tone pulls down for microseconds, until the input that begins at 0 has outgrown it."""
+    effects = {
+        "directional_friction": {"asymmetry": 0.01},
+        "stray_vibration": {"acceleration": 1.3e-3, "frequency": 8.0, "phase": phase},
+    }
+    record = parameters.record("exponential", 7e-5, 207.0, effects=effects)
+    window = Window(207.0, 1, 1, 64)
+    runs = [solve(record, window, 1e-8, 60.0).samples.x for solve in (radau.solve, event_driven.solve)]
+    np.testing.assert_allclose(*runs, atol=1e-6 * np.ptp(runs[0]))

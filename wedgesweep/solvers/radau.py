@@ -165,7 +165,7 @@ class _Run:
         places = np.flatnonzero(np.isfinite(ahead)).tolist()
         result = self._integrate(t, stop, y, mode, places)
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
-        if reached and result.t[-1] == t and self._just_passed(reached[0]):
+        if reached and result.t[-1] == t:
             self._shorten_first_step(t)
             return t, y, -1
         self._require(self.pieces.first_locked(result.t, result.y, mode) < 0, result.t[-1])
