@@ -75,7 +75,7 @@ def test_where_nothing_shows_all_that_is_left_counts():
         (705.0, [0.9, 1.02], "named"),
         (705.0, [0.0, 1.0], "named"),
         (705.0, None, "named"),
-        (705.0, [-0.3, 1.0], "data-insufficient"),
+        (705.0, [-0.3, 1.0], "consistent-with"),
         (810.0, [0.9, 1.02], "consistent-with"),
         (810.0, [-0.3, 1.0], "none-of-mine"),
     ],
@@ -84,7 +84,14 @@ def test_a_cause_that_may_make_unseen_tests_worse_is_none(q, interval, expected)
     base, best = explained(5000.0), explained(q, "stribeck")
     found = on_unseen_tests(verdict_of(base, best), base, interval)
     assert (found.verdict, found.best) == (expected, best)
-    assert (found.cause is None) == (expected in ("data-insufficient", "none-of-mine"))
+    assert (found.cause is None) == (expected == "none-of-mine")
+
+
+def test_unconfirmed_weak_evidence_is_none():
+    base, best, other = explained(5000.0), explained(690.0, "stribeck"), explained(720.0, "preload")
+    for found in (verdict_of(explained(1200.0), best), verdict_of(base, best, other)):
+        assert found.verdict == "consistent-with"
+        assert on_unseen_tests(found, base, [-0.3, 1.0]).verdict == "data-insufficient"
 
 
 def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confirm():

@@ -142,16 +142,17 @@ def where_it_shows(base: Fit, fit: Fit) -> float:
 def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[float] | None) -> Finding:
     """The finding, unless its cause may well make worse what it was not fitted to.
 
-    Then nothing is missing where the base model will do; else none is the cause, or if it leaves noise only,
-    too few tests show it for others to confirm it.
+    Then nothing is missing where the base model will do. Else none is the cause; or if it leaves noise only,
+    too few tests show it for others to confirm it: weak evidence if nothing else will do, else none.
     ``interval``: 95 % interval of the excess that the cause removes there, None if there is none.
     """
     if finding.cause is None or interval is None or interval[0] >= 0.0:
         return finding
     if base.fit.p >= POSSIBLE:
         return Finding(NOTHING, None, ())
-    unconfirmed = INSUFFICIENT if _left(base, finding.cause) >= ADEQUATE else _nobody(base)
-    return Finding(unconfirmed, finding.best, finding.rivals)
+    if _left(base, finding.cause) < ADEQUATE:
+        return Finding(_nobody(base), finding.best, finding.rivals)
+    return Finding(CONSISTENT if finding.verdict == NAMED else INSUFFICIENT, finding.best, finding.rivals)
 
 
 def _nobody(base: Explanation) -> str:

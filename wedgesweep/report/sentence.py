@@ -41,6 +41,8 @@ def _weakness(found: Diagnosed) -> str:
     if rivals := found.document["rivals"]:
         others = words.listing([words.together(each["effects"]) for each in rivals])
         return f"{others} would leave no more than noise, too{_would_tell(found, 'them')}"
+    if _unconfirmed(found):
+        return "tests left out of the fit do not confirm it"
     misfit, strong = found.document["misfit"], found.document["method"]["strong_excess"]
     if strong is None or misfit["excess_base"] < strong:
         return f"excess misfit {digits.number(misfit['excess_base'])} over noise"
@@ -82,6 +84,12 @@ def _none(found: Diagnosed) -> str:
     )
 
 
+def _unconfirmed(found: Diagnosed) -> bool:
+    """Whether the cause may make held-out tests worse."""
+    gain = found.document["gain"]
+    return gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
+
+
 def _unexplained(found: Diagnosed) -> str:
     singles = [each for each in found.document["candidates"] if len(each["effects"]) == 1]
     match len(singles):
@@ -96,9 +104,7 @@ def _unexplained(found: Diagnosed) -> str:
 def _attempt(found: Diagnosed) -> str:
     if not found.added:
         return ""
-    gain = found.document["gain"]
-    worse = gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
-    unseen = ", and may make tests worse that it was not fitted to" if worse else ""
+    unseen = ", and may make tests worse that it was not fitted to" if _unconfirmed(found) else ""
     misfit = found.document["misfit"]
     where = misfit["p_where_it_shows"]
     there = f" ({words.p_value(where)} in the tests that show it)" if where < misfit["p_extended"] else ""
