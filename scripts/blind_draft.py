@@ -26,6 +26,8 @@ UNCERTAIN = (0.05, 0.10)
 LEAN = 4.0
 # Attempts with other laws, tests and numbers; after some, another kind of noise, and another effect if free.
 ATTEMPTS, STUBBORN = 60, 12
+# ... and after so many an effect that cannot be as weak or strong as that gives way to the next one.
+PERSISTENT = 48
 # Each effect of a pair must leave so much when only the other is in the model.
 LEAST_EACH = 900.0
 
@@ -113,7 +115,7 @@ def _hide(draft: Draft, effect: str, target: float, random: np.random.Generator)
 
 def _one(one: BlindSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
     """One effect; the effects take turns over the sets of a kind."""
-    effect = effects.EFFECTS[one.index % len(effects.EFFECTS)]
+    effect = effects.EFFECTS[(one.index + attempt // PERSISTENT) % len(effects.EFFECTS)]
     return _measured(draft, effect, one.target(random), random)
 
 

@@ -30,7 +30,7 @@ LEADING = {
     "preload": Leading("force_N", 1e-3, 15.0, 0.0, 0.3, 4.0),
     "friction_level": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
     "stribeck": Leading("velocity_mm_per_s", 0.1, 60.0),
-    "presliding": Leading("length_mm", 1e-5, 0.4),
+    "presliding": Leading("length_mm", 1e-4, 0.4),
     "ageing": Leading("rate", 1e-4, 0.28),
     "directional_friction": Leading("asymmetry", 1e-4, 0.45, 0.0, 0.5),
     "load_dependent_friction": Leading("exponent", 1e-4, 0.55, 0.0, 0.3, 0.45),
