@@ -6,7 +6,7 @@ A quick part of scripts/blind_campaign.py.
 import pytest
 import xarray as xr
 
-from tests.hidden.laboratory import PAPER, Hidden, diagnose, make
+from tests.hidden.laboratory import BENCH, PAPER, Hidden, diagnose, make
 from wedgesweep.diagnose.result import DATASET, EXTENDED, JSON
 from wedgesweep.effects import EFFECTS
 
@@ -22,6 +22,7 @@ SINGLES = (
         "static-dynamic",
         {"stray_vibration": {"acceleration_m_per_s2": 1.0, "frequency_hz": 47.3}},
         "adc",
+        tests=BENCH[::2],  # what does not repeat takes long to simulate
         uncertain={"friction_level": 0.07},
     ),
     Hidden("spring", "coulomb", {"cubic_stiffness": {"coefficient_N_per_mm3": 0.6}}, "differentiated"),
