@@ -1,7 +1,7 @@
 """Recovery of a hidden effect over the excess chi-squared of the base model."""
 
 from collections.abc import Sequence
-from math import isfinite, sqrt
+from math import isfinite, nan, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +9,8 @@ from blind_statistics import Share
 
 Rows = Sequence[tuple[float, float, dict[str, Share]]]
 LEAST = 50.0
+# A share of fewer sets is no share.
+FEWEST = 3
 
 
 def draw(rows: Rows, file: Path) -> None:
@@ -24,7 +26,7 @@ def draw(rows: Rows, file: Path) -> None:
     # Side by side, so that equal shares stay visible.
     for name, places in zip(names, middles * np.geomspace(0.9, 1.1, len(names))[:, None], strict=True):
         shares = [found[name] for _, _, found in rows]
-        values = [each.value for each in shares]
+        values = [each.value if each.n >= FEWEST else nan for each in shares]
         if name in ("exact", "exact or tied"):
             ends = [each.wilson for each in shares]
             # Rounding may put the end of an interval behind a share of 0 or 1.
