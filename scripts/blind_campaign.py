@@ -31,7 +31,7 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=2, help="sets at the same time")
     parser.add_argument("-o", "--output", type=Path, help="directory; default: out/blind-SEED")
     parser.add_argument(
-        "--aic-every", type=int, default=5, help="sets of a kind per one with forward selection by AIC (slow)"
+        "--aic-every", type=int, default=5, help="sets of a kind per one with forward AIC (slow); 0: none"
     )
     parser.add_argument("--records", type=Path, help="sets finished elsewhere (.jsonl): not made again")
     parser.add_argument("--tables", action="store_true", help="no new sets: the tables of those there are")

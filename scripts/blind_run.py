@@ -40,7 +40,7 @@ def record_of(one: BlindSet, out: Path, aic_every: int) -> dict[str, Any]:
     directory = out / one.name
     try:
         record = _kept(directory) or _run(one, out, directory)
-        record = _compared(record, directory, one.index % aic_every == 0)
+        record = _compared(record, directory, aic_every > 0 and one.index % aic_every == 0)
     except Exception as error:  # whatever it is, the other sets go on
         # No record file: the next run tries again.
         failure = f"{type(error).__name__}: {error}"

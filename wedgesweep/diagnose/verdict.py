@@ -140,7 +140,7 @@ def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[floa
     """The finding, unless its cause may well make worse what it was not fitted to.
 
     Then nothing is missing where the base model will do. Else none is the cause; or if it leaves noise only,
-    too few tests show it for others to confirm it: weak evidence if nothing else will do, else none.
+    too few tests show it for others to confirm it: what would be named is weak evidence, else none.
     ``interval``: 95 % interval of the excess that the cause removes there, None if there is none.
     """
     if finding.cause is None or interval is None or interval[0] >= 0.0:
