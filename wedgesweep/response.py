@@ -31,15 +31,23 @@ NO_MOTION = 1e-9
 
 
 @compiled
+def mean_period(signal, out):
+    """Write the mean of the periods of a signal, each as many samples as ``out`` holds."""
+    out[:] = 0.0
+    for i in range(signal.size):
+        out[i % out.size] += signal[i]
+    out *= out.size / signal.size
+
+
+@compiled
 def fourier(signal, periods, out):
     """Write D_h, h = 1..n, of signal = Re sum D_h exp(i h omega t); out has shape (n, 2): real, imaginary.
 
     ``signal`` covers whole forcing periods on an even grid; their mean is taken first.
     """
     samples = signal.size // periods
-    mean = np.zeros(samples)
-    for i in range(signal.size):
-        mean[i % samples] += signal[i]
+    mean = np.empty(samples)
+    mean_period(signal, mean)
     for h in range(1, out.shape[0] + 1):
         turn_cos, turn_sin = cos(2.0 * pi * h / samples), sin(2.0 * pi * h / samples)
         c, s, real, imaginary = 1.0, 0.0, 0.0, 0.0
@@ -47,8 +55,8 @@ def fourier(signal, periods, out):
             real += mean[i] * c
             imaginary -= mean[i] * s
             c, s = c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin
-        out[h - 1, 0] = 2.0 * real / signal.size
-        out[h - 1, 1] = 2.0 * imaginary / signal.size
+        out[h - 1, 0] = 2.0 * real / samples
+        out[h - 1, 1] = 2.0 * imaginary / samples
 
 
 @compiled

@@ -75,7 +75,7 @@ def calibrate(
 def _drawn(truth: Fit, rng: np.random.Generator) -> Problem:
     """The problem with the fitted harmonics and new noise in place of what was measured."""
     problem = truth.model.problem
-    exact = problem.turned(truth.trial.harmonics, truth.trial.phase)
+    exact = problem.turned(truth.trial.harmonics, truth.trial.phase) + truth.trial.images
     spectra = []
     for spectrum, mean in zip(problem.spectra, exact, strict=True):
         channels = spectrum.mean.shape[0]

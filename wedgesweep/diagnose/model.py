@@ -13,10 +13,13 @@ from scipy.special import chdtrc
 from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.coordinates import Hypothesis, Values
 from wedgesweep.diagnose.problem import Problem, real
+from wedgesweep.diagnose.spectra import FOLDED
 from wedgesweep.solvers.periodic import Warm, at_rest
 
 # The effect that answers to a foreign tone.
 TONE = "stray_vibration"
+# A record was low-passed before it was sampled if that takes this much off Q.
+FILTERED = 1.0
 # An exactly known amplitude, as a relative standard deviation.
 EXACT = 1e-6
 
@@ -32,12 +35,17 @@ class Point:
 
 @dataclass(frozen=True)
 class Trial:
-    """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left."""
+    """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left.
+
+    ``images`` (T, C, H) are those of harmonics above half the sampling rate, 0 in a record that looks as if
+    it had been low-passed before it was sampled.
+    """
 
     point: Point
     whitened: np.ndarray
     harmonics: np.ndarray
     phase: np.ndarray
+    images: np.ndarray
     residual: np.ndarray
     prior: np.ndarray
     found_tests: np.ndarray
@@ -45,6 +53,11 @@ class Trial:
     @property
     def found(self) -> bool:
         return bool(self.found_tests.all())
+
+    @property
+    def unfiltered(self) -> np.ndarray:
+        """Whether (T, 1, 1) images are part of what is compared."""
+        return (self.images != 0.0).any(axis=(-2, -1), keepdims=True)
 
     @cached_property
     def by_test(self) -> np.ndarray:
@@ -139,7 +152,7 @@ class Model:
     def simulate(
         self, x: np.ndarray, amplitude: np.ndarray, warm: Warm
     ) -> tuple[np.ndarray, np.ndarray, Warm]:
-        """Harmonics (n, T, C, H) of points ``x`` (n, k + u) and log ``amplitude`` (n, T); found or not."""
+        """Harmonics (n, T, C, K) of ``x`` (n, k + u) and log ``amplitude`` (n, T); found or not."""
         problem = self.problem
         rows = np.concatenate(
             [
@@ -155,12 +168,13 @@ class Model:
         return harmonics, done.found.reshape(shape), done.warm
 
     def _respond(self, rows: np.ndarray, warm: Warm) -> simulation.Responses:
-        harmonics, tone = self.problem.shape[1], self.problem.tone
+        tone = self.problem.tone
         if self.toned and tone is not None:
             times = len(rows) // self.problem.tests
             meetings = self.problem.meetings * times
+            harmonics = self.problem.shape[1]
             return simulation.respond_with_tone(rows, warm, harmonics, tone, meetings, self.tolerance)
-        done = simulation.respond(rows, warm, harmonics, self.tolerance)
+        done = simulation.respond(rows, warm, FOLDED, self.tolerance)
         if tone is None:
             return done
         silent = np.zeros((len(rows), 2, 1))  # a periodic response has nothing there
@@ -171,22 +185,37 @@ class Model:
         problem = self.problem
         harmonics, found, after = self.simulate(x, amplitude, warm)
         harmonics = np.where(found[:, :, None, None], harmonics, 0.0)
-        whitened = problem.whiten(harmonics)
-        phase = problem.start_phase(whitened)
-        residual = real(problem.whitened - problem.turned(whitened, phase))
+        whitened = problem.whiten(problem.shown(harmonics))
+        phase, images = self._aligned(harmonics, whitened)
+        residual = real(problem.whitened - problem.whiten(images) - problem.turned(whitened, phase))
         n = problem.tests
         return [
             Trial(
                 Point(x[i], amplitude[i], after.of(slice(i * n, (i + 1) * n))),
                 whitened[i],
-                harmonics[i],
+                problem.shown(harmonics[i]),
                 phase[i],
+                images[i],
                 residual[i],
                 self._prior(x[i], amplitude[i]),
                 found[i],
             )
             for i in range(len(x))
         ]
+
+    def _aligned(self, harmonics: np.ndarray, whitened: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Start phases (n, T), and images (n, T, C, H) in each record unless something kept them out."""
+        problem = self.problem
+        phase = problem.start_phase(whitened)
+        images = problem.images(harmonics, phase)
+        if not images.any():
+            return phase, images
+        left = problem.whitened - problem.turned(whitened, phase)
+        both = np.stack([left - problem.whiten(images), left])
+        with_images, without = (np.abs(both) ** 2).sum((-2, -1), keepdims=True)
+        images[np.broadcast_to(with_images > without + FILTERED, images.shape)] = 0.0
+        phase = problem.start_phase(whitened, problem.whiten(images))
+        return phase, np.where(images != 0.0, problem.images(harmonics, phase), 0.0)
 
     def trial(self, point: Point) -> Trial:
         return self.trials(point.x[None], point.amplitude[None], point.warm)[0]

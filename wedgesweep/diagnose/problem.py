@@ -8,7 +8,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose.simulation import Meeting
-from wedgesweep.diagnose.spectra import Spectrum
+from wedgesweep.diagnose.spectra import FOLDED, Spectrum
 
 # Phases at which the best rotation is looked for.
 TURNS = 256
@@ -119,6 +119,29 @@ class Problem:
             scaled = np.stack([scaled[..., 0, :], second], axis=-2)
         return scaled
 
+    def shown(self, simulated: np.ndarray) -> np.ndarray:
+        """Of simulated harmonics (..., K), a tone last, those that are compared (..., H)."""
+        if self.tone is None:
+            return simulated[..., : self.shape[1]]
+        return np.concatenate([simulated[..., : self.shape[1]], simulated[..., -1:]], axis=-1)
+
+    def images(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
+        """What simulated harmonics (..., T, C, K) at phases (..., T) add to those compared (..., T, C, H).
+
+        Nothing but by those above half the sampling rate, see folding.py.
+        """
+        found = np.zeros((*simulated.shape[:-1], self.columns), complex)
+        if simulated.shape[-1] < FOLDED:
+            return found
+        turned = simulated[..., :FOLDED] * np.exp(1j * np.arange(1, FOLDED + 1) * phase[..., None, None])
+        for i, spectrum in enumerate(self.spectra):
+            if spectrum.folding is not None:
+                read = spectrum.folding(turned[..., i, :, :])
+                found[..., i, :, : spectrum.harmonics] = read[..., : spectrum.harmonics]
+                if spectrum.tone is not None:
+                    found[..., i, :, -1] = read[..., -1]
+        return found
+
     @cached_property
     def whitened(self) -> np.ndarray:
         """The measured harmonics over their noise, (T, C, H)."""
@@ -128,9 +151,12 @@ class Problem:
     def orders(self) -> np.ndarray:
         return np.arange(1, self.shape[1] + 1)
 
-    def start_phase(self, simulated: np.ndarray) -> np.ndarray:
-        """Rotation (rad) that brings whitened simulations (..., T, C, H) closest to the measurement."""
-        overlap = (self.whitened * simulated.conj()).sum(-2)[..., : self.shape[1]]
+    def start_phase(self, simulated: np.ndarray, beside: np.ndarray | float = 0.0) -> np.ndarray:
+        """Rotation (rad) that brings whitened simulations (..., T, C, H) closest to the measurement.
+
+        ``beside``: what of the whitened measurement (..., T, C, H) is something else.
+        """
+        overlap = ((self.whitened - beside) * simulated.conj()).sum(-2)[..., : self.shape[1]]
         wave = np.fft.fft(overlap, TURNS, axis=-1)  # of orders 0..H-1: one turn too few, no matter to |.|
         angles = 2.0 * pi * np.arange(TURNS) / TURNS
         phase = angles[np.argmax((wave * np.exp(-1j * angles)).real, axis=-1)]

@@ -9,7 +9,7 @@ import numpy as np
 
 from wedgesweep import parameters
 from wedgesweep.config import Config
-from wedgesweep.diagnose.spectra import REMOVED, regressors
+from wedgesweep.diagnose.spectra import FOLDED, REMOVED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
@@ -17,7 +17,7 @@ from wedgesweep.solvers.periodic import Warm
 # that add nothing to derivatives either.
 TOLERANCE, TIGHT = 1e-6, 1e-8
 MOST_PERIODS = 40
-SAMPLES_PER_PERIOD = 256
+SAMPLES_PER_PERIOD = 2 * (FOLDED + 1)
 # Periods run before a response with a foreign tone is evaluated, and over which it is where no record says.
 TONE_SETTLING, LONG = 10, 12.0
 

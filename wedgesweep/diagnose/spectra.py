@@ -13,8 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import gammaincc
 
+from wedgesweep.diagnose.folding import Folding, folding
+
 # Harmonics that are compared with a simulation, and that are taken out before the noise is measured.
 COMPARED, REMOVED = 16, 40
+# Harmonics that a simulation knows of, and whose images beyond half the sampling rate count.
+FOLDED = 127
 # Highest frequency that is used, over the sampling rate.
 BAND = 0.4
 # The noise is looked at between harmonics, at multiples of this part of the input frequency.
@@ -42,7 +46,8 @@ class Spectrum:
     ``coherence``: of the noise of both channels, complex. ``lines``: noise lines looked at, per channel.
     ``residual`` (channels, n): what is left of the record. ``tone``: a foreign frequency (Hz) whose complex
     amplitude is the last column of ``mean``. A tone that the record cannot tell from a harmonic has none, and
-    that harmonic, ``covered`` (1, 2, ...), says nothing.
+    that harmonic, ``covered`` (1, 2, ...), says nothing. ``folding``: what harmonics above half the sampling
+    rate add to ``mean``, None for nothing.
     """
 
     frequency: float
@@ -56,6 +61,7 @@ class Spectrum:
     level: tuple["Smooth", ...]
     tone: float | None = None
     covered: int | None = None
+    folding: Folding | None = None
 
     @property
     def duration(self) -> float:
@@ -92,7 +98,11 @@ class Spectrum:
         noise = [4.0 / self.samples * level.fair(np.array([frequency])) for level in self.level]
         mean = np.concatenate([self.mean, np.zeros((len(self.mean), 1))], axis=1)
         return replace(
-            self, mean=mean, variance=np.concatenate([self.variance, noise], axis=1), tone=frequency
+            self,
+            mean=mean,
+            variance=np.concatenate([self.variance, noise], axis=1),
+            tone=frequency,
+            folding=None,
         )
 
     def separates(self, frequencies: np.ndarray) -> np.ndarray:
@@ -170,7 +180,7 @@ def fitted(
     # The columns are nearly orthogonal, so that the normal equations lose nothing.
     matrix = design.matrix
     solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
-    mean = (solution[design.cosines] - 1j * solution[design.sines]).T
+    mean = design.read(solution).T
     residual = channels - (matrix @ solution).T
     parts = np.arange(1, PARTS * (design.harmonics + 1))
     parts = parts[parts % (PARTS // 2 if doubled else PARTS) > 0]
@@ -191,7 +201,17 @@ def fitted(
         level,
         design.tone,
         design.covered,
+        _folding(time, frequency, design),
     )
+
+
+def _folding(time: np.ndarray, frequency: float, design: "_Design") -> Folding | None:
+    """What harmonics up to FOLDED add to those that are read; None where they are all read as themselves."""
+    if (FOLDED + REMOVED) * frequency * time[-1] < time.size - 1:
+        return None
+    matrix = design.matrix
+    inverse = np.linalg.solve(matrix.T @ matrix, matrix.T)
+    return folding(design.read(inverse), _turns(time, frequency, FOLDED), design.removed)
 
 
 class _Design(NamedTuple):
@@ -201,8 +221,13 @@ class _Design(NamedTuple):
     cosines: np.ndarray
     sines: np.ndarray
     harmonics: int
+    removed: int
     tone: float | None
     covered: int | None
+
+    def read(self, solution: np.ndarray) -> np.ndarray:
+        """Complex amplitudes (columns, ...) from a solution (2 + ..., ...)."""
+        return solution[self.cosines] - 1j * solution[self.sines]
 
 
 def _design(
@@ -221,7 +246,7 @@ def _design(
     matrix = np.concatenate(columns, axis=1)
     if told:
         places = np.c_[places, [matrix.shape[1] - 2, matrix.shape[1] - 1]]
-    return _Design(matrix, places[0], places[1], kept, tone if told else None, covered)
+    return _Design(matrix, places[0], places[1], kept, removed, tone if told else None, covered)
 
 
 def _noise(

@@ -54,8 +54,11 @@ def _changes(model: Model, trial: Trial, steps: np.ndarray) -> tuple[np.ndarray,
     point, problem = trial.point, model.problem
     x, amplitude = point.x + steps[:, :-1], point.amplitude + steps[:, -1:]
     harmonics, found, _ = model.simulate(x, amplitude, point.warm.repeated(len(x)))
-    moved = problem.turned(problem.whiten(harmonics), np.repeat(trial.phase[None], len(x), axis=0))
-    return real(problem.turned(trial.whitened, trial.phase) - moved), found
+    phase = np.repeat(trial.phase[None], len(x), axis=0)
+    moved = problem.turned(problem.whiten(problem.shown(harmonics)), phase)
+    images = np.where(trial.unfiltered, problem.images(harmonics, phase), 0.0) - trial.images
+    change = problem.turned(trial.whitened, trial.phase) - moved - problem.whiten(images)
+    return real(change), found
 
 
 def derivatives(

@@ -98,7 +98,10 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
             return Finding(NOTHING, None, ())
         return Finding(_nobody(base), order[0] if order else None, ())
     best = order[0]
-    if best.fit.p < POSSIBLE:
+    strong = base.fit.excess >= thresholds.strong
+    left = _left(base, best)
+    # Where little shows, noise has a part in where: those tests hold more of it than others.
+    if (left if strong else best.fit.p) < POSSIBLE:
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
     # What others can imitate may be none of them: then the closest one is only that.
@@ -109,7 +112,7 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    if base.fit.excess < thresholds.strong or _left(base, best) < ADEQUATE:
+    if not strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
     return Finding(CONSISTENT if others else NAMED, best, others)
 

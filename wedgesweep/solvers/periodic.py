@@ -116,13 +116,15 @@ def respond(
         np.full(n, np.nan),
     )
     bench = tools(rtol, samples_per_period, forces=False)
-    _respond_all(parameters, tolerance, most_periods, bench, found, passage())
+    motion = np.full((n, 2, samples_per_period), np.nan)
+    _respond_all(parameters, tolerance, most_periods, bench, found, motion, passage())
+    found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
+    _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found
 
 
 @compiled
-def _respond_all(parameters, tolerance, most, bench, found, passage):
-    spectra = np.empty((2, found.spectra.shape[2], 2))
+def _respond_all(parameters, tolerance, most, bench, found, motion, passage):
     for i in range(parameters.size):
         case = parameters[i : i + 1]
         y, before = found.warm.state[i].copy(), found.warm.period[i]
@@ -140,20 +142,24 @@ def _respond_all(parameters, tolerance, most, bench, found, passage):
         if outcome != OK:
             found.warm.state[i] = np.nan
         else:
-            _reduce(i, kept, case[0], bench, spectra, found)
+            _reduce(i, kept, bench, found, motion[i])
 
 
 @compiled
-def _reduce(i, periods, p, bench, spectra, found):
-    """Write what the kept periods come to."""
+def _reduce(i, periods, bench, found, motion):
+    """Write what the kept periods come to; ``motion`` (2, samples): displacement x - y and its rate."""
     n = periods * bench.samples_per_period
-    response.fourier(-bench.x[:n], periods, spectra[0])
-    response.fourier(-bench.velocity[:n], periods, spectra[1])
-    sensor.apply_to_spectra(spectra, p)
-    found.spectra[i] = spectra[:, :, 0] + 1j * spectra[:, :, 1]
+    response.mean_period(-bench.x[:n], motion[0])
+    response.mean_period(-bench.velocity[:n], motion[1])
     one = bench.tally[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time
+
+
+@compiled
+def _sense_all(parameters, spectra):
+    for i in range(parameters.size):
+        sensor.apply_to_spectra(spectra[i], parameters[i])
 
 
 def samples(

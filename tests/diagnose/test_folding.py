@@ -1,0 +1,75 @@
+"""Harmonics above half the sampling rate, which a record shows among those below."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from wedgesweep import config
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.spectra import COMPARED, FOLDED, spectrum
+from wedgesweep.solvers.periodic import at_rest
+
+FREQUENCY = 31.266
+# A bolster just above breakaway: it slips in short pulses.
+PULSES = """
+[suspension]
+column_angle_deg = 4.0
+[sweep]
+friction_law = ["coulomb"]
+beta = [1.0]
+amplitude_mm = [0.01635]
+"""
+AMPLITUDE = 1.635e-5
+
+
+def sampled(harmonics, ratio, periods=8.4, phase=0.0):
+    """Times and signals (C, n) of harmonics (C, K), ``ratio`` samples a period."""
+    time = np.arange(int(periods * ratio)) / (ratio * FREQUENCY)
+    turns = np.exp(1j * np.arange(1, harmonics.shape[1] + 1)[:, None] * (2 * pi * FREQUENCY * time + phase))
+    return time, (harmonics @ turns).real
+
+
+@pytest.mark.parametrize("ratio", [40.3, 49.5, 63.05, 130.0])
+def test_images_are_what_is_read_beside_the_harmonics(ratio):
+    rng = np.random.default_rng(0)
+    harmonics = rng.normal(size=(2, FOLDED, 2)) @ [1.0, 1j] / np.arange(1, FOLDED + 1)
+    time, channels = sampled(harmonics, ratio)
+    found = spectrum(time, channels, FREQUENCY)
+    images = found.mean - harmonics[:, :COMPARED]
+    np.testing.assert_allclose(images, found.folding(harmonics), atol=1e-9)
+    assert np.abs(images).max() > 1e-3
+
+
+def bench(highest, ratio=63.05, level=0.01):
+    """Problem of one record of slip pulses that a low-pass has cut at harmonic ``highest``."""
+    rng = np.random.default_rng(1)
+    model = config.parse(PULSES)
+    rows = simulation.records(model, "coulomb", {}, np.array([2.0 * pi * FREQUENCY]), np.array([AMPLITUDE]))
+    harmonics = simulation.respond(rows, at_rest(1), FOLDED, simulation.TIGHT).harmonics[0]
+    time, channels = sampled(harmonics[:, :highest], ratio, phase=1.0)
+    channels += level * channels.std(axis=1, keepdims=True) * rng.normal(size=channels.shape)
+    found = spectrum(time, channels, FREQUENCY)
+    return Problem(model, "coulomb", ("one",), (found,), np.array([AMPLITUDE]), np.array([1e-4]), {})
+
+
+@pytest.mark.parametrize(("highest", "unfiltered"), [(FOLDED, True), (31, False)])
+def test_the_right_model_leaves_noise_whether_or_not_the_record_was_low_passed(highest, unfiltered):
+    fit = Search(bench(highest), ()).base().fit
+    assert fit.p > 0.01
+    assert fit.trial.unfiltered.all() == unfiltered
+
+
+def test_pulses_sampled_often_enough_have_no_images():
+    fit = Search(bench(FOLDED, ratio=400.0), ()).base().fit
+    assert fit.p > 0.01
+    assert not fit.trial.unfiltered.any()
+
+
+def test_without_their_images_the_pulses_are_not_explained():
+    problem = bench(FOLDED)
+    fit = Search(problem, ()).base().fit
+    left = problem.whitened - problem.turned(fit.trial.whitened, fit.trial.phase)
+    assert (np.abs(left) ** 2).sum() > 2.0 * fit.q
