@@ -190,6 +190,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
             "gap": 10.0,
             "enough_distance": 30.0,
             "strong_excess": 800.0,
+            "adequate_p": 0.01,
             "dof": dof,
             "harmonics": HARMONICS,
             "calibrated": None,

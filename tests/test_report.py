@@ -148,6 +148,11 @@ def test_sentence(verdict, tmp_path):
             {"misfit": {"excess_base": 3000.0, "p_where_it_shows": 0.002}},
             "(it leaves more than noise in the tests that show it, p = 0.002)",
         ),
+        (
+            "consistent-with",
+            {"misfit": {"excess_base": 3000.0, "p_extended": 0.4, "p_where_it_shows": 0.3}},
+            "(a number of the model that is no candidate could look like these two)",
+        ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
         ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
         ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),

@@ -47,6 +47,14 @@ def test_weak_evidence_is_only_consistent():
     assert found.verdict == "consistent-with"
 
 
+def test_two_numbers_of_the_model_may_stand_for_a_third():
+    """Masses, stiffnesses and forces mimic each other; a spring and a damper do not."""
+    for other, expected in (("wedge_stiffness", "consistent-with"), ("viscous_damping", "named")):
+        best = explained(705.0, "bolster_stiffness", other)
+        found = verdict_of(explained(5000.0), best, explained(2000.0, "bolster_stiffness"))
+        assert (found.verdict, found.cause) == (expected, best)
+
+
 def shared(there, elsewhere):
     """Squared misfits of two tests that show something, and of ten that do not."""
     return np.r_[np.full(2, there), np.full(10, elsewhere)]

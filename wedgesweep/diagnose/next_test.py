@@ -4,7 +4,7 @@ Each explanation predicts the harmonics of a test that was not made. Their dista
 own numbers, as uncertain as the data leave them, and an amplitude that is known to some percent cannot
 take up (Atkinson and Fedorov, 1975, with the fit's covariance as prior). Next to breakaway predictions
 differ by any amount, and a fit to what is measured there has many minima: a test counts as what it
-and its neighbours in amplitude tell at the least.
+and its neighbours in amplitude tell at the least, and as nothing where a suspect sticks.
 """
 
 from collections.abc import Sequence
@@ -25,6 +25,8 @@ FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0,
 ACCELERATIONS = np.geomspace(0.3, 4.0, 8)
 # Least share of these tests that an explanation must predict; elsewhere its wedge locks.
 PREDICTED = 0.5
+# A fundamental of less than this share of the input is a bolster that sticks: nothing to fit.
+MOVES = 1e-3
 # Squared distance at which two explanations are told apart.
 ENOUGH = 30.0
 # Largest standard deviation of a number, in widths of its coordinate.
@@ -45,11 +47,15 @@ class NextTest:
 
 @dataclass(frozen=True)
 class _Prediction:
-    """Harmonics (n, C, H) of n tests, and their derivatives (n, C, H, j) in standard deviations."""
+    """Harmonics (n, C, H) of n tests, and their derivatives (n, C, H, j) in standard deviations.
+
+    ``moves`` (n,): whether the bolster is predicted to move, as far as there is a prediction (``found``).
+    """
 
     harmonics: np.ndarray
     spread: np.ndarray
     found: np.ndarray
+    moves: np.ndarray
 
 
 def recommend(fits: Sequence[Fit]) -> NextTest | None:
@@ -101,7 +107,9 @@ def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
 
     change, moved = derivatives(changes, steps, np.full(steps.size, True))
     spread = np.concatenate([change[..., :-1] @ _spread(fit), change[..., -1:] * AMPLITUDE_STD], axis=-1)
-    return _Prediction(here[0], spread, found[0] & moved.all(axis=0))
+    known = found[0] & moved.all(axis=0)
+    moves = known & (np.abs(here[0, :, 0, 0]) > MOVES * amplitude)
+    return _Prediction(here[0], spread, known, moves)
 
 
 def _responses(
@@ -155,7 +163,7 @@ def _distances(a: _Prediction, b: _Prediction, weight: np.ndarray) -> np.ndarray
     """Squared distances (n,) of two predictions, start phase and all that is uncertain taken out."""
     distance = np.zeros(len(a.harmonics))
     orders = np.arange(1, a.harmonics.shape[-1] + 1)
-    for i in np.flatnonzero(a.found & b.found):
+    for i in np.flatnonzero(a.moves & b.moves):
         turn = np.angle((a.harmonics[i] * b.harmonics[i].conj())[:, 0].sum())
         other = b.harmonics[i] * np.exp(1j * orders * turn)
         gap = real((weight[i] * (a.harmonics[i] - other))[None])[0]

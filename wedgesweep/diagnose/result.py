@@ -18,7 +18,7 @@ from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test import ENOUGH
 from wedgesweep.diagnose.search import PENALTY, TONE_FREQUENCY, Explanation
-from wedgesweep.diagnose.verdict import where_it_shows
+from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
@@ -152,6 +152,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             "gap": found.thresholds.gap,
             "enough_distance": ENOUGH,
             "strong_excess": _finite(found.thresholds.strong),
+            "adequate_p": ADEQUATE,
             "least_gain": found.thresholds.least_gain,
             "dof": base.fit.dof,
             "harmonics": problem.shape[1],

@@ -43,10 +43,13 @@ def _weakness(found: Diagnosed) -> str:
         return f"{others} would leave no more than noise, too{_would_tell(found, 'them')}"
     if _unconfirmed(found):
         return "tests left out of the fit do not confirm it"
-    misfit, strong = found.document["misfit"], found.document["method"]["strong_excess"]
+    misfit, method = found.document["misfit"], found.document["method"]
+    strong = method["strong_excess"]
     if strong is None or misfit["excess_base"] < strong:
         return f"excess misfit {digits.number(misfit['excess_base'])} over noise"
     p = min(misfit["p_extended"], misfit["p_where_it_shows"])
+    if p >= method["adequate_p"]:
+        return "a number of the model that is no candidate could look like these two"
     return f"it leaves more than noise in the tests that show it, {words.p_value(p)}"
 
 
