@@ -9,13 +9,13 @@ TABLE_1 = {quantity.name: quantity.default * quantity.factor for quantity in SUS
 OMEGA_N = (TABLE_1["bolster_spring"] / TABLE_1["bolster_mass"]) ** 0.5
 
 
-def steady(record, settle_periods=60, periods=2, rtol=1e-6, samples_per_period=256):
+def steady(record, settle_periods=60, periods=2, rtol=1e-6, samples_per_period=256, settled=None):
     """Numbers of the response after a settling time."""
-    return evaluated(record, settle_periods, periods, rtol, samples_per_period).numbers
+    return evaluated(record, settle_periods, periods, rtol, samples_per_period, settled).numbers
 
 
-def evaluated(record, settle_periods=60, periods=2, rtol=1e-6, samples_per_period=256):
-    """Numbers, spectra and waveforms of the response after a settling time."""
+def evaluated(record, settle_periods=60, periods=2, rtol=1e-6, samples_per_period=256, settled=None):
+    """Numbers, spectra and waveforms of the response after a settling time, see radau.solve."""
     window = Window(float(record["omega"][0]), settle_periods, periods, samples_per_period)
-    run = radau.solve(record, window, rtol, time_limit=120.0)
+    run = radau.solve(record, window, rtol, time_limit=120.0, settled=settled)
     return response.evaluate(run, record, harmonics=9)
