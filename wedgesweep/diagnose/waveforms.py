@@ -27,9 +27,9 @@ def waveform(harmonics: np.ndarray) -> np.ndarray:
 
 
 def measured_from_phase_zero(fit: Fit) -> np.ndarray:
-    """Measured harmonics (T, C, H), a tone left out, turned to phase 0 of the input as a fit found it."""
-    problem = fit.model.problem
-    return problem.turned(problem.measured, -fit.trial.phase)[..., : problem.shape[1]]
+    """Measured harmonics (T, C, H), a tone and images left out, turned to phase 0 of the input of a fit."""
+    problem, trial = fit.model.problem, fit.trial
+    return problem.turned(problem.measured - trial.images, -trial.phase)[..., : problem.shape[1]]
 
 
 def velocity(problem: Problem, harmonics: np.ndarray) -> np.ndarray:
