@@ -101,10 +101,9 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
             return Finding(NOTHING, None, ())
         return Finding(_nobody(base), order[0] if order else None, ())
     best = order[0]
-    strong = base.fit.excess >= thresholds.strong
     left = _left(base, best)
     # Where little shows, noise has a part in where: those tests hold more of it than others.
-    if (left if strong else best.fit.p) < POSSIBLE:
+    if (left if base.fit.excess >= STRONG else best.fit.p) < POSSIBLE:
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
     # What others can imitate may be none of them: then the closest one is only that.
@@ -115,7 +114,7 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    if not strong or left < ADEQUATE:
+    if base.fit.excess < thresholds.strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
     return Finding(CONSISTENT if others or _alike(best) else NAMED, best, others)
 

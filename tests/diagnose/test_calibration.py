@@ -1,0 +1,59 @@
+"""Draws from a fitted model are data of that model, and thresholds come from what a search finds in them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.drawn import LAG, drawn, searched
+from tests.diagnose.test_folding import bench
+from wedgesweep.diagnose import calibration, verdict
+from wedgesweep.diagnose.calibration import calibrate
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.spectra import FOLDED
+
+DRAWS = 40
+
+
+def coherent(share):
+    problem = drawn()
+    return replace(problem, spectra=tuple(replace(s, coherence=share) for s in problem.spectra))
+
+
+@pytest.mark.parametrize("problem", [drawn(), coherent(0.6 + 0.3j), bench(FOLDED)])
+def test_a_draw_is_noise_about_the_fit(problem):
+    fit = Search(problem, ()).base().fit
+    rng = np.random.default_rng(3)
+    squares = []
+    for _ in range(DRAWS):
+        again = Model(calibration._drawn(fit, rng), fit.model.hypothesis, fit.model.reference)
+        squares.append((again.trial(fit.trial.point).residual ** 2).sum())
+    # Start phases are fitted again.
+    expected = problem.points.sum() - problem.tests
+    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / DRAWS))
+
+
+def alone(effect):
+    """A search that tries one effect."""
+    return lambda search, base: [search.single(effect, base.fit)]
+
+
+def test_a_cause_that_is_found_again_is_strong_however_small(monkeypatch):
+    monkeypatch.setattr(calibration, "DRAWS", 3)
+    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    told = []
+    found = calibrate(base, lag, alone("velocity_lag"), ("velocity_lag",), 1, told.append)
+    assert found.found == 1.0
+    assert found.thresholds.strong == 0.0
+    # A number costs more than noise gives.
+    assert found.least_gain < verdict.GAP
+    assert told[-1] == "calibration, velocity_lag: 3 of 3"
+
+
+def test_a_cause_that_is_not_found_again_stays_weak(monkeypatch):
+    monkeypatch.setattr(calibration, "DRAWS", 3)
+    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    found = calibrate(base, lag, alone("cubic_stiffness"), ("cubic_stiffness",), 1, lambda step: None)
+    assert found.found == 0.0
+    assert found.thresholds.strong == np.inf
