@@ -28,7 +28,9 @@ def test_a_draw_is_noise_about_the_fit(problem):
     squares = []
     for _ in range(DRAWS):
         again = Model(calibration._drawn(fit, rng), fit.model.hypothesis, fit.model.reference)
-        squares.append((again.trial(fit.trial.point).residual ** 2).sum())
+        trial = again.trial(fit.trial.point)
+        squares.append((trial.residual**2).sum())
+        assert (trial.unfiltered == fit.trial.unfiltered).all()
     # Start phases are fitted again.
     expected = problem.points.sum() - problem.tests
     assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / DRAWS))
@@ -36,7 +38,12 @@ def test_a_draw_is_noise_about_the_fit(problem):
 
 def alone(effect):
     """A search that tries one effect."""
-    return lambda search, base: [search.single(effect, base.fit)]
+
+    def explain(search):
+        base = search.base()
+        return base, [search.single(effect, base.fit)]
+
+    return explain
 
 
 def test_a_cause_that_is_found_again_is_strong_however_small(monkeypatch):

@@ -44,7 +44,7 @@ class Calibration:
 def calibrate(
     base: Explanation,
     best: Explanation | None,
-    explain: Callable[[Search, Explanation], Sequence[Explanation]],
+    explain: Callable[[Search], tuple[Explanation, Sequence[Explanation]]],
     effects: Sequence[str],
     threads: int,
     progress: Callable[[str], None],
@@ -56,9 +56,8 @@ def calibrate(
     def outcomes(truth: Fit, label: str) -> list[tuple[Explanation, list[Explanation]]]:
         results = []
         for number in range(DRAWS):
-            search = Search(_drawn(truth, rng), effects, threads)
-            start = search.base()
-            results.append((start, verdict.ranked(explain(search, start))))
+            start, found = explain(Search(_drawn(truth, rng), effects, threads))
+            results.append((start, verdict.ranked(found)))
             progress(f"calibration, {label}: {number + 1} of {DRAWS}")
         return results
 

@@ -89,9 +89,7 @@ def diagnose(
     """
     problem = problem_of(measurement)
     search = Search(problem, effects, threads, progress)
-    progress("base model")
-    base = search.base()
-    explanations = explain(search, base)
+    base, explanations = explain(search)
     thresholds, simulated = verdict.DEFAULT, None
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
@@ -140,7 +138,16 @@ def _exactly(
     return finding, found
 
 
-def explain(search: Search, base: Explanation) -> list[Explanation]:
+def explain(search: Search) -> tuple[Explanation, list[Explanation]]:
+    """The base model and all that was fitted beside it, best first."""
+    search.progress("base model")
+    base = search.base()
+    found = _extensions(search, base)
+    better = search.base_again(base, found)
+    return (base, found) if better is base else (better, _extensions(search, better))
+
+
+def _extensions(search: Search, base: Explanation) -> list[Explanation]:
     """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     found = search.singles(base.fit)
     if verdict.none_will_do([base]):

@@ -18,6 +18,8 @@ from wedgesweep.solvers.periodic import Warm, at_rest
 
 # The effect that answers to a foreign tone.
 TONE = "stray_vibration"
+# Standard deviations by which an uncertain number is well off.
+OFF = 1.5
 # A record was low-passed before it was sampled if that takes this much off Q.
 FILTERED = 1.0
 # An exactly known amplitude, as a relative standard deviation.
@@ -144,6 +146,12 @@ class Model:
     def tones(self) -> np.ndarray:
         """Whether (T,) a test has a tone that the hypothesis answers to; its phase is free."""
         return np.array([self.toned and s.tone is not None for s in self.problem.spectra])
+
+    def as_stated(self) -> np.ndarray:
+        """Uncertain numbers (1 + 2 u, u) as stated, and each of them well off to either side."""
+        off = OFF * np.diag(self.prior_std)
+        stated = np.ones((1, self.prior_std.size))
+        return np.maximum(np.concatenate([stated, stated + off, stated - off]), self.low[self.size :])
 
     def values(self, x: np.ndarray) -> Values:
         nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}

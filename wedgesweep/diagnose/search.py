@@ -13,7 +13,7 @@ from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.model import TONE, Fit, Model, Point, Trial
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import refine
-from wedgesweep.solvers.periodic import joined
+from wedgesweep.solvers.periodic import at_rest, joined
 
 # What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
 PENALTY = 6.0
@@ -31,6 +31,8 @@ LIKELY = 1e-3
 ASTRAY = 0.3
 # Then fits begin with iterations in which it is no further off than this.
 AS_STATED, HELD = 8, 1e-4
+# A fit is better if it takes this much off Q.
+SLIGHT = 1.0
 # Effects with states of their own take longest.
 LONGEST = ("column_compliance", "fixture_resonance", "presliding")
 # Input amplitudes that are tried where none is known, over the fundamental of the displacement.
@@ -98,8 +100,25 @@ class Search:
     def base(self) -> Explanation:
         """The model on trial with everything fitted that is unknown about the tests."""
         model = self.model()
-        start = best_amplitudes(model, [model.start(None, np.zeros(0))])[0]
-        fit = refine(model, start)
+        start = model.start(None, np.zeros(0))
+        trials = best_amplitudes(model, [replace(start, x=x) for x in model.as_stated()])
+        fits = self.each(lambda trial: refine(model, trial), trials)
+        fit = min(fits, key=lambda fit: fit.q)
+        self._meet(fit)
+        return self.explanation(fit)
+
+    def base_again(self, base: Explanation, found: Sequence[Explanation]) -> Explanation:
+        """The base model, or a better fit of it from where the best of its extensions ended.
+
+        What it has lost by stopping short is no gain of theirs.
+        """
+        best = min(found, key=penalised, default=base).fit
+        model, numbers = self.model(), best.model.values(best.x)
+        x = np.array([numbers[name]["scale"] for name in model.uncertain])
+        nothing = at_rest(self.problem.tests)
+        fit = refine(model, model.trial(Point(x, best.trial.point.amplitude, nothing)))
+        if not fit.q < base.fit.q - SLIGHT:
+            return base
         self._meet(fit)
         return self.explanation(fit)
 

@@ -13,8 +13,6 @@ NAME = "candidates"
 DESCRIPTION = "penalised misfit of every candidate, the best first"
 
 MOST = 20
-ADEQUATE = 0.05  # least p of a misfit that noise explains
-GAP = 10.0  # penalised misfits closer than this are tied
 
 
 def shown(found: Diagnosed) -> list[dict[str, Any]]:
@@ -23,8 +21,8 @@ def shown(found: Diagnosed) -> list[dict[str, Any]]:
     return [each for place, each in enumerate(fitted) if place < MOST or not each["effects"]]
 
 
-def _look(each: dict[str, Any]) -> dict[str, Any]:
-    adequate = each["p"] is not None and each["p"] >= ADEQUATE
+def _look(each: dict[str, Any], least: float) -> dict[str, Any]:
+    adequate = each["p"] is not None and each["p"] >= least
     color = style.VERMILLION if not each["effects"] else style.BLUE
     return {"color": color, "markerfacecolor": color if adequate else "white", "marker": "o"}
 
@@ -37,20 +35,20 @@ def _name(each: dict[str, Any]) -> str:
 def draw(found: Diagnosed) -> Figure:
     """Draw how far each candidate's penalised misfit is behind the best; linear up to 10, then logarithmic.
 
-    To see: in the grey zone candidates are tied with the best. Filled: what it leaves is noise (p >= 0.05);
-    open: it leaves misfit that no noise explains, however good its rank.
+    To see: in the grey zone candidates are tied with the best. Filled: what it leaves may be noise (p
+    high enough for a name); open: it leaves misfit that noise hardly explains, however good its rank.
     """
     rows = shown(found)
     if not rows:
         message = f"{NAME}: no candidate could be fitted"
         raise ValueError(message)
-    gap = found.document["method"].get("gap", GAP)
+    gap, least = (found.document["method"][key] for key in ("gap", "adequate_p"))
     behind = np.array([each["penalised"] for each in rows]) - min(each["penalised"] for each in rows)
     figure, (ax,) = style.panels(1, size=(6.2, 1.1 + 0.24 * len(rows)), margin=(0.8, 0.8))
     ax.axvspan(-0.05 * gap, gap, color="0.88", linewidth=0, label="tied with the best")
     for place, (each, value) in enumerate(zip(rows, behind, strict=True)):
         ax.plot([0.0, value], [place, place], color="0.75", linewidth=1.0, zorder=1)
-        ax.plot(value, place, markersize=6, markeredgewidth=1.4, zorder=2, **_look(each))
+        ax.plot(value, place, markersize=6, markeredgewidth=1.4, zorder=2, **_look(each, least))
     ax.set_xscale("symlog", linthresh=gap)
     ax.set_xlim(-0.05 * gap, max(1.6 * behind.max(), 3.0 * gap))
     ax.set_yticks(range(len(rows)), [_name(each) for each in rows])
