@@ -17,6 +17,7 @@ from blind_bench import Test
 from blind_draft import LEVEL, Draft, draw
 from blind_judge import gain_in_truth
 from blind_sets import BlindSet
+from blind_strength import TONE
 
 from wedgesweep.config import toml
 
@@ -25,6 +26,8 @@ RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
 DATA, RESULT = "data", "diagnosis"
 # Relative std with which the amplitude of a recommended test is known.
 ADDED_SPREAD = 0.01
+# Periods within which a response is steady; one next to breakaway takes long.
+SETTLE_PERIODS = 400
 
 
 class Failed(Exception):
@@ -148,6 +151,8 @@ def _synthesize(one: BlindSet, draft: Draft, plan: list[dict[str, Any]], directo
     document = {"uncertain": draft.uncertain, "test": plan}
     (directory / "tests.toml").write_text(toml.dumps(document))
     options = ["--noise", draft.noise, "--level", LEVEL, "--seed", one.number, "--n-jobs", 1]
+    if TONE not in draft.hidden:  # under a tone nothing is ever steady, and all these periods are run
+        options += ["--settle-periods", SETTLE_PERIODS]
     files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
     _wedgesweep("synthesize", *files, *options)
 
