@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from dataclasses import asdict
@@ -28,6 +29,8 @@ DATA, RESULT = "data", "diagnosis"
 ADDED_SPREAD = 0.01
 # Periods within which a response is steady; one next to breakaway takes long.
 SETTLE_PERIODS = 400
+# Where the bolster sticks the input is raised by this factor, so many times at the most.
+RAISE, RAISES = 1.1, 8
 
 
 class Failed(Exception):
@@ -147,14 +150,29 @@ def _planned(test: Test, spread: float | None) -> dict[str, Any]:
 
 
 def _synthesize(one: BlindSet, draft: Draft, plan: list[dict[str, Any]], directory: Path) -> None:
+    """Make the data; a test at which the bolster sticks, or all but does, gets more input, as at a bench."""
     (directory / "true.toml").write_text(bench.model(draft.law, draft.lean, draft.hidden))
-    document = {"uncertain": draft.uncertain, "test": plan}
-    (directory / "tests.toml").write_text(toml.dumps(document))
     options = ["--noise", draft.noise, "--level", LEVEL, "--seed", one.number, "--n-jobs", 1]
     if TONE not in draft.hidden:  # under a tone nothing is ever steady, and all these periods are run
         options += ["--settle-periods", SETTLE_PERIODS]
     files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
-    _wedgesweep("synthesize", *files, *options)
+    for _ in range(RAISES):
+        (directory / "tests.toml").write_text(toml.dumps({"uncertain": draft.uncertain, "test": plan}))
+        try:
+            return _wedgesweep("synthesize", *files, *options)
+        except Failed as failed:
+            stuck = [
+                int(number)
+                for number in re.findall(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)", str(failed))
+            ]
+            if not stuck:
+                raise
+        for i in stuck:
+            plan[i]["amplitude_mm"] = round(RAISE * plan[i]["amplitude_mm"], 6)
+            draft.tests[i] = draft.tests[i]._replace(amplitude_mm=plan[i]["amplitude_mm"])
+        write(directory / DRAFT, asdict(draft))
+    message = f"{one.name}: the bolster sticks however large the input"
+    raise Failed(message)
 
 
 def _wedgesweep(*arguments: Any) -> None:

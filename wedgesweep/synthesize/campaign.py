@@ -18,8 +18,8 @@ from wedgesweep.synthesize.motion import RTOL, Motion, steady
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
 
-# A bolster that moves less than this share of the input sticks.
-STUCK = 1e-6
+# A bolster that moves less than this share of the input sticks, or creeps to where it does.
+STUCK = 1e-3
 
 
 class SynthesisError(InputError):
