@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import LAG, drawn, next_to_breakaway, searched
+from tests.diagnose.drawn import LAG, MODEL, drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import detour
 from wedgesweep.diagnose.refine import refine
 from wedgesweep.diagnose.search import Search
@@ -38,6 +38,25 @@ def test_around_a_test_that_has_two_responses():
     assert found.p > 0.01
     fitted = found.model.values(found.x)["input_distortion"]
     assert {name: fitted[name] for name in tones} == pytest.approx(tones, rel=0.05)
+
+
+def test_around_a_test_that_sticks():
+    """A bolster 7 % heavier moves at 19.6 Hz only with what the other tests say of the stops."""
+    hertz = np.array([5.05, 5.05, 7.76, 7.76, 10.64, 19.55, 19.55, 24.03, 28.0, 30.48])
+    amplitude = 1e-3 * np.array([0.7365, 2.801, 0.3358, 0.987, 0.25, 0.0444, 0.1188, 0.1382, 0.05, 0.0698])
+    problem = drawn(
+        {"bolster_mass": {"scale": 1.0746}, "end_stop": {"clearance": 0.42835e-3, "stiffness": 122.7e3}},
+        bench=(hertz, amplitude),
+        std=0.0103,
+        law="coulomb",
+        model=MODEL + "[suspension]\ncolumn_angle_deg = 4.0\n",
+    )
+    held_up = refined(problem, ("end_stop", "bolster_mass"), (np.log(0.4322), np.log(150.6), 1.07))
+    assert detour._sticks(held_up).tolist() == [place == 5 for place in range(10)]
+    assert held_up.p < 1e-9
+    found = detour.around(held_up)
+    assert found.p > 0.01
+    assert found.values["bolster_mass"]["scale"] == pytest.approx(1.0746, abs=0.002)
 
 
 def test_what_nothing_holds_up_stays():

@@ -25,6 +25,17 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
     assert best.fit.p > 1e-3
 
 
+def test_an_effect_keeps_its_numbers_beside_another_than_that_of_its_pair():
+    search, base, singles = searched(drawn(TRUTH), *CANDIDATES)
+    alone = {each.effects[0]: pairs._alone(search, base.fit, each.fit) for each in singles}
+    model = search.model("preload", "bolster_mass")
+    wrong = refine(model, model.trial(model.start(base.fit, np.array([0.3, 1.0]))))
+    assert wrong.p < 1e-9
+    best = pairs._swapped(search, base.fit, alone, [search.explanation(wrong)])[0]
+    assert set(best.effects) == set(TRUTH)
+    assert best.fit.p > 1e-3
+
+
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
     search, base, (_, damper) = searched(next_to_breakaway(), "stribeck", "viscous_damping")

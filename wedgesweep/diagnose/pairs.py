@@ -7,7 +7,7 @@ Where none will do, effects that only show in pairs are tried beside every other
 begin once more, from starts that are no neighbours.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import permutations
 from typing import NamedTuple
 
@@ -30,6 +30,8 @@ BEHIND, SEVERAL = 5.0, 4
 FEW = 6
 # Where no pair will do: starting points of another look at the best pairs, and how many pairs are the best.
 STARTS_APART, AGAIN = 4, 4
+# Best pairs of which each effect is tried beside others, where no pair will do.
+SWAPPED = 2
 # Pairs whose misfit is this close to the best have each of their effects fitted alone again.
 CLOSE = 50.0
 # Least change (squared, in noise) of a response that says something.
@@ -64,10 +66,27 @@ def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Exp
         ]
         found = best_of_each(found + _followed(search, base, beside, False, GOING_ON), penalised)
     if verdict.none_will_do(found):
+        found = best_of_each(found + _swapped(search, base, alone, found), penalised)
+    if verdict.none_will_do(found):
         ways = [pair for each in found[:GOING_ON] for pair in permutations(each.effects)]
         beside = [(alone[one], alone[other]) for one, other in ways]
         found += _followed(search, base, beside, True, AGAIN)
     return best_of_each(found, penalised)
+
+
+def _swapped(
+    search: Search, base: Fit, alone: Mapping[str, Alone], found: Sequence[Explanation]
+) -> list[Explanation]:
+    """Pairs in which an effect keeps its numbers from one of the best pairs, and the other one is another."""
+    parts = [(pair.fit, effect) for pair in found[:SWAPPED] for effect in pair.effects]
+    kept = search.each(lambda part: _known(_part(search, *part)), parts)
+    beside = [
+        (first, other)
+        for (pair, _), first in zip(parts, kept, strict=True)
+        for effect, other in alone.items()
+        if effect not in pair.effects and first.fit.trial.found
+    ]
+    return _followed(search, base, beside, False, GOING_ON)
 
 
 def _followed(
@@ -112,24 +131,31 @@ def halves(search: Search, both: Sequence[Explanation]) -> list[Explanation]:
         return []
     close = [each for each in both if each.fit.q - both[0].fit.q < CLOSE]
     jobs = [(pair.fit, effect) for pair in close for effect in pair.effects]
-    return search.each(lambda job: search.explanation(_half(search, *job)), jobs)
+    parts = search.each(lambda job: _part(search, *job), jobs)
+    return search.each(lambda part: search.explanation(refine(part.model, part.trial)), parts)
 
 
-def _half(search: Search, pair: Fit, effect: str) -> Fit:
+def _part(search: Search, pair: Fit, effect: str) -> Fit:
+    """One effect of a pair alone, at its numbers there."""
     model = search.model(effect)
-    start = model.start(pair, model.hypothesis.at(pair.values))
-    return refine(model, model.trial(start))
+    trial = model.trial(model.start(pair, model.hypothesis.at(pair.values)))
+    return Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
+
+
+def _known(fit: Fit, x: np.ndarray | None = None, changes: np.ndarray | None = None) -> Alone:
+    nothing = np.zeros((0, fit.model.size))
+    few = restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
+    return Alone(fit, few, nothing if x is None else x, nothing if changes is None else changes)
 
 
 def _alone(search: Search, base: Fit, fit: Fit) -> Alone:
     """A single fit with everything that was simulated of its effect."""
-    few = restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
     trials = [trial for trial in (*search.along[fit.effects[0]], fit.trial) if trial.found]
     size = fit.model.size
     changes = np.array([(base.trial.residual - trial.residual).ravel() for trial in trials])
     x = np.array([trial.point.x[:size] for trial in trials])
     seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
-    return Alone(fit, few, x[seen], changes[seen] if seen.any() else changes[:0])
+    return _known(fit, x[seen], changes[seen] if seen.any() else changes[:0])
 
 
 def _starts(first: Fit, other: Alone, apart: bool) -> np.ndarray:
