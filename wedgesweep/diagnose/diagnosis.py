@@ -142,14 +142,16 @@ def explain(search: Search) -> tuple[Explanation, list[Explanation]]:
     """The base model and all that was fitted beside it, best first."""
     search.progress("base model")
     base = search.base()
-    found = _extensions(search, base)
-    better = search.base_again(base, found)
-    return (base, found) if better is base else (better, _extensions(search, better))
-
-
-def _extensions(search: Search, base: Explanation) -> list[Explanation]:
-    """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     found = search.singles(base.fit)
+    better = search.base_again(base, found)
+    if better is not base:
+        base, found = better, search.singles(better.fit)
+    found = _more(search, base, found)
+    return search.base_again(base, found), found
+
+
+def _more(search: Search, base: Explanation, found: list[Explanation]) -> list[Explanation]:
+    """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     if verdict.none_will_do([base]):
         found = search.around(found)
     if verdict.none_will_do([base, *found]) and search.problem.tests >= verdict.FEWEST_TESTS:

@@ -103,7 +103,7 @@ class Search:
         start = model.start(None, np.zeros(0))
         trials = best_amplitudes(model, [replace(start, x=x) for x in model.as_stated()])
         fits = self.each(lambda trial: refine(model, trial), trials)
-        fit = min(fits, key=lambda fit: fit.q)
+        fit = detour.around(min(fits, key=lambda fit: fit.q))
         self._meet(fit)
         return self.explanation(fit)
 
