@@ -31,6 +31,7 @@ ADDED_SPREAD = 0.01
 SETTLE_PERIODS = 400
 # Where the bolster sticks the input is raised by this factor, so many times at the most.
 RAISE, RAISES = 1.1, 8
+STUCK = re.compile(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)")
 
 
 class Failed(Exception):
@@ -161,10 +162,7 @@ def _synthesize(one: BlindSet, draft: Draft, plan: list[dict[str, Any]], directo
         try:
             return _wedgesweep("synthesize", *files, *options)
         except Failed as failed:
-            stuck = [
-                int(number)
-                for number in re.findall(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)", str(failed))
-            ]
+            stuck = [int(number) for number in STUCK.findall(str(failed))]
             if not stuck:
                 raise
         for i in stuck:

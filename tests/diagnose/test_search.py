@@ -91,7 +91,7 @@ def test_the_base_model_does_not_stop_short_of_its_uncertain_numbers(seed):
 def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     search = Search(clean(), ("velocity_lag",))
     with monkeypatch.context() as alone:
-        alone.setattr(Model, "as_stated", lambda self: np.ones((1, 1)))
+        alone.setattr(Model, "uncertain_starts", lambda self: np.ones((1, 1)))
         alone.setattr(detour, "around", lambda fit: fit)
         short = search.base()
     assert short.fit.p < 1e-9

@@ -147,7 +147,7 @@ class Model:
         """Whether (T,) a test has a tone that the hypothesis answers to; its phase is free."""
         return np.array([self.toned and s.tone is not None for s in self.problem.spectra])
 
-    def as_stated(self) -> np.ndarray:
+    def uncertain_starts(self) -> np.ndarray:
         """Uncertain numbers (1 + 2 u, u) as stated, and each of them well off to either side."""
         off = OFF * np.diag(self.prior_std)
         stated = np.ones((1, self.prior_std.size))
@@ -193,7 +193,8 @@ class Model:
         problem = self.problem
         harmonics, found, after = self.simulate(x, amplitude, warm)
         harmonics = np.where(found[:, :, None, None], harmonics, 0.0)
-        whitened = problem.whiten(problem.shown(harmonics))
+        shown = problem.shown(harmonics)
+        whitened = problem.whiten(shown)
         phase, images = self._aligned(harmonics, whitened)
         residual = real(problem.whitened - problem.whiten(images) - problem.turned(whitened, phase))
         n = problem.tests
@@ -201,7 +202,7 @@ class Model:
             Trial(
                 Point(x[i], amplitude[i], after.of(slice(i * n, (i + 1) * n))),
                 whitened[i],
-                problem.shown(harmonics[i]),
+                shown[i],
                 phase[i],
                 images[i],
                 residual[i],

@@ -15,7 +15,7 @@ import numpy as np
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.model import Fit, Model, Point, Trial
-from wedgesweep.diagnose.refine import refine, restrict
+from wedgesweep.diagnose.refine import ITERATIONS, refine, restrict
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised, trials_of
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.
@@ -79,7 +79,7 @@ def _swapped(
 ) -> list[Explanation]:
     """Pairs in which an effect keeps its numbers from one of the best pairs, and the other one is another."""
     parts = [(pair.fit, effect) for pair in found[:SWAPPED] for effect in pair.effects]
-    kept = search.each(lambda part: _known(_part(search, *part)), parts)
+    kept = search.each(lambda part: _within(search, *part), parts)
     beside = [
         (first, other)
         for (pair, _), first in zip(parts, kept, strict=True)
@@ -132,7 +132,7 @@ def halves(search: Search, both: Sequence[Explanation]) -> list[Explanation]:
     close = [each for each in both if each.fit.q - both[0].fit.q < CLOSE]
     jobs = [(pair.fit, effect) for pair in close for effect in pair.effects]
     parts = search.each(lambda job: _part(search, *job), jobs)
-    return search.each(lambda part: search.explanation(refine(part.model, part.trial)), parts)
+    return [search.explanation(fit) for fit in _further(search, parts, ITERATIONS)]
 
 
 def _part(search: Search, pair: Fit, effect: str) -> Fit:
@@ -142,10 +142,16 @@ def _part(search: Search, pair: Fit, effect: str) -> Fit:
     return Fit(model, trial, np.zeros((trial.point.x.size,) * 2), False)
 
 
-def _known(fit: Fit, x: np.ndarray | None = None, changes: np.ndarray | None = None) -> Alone:
+def _within(search: Search, pair: Fit, effect: str) -> Alone:
+    """One effect of a pair at its numbers there, to be the first of others: no other numbers are tried."""
+    fit = _part(search, pair, effect)
     nothing = np.zeros((0, fit.model.size))
-    few = restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
-    return Alone(fit, few, nothing if x is None else x, nothing if changes is None else changes)
+    return Alone(fit, _few(fit), nothing, nothing)
+
+
+def _few(fit: Fit) -> Fit:
+    """The same point on the tests that it leaves most of."""
+    return restrict(fit, np.sort(np.argsort(-fit.trial.by_test)[:FEW]))
 
 
 def _alone(search: Search, base: Fit, fit: Fit) -> Alone:
@@ -155,7 +161,7 @@ def _alone(search: Search, base: Fit, fit: Fit) -> Alone:
     changes = np.array([(base.trial.residual - trial.residual).ravel() for trial in trials])
     x = np.array([trial.point.x[:size] for trial in trials])
     seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
-    return _known(fit, x[seen], changes[seen] if seen.any() else changes[:0])
+    return Alone(fit, _few(fit), x[seen], changes[seen] if seen.any() else changes[:0])
 
 
 def _starts(first: Fit, other: Alone, apart: bool) -> np.ndarray:

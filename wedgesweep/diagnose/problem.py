@@ -133,10 +133,11 @@ class Problem:
         found = np.zeros((*simulated.shape[:-1], self.columns), complex)
         if simulated.shape[-1] < FOLDED:
             return found
-        turned = simulated[..., :FOLDED] * np.exp(1j * np.arange(1, FOLDED + 1) * phase[..., None, None])
+        orders = np.arange(1, FOLDED + 1)
         for i, spectrum in enumerate(self.spectra):
             if spectrum.folding is not None:
-                read = spectrum.folding(turned[..., i, :, :])
+                turn = np.exp(1j * orders * phase[..., i, None, None])
+                read = spectrum.folding(simulated[..., i, :, :FOLDED] * turn)
                 found[..., i, :, : spectrum.harmonics] = read[..., : spectrum.harmonics]
                 if spectrum.tone is not None:
                     found[..., i, :, -1] = read[..., -1]

@@ -101,7 +101,7 @@ class Search:
         """The model on trial with everything fitted that is unknown about the tests."""
         model = self.model()
         start = model.start(None, np.zeros(0))
-        trials = best_amplitudes(model, [replace(start, x=x) for x in model.as_stated()])
+        trials = best_amplitudes(model, [replace(start, x=x) for x in model.uncertain_starts()])
         fits = self.each(lambda trial: refine(model, trial), trials)
         fit = detour.around(min(fits, key=lambda fit: fit.q))
         self._meet(fit)
