@@ -55,8 +55,22 @@ def _local(opened: ExitStack, n_jobs: int) -> "Client":
 def _connected(opened: ExitStack, scheduler: str) -> "Client":
     from distributed import Client
 
+    class Connected(Client):
+        """Closed at once if nothing answers.
+
+        Left to the garbage collector, it may be closed in the midst of another's start, under whose lock
+        its close waits forever.
+        """
+
+        def start(self, **options: Any) -> None:
+            try:
+                super().start(**options)
+            except BaseException:
+                self.close()
+                raise
+
     try:
-        client = opened.enter_context(Client(scheduler, timeout=PATIENCE, set_as_default=False))
+        client = opened.enter_context(Connected(scheduler, timeout=PATIENCE, set_as_default=False))
         client.wait_for_workers(1, timeout=PATIENCE)
     except (
         OSError,
