@@ -31,7 +31,8 @@ def harmonics(system: Config, law: str, tests: list[Test]) -> tuple[np.ndarray |
         tone = system.effects[TONE]["frequency"]
         # How tone and input meet is drawn later, with the data.
         anyhow = (simulation.Meeting(PERIODS, 0.0, np.nan),) * len(tests)
-        done = simulation.respond_with_tone(rows, cold, COMPARED, tone, anyhow)
+        unknown = np.full(len(tests), np.nan)
+        done = simulation.respond_with_tone(rows, cold, COMPARED, tone, anyhow, unknown)
     else:
         tone, done = None, simulation.respond(rows, cold, COMPARED)
     moves = np.abs(done.harmonics[:, 0, 0]) > STANDS_STILL * rows["amplitude"]

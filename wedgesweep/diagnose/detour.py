@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from wedgesweep.diagnose.equations import equations_of
-from wedgesweep.diagnose.model import Fit, Point
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.refine import damped, refine, restrict
 from wedgesweep.solvers.periodic import at_rest
 
@@ -39,7 +39,8 @@ def around(fit: Fit) -> Fit:
     amplitude = np.zeros(left_out.size)
     amplitude[rows] = point.amplitude
     warm = fit.trial.point.warm.where(left_out, at_rest(left_out.size))
-    again = refine(fit.model, fit.model.trial(Point(point.x, amplitude, warm)))
+    start = replace(fit.trial.point, x=point.x, amplitude=amplitude, warm=warm)
+    again = refine(fit.model, fit.model.trial(start))
     return min(fit, again, key=lambda each: each.q)
 
 

@@ -10,7 +10,10 @@ from wedgesweep.diagnose.tangents import Tangents, tangents_of
 
 @dataclass(frozen=True)
 class Equations:
-    """Normal equations: numbers (k), and phase and amplitude of each test (T, 2), solved for first."""
+    """Normal equations: numbers (k), and what is local to each test (T, L), solved for first.
+
+    Local are start phase, amplitude, and the phase of a foreign vibration where the point has one.
+    """
 
     inner: np.ndarray
     mixed: np.ndarray
@@ -19,9 +22,10 @@ class Equations:
     gradient: np.ndarray
 
     def eliminated(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
-        """What phases and amplitudes do by themselves (T, 2), and along with the numbers (T, 2, k)."""
+        """What is local does by itself (T, L), and along with the numbers (T, L, k)."""
         inner = self.inner.copy()
-        inner[:, 1, 1] *= 1.0 + damping
+        for i in range(1, inner.shape[-1]):
+            inner[:, i, i] *= 1.0 + damping
         solved = np.linalg.solve(inner, np.concatenate([self.mixed, self.right[..., None]], axis=-1))
         return solved[..., -1], solved[..., :-1]
 
@@ -32,7 +36,7 @@ class Equations:
         return matrix, self.gradient - np.einsum("tik,ti->k", self.mixed, own)
 
     def local(self, numbers: np.ndarray, damping: float) -> np.ndarray:
-        """Steps of phase and amplitude (T, 2) that go with a step of the numbers (k,)."""
+        """Steps of what is local (T, L) that go with a step of the numbers (k,)."""
         own, along = self.eliminated(damping)
         return -own - along @ numbers
 
@@ -50,7 +54,7 @@ def equations_of(model: Model, trial: Trial, tangents: Tangents | None = None) -
     tests = model.problem.tests
     inner = np.einsum("tmi,tmj->tij", by_test, by_test)
     inner[:, 1, 1] += model.amplitude_weight**2
-    inner += 1e-12 * (1.0 + np.einsum("tii->t", inner))[:, None, None] * np.eye(2)
+    inner += 1e-12 * (1.0 + np.einsum("tii->t", inner))[:, None, None] * np.eye(inner.shape[-1])
     right = np.einsum("tmi,tm->ti", by_test, trial.residual)
     right[:, 1] += model.amplitude_weight * trial.prior[:tests]
     outer = np.einsum("tmk,tml->kl", by_number, by_number)

@@ -1,7 +1,7 @@
 """What an extended model gains on tests that it was not fitted to."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import ndtr, stdtrit
@@ -152,7 +152,7 @@ def predict(fit: Fit, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """
     part = restrict(fit, rows)
     unknown = np.isinf(part.model.problem.amplitude_std)
-    trial = part.model.trial(Point(x, part.trial.point.amplitude, part.trial.point.warm))
+    trial = part.model.trial(replace(part.trial.point, x=x))
     for _ in range(LOCAL):
         if not trial.found:
             break
@@ -165,9 +165,10 @@ def _moved(model: Model, trial: Trial, unknown: np.ndarray) -> Point:
     """Point with each amplitude moved: by its prior and data, or to match the fundamental."""
     point = trial.point
     equations = equations_of(model, trial)
-    step = equations.local(np.zeros(len(point.x)), 0.0)[:, 1]
+    still = np.zeros(len(point.x))
+    local = equations.local(still, 0.0)[:, 1:]
     measured = np.abs(model.problem.measured[:, 0, 0])
     simulated = np.abs(trial.harmonics[:, 0, 0])
     match = np.log(measured / np.where(simulated > 0.0, simulated, measured))
-    step = np.where(unknown, match, step)
-    return Point(point.x, point.amplitude + np.clip(step, -0.3, 0.3), point.warm)
+    local[:, 0] = np.where(unknown, match, local[:, 0])
+    return point.moved(still, np.clip(local, -0.3, 0.3))

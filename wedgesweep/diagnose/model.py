@@ -4,7 +4,8 @@ Unknown are the numbers of the hypothesis, the uncertain numbers of the model wi
 each test its start phase and its input amplitude. Phases have a closed way out (``Problem.start_phase``).
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +15,7 @@ from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.coordinates import Hypothesis, Values
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.spectra import FOLDED
-from wedgesweep.solvers.periodic import Warm, at_rest
+from wedgesweep.solvers.periodic import Warm, at_rest, joined
 
 # The effect that answers to a foreign tone.
 TONE = "stray_vibration"
@@ -28,11 +29,21 @@ EXACT = 1e-6
 
 @dataclass(frozen=True)
 class Point:
-    """A guess: numbers ``x`` (k + u,) of hypothesis and uncertain model, ``amplitude`` (T,) in logarithm."""
+    """A guess: numbers ``x`` (k + u,) of hypothesis and uncertain model, ``amplitude`` (T,) in logarithm.
+
+    ``ahead`` (T,): phase (rad) of the vibration behind a foreign tone, NaN where it is not known: see
+    meeting.py.
+    """
 
     x: np.ndarray
     amplitude: np.ndarray
+    ahead: np.ndarray
     warm: Warm
+
+    def moved(self, numbers: np.ndarray, local: np.ndarray) -> "Point":
+        """After steps of the numbers (k,) and of what is local to tests (T, L): amplitude, ``ahead``."""
+        ahead = self.ahead + local[..., 1] if local.shape[-1] > 1 else self.ahead
+        return replace(self, x=self.x + numbers, amplitude=self.amplitude + local[..., 0], ahead=ahead)
 
 
 @dataclass(frozen=True)
@@ -145,7 +156,11 @@ class Model:
     @property
     def tones(self) -> np.ndarray:
         """Whether (T,) a test has a tone that the hypothesis answers to; its phase is free."""
-        return np.array([self.toned and s.tone is not None for s in self.problem.spectra])
+        return np.array([self.toned and s.toned for s in self.problem.spectra])
+
+    def meets(self, point: Point) -> bool:
+        """Whether phases of a foreign vibration that acts are among what is unknown of the tests."""
+        return self.toned and bool(np.isfinite(point.ahead).any())
 
     def uncertain_starts(self) -> np.ndarray:
         """Uncertain numbers (1 + 2 u, u) as stated, and each of them well off to either side."""
@@ -157,41 +172,44 @@ class Model:
         nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}
         return {**nuisance, **self.hypothesis.values(x[: self.size])}
 
-    def simulate(
-        self, x: np.ndarray, amplitude: np.ndarray, warm: Warm
-    ) -> tuple[np.ndarray, np.ndarray, Warm]:
-        """Harmonics (n, T, C, K) of ``x`` (n, k + u) and log ``amplitude`` (n, T); found or not."""
+    def simulate(self, points: Sequence[Point]) -> tuple[np.ndarray, np.ndarray, Warm]:
+        """Harmonics (n, T, C, K) of points, found or not (n, T), and where to go on from (n T rows)."""
         problem = self.problem
         rows = np.concatenate(
             [
                 simulation.records(
-                    problem.model, problem.law, self.values(each), problem.omega, self.reference * np.exp(a)
+                    problem.model,
+                    problem.law,
+                    self.values(point.x),
+                    problem.omega,
+                    self.reference * np.exp(point.amplitude),
                 )
-                for each, a in zip(x, amplitude, strict=True)
+                for point in points
             ]
         )
-        done = self._respond(rows, warm)
-        shape = (len(x), problem.tests)
+        ahead = np.concatenate([point.ahead for point in points])
+        done = self._respond(rows, ahead, joined([point.warm for point in points]))
+        shape = (len(points), problem.tests)
         harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : problem.shape[0]]
         return harmonics, done.found.reshape(shape), done.warm
 
-    def _respond(self, rows: np.ndarray, warm: Warm) -> simulation.Responses:
+    def _respond(self, rows: np.ndarray, ahead: np.ndarray, warm: Warm) -> simulation.Responses:
         tone = self.problem.tone
         if self.toned and tone is not None:
             times = len(rows) // self.problem.tests
             meetings = self.problem.meetings * times
             harmonics = self.problem.shape[1]
-            return simulation.respond_with_tone(rows, warm, harmonics, tone, meetings, self.tolerance)
+            return simulation.respond_with_tone(rows, warm, harmonics, tone, meetings, ahead, self.tolerance)
         done = simulation.respond(rows, warm, FOLDED, self.tolerance)
         if tone is None:
             return done
         silent = np.zeros((len(rows), 2, 1))  # a periodic response has nothing there
         return done._replace(harmonics=np.concatenate([done.harmonics, silent], axis=-1))
 
-    def trials(self, x: np.ndarray, amplitude: np.ndarray, warm: Warm) -> list[Trial]:
-        """Simulate n points; the warm start of each is T rows of ``warm``."""
+    def trials(self, points: Sequence[Point]) -> list[Trial]:
+        """Simulate many points at once."""
         problem = self.problem
-        harmonics, found, after = self.simulate(x, amplitude, warm)
+        harmonics, found, after = self.simulate(points)
         harmonics = np.where(found[:, :, None, None], harmonics, 0.0)
         shown = problem.shown(harmonics)
         whitened = problem.whiten(shown)
@@ -200,16 +218,16 @@ class Model:
         n = problem.tests
         return [
             Trial(
-                Point(x[i], amplitude[i], after.of(slice(i * n, (i + 1) * n))),
+                replace(points[i], warm=after.of(slice(i * n, (i + 1) * n))),
                 whitened[i],
                 shown[i],
                 phase[i],
                 images[i],
                 residual[i],
-                self._prior(x[i], amplitude[i]),
+                self._prior(points[i]),
                 found[i],
             )
-            for i in range(len(x))
+            for i in range(len(points))
         ]
 
     def _aligned(self, harmonics: np.ndarray, whitened: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -227,16 +245,17 @@ class Model:
         return phase, np.where(images != 0.0, problem.images(harmonics, phase), 0.0)
 
     def trial(self, point: Point) -> Trial:
-        return self.trials(point.x[None], point.amplitude[None], point.warm)[0]
+        return self.trials([point])[0]
 
-    def _prior(self, x: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        return np.r_[amplitude * self.amplitude_weight, (x[self.size :] - 1.0) / self.prior_std]
+    def _prior(self, point: Point) -> np.ndarray:
+        return np.r_[point.amplitude * self.amplitude_weight, (point.x[self.size :] - 1.0) / self.prior_std]
 
     def start(self, base: "Fit | None", x: np.ndarray) -> Point:
         """Point with the numbers of the hypothesis and everything else as a base fit has it."""
         if base is None:
             nothing = np.zeros(self.problem.tests)
-            return Point(np.r_[x, np.ones(len(self.uncertain))], nothing, at_rest(nothing.size))
+            ones = np.ones(len(self.uncertain))
+            return Point(np.r_[x, ones], nothing, np.full(nothing.size, np.nan), at_rest(nothing.size))
         known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
         rest = [known.get(name, 1.0) for name in self.uncertain]
-        return Point(np.r_[x, rest], base.trial.point.amplitude, base.trial.point.warm)
+        return replace(base.trial.point, x=np.r_[x, rest])

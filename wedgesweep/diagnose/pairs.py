@@ -8,15 +8,17 @@ begin once more, from starts that are no neighbours.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.model import Fit, Model, Point, Trial
+from wedgesweep.diagnose.meeting import met
+from wedgesweep.diagnose.model import Fit, Model, Trial
 from wedgesweep.diagnose.refine import ITERATIONS, refine, restrict
-from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised, trials_of
+from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
@@ -187,7 +189,7 @@ def _begin(search: Search, first: Alone, other: Alone, apart: bool) -> list[Fit]
     known = fit.x[: fit.model.size]
 
     def tried(points: np.ndarray) -> list[Trial]:
-        return trials_of(model, [model.start(few, np.r_[known, x]) for x in points])
+        return model.trials([model.start(few, np.r_[known, x]) for x in points])
 
     trials = tried(_starts(fit, other, apart))
     if not apart and min(each.q for each in trials) > BEHIND * few.q:
@@ -202,7 +204,7 @@ def _finish(search: Search, base: Fit, first: Fit) -> Explanation:
     effects = first.effects
     model = search.model(*effects)
     start = model.start(base, first.x[: model.size])
-    start = Point(np.r_[first.x[: model.size], start.x[model.size :]], start.amplitude, start.warm)
-    fit = refine(model, model.trial(start))
+    start = replace(start, x=np.r_[first.x[: model.size], start.x[model.size :]])
+    fit = met(refine(model, model.trial(start)))
     search.progress(" + ".join(effects))
     return search.explanation(fit)

@@ -24,6 +24,8 @@ OPEN = 1e-12
 LONGEST_STEP = 3.0
 # Largest relative step of an input amplitude.
 LONGEST_AMPLITUDE = 0.1
+# And of the phase of a foreign vibration (rad).
+LONGEST_AHEAD = 0.3
 
 
 def refine(model: Model, start: Trial, iterations: int = ITERATIONS) -> Fit:
@@ -72,7 +74,7 @@ def restrict(fit: Fit, rows: np.ndarray) -> Fit:
     """The same point on some of a fit's tests."""
     model = Model(fit.model.problem.subset(rows), fit.model.hypothesis, fit.model.reference[rows])
     point = fit.trial.point
-    trial = model.trial(Point(point.x, point.amplitude[rows], point.warm.of(rows)))
+    trial = model.trial(Point(point.x, point.amplitude[rows], point.ahead[rows], point.warm.of(rows)))
     return Fit(model, trial, fit.covariance, fit.arrived)
 
 
@@ -93,10 +95,11 @@ def damped(model: Model, point: Point, equations: Equations, damping: float) -> 
     limited = bool((aim != x + step).any())
     within = aim - x
     local = equations.local(within, damping)
-    limited = limited or bool((np.abs(local[:, 1]) > LONGEST_AMPLITUDE).any())
-    local[:, 1] = np.clip(local[:, 1], -LONGEST_AMPLITUDE, LONGEST_AMPLITUDE)
+    longest_local = np.array([np.inf, LONGEST_AMPLITUDE, LONGEST_AHEAD])[: local.shape[1]]
+    limited = limited or bool((np.abs(local) > longest_local).any())
+    local = np.clip(local, -longest_local, longest_local)
     promised = equations.promise(within, local)
-    return replace(point, x=x + within, amplitude=point.amplitude + local[:, 1]), promised, limited
+    return point.moved(within, local[:, 1:]), promised, limited
 
 
 def _covariance(matrix: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from wedgesweep.diagnose import tone
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.model import TONE, Fit, Model, Trial
 from wedgesweep.diagnose.problem import Problem, real
-from wedgesweep.diagnose.search import Search, trials_of
+from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.tangents import tangents_of
 from wedgesweep.effects import EFFECTS
 
@@ -124,7 +124,7 @@ def _along(search: Search, base: Fit, model: Model) -> tuple[np.ndarray, Sequenc
     if known and told and len(coordinates) == 1 and coordinates[0].logarithmic:
         return np.array([trial.point.x[:1] for trial in known]), known
     path = _path(hypothesis)
-    return path, trials_of(model, [model.start(base, x) for x in path])
+    return path, model.trials([model.start(base, x) for x in path])
 
 
 def _path(hypothesis: Hypothesis) -> np.ndarray:

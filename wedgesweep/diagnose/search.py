@@ -10,10 +10,11 @@ import numpy as np
 
 from wedgesweep.diagnose import detour
 from wedgesweep.diagnose.coordinates import Hypothesis
+from wedgesweep.diagnose.meeting import met
 from wedgesweep.diagnose.model import TONE, Fit, Model, Point, Trial
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import refine
-from wedgesweep.solvers.periodic import at_rest, joined
+from wedgesweep.solvers.periodic import at_rest
 
 # What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
 PENALTY = 6.0
@@ -115,8 +116,8 @@ class Search:
         best = min(found, key=penalised, default=base).fit
         model, numbers = self.model(), best.model.values(best.x)
         x = np.array([numbers[name]["scale"] for name in model.uncertain])
-        nothing = at_rest(self.problem.tests)
-        fit = refine(model, model.trial(Point(x, best.trial.point.amplitude, nothing)))
+        start = replace(best.trial.point, x=x, warm=at_rest(self.problem.tests))
+        fit = refine(model, model.trial(start))
         if not fit.q < base.fit.q - SLIGHT:
             return base
         self._meet(fit)
@@ -145,7 +146,7 @@ class Search:
         if model.toned:
             self._meet(fit)
             model = self.model(effect)
-            fit = refine(model, model.trial(fit.trial.point))
+            fit = met(refine(model, model.trial(fit.trial.point)))
         self.progress(effect)
         return self.explanation(fit)
 
@@ -216,37 +217,30 @@ def _best_along_first(trials: Sequence[Trial]) -> list[Trial]:
     return list(best.values())
 
 
-def trials_of(model: Model, points: Sequence[Point]) -> list[Trial]:
-    """Simulate many points at once."""
-    warm = joined([each.warm for each in points])
-    x = np.array([each.x for each in points]).reshape(len(points), -1)
-    return model.trials(x, np.array([each.amplitude for each in points]), warm)
-
-
 def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
     """Simulated points, with the unknown input amplitudes that suit each of them best."""
     unknown = np.isinf(model.problem.amplitude_std)
     if not unknown.any():
-        return trials_of(model, points)
+        return model.trials(points)
     best, least = list(points), np.full((len(points), model.problem.tests), np.inf)
     climbing = list(points)
     for rung in np.log(AMPLITUDES):
         # Each rung starts from the response of the one below.
         at = [replace(each, amplitude=np.where(unknown, rung, each.amplitude)) for each in climbing]
-        trials = trials_of(model, at)
+        trials = model.trials(at)
         climbing = [trial.point for trial in trials]
         for i, trial in enumerate(trials):
             misfit = np.where(trial.found_tests, trial.by_test, np.inf)
             better = misfit < least[i]
             least[i] = np.where(better, misfit, least[i])
             best[i] = _tests_of(best[i], trial.point, better)
-    return trials_of(model, best)
+    return model.trials(best)
 
 
 def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
     """A point with the amplitudes and states of some tests from another."""
-    warm = one.warm.where(chosen, other.warm)
-    return Point(one.x, np.where(chosen, other.amplitude, one.amplitude), warm)
+    amplitude = np.where(chosen, other.amplitude, one.amplitude)
+    return replace(one, amplitude=amplitude, warm=one.warm.where(chosen, other.warm))
 
 
 def best_of(

@@ -52,7 +52,7 @@ class Meeting(NamedTuple):
     """How input and foreign tone met in a record, ``periods`` of the input long.
 
     At its first sample the input was at the phase ``start`` (rad), the tone in the displacement at ``tone``
-    (rad; NaN where it does not show: then a span of ``LONG`` periods stands for all ways to meet).
+    (rad; NaN where it does not show).
     """
 
     periods: float
@@ -66,17 +66,24 @@ def respond_with_tone(
     harmonics: int,
     tone: float,
     meetings: Sequence[Meeting],
+    ahead: np.ndarray,
     tolerance: float = TOLERANCE,
 ) -> Responses:
     """Responses under a foreign tone (Hz), which do not repeat: harmonics, and the tone in the last column.
 
-    Each row as in its record: first with any phase of the tone, which tells how the response lags behind,
-    then with the phase at which both met.
+    Each row as in its record, with the vibration behind the tone ``ahead`` (n,) of the parameters' phase
+    (rad). Where that is not known (NaN), first with any phase, which tells how the response lags behind, then
+    with that at which both met; if no tone shows either, a span of ``LONG`` periods stands for all ways.
     """
     rows = rows.copy()
-    meetings = tuple(each if np.isfinite(each.tone) else each._replace(periods=LONG) for each in meetings)
+    rows["stray_vibration_phase"] += np.nan_to_num(ahead)
+    shown = np.array([meeting.tone for meeting in meetings])
+    anyhow = np.isnan(ahead) & np.isnan(shown)
+    meetings = tuple(
+        each._replace(periods=LONG) if one else each for each, one in zip(meetings, anyhow, strict=True)
+    )
     spectra, state = _recorded(rows, warm.state, harmonics, tone, meetings, tolerance)
-    late = np.array([meeting.tone for meeting in meetings]) - np.angle(spectra[:, 0, -1])
+    late = np.where(np.isnan(ahead), shown, np.nan) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(late))
     if again.size:
         rows["stray_vibration_phase"][again] += late[again]

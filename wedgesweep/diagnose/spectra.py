@@ -74,6 +74,11 @@ class Spectrum:
         return 2 * (self.mean.size - (self.covered is not None) * self.mean.shape[0])
 
     @property
+    def toned(self) -> bool:
+        """Whether a foreign tone shows, by itself or mixed up with a harmonic."""
+        return self.tone is not None or self.covered is not None
+
+    @property
     def sample_noise(self) -> np.ndarray:
         """Noise of one sample (channels,), in m and m/s."""
         return np.sqrt(self.variance.mean(axis=1) * self.samples / 4.0)

@@ -11,10 +11,15 @@ from wedgesweep.diagnose.problem import real
 # Finite differences: share of a coordinate's width, and of an amplitude. The noise of a simulation looks like
 # information: shorter steps make intervals too narrow where amplitude and effect are hard to tell apart.
 STEP, AMPLITUDE_STEP = 2e-3, 2e-3
+# And of the phase of a foreign vibration (rad).
+AHEAD_STEP = 1e-2
 
 
 class Tangents(NamedTuple):
-    """Derivatives of the residual by the numbers (T, m, k + u), and by phase and amplitude (T, m, 2)."""
+    """Derivatives of the residual by the numbers (T, m, k + u), and by what is local to a test (T, m, L).
+
+    Local are start phase and amplitude, and the phase of a foreign vibration where the point has one.
+    """
 
     by_number: np.ndarray
     by_test: np.ndarray
@@ -26,12 +31,15 @@ def tangents_of(model: Model, trial: Trial, side: float = 1.0) -> Tangents:
     ``side``: to which side (1 or -1) numbers are changed, where the bounds allow it.
     """
     x = trial.point.x
-    steps = np.r_[side * STEP * model.width, side * AMPLITUDE_STEP]
-    low, high = np.append(model.low - x, -np.inf), np.append(model.high - x, np.inf)
+    local = [AMPLITUDE_STEP, AHEAD_STEP][: 1 + model.meets(trial.point)]
+    steps = side * np.r_[STEP * model.width, local]
+    free = [np.inf] * len(local)
+    low, high = np.r_[model.low - x, np.negative(free)], np.r_[model.high - x, free]
     steps = np.where((low <= steps) & (steps <= high), steps, -steps)
     back = (low <= -steps) & (-steps <= high)
     columns, _ = derivatives(lambda moved: _changes(model, trial, moved), steps, back)
-    return Tangents(columns[..., :-1], np.stack([_turn(model, trial), columns[..., -1]], axis=-1))
+    by_test = np.concatenate([_turn(model, trial)[..., None], columns[..., len(x) :]], axis=-1)
+    return Tangents(columns[..., : len(x)], by_test)
 
 
 def cautious(model: Model, trial: Trial) -> Tangents:
@@ -50,11 +58,11 @@ def _turn(model: Model, trial: Trial) -> np.ndarray:
 
 
 def _changes(model: Model, trial: Trial, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Changes of the residual (n, T, m) by steps (n, k + u + 1), the last of amplitudes; found or not."""
+    """Changes of the residual (n, T, m) by steps (n, k + u + L - 1) of all but start phases; found or not."""
     point, problem = trial.point, model.problem
-    x, amplitude = point.x + steps[:, :-1], point.amplitude + steps[:, -1:]
-    harmonics, found, _ = model.simulate(x, amplitude, point.warm.repeated(len(x)))
-    phase = np.repeat(trial.phase[None], len(x), axis=0)
+    numbers = len(point.x)
+    harmonics, found, _ = model.simulate([point.moved(step[:numbers], step[numbers:]) for step in steps])
+    phase = np.repeat(trial.phase[None], len(steps), axis=0)
     moved = problem.turned(problem.whiten(problem.shown(harmonics)), phase)
     images = np.where(trial.unfiltered, problem.images(harmonics, phase), 0.0) - trial.images
     change = problem.turned(trial.whitened, trial.phase) - moved - problem.whiten(images)

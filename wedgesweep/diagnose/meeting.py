@@ -1,0 +1,34 @@
+"""At which phase a foreign vibration met the input in each record, learnt from a fit.
+
+A tone of another frequency runs through all phases of the input, but in a record of few periods only through
+some of them, and friction answers to both at once. Where the tone shows, so does its phase, but next to
+half the input's frequency the response does not lag behind it by the same in every phase; where it lies so
+close to a harmonic that the record cannot tell them apart, only the other harmonics know.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from wedgesweep.diagnose.model import Fit, Model, Point
+from wedgesweep.diagnose.refine import refine
+
+# Phases that are tried.
+PHASES = 12
+
+
+def met(fit: Fit) -> Fit:
+    """A fit followed on with the phases of a foreign vibration among what is unknown, if that is better."""
+    if not fit.model.toned or not fit.trial.found:
+        return fit
+    again = refine(fit.model, fit.model.trial(_at_best_phases(fit.model, fit.trial.point)))
+    return min(fit, again, key=lambda each: each.q)
+
+
+def _at_best_phases(model: Model, point: Point) -> Point:
+    """The point with the phase that leaves least of each test in which a tone shows."""
+    phases = 2.0 * np.pi / PHASES * np.arange(PHASES)
+    told = np.where(model.tones, 0.0, np.nan)
+    trials = model.trials([replace(point, ahead=told + phase) for phase in phases])
+    misfit = np.array([np.where(each.found_tests, each.by_test, np.inf) for each in trials])
+    return replace(point, ahead=told + phases[np.argmin(misfit, axis=0)])
