@@ -12,7 +12,7 @@ from wedgesweep.diagnose.search import Search
 def refined(problem, effects, x):
     """Fit of effects from their numbers (k,) on, beside the base model's fit."""
     search = Search(problem, effects)
-    model, base = search.model(*effects), search.base().fit
+    model, base = search.model(*effects), search.base().fit if effects else None
     return refine(model, model.trial(model.start(base, np.asarray(x, float))))
 
 
@@ -57,6 +57,26 @@ def test_around_a_test_that_sticks():
     found = detour.around(held_up)
     assert found.p > 0.01
     assert found.values["bolster_mass"]["scale"] == pytest.approx(1.0746, abs=0.002)
+
+
+@pytest.mark.parametrize(("true", "off"), [(0.25, -0.06), (0.255, -0.04)])
+def test_around_a_test_whose_input_led_to_where_it_sticks(true, off):
+    """From an input that was stated too high a step down ends short of breakaway, where nothing leads on."""
+    problem = drawn(
+        off=np.array([0.0, off, 0.0, 0.0]),
+        bench=(
+            np.array([5.169, 7.744, 11.184, 19.924]),
+            1e-3 * np.array([0.6431, true / (1.0 + off), 0.2129, 0.04879]),
+        ),
+        std=0.0153,
+        law="coulomb",
+        model=MODEL + "[suspension]\ncolumn_angle_deg = 4.0\n",
+    )
+    held_up = refined(problem, (), ())
+    assert detour._sticks(held_up).tolist() == [False, True, False, False]
+    found = detour.around(held_up)
+    assert found.p > 0.01
+    assert found.amplitudes()[1] == pytest.approx(1e-3 * true, rel=0.002)
 
 
 def test_what_nothing_holds_up_stays():

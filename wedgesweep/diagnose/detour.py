@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from wedgesweep.diagnose.equations import equations_of
-from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.model import Fit, Model, Point
 from wedgesweep.diagnose.refine import damped, refine, restrict
 from wedgesweep.solvers.periodic import at_rest
 
@@ -22,6 +22,8 @@ LEAST_DAMPING = 1e-6
 STICKS = 0.01
 # A test is in the way if its squared misfit grows by this factor.
 WORSE = 2.0
+# Inputs that are tried for tests that were left out, in standard deviations beside the stated ones.
+WITHIN = np.arange(-3.0, 4.0)
 # Tests that may be left out, as a share of all.
 MOST = 1.0 / 3.0
 
@@ -40,8 +42,22 @@ def around(fit: Fit) -> Fit:
     amplitude[rows] = point.amplitude
     warm = fit.trial.point.warm.where(left_out, at_rest(left_out.size))
     start = replace(fit.trial.point, x=point.x, amplitude=amplitude, warm=warm)
-    again = refine(fit.model, fit.model.trial(start))
+    again = refine(fit.model, fit.model.trial(_at_best_inputs(fit.model, start, left_out)))
     return min(fit, again, key=lambda each: each.q)
+
+
+def _at_best_inputs(model: Model, start: Point, chosen: np.ndarray) -> Point:
+    """The point with the inputs of some tests (T,) where they leave least, within what may be.
+
+    From too much input a step down can end where the bolster sticks.
+    """
+    std = model.problem.amplitude_std
+    off = np.multiply.outer(WITHIN, np.where(np.isfinite(std), std, 0.0))
+    tried = np.where(chosen, off, start.amplitude)
+    trials = model.trials([replace(start, amplitude=amplitude) for amplitude in tried])
+    misfit = np.array([np.where(each.found_tests, each.by_test, np.inf) for each in trials])
+    best = np.take_along_axis(tried, np.argmin(misfit, axis=0)[None], axis=0)[0]
+    return replace(start, amplitude=best)
 
 
 def _elsewhere_from_rest(fit: Fit) -> np.ndarray:

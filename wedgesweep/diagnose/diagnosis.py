@@ -21,6 +21,8 @@ from wedgesweep.measured import Measurement, Test
 
 # Explanations that a next test should tell apart where the verdict abstains.
 COMPARED = 6
+# A base model that leaves less than this share of what it left first may have other singles beside it.
+MUCH = 0.9
 
 
 @dataclass(frozen=True)
@@ -144,8 +146,9 @@ def explain(search: Search) -> tuple[Explanation, list[Explanation]]:
     base = search.base()
     found = search.singles(base.fit)
     better = search.base_again(base, found)
-    if better is not base:
-        base, found = better, search.singles(better.fit)
+    if better.fit.q < MUCH * base.fit.q:
+        found = best_of_each([*found, *search.singles(better.fit)], penalised)
+    base = better
     found = _more(search, base, found)
     return search.base_again(base, found), found
 

@@ -23,7 +23,7 @@ FOLLOWED = ((4, 3), (2, 4))
 # Times the base model's misfit at which an effect that was followed a little way goes no further alone.
 HOPELESS = 100.0
 # How the starts are followed once more, all of them at first, where nothing will do.
-AGAIN = ((None, 8), (2, 8))
+AGAIN = ((None, 3), (4, 5), (2, 8))
 # Best explanations of which those that leave more than noise look for a way around what holds them up.
 DETOURS = 8
 # Least probability of a misfit at which a model may do.
@@ -151,10 +151,8 @@ class Search:
         return self.explanation(fit)
 
     def singles(self, base: Fit) -> list[Explanation]:
-        """Best fits of every effect, in their order; no thread is to wait at the end for a long one."""
-        order = sorted(self.effects, key=lambda effect: effect not in LONGEST)
-        found = dict(zip(order, self.each(lambda effect: self.single(effect, base), order), strict=True))
-        return [found[effect] for effect in self.effects]
+        """Best fits of every effect, in their order."""
+        return self._each_effect(lambda effect: self.single(effect, base))
 
     def around(self, found: Sequence[Explanation]) -> list[Explanation]:
         """Explanations, the best first, and the best ones of them without what held up their fits."""
@@ -168,12 +166,18 @@ class Search:
 
         Next to breakaway a single test can make the start of the right way look worse than all others.
         """
-        return self.each(self._from_everywhere, self.effects)
+        return self._each_effect(self._from_everywhere)
 
     def _from_everywhere(self, effect: str) -> Explanation:
         trials = _best_along_first(self.along[effect])
         self.progress(f"{effect}, from everywhere")
         return self.explanation(best_of(self.model(effect), trials, AGAIN))
+
+    def _each_effect(self, function: Callable[[str], Explanation]) -> list[Explanation]:
+        """What a function finds for every effect, in their order; the longest begin first."""
+        order = sorted(self.effects, key=lambda effect: effect not in LONGEST)
+        found = dict(zip(order, self.each(function, order), strict=True))
+        return [found[effect] for effect in self.effects]
 
     def each(self, function: Callable, items: Iterable) -> list:
         if self.threads == 1:
