@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from wedgesweep.diagnose.equations import equations_of
-from wedgesweep.diagnose.model import Fit, Model, Point
+from wedgesweep.diagnose.model import Fit, Model, Point, least
 from wedgesweep.diagnose.refine import damped, refine, restrict
 from wedgesweep.solvers.periodic import at_rest
 
@@ -55,9 +55,7 @@ def _at_best_inputs(model: Model, start: Point, chosen: np.ndarray) -> Point:
     off = np.multiply.outer(WITHIN, np.where(np.isfinite(std), std, 0.0))
     tried = np.where(chosen, off, start.amplitude)
     trials = model.trials([replace(start, amplitude=amplitude) for amplitude in tried])
-    misfit = np.array([np.where(each.found_tests, each.by_test, np.inf) for each in trials])
-    best = np.take_along_axis(tried, np.argmin(misfit, axis=0)[None], axis=0)[0]
-    return replace(start, amplitude=best)
+    return replace(start, amplitude=tried[least(trials), np.arange(std.size)])
 
 
 def _elsewhere_from_rest(fit: Fit) -> np.ndarray:

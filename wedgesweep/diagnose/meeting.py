@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.model import Fit, Model, Point
+from wedgesweep.diagnose.model import Fit, Model, Point, least
 from wedgesweep.diagnose.refine import refine
 
 # Phases that are tried.
@@ -30,5 +30,4 @@ def _at_best_phases(model: Model, point: Point) -> Point:
     phases = 2.0 * np.pi / PHASES * np.arange(PHASES)
     told = np.where(model.tones, 0.0, np.nan)
     trials = model.trials([replace(point, ahead=told + phase) for phase in phases])
-    misfit = np.array([np.where(each.found_tests, each.by_test, np.inf) for each in trials])
-    return replace(point, ahead=told + phases[np.argmin(misfit, axis=0)])
+    return replace(point, ahead=told + phases[least(trials)])

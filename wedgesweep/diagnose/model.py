@@ -82,6 +82,12 @@ class Trial:
         return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
 
 
+def least(trials: Sequence[Trial]) -> np.ndarray:
+    """Which of some trials leaves least of each test, (T,)."""
+    misfit = [np.where(each.found_tests, each.by_test, np.inf) for each in trials]
+    return np.argmin(misfit, axis=0)
+
+
 @dataclass(frozen=True)
 class Fit:
     """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``trial.point.x``."""
