@@ -162,14 +162,14 @@ def _synthesize(one: BlindSet, draft: Draft, plan: list[dict[str, Any]], directo
         try:
             return _wedgesweep("synthesize", *files, *options)
         except Failed as failed:
-            stuck = [int(number) for number in STUCK.findall(str(failed))]
+            said, stuck = failed, [int(number) for number in STUCK.findall(str(failed))]
             if not stuck:
                 raise
         for i in stuck:
             plan[i]["amplitude_mm"] = round(RAISE * plan[i]["amplitude_mm"], 6)
             draft.tests[i] = draft.tests[i]._replace(amplitude_mm=plan[i]["amplitude_mm"])
         write(directory / DRAFT, asdict(draft))
-    message = f"{one.name}: the bolster sticks however large the input"
+    message = f"{one.name}: with {RAISES} times more input, still {said}"
     raise Failed(message)
 
 

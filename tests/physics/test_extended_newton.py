@@ -124,6 +124,22 @@ def test_a_run_begins_in_the_direction_that_the_input_drives_not_that_of_roundin
         assert np.isfinite(radau.solve(record, window, 1e-4, 60.0).samples.x).all()
 
 
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_a_run_begins_in_the_direction_that_the_input_drives_through_a_compliant_table(law):
+    """The side frame follows the table late, and z the side frame: at phase 0 not even forces grow."""
+    effects = {
+        "directional_friction": {"asymmetry": 0.03},
+        "fixture_resonance": {"frequency": 363.0, "damping_ratio": 0.055},
+    }
+    record = parameters.record(law, 2.4e-4, 131.6, effects=effects)
+    mode, unique = switching.initial(0.0, np.zeros(SIZE), record[0])
+    assert unique
+    assert mode.direction == 1
+    window = Window(131.6, 1, 1, 64)
+    runs = [solve(record, window, 1e-8, 60.0).samples.x for solve in (radau.solve, event_driven.solve)]
+    np.testing.assert_allclose(*runs, atol=1e-6 * np.ptp(runs[0]))
+
+
 @pytest.mark.parametrize("phase", [0.5, 2.0, 4.0])
 def test_a_start_to_one_side_that_soon_turns_to_the_other_is_resolved(phase):
     """A foreign tone pulls down for microseconds, until the input that begins at 0 has outgrown it."""

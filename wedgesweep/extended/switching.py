@@ -37,6 +37,8 @@ from wedgesweep.extended.mode import (
 # A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
 # end cannot go back and forth between both at one instant.
 OVERLAP = 1e-9
+# Moments after a rest by which the input has moved the bolster, through whatever is between.
+OUTSET = 4
 
 
 @compiled
@@ -97,18 +99,30 @@ def _branch_at(slip, threshold):
 
 
 @compiled
+def _velocity_soon(t, y, mode, p):
+    """Rate of z a few moments after a rest.
+
+    Where a run begins forces balance but for rounding, and the input may have to pass through other states
+    before it moves the bolster.
+    """
+    moment = LOOK_AHEAD / p.omega
+    later, slope = y.copy(), np.empty(SIZE)
+    for i in range(OUTSET):
+        rate(t + (i + 0.5) * moment, later, mode, p, slope)
+        later += moment * slope
+    return later[VELOCITY]
+
+
+@compiled
 def _direction_at(t, y, mode, p):
     """The mode with the direction of z', and whether it is unique."""
     if p.directional_friction_asymmetry == 0.0:
         return closed(t, y, mode, p)
-    if y[VELOCITY] == 0.0:
-        # Where a run begins forces balance but for rounding: what comes next decides.
-        t += LOOK_AHEAD / p.omega
     upward, now, unique = closed(t, y, with_branch(mode, 3, 1, p), p)
-    if y[VELOCITY] > 0.0 or (y[VELOCITY] == 0.0 and now.acceleration > 0.0):
+    if y[VELOCITY] > 0.0 or (y[VELOCITY] == 0.0 and _velocity_soon(t, y, upward, p) > 0.0):
         return upward, now, unique
     downward, now, unique = closed(t, y, with_branch(mode, 3, -1, p), p)
-    if y[VELOCITY] < 0.0 or now.acceleration < 0.0:
+    if y[VELOCITY] < 0.0 or _velocity_soon(t, y, downward, p) < 0.0:
         return downward, now, unique
     return settled(t, y, with_branch(mode, 3, AT_JUMP, p), p)
 
