@@ -8,6 +8,7 @@ import numpy as np
 from wedgesweep.diagnose import gain, next_test, pairs, score, tone, verdict
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.gain import Gain
+from wedgesweep.diagnose.meeting import met
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test import NextTest
 from wedgesweep.diagnose.problem import Problem
@@ -133,7 +134,7 @@ def _exactly(
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
         search.progress(f"exact fit of {' + '.join(finding.best.effects)}")
-        done.append(search.explanation(exact(finding.best.fit)))
+        done.append(search.explanation(exact(met(finding.best.fit))))
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)

@@ -19,7 +19,7 @@ PHASES = 12
 
 def met(fit: Fit) -> Fit:
     """A fit followed on with the phases of a foreign vibration among what is unknown, if that is better."""
-    if not fit.model.toned or not fit.trial.found:
+    if not fit.model.toned or not fit.trial.found or fit.model.meets(fit.trial.point):
         return fit
     again = refine(fit.model, fit.model.trial(_at_best_phases(fit.model, fit.trial.point)))
     return min(fit, again, key=lambda each: each.q)

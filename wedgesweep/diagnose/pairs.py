@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.meeting import met
 from wedgesweep.diagnose.model import Fit, Model, Trial
 from wedgesweep.diagnose.refine import ITERATIONS, refine, restrict
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
@@ -205,6 +204,6 @@ def _finish(search: Search, base: Fit, first: Fit) -> Explanation:
     model = search.model(*effects)
     start = model.start(base, first.x[: model.size])
     start = replace(start, x=np.r_[first.x[: model.size], start.x[model.size :]])
-    fit = met(refine(model, model.trial(start)))
+    fit = refine(model, model.trial(start))
     search.progress(" + ".join(effects))
     return search.explanation(fit)

@@ -155,10 +155,10 @@ class Search:
         return self._each_effect(lambda effect: self.single(effect, base))
 
     def around(self, found: Sequence[Explanation]) -> list[Explanation]:
-        """Explanations, the best first, and the best ones of them without what held up their fits."""
+        """Explanations, the best first; the best ones of them around what held up their fits."""
         best = sorted(found, key=penalised)[:DETOURS]
         best = [each for each in best if each.fit.p < LIKELY]
-        again = self.each(lambda each: self.explanation(detour.around(each.fit)), best)
+        again = self.each(lambda each: self.explanation(detour.around(met(each.fit))), best)
         return best_of_each([*again, *found], penalised)
 
     def everywhere(self) -> list[Explanation]:
