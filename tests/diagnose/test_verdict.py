@@ -184,6 +184,7 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
     worse = explained(900.0, "stribeck").fit
     monkeypatch.setattr(diagnosis, "exact", lambda fit: worse if fit is first.fit else fit)
+    monkeypatch.setattr(diagnosis, "met", lambda fit: fit)
     search = SimpleNamespace(progress=lambda step: None, explanation=lambda fit: Explanation(fit, PRICE))
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
