@@ -21,7 +21,9 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 # Penalised misfits closer than this cannot be told apart.
 GAP = 10.0
 # Least probability of the misfit that an explanation leaves: to be named, and to be an explanation at all.
-ADEQUATE, POSSIBLE = 0.01, 1e-4
+ADEQUATE, POSSIBLE = 0.01, 1e-3
+# And of that which the base model leaves, or an explanation in the few tests that show most.
+TOLERABLE = 1e-4
 # Share of the base model's excess whose tests a cause must explain for themselves.
 SHOWN = 0.9
 # Excess chi-squared of the base model that it takes to name a cause.
@@ -97,13 +99,13 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     """Weigh the base model against everything that was fitted."""
     order = ranked(explanations, thresholds.gap)
     if not order or order[0].penalised >= base.penalised - thresholds.least_gain:
-        if base.fit.p >= POSSIBLE:
+        if base.fit.p >= TOLERABLE:
             return Finding(NOTHING, None, ())
         return Finding(_nobody(base), order[0] if order else None, ())
     best = order[0]
     left = _left(base, best)
     # Where little shows, noise has a part in where: those tests hold more of it than others.
-    if (left if base.fit.excess >= STRONG else best.fit.p) < POSSIBLE:
+    if best.fit.p < POSSIBLE or (left < TOLERABLE and base.fit.excess >= STRONG):
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
     # What others can imitate may be none of them: then the closest one is only that.
@@ -160,7 +162,7 @@ def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[floa
     """
     if finding.cause is None or interval is None or interval[0] >= 0.0:
         return finding
-    if base.fit.p >= POSSIBLE:
+    if base.fit.p >= TOLERABLE:
         return Finding(NOTHING, None, ())
     if _left(base, finding.cause) < ADEQUATE:
         return Finding(_nobody(base), finding.best, finding.rivals)
