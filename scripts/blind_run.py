@@ -169,7 +169,7 @@ def _synthesize(one: BlindSet, draft: Draft, plan: list[dict[str, Any]], directo
             plan[i]["amplitude_mm"] = round(RAISE * plan[i]["amplitude_mm"], 6)
             draft.tests[i] = draft.tests[i]._replace(amplitude_mm=plan[i]["amplitude_mm"])
         write(directory / DRAFT, asdict(draft))
-    message = f"{one.name}: with {RAISES} times more input, still {said}"
+    message = f"{one.name}: even with its input raised {RAISES} times: {said}"
     raise Failed(message)
 
 
