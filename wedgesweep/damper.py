@@ -6,6 +6,7 @@ positive, z_rest its frictionless equilibrium) and its rate. With both contacts 
 s = r z along the column and slips at r z' on the column face and at q z' on the bolster face.
 """
 
+from collections.abc import Callable
 from math import cos, sin, sqrt
 from typing import NamedTuple
 
@@ -15,13 +16,8 @@ from wedgesweep.effects import guide_friction
 
 # Code of the law whose coefficient grows without bound if its exponent is positive.
 EXPONENTIAL = friction.LAW_NAMES.index("exponential")
-# Fields of effects for which ``_never_locks`` has no proof.
-UNPROVED = (
-    "ageing_rate",
-    "load_dependent_friction_exponent",
-    "column_compliance_stiffness",
-    "fixture_resonance_frequency",
-)
+# Fields of effects for which ``never_locks`` has no proof: no bound is known for their friction.
+UNPROVED = ("ageing_rate", "load_dependent_friction_exponent")
 
 
 class Contact(NamedTuple):
@@ -55,7 +51,7 @@ def prepare(p) -> None:
     p["sin_included"], p["cos_included"] = sin(included), cos(included)
     p["column_ratio"] = p["sin_wedge"] / p["sin_included"]
     p["bolster_ratio"] = -p["sin_column"] / p["sin_included"]
-    p["never_locks"] = _never_locks(p)
+    p["never_locks"] = never_locks(determinant, p)
     p["rest"] = p["column_rest"] = 0.0
     p["rest"] = -frictionless(0.0, 0.0, p).acceleration / frictionless_stiffness(p)
 
@@ -80,8 +76,11 @@ def reactions(along, into, vertical, column_mu, bolster_mu, p):
     return Forces((vertical + 2.0 * bolster * lift) / p.bolster_mass, into + bolster * normal, bolster)
 
 
-def _never_locks(p) -> bool:
+def never_locks(determinant: Callable, p) -> bool:
     """Whether every load has exactly one pair of normal forces, at any slip velocity.
+
+    ``determinant`` of Newton's equations, a function of both signed coefficients and p, positive
+    without friction.
 
     Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one
     if and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They
@@ -91,8 +90,6 @@ def _never_locks(p) -> bool:
         return False
     most = p["dynamic"] if p["set_valued"] else max(p["dynamic"], p["static"])
     if p["extended"]:
-        # No bound is known for friction that grows with time at rest or with load, nor are the
-        # determinants of more degrees of freedom.
         if any(p[name] != 0.0 for name in UNPROVED):
             return False
         most = max(p["dynamic"], p["static"] + p["stribeck_peak"])

@@ -1,6 +1,7 @@
 """A number of the configuration: its TOML key with the unit in it, default, range and meaning."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, pi
 
 # Longest suffix first, so that "_N_per_mm" is not read as "_mm".
@@ -47,7 +48,7 @@ class Quantity:
         """The number of an absent effect, in the key's unit."""
         return self.default if self.off is None else self.off
 
-    @property
+    @cached_property
     def suffix(self) -> str:
         return next((suffix for suffix in SI_FACTORS if self.key.endswith(suffix)), "")
 

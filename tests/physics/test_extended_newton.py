@@ -10,6 +10,7 @@ from tests.physics.effect_cases import EXTENDING, residual, typical
 from wedgesweep import damper, parameters
 from wedgesweep.extended import rest, switching
 from wedgesweep.extended.jumps import settled
+from wedgesweep.extended.mechanics import Loads, loaded_reactions, reactions
 from wedgesweep.extended.mode import AGE, BRISTLE, SIZE, VELOCITY
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, radau
@@ -94,6 +95,45 @@ def test_without_effects_the_extended_system_is_the_base_model(law):
         assert slope[VELOCITY] == pytest.approx(expected.acceleration, rel=1e-12)
         assert now.column == pytest.approx(expected.column, rel=1e-9)
         assert now.bolster == pytest.approx(expected.bolster, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["column_compliance", "fixture_resonance"])
+@pytest.mark.parametrize("most", [0.3, 1.2])
+def test_a_wedge_that_is_proved_never_to_lock_has_one_pair_of_normal_forces_in_any_state(name, most):
+    generator = np.random.default_rng(5)
+    locked = {0.0: [], 1.0: []}
+    for place in generator.uniform(0.05, 0.95, 30):
+        friction = {"dynamic": generator.uniform(0.0, most), "static": generator.uniform(0.0, most)}
+        record = parameters.record(
+            "static-dynamic", 1e-4, OMEGA_N, friction=friction, effects={name: typical(name, place)}
+        )
+        proved = float(record["never_locks"][0])
+        record["never_locks"] = 0.0
+        p = record[0]
+        for _ in range(40):
+            _, unique = switching.initial(generator.uniform(0, 3), random_state(p, generator), p)
+            locked[proved].append(not unique)
+    assert locked[1.0]
+    assert not any(locked[1.0])
+    assert most < 1.0 or any(locked[0.0])
+
+
+@pytest.mark.parametrize("exponent", [-0.5, 0.1, 1 / 3, 0.6, 0.9])
+def test_normal_forces_under_friction_that_depends_on_them_are_found(exponent):
+    """From forces that solve the linear equations follow coefficients under which they are the answer."""
+    generator = np.random.default_rng(6)
+    effects = {"load_dependent_friction": {"exponent": exponent, "reference": 100.0}}
+    p = parameters.record("exponential", 1e-4, OMEGA_N, effects=effects)[0]
+    found = []
+    while len(found) < 300:
+        load = Loads(*generator.normal(size=6) * [60.0, 60.0, 200.0, 0.0, 0.0, 15.0])
+        mu = generator.uniform(-0.3, 0.3, 2)
+        expected, _ = reactions(load, *mu, 0.0, 0.0, p)
+        forces = np.array([expected.column, expected.bolster])
+        now, _ = loaded_reactions(load, *mu * (np.abs(forces) / 100.0) ** exponent, p)
+        found.append(np.allclose([now.column, now.bolster], forces, rtol=1e-8))
+    # Others are as good an answer: two pairs of forces, or signs under which no pair is the only one.
+    assert np.mean(found) > 0.97
 
 
 @pytest.mark.parametrize("name", EXTENDING)

@@ -21,8 +21,9 @@ from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penali
 
 # Single fits beside which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
-# Rounds of improvement on some of the tests: iterations of all pairs, then of so many; then all tests.
-FIRST_ROUND, SECOND_ROUND, ENTERING = 3, 5, 40
+# Iterations of the rounds of improvement on some of the tests; then all tests. So many pairs enter the last
+# round, or the second where one nearly will do by then: its misfit is this many times noise at the most.
+ROUNDS, ENTERING, NEARLY = (1, 2, 5), 40, 2.0
 GOING_ON = 8
 # Where one pair will do, others with this many times its misfit go no further; a few always do. A start is
 # that far behind the fit beside which it is, too.
@@ -100,8 +101,11 @@ def _followed(
     jobs = [(first, other) for first, other in beside if len(other.x)]
     begun = search.each(lambda job: _begin(search, job[0], job[1], apart), jobs)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.q)]
-    fits = _further(search, fits if apart else _best_of_pairs(fits), FIRST_ROUND)
-    fits = _further(search, fits if apart else _hopeful(fits)[:ENTERING], SECOND_ROUND)
+    fits = _further(search, fits if apart else _best_of_pairs(fits), ROUNDS[0])
+    if any(fit.q < NEARLY * fit.dof for fit in fits):
+        fits = _best_of_pairs(fits)[:ENTERING]
+    fits = _further(search, fits, ROUNDS[1])
+    fits = _further(search, fits if apart else _hopeful(fits)[:ENTERING], ROUNDS[2])
     found = search.each(lambda fit: _finish(search, base, fit), _hopeful(fits)[:going_on])
     return search.around(found)
 

@@ -28,8 +28,10 @@ from wedgesweep.extended.mode import (
     with_signs,
 )
 
-# Newton's method for coefficients that depend on the load.
-LOAD_ITERATIONS, LOAD_TOLERANCE, LEAST_LOAD = 25, 1e-14, 1e-200
+# Newton's method for coefficients that depend on the load. As its error is squared at each step, a change of
+# both normal forces by this share is the last one that shows. Next to lift-off a force is rounding, and never
+# settles: then one that stays as small as this share of both will do.
+LOAD_ITERATIONS, LAST_CHANGE, NEXT_TO_NOTHING, LEAST_LOAD = 40, 1e-7, 1e-11, 1e-30
 
 
 class Forces(NamedTuple):
@@ -121,41 +123,36 @@ def reactions(load, column_mu, bolster_mu, column_tau, bolster_tau, p):
 
 
 @inlined
-def _power(load, p):
-    """(|N|/reference)^(-exponent), and the load itself kept off zero."""
-    load = max(load, LEAST_LOAD)
-    return load, (load / p.load_dependent_friction_reference) ** (-p.load_dependent_friction_exponent)
+def _secant(mu, normal, p):
+    """T/N of a face at a normal force of either sign, which is kept off zero."""
+    load = max(abs(normal), LEAST_LOAD)
+    return mu * (load / p.load_dependent_friction_reference) ** (-p.load_dependent_friction_exponent)
 
 
 @compiled
-def loaded_reactions(load, column_mu, bolster_mu, column_sign, bolster_sign, p):
-    """``reactions`` with coefficients that depend on the load: Newton's method for given signs of N.
+def loaded_reactions(load, column_mu, bolster_mu, p):
+    """``reactions`` with coefficients that depend on the load, by Newton's method.
 
-    NaN, and a determinant of 0, where it does not converge.
+    The coefficients carry the signs of their normal forces. NaN, and a determinant of 0, where it does not
+    converge.
     """
     now, determinant = reactions(load, 0.0, 0.0, 0.0, 0.0, p)
     exponent = p.load_dependent_friction_exponent
-    for iteration in range(LOAD_ITERATIONS):
-        column, column_factor = _power(column_sign * now.column, p)
-        bolster, bolster_factor = _power(bolster_sign * now.bolster, p)
-        column_force, bolster_force = (
-            column_mu * column_factor * column,
-            bolster_mu * bolster_factor * bolster,
-        )
+    for _ in range(LOAD_ITERATIONS):
+        column, bolster = _secant(column_mu, now.column, p), _secant(bolster_mu, now.bolster, p)
         following, determinant = reactions(
             load,
-            (1.0 - exponent) * column_sign * column_mu * column_factor,
-            (1.0 - exponent) * bolster_sign * bolster_mu * bolster_factor,
-            exponent * column_force,
-            exponent * bolster_force,
+            (1.0 - exponent) * column,
+            (1.0 - exponent) * bolster,
+            exponent * column * now.column,
+            exponent * bolster * now.bolster,
             p,
         )
-        change = abs(following.column - now.column) + abs(following.bolster - now.bolster)
+        of_column, of_bolster = abs(following.column - now.column), abs(following.bolster - now.bolster)
         now = following
-        size = abs(now.column) + abs(now.bolster)
-        if iteration > 0 and change <= LOAD_TOLERANCE * size:
+        if of_column <= LAST_CHANGE * abs(now.column) and of_bolster <= LAST_CHANGE * abs(now.bolster):
             return now, determinant
-    if change <= 1e3 * LOAD_TOLERANCE * size:
+    if of_column + of_bolster <= NEXT_TO_NOTHING * (abs(now.column) + abs(now.bolster)):
         return now, determinant
     return Forces(nan, nan, nan, nan, nan), 0.0
 
@@ -163,9 +160,10 @@ def loaded_reactions(load, column_mu, bolster_mu, column_sign, bolster_sign, p):
 @inlined
 def signed(load, column_mu, bolster_mu, column_sign, bolster_sign, p):
     """Forces, and the determinant, for given signs of the normal forces."""
+    column_mu, bolster_mu = column_sign * column_mu, bolster_sign * bolster_mu
     if p.load_dependent_friction_exponent != 0.0:
-        return loaded_reactions(load, column_mu, bolster_mu, column_sign, bolster_sign, p)
-    return reactions(load, column_sign * column_mu, bolster_sign * bolster_mu, 0.0, 0.0, p)
+        return loaded_reactions(load, column_mu, bolster_mu, p)
+    return reactions(load, column_mu, bolster_mu, 0.0, 0.0, p)
 
 
 @compiled

@@ -4,6 +4,7 @@ from math import nan, pi, sqrt
 
 import numpy as np
 
+from wedgesweep import damper
 from wedgesweep.compiled import compiled
 from wedgesweep.extended.mechanics import Loads, reactions
 
@@ -26,6 +27,14 @@ def prepare(p) -> None:
     p["fixture_damping"] = 2.0 * p["fixture_resonance_damping_ratio"] * p["side_frame_mass"] * natural
     if p["cubic_stiffness_coefficient"] != 0.0 or stiffness > 0.0:
         p["rest"], p["column_rest"] = _static_place(p)
+    p["never_locks"] = damper.never_locks(_determinant, p)
+
+
+@compiled
+def _determinant(column_mu, bolster_mu, p):
+    """As ``damper.determinant``, with the degrees of freedom of columns and side frame."""
+    unloaded = Loads(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return -reactions(unloaded, column_mu, bolster_mu, 0.0, 0.0, p)[1]
 
 
 @compiled

@@ -4,7 +4,7 @@ It follows one mode while all ``switches`` are positive; when one reaches zero i
 ``successor`` and goes on from there.
 """
 
-from math import hypot, inf
+from math import hypot, inf, nan
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from wedgesweep.contact import AT_JUMP, LOOK_AHEAD, ROUNDING
 from wedgesweep.excitation import table_acceleration
 from wedgesweep.extended.faces import bolster_slip, column_slip, cross_velocity, sliding
 from wedgesweep.extended.jumps import WIDTH, acting, blend, settled, slip_rate
-from wedgesweep.extended.mechanics import closed, riding, write_rate
+from wedgesweep.extended.mechanics import Forces, closed, forces, riding, write_rate
 from wedgesweep.extended.mode import (
     AGE,
     AXES,
@@ -39,6 +39,7 @@ from wedgesweep.extended.mode import (
 OVERLAP = 1e-9
 # Moments after a rest by which the input has moved the bolster, through whatever is between.
 OUTSET = 4
+NOT_ASKED = Forces(nan, nan, nan, nan, nan)
 
 
 @compiled
@@ -217,6 +218,15 @@ def switches(t, y, mode, p, out):
     Units are m/s for slip velocities, m for the end stops, N for normal forces, m/s^2 for what is held
     or stuck; a switch that the mode does not have is inf.
     """
+    if stuck(mode, p) or held(mode):
+        switches_under(NOT_ASKED, t, y, mode, p, out)
+    else:
+        switches_under(forces(t, y, mode, p), t, y, mode, p, out)
+
+
+@compiled
+def switches_under(now, t, y, mode, p, out):
+    """``switches`` where the forces are known (of a mode that holds or sticks they are not asked for)."""
     out[:] = inf
     if stuck(mode, p):
         out[COLUMN] = breakaway(t, y, -1, mode.stop, p)[0]
@@ -226,7 +236,6 @@ def switches(t, y, mode, p, out):
     if held(mode):
         _held_switches(t, y, mode, p, out)
     else:
-        now = acting(t, y, mode, p)
         out[COLUMN_NORMAL] = mode.column_sign * now.column
         out[BOLSTER_NORMAL] = mode.bolster_sign * now.bolster
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inlined
 from wedgesweep.extended.mode import SIZE, SWITCHES
 from wedgesweep.extended.switching import rate
 from wedgesweep.solvers.step_error import over_tolerance
@@ -37,6 +37,9 @@ DENSE = np.array(
         69997945 / 29380423,
     ]
 )
+
+
+NOTHING = np.zeros(SIZE)
 
 
 class Room(NamedTuple):
@@ -74,22 +77,30 @@ def room(rtol: float) -> Room:
 
 @compiled
 def step(t, h, y, mode, p, room):
-    """One step from y, whose rate is ``room.stages[0]``, to ``room.end``; the error over the tolerance."""
-    stages, trial = room.stages, room.trial
+    """One step from y, whose rate is ``room.stages[0]``, to ``room.end``.
+
+    Returns the error over the tolerance, and the forces at the end.
+    """
+    stages, trial, end = room.stages, room.trial, room.end
     room.counts[0] += STAGES - 1
-    for stage in range(1, STAGES):
-        target = room.end if stage == STAGES - 1 else trial
+    for stage in range(1, STAGES - 1):
+        _combine(h, MATRIX[stage], stage, y, stages, trial)
+        rate(t + TIMES[stage] * h, trial, mode, p, stages[stage])
+    _combine(h, MATRIX[STAGES - 1], STAGES - 1, y, stages, end)
+    forces = rate(t + h, end, mode, p, stages[STAGES - 1])
+    _combine(h, ERROR, STAGES, NOTHING, stages, trial)
+    return over_tolerance(trial, y, end, room.rtol, p), forces
+
+
+@inlined
+def _combine(h, weights, count, y, stages, out):
+    """Write y + h times the weighted sum of the first ``count`` stages."""
+    for i in range(SIZE):
+        out[i] = y[i]
+    for j in range(count):
+        weight = h * weights[j]
         for i in range(SIZE):
-            change = 0.0
-            for j in range(stage):
-                change += MATRIX[stage, j] * stages[j, i]
-            target[i] = y[i] + h * change
-        rate(t + TIMES[stage] * h, target, mode, p, stages[stage])
-    trial[:] = 0.0
-    for j in range(STAGES):
-        for i in range(SIZE):
-            trial[i] += h * ERROR[j] * stages[j, i]
-    return over_tolerance(trial, y, room.end, room.rtol, p)
+            out[i] += weight * stages[j, i]
 
 
 @compiled
@@ -108,11 +119,7 @@ def connect_cubic(h, y, room):
 def connect(h, y, room):
     """Prepare ``inside`` for the step from y that was just made."""
     connect_cubic(h, y, room)
-    for i in range(SIZE):
-        last = 0.0
-        for j in range(STAGES):
-            last += DENSE[j] * room.stages[j, i]
-        room.dense[4, i] = h * last
+    _combine(h, DENSE, STAGES, NOTHING, room.stages, room.dense[4])
 
 
 @compiled

@@ -9,7 +9,7 @@ from math import inf, pi
 from wedgesweep.compiled import compiled
 from wedgesweep.excitation import fastest
 from wedgesweep.extended.mode import SIZE, SWITCHES, stuck
-from wedgesweep.extended.switching import one_switch, rate, switches, unique
+from wedgesweep.extended.switching import one_switch, rate, switches, switches_under, unique
 from wedgesweep.solvers import dormand_prince, rosenbrock
 from wedgesweep.solvers.dormand_prince import connect, inside
 from wedgesweep.solvers.extended_recorder import keep
@@ -98,10 +98,10 @@ def _may_dip(before, now, following):
 
 
 @compiled
-def first_switch(t, h, mode, last_switch, p, room):
-    """Share and place of the first switch of a step; (1, -1) if there is none."""
+def first_switch(t, h, mode, last_switch, forces, p, room):
+    """Share and place of the first switch of a step, ``forces`` at its end; (1, -1) if there is none."""
     switches(t + 0.5 * h, inside(0.5, room), mode, p, room.at_middle)
-    switches(t + h, room.end, mode, p, room.at_end)
+    switches_under(forces, t + h, room.end, mode, p, room.at_end)
     earliest, first = 1.0, -1
     for place in range(SWITCHES):
         start, middle, end = room.at_start[place], room.at_middle[place], room.at_end[place]
@@ -125,13 +125,13 @@ def first_switch(t, h, mode, last_switch, p, room):
 
 @compiled
 def _step(t, h, y, mode, implicit, p, room):
-    """A step with its dense output; the error over the tolerance."""
+    """A step with its dense output; the error over the tolerance, and the forces at the end."""
     if implicit:
         return rosenbrock.step(t, h, y, mode, p, room)
-    error = dormand_prince.step(t, h, y, mode, p, room)
+    error, forces = dormand_prince.step(t, h, y, mode, p, room)
     if error <= 1.0:
         connect(h, y, room)
-    return error
+    return error, forces
 
 
 @compiled
@@ -141,8 +141,8 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
     Returns time, the switch (-1: none, LOCKED, FAILED) and the step to go on with.
     """
     longest = 2.0 * pi / (fastest(p) * LEAST_STUCK if stuck(mode, p) else fastest(p) * LEAST)
-    rate(t, y, mode, p, room.stages[0])
-    switches(t, y, mode, p, room.at_start)
+    forces = rate(t, y, mode, p, room.stages[0])
+    switches_under(forces, t, y, mode, p, room.at_start)
     most = room.counts[1] + MOST_STEPS
     implicit = rosenbrock.stiff(mode, p)
     if implicit and last_switch >= 0:
@@ -151,7 +151,7 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
         exponent = -0.25 if implicit else -0.2
         h = min(h, longest)
         taken = min(h, stop - t)
-        error = _step(t, taken, y, mode, implicit, p, room)
+        error, forces = _step(t, taken, y, mode, implicit, p, room)
         if not error <= 1.0:
             h = taken * max(SHRINK, SAFETY * error**exponent) if error < inf else taken * SHRINK
             if h < SHORTEST * longest:
@@ -160,7 +160,7 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
         room.counts[1] += 1
         if room.counts[1] > most:
             return t, FAILED, h
-        share, place = first_switch(t, taken, mode, last_switch, p, room)
+        share, place = first_switch(t, taken, mode, last_switch, forces, p, room)
         if keeping:
             keep(t, taken, share, mode, recorder, p, room)
         if place >= 0:

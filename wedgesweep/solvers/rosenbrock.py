@@ -11,7 +11,7 @@ import numpy as np
 from wedgesweep.compiled import compiled
 from wedgesweep.extended.faces import bolster_slip, column_slip
 from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY, in_use, unit
-from wedgesweep.extended.switching import rate
+from wedgesweep.extended.switching import NOT_ASKED, rate
 from wedgesweep.solvers.dormand_prince import connect_cubic
 from wedgesweep.solvers.step_error import over_tolerance
 
@@ -152,15 +152,16 @@ def _inverse(by_state, places, h):
 
 @compiled
 def step(t, h, y, mode, p, room):
-    """One step from y, whose rate is ``room.stages[0]``, to ``room.end``; the error over the tolerance.
+    """One step from y, whose rate is ``room.stages[0]``, to ``room.end``.
 
+    Returns the error over the tolerance, and the forces at the end (NOT_ASKED of a step that failed).
     Leaves the dense output and, as ``room.stages[-1]``, the rate at the end, as dormand_prince does.
     """
     places = np.flatnonzero(in_use(p))
     room.counts[0] += STAGES + places.size + 1
     by_state, by_time = _derivatives(t, y, places, mode, p, room)
     if h * _growth(by_state) > LARGEST_GROWTH:
-        return inf
+        return inf, NOT_ASKED
     inverse = _inverse(by_state, places, h)
     increments, slope, right = np.zeros((STAGES, SIZE)), np.empty(SIZE), np.empty(places.size)
     end = room.end
@@ -182,15 +183,15 @@ def step(t, h, y, mode, p, room):
             for j in range(places.size):
                 increments[stage, places[i]] += inverse[i, j] * right[j]
             if not isfinite(increments[stage, places[i]]):
-                return inf
+                return inf, NOT_ASKED
     for i in range(SIZE):
         end[i] += increments[STAGES - 1, i]
-    rate(t + h, end, mode, p, room.stages[-1])
+    forces = rate(t + h, end, mode, p, room.stages[-1])
     # RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9.
     connect_cubic(h, y, room)
     error = increments[STAGES - 1]
     rtol = TIGHTER * room.rtol
-    return max(over_tolerance(error, y, end, rtol, p), _off_ramp(error, mode, rtol, p))
+    return max(over_tolerance(error, y, end, rtol, p), _off_ramp(error, mode, rtol, p)), forces
 
 
 @compiled
