@@ -1,0 +1,170 @@
+"""diagnosis.nc: harmonics and waveforms, measured and simulated, for the figures (SI units)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import __version__
+from wedgesweep.diagnose import waveforms
+from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.problem import Problem
+
+CHANNELS = ("displacement", "velocity")
+# Dimensions, values, unit and meaning of a variable.
+Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
+BY_TEST, BY_MODEL = ("test",), ("model", "test")
+PARTS = ("harmonic", "part")
+
+
+class Shown(NamedTuple):
+    """What is shown of a diagnosis; harmonics are complex, from phase 0 of the input.
+
+    ``fits``: base and extended model; ``measured`` (T, C, H), ``simulated`` (2, T, C, H), ``sampled`` (T, C)
+    noise of a sample, NaN where a test does not have the channel.
+    """
+
+    problem: Problem
+    fits: tuple[Fit, Fit]
+    measured: np.ndarray
+    simulated: np.ndarray
+    sampled: np.ndarray
+
+
+def dataset(found: Diagnosis) -> xr.Dataset:
+    """Everything that a figure or a notebook wants to draw of a diagnosis."""
+    problem = found.problem
+    shown = _shown(found)
+    variables = {
+        **_spectra(shown),
+        **_waveforms(shown),
+        **_inputs(shown),
+        **_energies(shown),
+        **_plateaus(shown),
+        **_misfit(shown),
+    }
+    data = {
+        name: (dims, values, {"units": unit, "long_name": meaning})
+        for name, (dims, values, unit, meaning) in variables.items()
+    }
+    coordinates = {
+        "test": list(problem.names),
+        "model": ["base", "extended"],
+        "channel": list(CHANNELS[: problem.shape[0]]),
+        "harmonic": np.arange(1, problem.shape[1] + 1),
+        "part": ["real", "imaginary"],
+        "phase": np.arange(waveforms.PHASES) / waveforms.PHASES,
+    }
+    attributes = {
+        "title": found.measurement.title,
+        "verdict": found.finding.verdict,
+        "law": problem.law,
+        "wedgesweep_version": __version__,
+    }
+    return xr.Dataset(data, coordinates, attributes)
+
+
+def _shown(found: Diagnosis) -> Shown:
+    problem, fits = found.problem, (found.base.fit, found.extended)
+    sampled = np.full((problem.tests, problem.shape[0]), np.nan)
+    for row, spectrum in zip(sampled, problem.spectra, strict=True):
+        row[: spectrum.sample_noise.size] = spectrum.sample_noise
+    simulated = np.array([fit.trial.harmonics for fit in fits])[..., : problem.shape[1]]
+    return Shown(problem, fits, waveforms.measured_from_phase_zero(fits[1]), simulated, sampled)
+
+
+def _where_measured(shown: Shown, values: np.ndarray) -> np.ndarray:
+    """Values (T, C, ...) with NaN for channels that a test does not have: they were nowhere near zero."""
+    return np.where(np.isnan(shown.sampled)[..., None], np.nan, values)
+
+
+def _spectra(shown: Shown) -> Variables:
+    weight = shown.problem.weight[..., : shown.problem.shape[1]]
+    noise = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), np.nan)
+    measured = _parts(_where_measured(shown, shown.measured))
+    simulated = _parts(shown.simulated)
+    return {
+        "measured_harmonics": (("test", "channel", *PARTS), measured, "m or m/s", "measured harmonics"),
+        "noise_std": (
+            ("test", "channel", "harmonic"),
+            noise,
+            "m or m/s",
+            "noise of a real part of a harmonic",
+        ),
+        "simulated_harmonics": ((*BY_MODEL, "channel", *PARTS), simulated, "m or m/s", "simulated harmonics"),
+    }
+
+
+def _waveforms(shown: Shown) -> Variables:
+    measured, simulated = waveforms.waveform(shown.measured), waveforms.waveform(shown.simulated)
+    measured = _where_measured(shown, measured)
+    one_period = ("channel", "phase")
+    return {
+        "measured_waveform": (("test", *one_period), measured, "m or m/s", "measured over one period"),
+        "simulated_waveform": ((*BY_MODEL, *one_period), simulated, "m or m/s", "simulated over one period"),
+        "waveform_noise": (("test", "channel"), shown.sampled, "m or m/s", "noise of one sample"),
+        "measured_peak_to_peak": (
+            BY_TEST,
+            waveforms.peak_to_peak(measured[:, 0]),
+            "m",
+            "measured peak to peak",
+        ),
+        "simulated_peak_to_peak": (
+            BY_MODEL,
+            waveforms.peak_to_peak(simulated[:, :, 0]),
+            "m",
+            "simulated peak to peak",
+        ),
+    }
+
+
+def _inputs(shown: Shown) -> Variables:
+    problem, fitted = shown.problem, np.array([fit.amplitudes() for fit in shown.fits])
+    return {
+        "frequency": (BY_TEST, problem.omega / (2.0 * np.pi), "Hz", "input frequency"),
+        "amplitude": (BY_TEST, problem.amplitude, "m", "input amplitude as stated"),
+        "amplitude_fitted": (BY_MODEL, fitted, "m", "input amplitude as fitted"),
+    }
+
+
+def _energies(shown: Shown) -> Variables:
+    known = ~np.isnan(shown.problem.amplitude)
+    measured = np.where(known, waveforms.supplied(shown.fits[1], shown.measured[:, 0, 0]), np.nan)
+    simulated = np.array([waveforms.supplied(fit, fit.trial.harmonics[:, 0, 0]) for fit in shown.fits])
+    meaning = "energy that the base puts in per period"
+    return {
+        "measured_energy": (BY_TEST, measured, "J", f"{meaning}, measured"),
+        "simulated_energy": (BY_MODEL, simulated, "J", f"{meaning}, simulated"),
+    }
+
+
+def _plateaus(shown: Shown) -> Variables:
+    measured, *simulated = (
+        waveforms.plateau(waveforms.waveform(waveforms.velocity(shown.problem, each)))
+        for each in (shown.measured, *shown.simulated)
+    )
+    meaning = "share of the period near rest"
+    return {
+        "measured_plateau": (BY_TEST, measured, "1", f"{meaning}, measured"),
+        "simulated_plateau": (BY_MODEL, np.array(simulated), "1", f"{meaning}, simulated"),
+    }
+
+
+def _misfit(shown: Shown) -> Variables:
+    base = shown.fits[0]
+    force = waveforms.leftover_force(base, waveforms.measured_from_phase_zero(base))
+    return {
+        "leftover_force": (("test", "phase"), force, "N", "force on the bolster that the base model lacks"),
+        "q": (
+            BY_MODEL,
+            np.array([fit.trial.by_test for fit in shown.fits]),
+            "1",
+            "squared misfit over noise",
+        ),
+        "dof": (BY_TEST, shown.problem.dof, "1", "degrees of freedom"),
+    }
+
+
+def _parts(values: np.ndarray) -> np.ndarray:
+    return np.stack([values.real, values.imag], axis=-1)

@@ -1,0 +1,181 @@
+"""The content of diagnosis.json, as DIAGNOSIS.md has it."""
+
+from datetime import UTC, datetime
+from math import isfinite, log
+from typing import Any
+
+import numpy as np
+
+from wedgesweep import __version__
+from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.gain import Gain
+from wedgesweep.diagnose.next_test import ENOUGH, NextTest
+from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
+from wedgesweep.diagnose.score import Score
+from wedgesweep.diagnose.search import PENALTY, Explanation
+from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
+from wedgesweep.effects import EFFECTS
+
+
+def document(found: Diagnosis) -> dict[str, Any]:
+    """The content of diagnosis.json."""
+    finding, problem = found.finding, found.problem
+    best = finding.best or found.base
+    return {
+        "verdict": finding.verdict,
+        "causes": _causes(finding.cause),
+        "rivals": [
+            {"effects": list(each.effects), "gap": finite(each.penalised - best.penalised)}
+            for each in finding.rivals
+        ],
+        "misfit": _misfit(found, best),
+        "gain": _gain(found.gain),
+        "detectable": {
+            score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
+        },
+        "not_testable": [score.effect for score in found.scores if not score.testable],
+        "next_test": _following(found.next_test),
+        "extended": list(best.effects),
+        "title": found.measurement.title,
+        "model": {"law": problem.law, "title": problem.model.title},
+        "uncertain": uncertain(best.fit),
+        "version": __version__,
+        "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "method": _method(found),
+        "candidates": _candidates(found),
+    }
+
+
+def _causes(each: Explanation | None) -> list[dict[str, Any]]:
+    """The causes of an explanation as DIAGNOSIS.md wants them."""
+    if each is None:
+        return []
+    numbers = parameters(each.fit)
+    return [
+        {
+            "effect": name,
+            "family": EFFECTS[name].family,
+            "branch": EFFECTS[name].branch,
+            "parameters": numbers[name],
+        }
+        for name in each.effects
+    ]
+
+
+def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
+    base = found.base.fit
+    return {
+        "chi2_base": finite(base.q),
+        "chi2_extended": finite(best.fit.q),
+        "dof": base.dof,
+        "dof_extended": best.fit.dof,
+        "excess_base": finite(base.excess),
+        "p_base": finite(base.p),
+        "p_extended": finite(best.fit.p),
+        "p_where_it_shows": finite(where_it_shows(base, best.fit)),
+        "tests": _tests(found),
+    }
+
+
+def _tests(found: Diagnosis) -> list[dict[str, Any]]:
+    problem, base, best = found.problem, found.base.fit, found.extended
+    amplitude = best.amplitudes()
+    rows = []
+    for t, (name, spectrum) in enumerate(zip(problem.names, problem.spectra, strict=True)):
+        noise = spectrum.sample_noise
+        rows.append(
+            {
+                "name": name,
+                "frequency_hz": spectrum.frequency,
+                "amplitude_mm": finite(1e3 * problem.amplitude[t]),
+                "amplitude_fitted_mm": finite(1e3 * amplitude[t]),
+                "periods": spectrum.periods,
+                "noise_displacement_mm": 1e3 * noise[0],
+                "noise_velocity_mm_per_s": 1e3 * noise[1] if noise.size > 1 else None,
+                "q_base": finite(base.trial.by_test[t]),
+                "q_extended": finite(best.trial.by_test[t]),
+                "dof": int(problem.dof[t]),
+            }
+        )
+    return rows
+
+
+def _gain(gain: Gain | None) -> dict[str, Any] | None:
+    if gain is None or not gain.held_out:
+        return None
+    base, extended, noise = np.sqrt(gain.totals())
+    return {
+        "scheme": "leave-one-frequency-out"
+        + (" and leave-one-amplitude-out" if any(h.scheme == "amplitude" for h in gain.held_out) else ""),
+        "rmse_base": finite(base),
+        "rmse_extended": finite(extended),
+        "rmse_noise": finite(noise),
+        "gain": finite(1.0 - extended / base),
+        "excess_removed": finite(gain.excess_removed),
+        "ci95": gain.interval,
+        "held_out": [
+            {
+                "test": each.test,
+                "scheme": each.scheme,
+                "rmse_base": finite(each.rmse(each.base)),
+                "rmse_extended": finite(each.rmse(each.extended)),
+                "rmse_noise": finite(each.rmse(each.noise)),
+            }
+            for each in gain.held_out
+        ],
+    }
+
+
+def _following(following: NextTest | None) -> dict[str, Any] | None:
+    if following is None:
+        return None
+    return {
+        "frequency_hz": following.frequency,
+        "amplitude_mm": 1e3 * following.amplitude,
+        "separates": list(following.separates),
+        "distance": following.distance,
+    }
+
+
+def _method(found: Diagnosis) -> dict[str, Any]:
+    return {
+        "penalty_per_parameter": PENALTY + log(found.problem.points.sum()),
+        "gap": found.thresholds.gap,
+        "enough_distance": ENOUGH,
+        "strong_excess": finite(found.thresholds.strong),
+        "adequate_p": ADEQUATE,
+        "least_gain": found.thresholds.least_gain,
+        "dof": found.base.fit.dof,
+        "harmonics": found.problem.shape[1],
+        "calibrated": found.calibration,
+    }
+
+
+def _candidates(found: Diagnosis) -> list[dict[str, Any]]:
+    scores = {score.effect: score for score in found.scores}
+    rows = []
+    for each in sorted([found.base, *found.explanations], key=lambda one: one.penalised):
+        score = scores.get(each.effects[0]) if len(each.effects) == 1 else None
+        numbers = parameters(each.fit) if isfinite(each.fit.q) else {}
+        rows.append(
+            {
+                "effects": list(each.effects),
+                "q": finite(each.fit.q),
+                "dof": each.fit.dof,
+                "p": finite(each.fit.p),
+                "penalised": finite(each.penalised),
+                "parameters": {
+                    f"{name}.{key}": value for name, own in numbers.items() for key, value in own.items()
+                },
+                "score": None if score is None else finite(score.t2),
+                "retention": None if score is None else finite(score.retention),
+                "status": _status(each, score),
+            }
+        )
+    return rows
+
+
+def _status(each: Explanation, score: Score | None) -> str:
+    if not isfinite(each.fit.q):
+        return "failed"
+    return "not testable" if score is not None and not score.testable else "fitted"

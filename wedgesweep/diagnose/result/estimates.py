@@ -1,0 +1,74 @@
+"""Fitted numbers with their 95 % intervals."""
+
+from math import exp, inf, isfinite, log, sqrt
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.search import TONE_FREQUENCY
+from wedgesweep.effects import EFFECTS
+from wedgesweep.quantity import Quantity
+
+# 95 % of a normal distribution.
+TWO_SIDED = 1.959964
+
+
+def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
+    """Fitted numbers of every effect with their 95 % intervals, in key units.
+
+    Symmetric in the fit's coordinate: a number that is fitted as a logarithm has the interval of that. No
+    interval reaches beyond the range that was searched: of what lies there the fit knows nothing.
+    """
+    hypothesis, size = fit.model.hypothesis, fit.model.size
+    x, covariance = fit.x[:size], fit.covariance[:size, :size]
+    here = hypothesis.in_key_units(x)
+    step = 1e-5 * hypothesis.width
+    moved = [hypothesis.in_key_units(x + step * row) for row in np.eye(size)]
+
+    def estimate(name: str, quantity: Quantity) -> dict[str, Any]:
+        value = here[name][quantity.key]
+        slope = np.array([change(quantity, value, m[name][quantity.key]) for m in moved]) / step
+        std = sqrt(max(float(slope @ covariance @ slope), 0.0))
+        if f"{name}.{quantity.key}" == TONE_FREQUENCY:
+            std = change(quantity, value, value + fit.model.problem.tone_std)
+        ends = interval(quantity, value, TWO_SIDED * std)
+        return {"value": finite(value), "ci95": [finite(end) for end in ends]}
+
+    return {
+        name: {q.key: estimate(name, q) for q in EFFECTS[name].quantities if q.search}
+        for name in hypothesis.effects
+    }
+
+
+def change(quantity: Quantity, value: float, moved: float) -> float:
+    """Change of a number in the coordinate in which it is fitted."""
+    if quantity.logarithmic:
+        return log(moved / value)
+    return quantity.nearest(moved, value) - value
+
+
+def interval(quantity: Quantity, value: float, half: float) -> tuple[float, float]:
+    """Ends of an interval of half a width ``half`` in the coordinate in which a number is fitted."""
+    low, high = quantity.search or (-inf, inf)
+    if quantity.angle:
+        half = min(half, 0.5 * (high - low))
+        return value - half, value + half
+    if quantity.logarithmic:
+        half = min(half, log(high / low))
+        return max(value * exp(-half), low), min(value * exp(half), high)
+    return max(value - half, low), min(value + half, high)
+
+
+def uncertain(fit: Fit) -> dict[str, dict[str, float]]:
+    """Uncertain numbers of the model as fitted."""
+    size = fit.model.size
+    return {
+        name: {"scale": float(value), "std": float(sqrt(max(fit.covariance[size + i, size + i], 0.0)))}
+        for i, (name, value) in enumerate(zip(fit.model.uncertain, fit.x[size:], strict=True))
+    }
+
+
+def finite(value: Any) -> float | None:
+    """A number as JSON takes it."""
+    return float(value) if value is not None and isfinite(value) else None
