@@ -9,9 +9,10 @@ import numpy as np
 
 from wedgesweep import config
 from wedgesweep.diagnose import simulation
+from wedgesweep.diagnose.noise import Smooth
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import Smooth, Spectrum
+from wedgesweep.diagnose.spectra import Spectrum
 from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])

@@ -5,13 +5,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from math import nan, pi, sqrt
+from math import pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from wedgesweep.config import toml
+from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
 
 # What needs numba or scipy is imported late, so that `wedgesweep --help` does not wait for it.
@@ -114,7 +115,7 @@ class Config:
     def with_method(self, method: str) -> "Config":
         """The same config with another solver; raises ConfigError if its settings need the old one."""
         document = self.document | {"solver": self.document["solver"] | {"method": method}}
-        if problems := list(_contradictions(document)):
+        if problems := list(contradictions(document)):
             raise ConfigError([f'solver "{method}": {problem}' for problem in problems])
         return Config(document)
 
@@ -230,7 +231,7 @@ def parse(text: str, source: str = "<config>") -> Config:
         raise ConfigError([f"{source}: not valid TOML: {error}"]) from error
     problems: list[str] = []
     document = ROOT.read(given, "", problems)
-    problems += _contradictions(document)
+    problems += contradictions(document)
     if problems:
         raise ConfigError([f"{source}: {problem}" for problem in problems])
     suspension, sweep = document["suspension"], document["sweep"]
@@ -252,39 +253,6 @@ def template() -> str:
     from wedgesweep.config.declarations import ROOT
 
     return commented.template(ROOT)
-
-
-def _contradictions(document: Mapping[str, Any]) -> Iterable[str]:
-    """Settings that are right each, but cannot run together."""
-    suspension, sweep = document.get("suspension", {}), document.get("sweep", {})
-    wedge, column = (suspension.get(f"{name}_angle_deg", nan) for name in ("wedge", "column"))
-    if wedge + column <= 0.0:
-        yield (
-            f"suspension.column_angle_deg: {column} closes a wedge of {wedge} deg; "
-            "the sum of both angles must be greater than 0"
-        )
-    laws = [
-        *sweep.get("friction_law", ()),
-        *(c.get("friction_law") for c in sweep.get("case", ()) if c),
-    ]
-    friction, solver = document.get("friction", {}), document.get("solver", {})
-    if "settle" in solver and solver.get("method") != "event-driven":
-        yield 'solver.settle: "steady" needs solver.method = "event-driven"; or give settle_periods'
-    if solver.get("continuation") and not (solver.get("method") == "event-driven" and "settle" in solver):
-        yield (
-            "solver.continuation: hands steady states on, which only the event-driven solver finds; "
-            'write method = "event-driven" and settle = "steady"'
-        )
-    if solver.get("continuation") and "case" in sweep:
-        yield (
-            "solver.continuation: a list of cases has no neighbours in beta; "
-            "write [sweep] with lists of frequencies and amplitudes"
-        )
-    if "coulomb" in laws and column == 0.0 and friction.get("dynamic", 0.0) > 0.0:
-        yield (
-            "suspension.column_angle_deg: 0 leaves the bolster face without slip, where coulomb "
-            "does not determine the friction; use friction.dynamic = 0, another law, or a lean"
-        )
 
 
 def _si(quantities: Iterable["Quantity"], given: Mapping[str, float]) -> dict[str, float]:

@@ -2,8 +2,7 @@
 
 A forced response repeats each period, noise does not. One least-squares fit over the whole record gives
 the harmonics, whatever the sampling rate; what is left between them gives the noise near each of them
-(after Pintelon and Schoukens, System Identification, 2012, ch. 4). No noise model is assumed but that its
-spectrum is smooth.
+(after Pintelon and Schoukens, System Identification, 2012, ch. 4).
 """
 
 from dataclasses import dataclass, replace
@@ -13,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import gammaincc
 
+from wedgesweep.diagnose import noise
 from wedgesweep.diagnose.folding import Folding, folding
+from wedgesweep.diagnose.noise import Smooth
 
 # Harmonics that are compared with a simulation, and that are taken out before the noise is measured.
 COMPARED, REMOVED = 16, 40
@@ -23,18 +24,14 @@ FOLDED = 127
 BAND = 0.4
 # The noise is looked at between harmonics, at multiples of this part of the input frequency.
 PARTS = 8
-# Order of the polynomial, in log frequency, that the logarithm of the noise spectrum follows.
-ORDER = 3
-# A line this many times above the smooth noise is something else (odds of 1e-5 in noise).
-FOREIGN = 11.5
+# Two channels whose noise is more coherent than this say the same.
+SAME = 0.98
 # Chance of lines at half multiples of the input frequency in a response that repeats each period.
 DOUBLED = 1e-4
 # Frequencies this many resolutions (one over the record) apart are told apart.
 RESOLVED = 1.2
 # Closer than this a tone is the harmonic; farther off it leaks into all of them, and is taken out.
 MINGLED = 0.05
-# Two channels whose noise is more coherent than this say the same.
-SAME = 0.98
 
 
 @dataclass(frozen=True)
@@ -43,7 +40,7 @@ class Spectrum:
 
     ``mean`` (channels, harmonics), complex: signal = Re sum D_h exp(i h omega t) from the first sample;
     ``variance`` (channels, harmonics): of one such complex number, real and imaginary part together;
-    ``coherence``: of the noise of both channels, complex. ``lines``: noise lines looked at, per channel.
+    ``coherence``: of the noise of both channels, complex; ``level``: its smooth spectrum, per channel.
     ``residual`` (channels, n): what is left of the record. ``tone``: a foreign frequency (Hz) whose complex
     amplitude is the last column of ``mean``. A tone that the record cannot tell from a harmonic has none, and
     that harmonic, ``covered`` (1, 2, ...), says nothing. ``folding``: what harmonics above half the sampling
@@ -58,7 +55,7 @@ class Spectrum:
     variance: np.ndarray
     coherence: complex
     residual: np.ndarray
-    level: tuple["Smooth", ...]
+    level: tuple[Smooth, ...]
     tone: float | None = None
     covered: int | None = None
     folding: Folding | None = None
@@ -100,12 +97,12 @@ class Spectrum:
         """As if a tone had been looked for at a frequency (Hz), and nothing been there but noise."""
         if not self.separates(np.array([frequency]))[0]:
             return self
-        noise = [4.0 / self.samples * level.fair(np.array([frequency])) for level in self.level]
+        variance = [4.0 / self.samples * level.fair(np.array([frequency])) for level in self.level]
         mean = np.concatenate([self.mean, np.zeros((len(self.mean), 1))], axis=1)
         return replace(
             self,
             mean=mean,
-            variance=np.concatenate([self.variance, noise], axis=1),
+            variance=np.concatenate([self.variance, variance], axis=1),
             tone=frequency,
             folding=None,
         )
@@ -189,7 +186,10 @@ def fitted(
     residual = channels - (matrix @ solution).T
     parts = np.arange(1, PARTS * (design.harmonics + 1))
     parts = parts[parts % (PARTS // 2 if doubled else PARTS) > 0]
-    level, coherence = _noise(time, residual, frequency / PARTS, parts)
+    turns = _turns(time, frequency / PARTS, int(parts[-1]))[parts - 1]
+    # Lines closer than the record resolves say in part the same.
+    same = max(1.0, PARTS / (frequency * time[-1]))
+    level, coherence = noise.levels(residual, turns, frequency / PARTS * parts, same)
     if abs(coherence) > SAME:
         mean, residual, level, coherence = mean[:1], residual[:1], level[:1], 0.0j
     at = frequency * np.arange(1, design.harmonics + 1)
@@ -252,82 +252,3 @@ def _design(
     if told:
         places = np.c_[places, [matrix.shape[1] - 2, matrix.shape[1] - 1]]
     return _Design(matrix, places[0], places[1], kept, removed, tone if told else None, covered)
-
-
-def _noise(
-    time: np.ndarray, residual: np.ndarray, spacing: float, parts: np.ndarray
-) -> tuple[tuple["Smooth", ...], complex]:
-    """Smooth noise of each channel from lines at multiples ``parts`` of a ``spacing`` (Hz), and coherence."""
-    turns = _turns(time, spacing, int(parts[-1]))[parts - 1]
-    power, product = _periodograms(residual, turns)
-    lines = spacing * parts
-    # Lines closer than the record resolves say in part the same.
-    same = max(1.0, 1.0 / (spacing * time[-1]))
-    level = tuple(_smooth(lines, each, same) for each in power)
-    return level, _coherence(product, level[0](lines), level[1](lines)) if len(level) == 2 else 0.0j
-
-
-def _periodograms(residual: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Power of each channel (channels, lines) and product of the first two (lines,); ``turns`` (lines, n)."""
-    transform = residual @ turns.conj().T
-    samples = residual.shape[1]
-    return np.abs(transform) ** 2 / samples, transform[-1] * transform[0].conj() / samples
-
-
-class Smooth:
-    """A noise spectrum whose logarithm is a polynomial in the logarithm of frequency.
-
-    ``covariance`` (n, n): of its coefficients, where they are estimates.
-    """
-
-    def __init__(
-        self, coefficients: np.ndarray, reference: float, covariance: np.ndarray | None = None
-    ) -> None:
-        self.coefficients, self.reference = coefficients, reference
-        self.covariance = np.zeros((coefficients.size,) * 2) if covariance is None else covariance
-
-    def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        return np.exp(self._powers(frequency) @ self.coefficients)
-
-    def fair(self, frequency: np.ndarray) -> np.ndarray:
-        """Level by which squares of the same noise are 1 on average.
-
-        One over an estimate is too large on average, by the estimate's relative variance.
-        """
-        powers = self._powers(frequency)
-        return self(frequency) * (1.0 + ((powers @ self.covariance) * powers).sum(axis=-1))
-
-    def _powers(self, frequency: np.ndarray) -> np.ndarray:
-        return np.log(frequency / self.reference)[..., None] ** np.arange(self.coefficients.size)
-
-
-def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> Smooth:
-    """Maximum likelihood for powers that scatter exponentially around a smooth spectrum.
-
-    Lines that stand out are left out and the rest is fitted again. ``same``: lines that say what one does.
-    """
-    reference = float(np.sqrt(lines[0] * lines[-1]))
-    design = np.polynomial.polynomial.polyvander(np.log(lines / reference), ORDER)
-    kept = np.ones(lines.size, bool)
-    tiny = np.finfo(float).tiny
-    coefficients = np.zeros(ORDER + 1)
-    for _ in range(4):
-        coefficients[:] = 0.0
-        coefficients[0] = np.log(power[kept].mean() + tiny)
-        for _ in range(30):
-            ratio = power[kept] / np.exp(design[kept] @ coefficients)
-            change = np.linalg.solve(design[kept].T @ design[kept], design[kept].T @ (ratio - 1.0))
-            coefficients += np.clip(change, -1.0, 1.0)
-            if np.abs(change).max() < 1e-10:
-                break
-        stands_out = power > FOREIGN * np.exp(design @ coefficients)
-        if (kept == ~stands_out).all():
-            break
-        kept = ~stands_out
-    return Smooth(coefficients, reference, same * np.linalg.inv(design[kept].T @ design[kept]))
-
-
-def _coherence(product: np.ndarray, first: np.ndarray, second: np.ndarray) -> complex:
-    """Mean coherence of two channels' noise; 0 where it is no more than chance."""
-    value = complex((product / np.sqrt(first * second)).mean())
-    return value if abs(value) ** 2 * product.size > 9.0 else 0.0j
