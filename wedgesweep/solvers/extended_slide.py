@@ -9,7 +9,8 @@ from math import inf, pi
 from wedgesweep.compiled import compiled
 from wedgesweep.excitation import fastest
 from wedgesweep.extended.mode import SIZE, SWITCHES, stuck
-from wedgesweep.extended.switching import one_switch, rate, switches, switches_under, unique
+from wedgesweep.extended.switches import one_switch, switches, switches_under
+from wedgesweep.extended.switching import rate, unique
 from wedgesweep.solvers import dormand_prince, rosenbrock
 from wedgesweep.solvers.dormand_prince import connect, inside
 from wedgesweep.solvers.extended_recorder import keep

@@ -15,6 +15,7 @@ from wedgesweep.damper import stiffness_and_damping
 from wedgesweep.extended import mode as modes
 from wedgesweep.extended import switching
 from wedgesweep.extended import tally as extended_tally
+from wedgesweep.extended.switches import switches as write_switches
 from wedgesweep.solvers.sticking import release
 from wedgesweep.solvers.trajectory import CaseError
 
@@ -175,7 +176,7 @@ def extended_jacobian(t, y, mode, scale, parameters):
 def extended_switches(t, y, mode, parameters):
     """All switching functions, shape (modes.SWITCHES,)."""
     out = np.empty(modes.SWITCHES)
-    switching.switches(t, y, mode, parameters[0], out)
+    write_switches(t, y, mode, parameters[0], out)
     return out
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from wedgesweep.compiled import compiled
 from wedgesweep.extended.faces import bolster_slip, column_slip
 from wedgesweep.extended.mode import COLUMN_VELOCITY, FRAME_VELOCITY, SIZE, VELOCITY, in_use, unit
-from wedgesweep.extended.switching import NOT_ASKED, rate
+from wedgesweep.extended.switches import NOT_ASKED
+from wedgesweep.extended.switching import rate
 from wedgesweep.solvers.dormand_prince import connect_cubic
 from wedgesweep.solvers.step_error import over_tolerance
 
