@@ -183,13 +183,23 @@ def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
     ("verdict", "rivals", "words"),
     [
         ("consistent-with", ["preload"], "(preload would leave no more than noise, too)"),
-        ("data-insufficient", ["preload", "stribeck"], "cannot show what: 3 explanations will do; next test"),
+        ("data-insufficient", ["preload", "stribeck"], "cannot show what: 2 explanations will do; next test"),
+        ("data-insufficient", ["preload"], "what: preload would leave no more than noise, but so few tests"),
     ],
 )
 def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     document["rivals"] = [{"effects": [effect], "gap": 30.0} for effect in rivals]
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert words in plain(report.sentence(tmp_path))
+
+
+def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=6)
+    document["rivals"] = [{"effects": ["ageing"], "gap": 0.0}]
+    document["gain"] = {"ci95": [-0.1, 0.2], "excess_removed": 0.1}
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    words = "ageing would leave no more than noise, but tests left out of the fit do not confirm it"
     assert words in plain(report.sentence(tmp_path))
 
 

@@ -100,7 +100,9 @@ def test_unconfirmed_weak_evidence_names_nothing():
     base, best, other = explained(5000.0), explained(690.0, "stribeck"), explained(720.0, "preload")
     for found in (verdict_of(explained(1200.0), best), verdict_of(base, best, other)):
         assert found.verdict == "consistent-with"
-        assert on_unseen_tests(found, base, [-0.3, 1.0]).verdict == "data-insufficient"
+        found = on_unseen_tests(found, base, [-0.3, 1.0])
+        assert (found.verdict, found.cause) == ("data-insufficient", None)
+        assert found.alternatives[0] is best
 
 
 def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confirm():
@@ -122,7 +124,7 @@ def test_a_misfit_that_nobody_explains():
     found = verdict_of(
         explained(5000.0), explained(1500.0, "stribeck"), explained(1400.0, "stribeck", "preload")
     )
-    assert (found.verdict, found.cause) == ("none-of-mine", None)
+    assert (found.verdict, found.cause, found.alternatives) == ("none-of-mine", None, ())
 
 
 def test_a_misfit_that_nobody_even_touches():
@@ -132,7 +134,9 @@ def test_a_misfit_that_nobody_even_touches():
 
 def test_many_equal_explanations_say_that_the_data_are_poor():
     others = [explained(705.0 + i, name) for i, name in enumerate("abcdef")]
-    assert verdict_of(explained(5000.0), *others).verdict == "data-insufficient"
+    found = verdict_of(explained(5000.0), *others)
+    assert found.verdict == "data-insufficient"
+    assert found.alternatives == tuple(others)
 
 
 def test_two_tests_name_nothing():

@@ -66,6 +66,14 @@ class Finding:
         """What is reported as the cause; None where the verdict abstains."""
         return self.best if self.verdict in (NAMED, CONSISTENT, TIED) else None
 
+    @property
+    def alternatives(self) -> tuple[Explanation, ...]:
+        """What the tests cannot tell from the cause or, where they cannot show one, from one another."""
+        best = self.best
+        if self.verdict == INSUFFICIENT and best is not None and best.fit.p >= ADEQUATE:
+            return (best, *self.rivals)
+        return self.rivals
+
 
 def eligible(each: Explanation) -> bool:
     """Whether a fit may be called a cause: an uncertain number must have moved beyond its spread."""

@@ -42,8 +42,9 @@ def rivals(found: Diagnosed) -> Markup:
         ]
         for each in found.document["rivals"]
     ]
+    title = "Other explanations that will do" if found.document["causes"] else "Explanations that will do"
     told = (
-        html.table("Other explanations that will do", ("explanation", "meaning", "behind by"), rows, 2)
+        html.table(title, ("explanation", "meaning", "behind by"), rows, 2)
         if rows
         else html.paragraph(_alone(found))
     )

@@ -76,8 +76,14 @@ def _insufficient(found: Diagnosed) -> str:
 
 
 def _many(found: Diagnosed) -> str:
-    rivals = len(found.document["rivals"])
-    return f": {1 + rivals} explanations will do" if rivals else ""
+    match found.document["rivals"]:
+        case []:
+            return ""
+        case [only]:
+            why = "tests left out of the fit do not" if _unconfirmed(found) else "so few tests cannot"
+            return f": {words.together(only['effects'])} would leave no more than noise, but {why} confirm it"
+        case many:
+            return f": {len(many)} explanations will do"
 
 
 def _none(found: Diagnosed) -> str:

@@ -26,7 +26,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "causes": _causes(finding.cause),
         "rivals": [
             {"effects": list(each.effects), "gap": finite(each.penalised - best.penalised)}
-            for each in finding.rivals
+            for each in finding.alternatives
         ],
         "misfit": _misfit(found, best),
         "gain": _gain(found.gain),
