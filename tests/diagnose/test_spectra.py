@@ -145,6 +145,17 @@ def test_lines_of_a_doubled_period_are_neither_noise_nor_harmonics():
     assert np.mean(squares) == pytest.approx(2.0, rel=0.08)
 
 
+def test_lines_of_a_doubled_period_are_no_coherence_of_the_noise():
+    """They are the same motion in both channels, and stronger in the velocity."""
+    rng = np.random.default_rng(8)
+    for _ in range(10):
+        time, channels, _ = record(rng, 5.0)
+        halves = np.exp(1j * pi * 5.0 * np.arange(1, 8, 2)[:, None] * time).sum(axis=0)
+        found = spectrum(time, channels + 0.003 * np.array([halves.real, -60.0 * halves.imag]), 5.0)
+        assert found.mean.shape[0] == 2
+        assert abs(found.coherence) < 0.4
+
+
 def test_a_tone_is_not_drawn_to_where_a_record_begins_to_tell_it_from_a_harmonic():
     """The record at 24 Hz, which shows most of it, tells it from 72 Hz from 75.4 Hz on."""
     for seed in range(20):

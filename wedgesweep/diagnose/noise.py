@@ -49,7 +49,12 @@ def levels(
     """
     power, product = _periodograms(residual, turns)
     level = tuple(_smooth(lines, each, same) for each in power)
-    return level, _coherence(product, level[0](lines), level[1](lines)) if len(level) == 2 else 0.0j
+    if len(level) == 1:
+        return level, 0.0j
+    smooth = np.array([each(lines) for each in level])
+    # A line that stands out in either channel is no noise.
+    kept = (power <= FOREIGN * smooth).all(axis=0)
+    return level, _coherence(product[kept] / np.sqrt(smooth[:, kept].prod(axis=0)))
 
 
 def _periodograms(residual: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -85,7 +90,7 @@ def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> Smooth:
     return Smooth(coefficients, reference, same * np.linalg.inv(design[kept].T @ design[kept]))
 
 
-def _coherence(product: np.ndarray, first: np.ndarray, second: np.ndarray) -> complex:
-    """Mean coherence of two channels' noise; 0 where it is no more than chance."""
-    value = complex((product / np.sqrt(first * second)).mean())
-    return value if abs(value) ** 2 * product.size > 9.0 else 0.0j
+def _coherence(products: np.ndarray) -> complex:
+    """Mean of products (m,) of two channels' noise over its levels; 0 where it is no more than chance."""
+    value = complex(products.mean())
+    return value if abs(value) ** 2 * products.size > 9.0 else 0.0j
