@@ -44,14 +44,18 @@ class Forces(NamedTuple):
 
 
 def prepare(p) -> None:
-    """Fill in the geometry and the rest position of a parameter record, in place."""
+    """Fill in the geometry and the rest position of a parameter record, in place.
+
+    Whether an extended one never locks is for extended.rest to say, which knows all degrees of freedom.
+    """
     included = p["wedge_angle"] + p["column_angle"]
     p["sin_wedge"], p["cos_wedge"] = sin(p["wedge_angle"]), cos(p["wedge_angle"])
     p["sin_column"], p["cos_column"] = sin(p["column_angle"]), cos(p["column_angle"])
     p["sin_included"], p["cos_included"] = sin(included), cos(included)
     p["column_ratio"] = p["sin_wedge"] / p["sin_included"]
     p["bolster_ratio"] = -p["sin_column"] / p["sin_included"]
-    p["never_locks"] = never_locks(determinant, p)
+    if not p["extended"]:
+        p["never_locks"] = never_locks(determinant, p)
     p["rest"] = p["column_rest"] = 0.0
     p["rest"] = -frictionless(0.0, 0.0, p).acceleration / frictionless_stiffness(p)
 

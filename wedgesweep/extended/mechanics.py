@@ -30,7 +30,7 @@ from wedgesweep.extended.mode import (
 
 # Newton's method for coefficients that depend on the load. As its error is squared at each step, a change of
 # both normal forces by this share is the last one that shows. Next to lift-off a force is rounding, and never
-# settles: then one that stays as small as this share of both will do.
+# settles: then changes that end below this share of both will do.
 LOAD_ITERATIONS, LAST_CHANGE, NEXT_TO_NOTHING, LEAST_LOAD = 40, 1e-7, 1e-11, 1e-30
 
 
