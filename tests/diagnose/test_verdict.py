@@ -132,8 +132,10 @@ def test_a_misfit_that_nobody_even_touches():
     assert found.verdict == "none-of-mine"
 
 
-def test_many_equal_explanations_say_that_the_data_are_poor():
-    others = [explained(705.0 + i, name) for i, name in enumerate("abcdef")]
+@pytest.mark.parametrize("least", [705.0, 800.0])
+def test_many_equal_explanations_say_that_the_data_are_poor(least):
+    """All of them are listed, the best first, even one that leaves a little more than noise."""
+    others = [explained(least + i, name) for i, name in enumerate("abcdef")]
     found = verdict_of(explained(5000.0), *others)
     assert found.verdict == "data-insufficient"
     assert found.alternatives == tuple(others)

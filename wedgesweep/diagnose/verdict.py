@@ -70,7 +70,7 @@ class Finding:
     def alternatives(self) -> tuple[Explanation, ...]:
         """What the tests cannot tell from the cause or, where they cannot show one, from one another."""
         best = self.best
-        if self.verdict == INSUFFICIENT and best is not None and best.fit.p >= ADEQUATE:
+        if self.verdict == INSUFFICIENT and best is not None and best.fit.p >= POSSIBLE:
             return (best, *self.rivals)
         return self.rivals
 
