@@ -4,6 +4,8 @@ No noise model is assumed but that the spectrum is smooth (after Pintelon and Sc
 Identification, 2012, ch. 4).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 # Order of the polynomial, in log frequency, that the logarithm of the noise spectrum follows.
@@ -39,29 +41,36 @@ class Smooth:
         return np.log(frequency / self.reference)[..., None] ** np.arange(self.coefficients.size)
 
 
-def levels(
-    residual: np.ndarray, turns: np.ndarray, lines: np.ndarray, same: float
-) -> tuple[tuple[Smooth, ...], complex]:
-    """Smooth noise of each channel of what is left of a record (channels, n), and their coherence.
+class Lines(NamedTuple):
+    """Where the noise is looked at: ``frequency`` (m,) in Hz, and exp(2 pi i f t) there, ``turns`` (m, n).
 
-    ``lines`` (Hz, shape (m,)) are where it is looked at, ``turns`` (m, n) exp(2 pi i f t) there; ``same`` of
-    them say what one does.
+    ``left`` (m,): share of white noise that is still there, as harmonics close by were taken out.
+    ``same``: so many lines say what one does.
     """
-    power, product = _periodograms(residual, turns)
-    level = tuple(_smooth(lines, each, same) for each in power)
+
+    frequency: np.ndarray
+    turns: np.ndarray
+    left: np.ndarray
+    same: float
+
+
+def levels(residual: np.ndarray, lines: Lines) -> tuple[tuple[Smooth, ...], complex]:
+    """Smooth noise of each channel of what is left of a record (channels, n), and their coherence."""
+    power, product = _periodograms(residual, lines)
+    level = tuple(_smooth(lines.frequency, each, lines.same) for each in power)
     if len(level) == 1:
         return level, 0.0j
-    smooth = np.array([each(lines) for each in level])
+    smooth = np.array([each(lines.frequency) for each in level])
     # A line that stands out in either channel is no noise.
     kept = (power <= FOREIGN * smooth).all(axis=0)
     return level, _coherence(product[kept] / np.sqrt(smooth[:, kept].prod(axis=0)))
 
 
-def _periodograms(residual: np.ndarray, turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Power of each channel (channels, lines) and product of the first two (lines,); ``turns`` (lines, n)."""
-    transform = residual @ turns.conj().T
-    samples = residual.shape[1]
-    return np.abs(transform) ** 2 / samples, transform[-1] * transform[0].conj() / samples
+def _periodograms(residual: np.ndarray, lines: Lines) -> tuple[np.ndarray, np.ndarray]:
+    """Power of each channel (channels, m) and product of the first two (m,), of all the noise."""
+    transform = residual @ lines.turns.conj().T
+    size = residual.shape[1] * lines.left
+    return np.abs(transform) ** 2 / size, transform[-1] * transform[0].conj() / size
 
 
 def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> Smooth:

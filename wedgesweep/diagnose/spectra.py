@@ -24,6 +24,8 @@ FOLDED = 127
 BAND = 0.4
 # The noise is looked at between harmonics, at multiples of this part of the input frequency.
 PARTS = 8
+# Lines of which a fit leaves less than this share say nothing of the noise.
+LEAST_LEFT = 0.2
 # Two channels whose noise is more coherent than this say the same.
 SAME = 0.98
 # Chance of lines at half multiples of the input frequency in a response that repeats each period.
@@ -181,7 +183,8 @@ def fitted(
     design = _design(time, interval, frequency, tone, doubled)
     # The columns are nearly orthogonal, so that the normal equations lose nothing.
     matrix = design.matrix
-    solution = np.linalg.solve(matrix.T @ matrix, matrix.T @ channels.T)
+    inverse = np.linalg.inv(matrix.T @ matrix)
+    solution = inverse @ (matrix.T @ channels.T)
     mean = design.read(solution).T
     residual = channels - (matrix @ solution).T
     parts = np.arange(1, PARTS * (design.harmonics + 1))
@@ -189,7 +192,10 @@ def fitted(
     turns = _turns(time, frequency / PARTS, int(parts[-1]))[parts - 1]
     # Lines closer than the record resolves say in part the same.
     same = max(1.0, PARTS / (frequency * time[-1]))
-    level, coherence = noise.levels(residual, turns, frequency / PARTS * parts, same)
+    left = 1.0 - _share(turns @ matrix, inverse) / time.size
+    seen = left > LEAST_LEFT
+    lines = noise.Lines(frequency / PARTS * parts[seen], turns[seen], left[seen], same)
+    level, coherence = noise.levels(residual, lines)
     if abs(coherence) > SAME:
         mean, residual, level, coherence = mean[:1], residual[:1], level[:1], 0.0j
     at = frequency * np.arange(1, design.harmonics + 1)
@@ -200,23 +206,28 @@ def fitted(
         time.size,
         interval,
         mean,
-        np.array([4.0 / time.size * each.fair(at) for each in level]),
+        np.array([design.scatter(inverse) * each.fair(at) for each in level]),
         coherence,
         residual,
         level,
         design.tone,
         design.covered,
-        _folding(time, frequency, design),
+        _folding(time, frequency, design, inverse),
     )
 
 
-def _folding(time: np.ndarray, frequency: float, design: "_Design") -> Folding | None:
+def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
+    """What a fit takes of some lines (m,), from their products with its columns (m, k)."""
+    return ((products @ inverse) * products.conj()).sum(axis=1).real
+
+
+def _folding(
+    time: np.ndarray, frequency: float, design: "_Design", inverse: np.ndarray
+) -> Folding | None:
     """What harmonics up to FOLDED add to those that are read; None where they are all read as themselves."""
     if (FOLDED + REMOVED) * frequency * time[-1] < time.size - 1:
         return None
-    matrix = design.matrix
-    inverse = np.linalg.solve(matrix.T @ matrix, matrix.T)
-    return folding(design.read(inverse), _turns(time, frequency, FOLDED), design.removed)
+    return folding(design.read(inverse @ design.matrix.T), _turns(time, frequency, FOLDED), design.removed)
 
 
 class _Design(NamedTuple):
@@ -233,6 +244,11 @@ class _Design(NamedTuple):
     def read(self, solution: np.ndarray) -> np.ndarray:
         """Complex amplitudes (columns, ...) from a solution (2 + ..., ...)."""
         return solution[self.cosines] - 1j * solution[self.sines]
+
+    def scatter(self, inverse: np.ndarray) -> np.ndarray:
+        """Variance of each complex amplitude in white noise of variance 1."""
+        variance = np.diag(inverse)
+        return variance[self.cosines] + variance[self.sines]
 
 
 def _design(
