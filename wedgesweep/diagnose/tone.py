@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
-from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors, within_band
+from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors, told_apart, within_band
 
 # Chance of a tone where there is only noise.
 CHANCE = 1e-4
@@ -18,6 +18,8 @@ FINE = 4
 LOWEST = 1.0
 # Share of a tone that must be no harmonic for its power to count in full.
 MINGLING = 0.05
+# Tests whose frequencies differ by less than this share have one frequency.
+ALIKE = 0.02
 # Least bend of the power over a step of the grid: below it the frequency is open.
 LEAST_BEND = 1e-3
 
@@ -33,14 +35,21 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     """The tone common to all tests, None where there is none.
 
     Multiples of half, a third and so on of the input frequency are no foreign tones but sub-harmonics
-    of the response; they lie elsewhere in each test, unless all tests have one frequency.
+    of the response; they lie elsewhere in tests of another frequency. Where all have one, no tone can be
+    told from half its multiples.
     """
+    frequency = np.array([s.frequency for s in spectra])
+    alike = np.abs(np.log(frequency / frequency[:, None])) < ALIKE
     longest = max(s.duration for s in spectra)
     highest = min(BAND / s.interval for s in spectra)
     grid = np.arange(LOWEST, highest, 1.0 / longest / FINE)
-    separated = np.array([s.separates(grid) for s in spectra])
+    part = 2 if len(spectra) > 1 and alike.all() else 1
+    separated = np.array(
+        [told_apart(grid, s.frequency / part, s.duration, part * (s.harmonics + 1) - 1) for s in spectra]
+    )
     power = np.where(separated, [s.excess_at(grid) for s in spectra], 0.0)
-    chance = _chance_beside_strongest(power, np.array([[s.mean.shape[0]] for s in spectra]) * separated)
+    count = np.array([[s.mean.shape[0]] for s in spectra]) * separated
+    chance = _chance_beside_strongest(power, count, alike)
     best = int(np.argmin(chance))
     if chance[best] + np.log(grid.size) > np.log(CHANCE):
         return None
@@ -48,16 +57,19 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     return _refined(seen, float(grid[best]), float(grid[1] - grid[0]))
 
 
-def _chance_beside_strongest(power: np.ndarray, count: np.ndarray) -> np.ndarray:
-    """Logarithm of the chance (n,) of powers of so many channels (T, n), but for the test that shows most.
+def _chance_beside_strongest(power: np.ndarray, count: np.ndarray, alike: np.ndarray) -> np.ndarray:
+    """Logarithm of the chance (n,) of powers of so many channels (T, n), but for the tests that show most.
 
-    A tone also makes lines elsewhere, where it meets the harmonics of one response: no other test has those.
-    What counts is what the other tests show together, or one of them by itself.
+    A tone also makes lines elsewhere, where it meets the harmonics of one response: only tests of the same
+    frequency, ``alike`` (T, T), have those, and its sub-harmonics. What counts is what the others show
+    together, or one of them by itself; where all have one frequency, all but the strongest.
     """
-    order = np.argsort(power, axis=0)[:-1] if len(power) > 1 else np.zeros((1, power.shape[1]), int)
-    power, count = (np.take_along_axis(each, order, axis=0) for each in (power, count))
-    together = log_chance(power.sum(axis=0), count.sum(axis=0))
-    return np.minimum(together, log_chance(power[-1], count[-1]))
+    aside = np.eye(len(power), dtype=bool) if alike.all() else alike
+    counting = ~aside[:, np.argmax(power, axis=0)] | (len(power) == 1)
+    power, count = power * counting, count * counting
+    one = np.argmax(power, axis=0)[None]
+    alone = log_chance(*(np.take_along_axis(each, one, axis=0)[0] for each in (power, count)))
+    return np.minimum(log_chance(power.sum(axis=0), count.sum(axis=0)), alone)
 
 
 class Joint:
