@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from wedgesweep.measured.frequency import drift, estimate_frequency, near, stands_out
+from wedgesweep.measured.frequency import actual, drift, estimate_frequency, near, stands_out
 
 SAMPLING = 2000.0
 SINE = {1: 1.0}
@@ -89,6 +89,27 @@ def test_a_foreign_tone_is_no_drift():
         tone = near(t, signal + 0.1 * np.sin(2.0 * pi * 21.3 * t + phase), 20.0)
         assert not tone.drifts
         assert not tone.differs(20.0)
+
+
+def test_many_cycles_correct_a_clock_that_is_off_by_a_little():
+    random = np.random.default_rng(12)
+    t, signal = record(random, 20.0, 60.3, STRONG_HARMONICS, 0.04)
+    found = actual(t, signal, 20.0 * 1.001)
+    assert found == pytest.approx(20.0, abs=5.0 * near(t, signal, 20.0).std)
+    assert actual(t, signal, 20.0) == 20.0
+    assert actual(t, signal, 20.2) == 20.2  # for the reader to refuse
+
+
+def test_half_the_frequency_is_that_of_a_doubled_period_or_a_foreign_tone():
+    """Weak lines half way between the harmonics do not make half the frequency the input's."""
+    random = np.random.default_rng(13)
+    for other, size in ((10.0, 0.05), (10.0, 0.2), (10.4, 0.1)):
+        t, signal = record(random, 20.0, 8.4, STRONG_HARMONICS, 0.04)
+        assert estimate_frequency(t, signal + size * np.sin(2.0 * pi * other * t)) == pytest.approx(
+            20.0, rel=3e-3
+        )
+    t, signal = record(random, 10.0, 8.4, {1: 0.5, 2: 1.0, 3: 0.2}, 0.04)
+    assert estimate_frequency(t, signal) == pytest.approx(10.0, rel=3e-3)
 
 
 def test_noise_alone_has_no_frequency():

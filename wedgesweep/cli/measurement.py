@@ -28,20 +28,26 @@ def print_measurement(measurement: "Measurement") -> None:
 
 
 def _row(test: "Test") -> tuple[str, ...]:
-    from wedgesweep.measured.frequency import estimate_frequency
+    from wedgesweep.measured.frequency import actual
 
-    known = test.frequency is not None
-    frequency = test.frequency or estimate_frequency(test.time, test.displacement)
+    frequency = actual(test.time, test.displacement, test.frequency)
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
-        f"{frequency:.6g}{'' if known else ' (estimated)'}",
+        f"{frequency:.6g}{_told(test.frequency, frequency)}",
         _amplitude(test),
         f"{test.duration * frequency:.2f}",
         f"{test.sampling_rate / frequency:.4g}",
         noise,
         harmonics,
     )
+
+
+def _told(stated: float | None, used: float) -> str:
+    """Where a frequency (Hz) comes from that is not simply the stated one."""
+    if stated is None:
+        return " (estimated)"
+    return "" if used == stated else f" (stated: {stated:.6g})"
 
 
 def _amplitude(test: "Test") -> str:

@@ -49,11 +49,11 @@ class Diagnosis:
 
 
 def problem_of(measurement: Measurement) -> Problem:
-    """Spectra of all tests; frequencies that are not stated are estimated, a common foreign tone is found."""
-    from wedgesweep.measured.frequency import estimate_frequency
+    """Spectra of all tests at their actual frequencies; a common foreign tone is found."""
+    from wedgesweep.measured.frequency import actual
 
     tests = measurement.tests
-    frequencies = [t.frequency or estimate_frequency(t.time, t.displacement) for t in tests]
+    frequencies = [actual(t.time, t.displacement, t.frequency) for t in tests]
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
     records = [(test.time, s, f) for test, s, f in zip(tests, signals, frequencies, strict=True)]
     foreign = tone.find([fitted(*each) for each in records])

@@ -221,9 +221,7 @@ def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
     return ((products @ inverse) * products.conj()).sum(axis=1).real
 
 
-def _folding(
-    time: np.ndarray, frequency: float, design: "_Design", inverse: np.ndarray
-) -> Folding | None:
+def _folding(time: np.ndarray, frequency: float, design: "_Design", inverse: np.ndarray) -> Folding | None:
     """What harmonics up to FOLDED add to those that are read; None where they are all read as themselves."""
     if (FOLDED + REMOVED) * frequency * time[-1] < time.size - 1:
         return None

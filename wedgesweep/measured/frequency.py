@@ -9,7 +9,7 @@ which shows in the scatter of its cycles, so that coloured noise and foreign ton
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
@@ -18,15 +18,21 @@ from wedgesweep.measured.noise import of_channel
 
 # Fewer cycles leave no scatter to compare with.
 FEWEST_CYCLES = 4
-# The first search goes this far from the frequency given, as a share of it.
-RANGE = 0.15
+# The first search goes this far from the frequency given, as a share of it, or from the highest peak of a
+# spectrum, over the record.
+RANGE, LOBE = 0.15, 1.5
 # Weak fundamentals under a strong harmonic are looked for by dividing its frequency by these.
 DIVISORS = (2, 3, 5, 7)
+# An even harmonic outdoes its fundamental by no more than this: what is weaker at half the frequency of the
+# strongest line is a response that repeats every other period, or a foreign tone.
+HALF = 0.3
 # Chance that noise passes for a line.
 CHANCE = 1e-5
 # A difference is significant if it is as improbable as 5 std of a normal variable.
 IMPROBABLE = 2.9e-7
 PADDING = 8
+# Frequencies that differ or change by less than this share are stated well enough.
+NEGLIGIBLE = 2e-3
 
 
 @dataclass(frozen=True)
@@ -57,12 +63,25 @@ def estimate_frequency(time: np.ndarray, displacement: np.ndarray) -> float:
     frequency = _strongest(time, displacement)
     if _cycle_count(time, frequency) < FEWEST_CYCLES:
         return frequency
-    frequency = near(time, displacement, frequency).frequency
+    reach = min(RANGE, LOBE / _cycle_count(time, frequency))
+    frequency = near(time, displacement, frequency, reach).frequency
     if not stands_out(time, displacement, frequency):
         return float("nan")
     while divisor := _divisor(time, displacement, frequency):
-        frequency = near(time, displacement, frequency / divisor).frequency
+        frequency = near(time, displacement, frequency / divisor, reach).frequency
     return frequency
+
+
+def actual(time: np.ndarray, displacement: np.ndarray, stated: float | None) -> float:
+    """Frequency (Hz) of a record: as stated, or as estimated if it is not, or if many cycles tell better.
+
+    A clock that is off by a little turns the harmonics of a long record by much.
+    """
+    if stated is None:
+        return estimate_frequency(time, displacement)
+    tone = near(time, displacement, stated, LOBE / _cycle_count(time, stated))
+    close = abs(tone.frequency / stated - 1.0) < NEGLIGIBLE
+    return tone.frequency if close and tone.differs(stated) else stated
 
 
 def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple[float, float]:
@@ -72,11 +91,16 @@ def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple
 
 
 def near(time: np.ndarray, displacement: np.ndarray, frequency: float, reach: float = RANGE) -> Tone:
-    """The tone next to a frequency (Hz) that is right within a share ``reach``; at least 4 cycles."""
+    """The tone next to a frequency (Hz) that is right within a share ``reach``; at least 4 cycles.
+
+    Where there is only noise its frequency is anywhere near, with an infinite error.
+    """
     frequency += _search(cut(time, displacement, frequency), reach * frequency)
     frequency += _search(cut(time, displacement, frequency), 0.5 / (time[-1] - time[0]))
     for _ in range(3):
         tone = _fit(cut(time, displacement, frequency))
+        if abs(tone.frequency - frequency) * (time[-1] - time[0]) > 1.0:
+            return Tone(frequency, inf, 0.0, inf, tone.freedom)
         frequency = tone.frequency
     return tone
 
@@ -145,13 +169,16 @@ def _cycle_count(time: np.ndarray, frequency: float) -> float:
 
 
 def _strongest(time: np.ndarray, signal: np.ndarray) -> float:
-    """Frequency (Hz) of the highest peak of the spectrum, above one and a half cycles per record."""
+    """Frequency (Hz) of the highest peak of the spectrum, from one and a half cycles per record on.
+
+    A cycle has four samples at the least: with fewer a cycle cannot be fitted for itself.
+    """
     count = time.size
     step = (time[-1] - time[0]) / (count - 1)
     length = PADDING * 2 ** int(np.ceil(np.log2(count)))
     spectrum = np.abs(np.fft.rfft((signal - signal.mean()) * np.hanning(count), length))
     frequencies = np.fft.rfftfreq(length, step)
-    spectrum[frequencies < 1.5 / (count * step)] = 0.0
+    spectrum[(frequencies < 1.5 / (count * step)) | (frequencies > 0.25 / step)] = 0.0
     return float(frequencies[spectrum.argmax()])
 
 
@@ -165,10 +192,18 @@ def _divisor(time: np.ndarray, signal: np.ndarray, frequency: float) -> int:
         slower = frequency / divisor
         between = np.setdiff1d(np.arange(1, 2 * divisor), [divisor])
         orders = np.union1d(between, divisor * FIRST_HARMONICS)
-        enough = _cycle_count(time, slower) >= FEWEST_CYCLES
-        if enough and _repeats(cut(time, signal, slower, orders), between):
+        if _cycle_count(time, slower) < FEWEST_CYCLES:
+            continue
+        cycles = cut(time, signal, slower, orders)
+        if _repeats(cycles, between) and not (divisor == 2 and _weak(cycles, between)):
             left[divisor] = of_channel(time, signal, slower).std
     return min(left, key=lambda divisor: left[divisor], default=0)
+
+
+def _weak(cycles: Cycles, orders: np.ndarray) -> bool:
+    """Whether harmonics of some orders are small beside the largest."""
+    size, among = np.abs(cycles.harmonics.mean(axis=0)), np.isin(cycles.orders, orders)
+    return bool(size[among].max() < HALF * size.max())
 
 
 def _repeats(cycles: Cycles, orders: np.ndarray) -> bool:

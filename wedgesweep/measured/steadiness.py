@@ -5,16 +5,17 @@ from math import isnan
 from wedgesweep.measured import frequency
 from wedgesweep.measured.frequency import Tone
 from wedgesweep.measured.measurement import Test
-from wedgesweep.measured.noise import of_channel
+from wedgesweep.measured.noise import Noise, of_channel
 
 FEWEST_PERIODS = 4
 # A last period that lacks less than this share counts as whole: frequencies are rounded, too.
 WHOLE = 1e-3
-# Frequencies that differ or change by less, relatively, do no harm.
-NEGLIGIBLE = 2e-3
-# A stated frequency is compared with the nearest line this many inverse record lengths around it; further
-# off a line leaks less than this share of its amplitude into it.
-LOBE, LEAKAGE = 1.5, 0.3
+# With fewer samples a period two harmonics do not fit below what an anti-aliasing filter leaves.
+FEWEST_SAMPLES = 5
+# A drift by this many cycles over the record does no harm.
+SLIP = 0.02
+# Farther off than the search goes a line leaks less than this share of its amplitude into the stated one.
+LEAKAGE = 0.3
 # A wrong frequency leaves this many times the variance that the right one leaves. Less may come from a tone
 # beside a harmonic: it modulates the whole response, and over a short record that looks like another one.
 WORSE = 3.0
@@ -26,16 +27,16 @@ def frequency_faults(test: Test, file: str, at: str) -> list[str]:
     found = frequency.estimate_frequency(test.time, test.displacement) if stated is None else stated
     if isnan(found):
         return [f"{file}: no vibration stands out of the noise; state frequency_hz in {at}"]
-    nyquist = 0.5 * test.sampling_rate
-    if found >= nyquist:
-        wrong = f"{found:g} is not below half the sampling rate of {file}, {nyquist:g} Hz"
-        return [f"{at}.frequency_hz: {wrong}; sample faster"]
+    samples = test.sampling_rate / found
+    if samples < FEWEST_SAMPLES:
+        told = f"has {samples:.3g} samples per period of {found:.6g} Hz"
+        return [f"{file}: {told}; at least {FEWEST_SAMPLES} are needed"]
     periods = test.duration * found
     if periods < FEWEST_PERIODS - WHOLE:
         told = f"covers {periods:.3g} periods of {found:.6g} Hz"
         return [f"{file}: {told}; at least {FEWEST_PERIODS} are needed"]
-    tone = frequency.near(test.time, test.displacement, found, LOBE / periods)
-    return _contradiction(test, tone, file, at) or _drift(tone, file)
+    tone = frequency.near(test.time, test.displacement, found, frequency.LOBE / periods)
+    return _contradiction(test, tone, file, at) or _drift(tone, periods, file)
 
 
 def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:
@@ -45,30 +46,35 @@ def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:
     actual = tone.frequency if tone.differs(stated) and _worse(test, stated, tone.frequency) else stated
     if actual == stated and not frequency.stands_out(test.time, test.displacement, stated):
         actual = _elsewhere(test, stated)
-    if abs(actual / stated - 1.0) < NEGLIGIBLE:
+    if abs(actual / stated - 1.0) < frequency.NEGLIGIBLE:
         return []
     return [f"{at}.frequency_hz: {stated:.6g}, but {file} vibrates at {actual:.6g} Hz; correct one of them"]
 
 
 def _worse(test: Test, stated: float, other: float) -> bool:
     """Whether a record repeats much better at another frequency (Hz) than at the one stated."""
-    here, there = (of_channel(test.time, test.displacement, each).std for each in (stated, other))
+    here, there = (_noise(test, each).std for each in (stated, other))
     return here**2 > WORSE * there**2
+
+
+def _noise(test: Test, at: float) -> Noise:
+    return of_channel(test.time, test.displacement, at)
 
 
 def _elsewhere(test: Test, stated: float) -> float:
     """Frequency (Hz) of a vibration beside which the stated one is nothing; else the stated one."""
     found = frequency.estimate_frequency(test.time, test.displacement)
-    if isnan(found):
+    # The highest line of a record of noise alone is a small part of it.
+    if isnan(found) or test.duration * found < 2.0 or _noise(test, found).share > 1.0:
         return stated
     there, here = (frequency.amplitude(test.time, test.displacement, each) for each in (found, stated))
     return found if here < LEAKAGE * there else stated
 
 
-def _drift(tone: Tone, file: str) -> list[str]:
-    if abs(tone.drift) < NEGLIGIBLE or not tone.drifts:
+def _drift(tone: Tone, periods: float, file: str) -> list[str]:
+    if abs(tone.drift) < min(frequency.NEGLIGIBLE, SLIP / periods) or not tone.drifts:
         return []
     change = (
         f"by {100.0 * tone.drift:+.2g} % ({100.0 * tone.drift_std:.1g} % std) around {tone.frequency:.6g} Hz"
     )
-    return [f"{file}: the frequency drifts {change}; measure at a constant one"]
+    return [f"{file}: the frequency drifts {change}; measure at a constant one, or cut the record shorter"]
