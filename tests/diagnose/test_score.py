@@ -4,7 +4,13 @@ from tests.diagnose.drawn import drawn
 from wedgesweep.diagnose import score
 from wedgesweep.diagnose.search import Search
 
-EFFECTS = ("velocity_lag", "stray_vibration", "viscous_damping")
+EFFECTS = ("velocity_lag", "stray_vibration", "viscous_damping", "stribeck", "cross_slip")
+# Number with which an effect fades, its key's unit in SI, and its other numbers.
+FADING = {
+    "velocity_lag": ("time", 1.0, {}),
+    "cross_slip": ("velocity", 1e-3, {"phase": 0.0}),
+    "stribeck": ("velocity", 1e-3, {"peak": 0.0}),
+}
 
 
 def scored(effects=None):
@@ -19,9 +25,13 @@ def test_an_effect_that_is_there_scores_and_one_that_is_not_does_not():
 
 
 def test_the_weakest_value_is_what_the_tests_would_have_shown():
-    weakest = scored()["velocity_lag"].detectable
-    stronger, weaker = ({"velocity_lag": {"time": factor * weakest}} for factor in (4.0, 0.25))
-    assert scored(stronger)["velocity_lag"].t2 > score.SHOWN > scored(weaker)["velocity_lag"].t2
+    """Even where all of the range that a fit looks in would show, or the first number is not what fades."""
+    weakest = scored()
+    assert weakest["stribeck"].key == "velocity_mm_per_s"
+    for effect, (name, unit, others) in FADING.items():
+        detectable = unit * weakest[effect].detectable
+        stronger, weaker = ({effect: {name: factor * detectable, **others}} for factor in (4.0, 0.25))
+        assert scored(stronger)[effect].t2 > score.SHOWN > scored(weaker)[effect].t2
 
 
 def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():

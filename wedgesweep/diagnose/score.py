@@ -4,9 +4,10 @@ A score test asks whether the misfit of the base model points the way in which a
 response, once what phases, amplitudes and uncertain numbers can take up is taken out of both.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, log
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,14 +17,14 @@ from wedgesweep.diagnose.model import TONE, Fit, Model, Trial
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.tangents import tangents_of
-from wedgesweep.effects import EFFECTS
 
 # Share of a signal that must survive the nuisances for an effect to be testable.
 RETAINED = 0.05
 # Squared distance from the base model that the tests would have shown.
 SHOWN = 12.6
-# Points between the weakest and the strongest value of an effect's leading number.
-POINTS = 12
+# Points between the weakest and the strongest value of an effect's leading number, and how many times weaker
+# than that it is looked for.
+POINTS, BEYOND = 12, 1e3
 # A direction of a response that is not smooth: two steps must agree this well.
 AGREE = 0.10
 
@@ -99,50 +100,87 @@ def _unheard(problem: Problem, base: Fit) -> Score:
     return replace(_score(search, fit, TONE, project, project(fit.trial.residual)), t2=None)
 
 
+class _Way(NamedTuple):
+    """Points (n, k) along one number of an effect.
+
+    ``sizes`` (n,): how far the responses there are from the base model's; ``left``: what is left of that, a
+    row each, once the nuisances are projected out.
+    """
+
+    number: int
+    points: np.ndarray
+    sizes: np.ndarray
+    left: np.ndarray
+
+    @property
+    def distance(self) -> np.ndarray:
+        """What the tests would show of each point, (n,)."""
+        return (self.left**2).sum(axis=1)
+
+
 def _score(search: Search, base: Fit, effect: str, project: Projector, residual: np.ndarray) -> Score:
     model = search.model(effect)
-    hypothesis = model.hypothesis
-    path, trials = _along(search, base, model)
-    changes = [_change(base, each) for each in trials]
-    sizes = np.array([np.linalg.norm(each) for each in changes])
-    remaining = [project(each) for each in changes]
-    left = np.array([np.linalg.norm(each) for each in remaining])
-    key = hypothesis.coordinates[0].name.split(".")[1]
-    weak = _weakest(left)
-    retention = float(left[weak] / sizes[weak]) if sizes[weak] > 0.0 else 0.0
+    for way in _ways(search, base, model, project):
+        if way.distance.min() < SHOWN:
+            break
+    size = np.sqrt(way.distance)
+    weak = _weakest(size)
+    retention = float(size[weak] / way.sizes[weak]) if way.sizes[weak] > 0.0 else 0.0
     t2 = None
-    if retention >= RETAINED and left[weak] > 0.0:
-        t2 = float((remaining[weak] @ residual) ** 2 / left[weak] ** 2)
-    return Score(effect, t2, retention, key, _detectable(hypothesis, path, left**2))
+    if retention >= RETAINED and size[weak] > 0.0:
+        t2 = float((way.left[weak] @ residual) ** 2 / size[weak] ** 2)
+    key = model.hypothesis.coordinates[way.number].name.split(".")[1]
+    return Score(effect, t2, retention, key, _detectable(model.hypothesis, way, key))
 
 
-def _along(search: Search, base: Fit, model: Model) -> tuple[np.ndarray, Sequence[Trial]]:
-    """Points (n, k) along the leading number of an effect, and their responses."""
+def _ways(search: Search, base: Fit, model: Model, project: Projector) -> Iterator[_Way]:
+    """Along the leading number of an effect; along others, or beyond its range, if all of that would show."""
+
+    def tried(number: int, points: np.ndarray, trials: Sequence[Trial]) -> _Way:
+        changes = [_change(base, each) for each in trials]
+        left = np.array([project(each) for each in changes])
+        return _Way(number, points, np.array([np.linalg.norm(each) for each in changes]), left)
+
+    def simulated(number: int, points: np.ndarray) -> _Way:
+        return tried(number, points, model.trials([model.start(base, x) for x in points]))
+
     hypothesis, coordinates = model.hypothesis, model.hypothesis.coordinates
     known = search.along.get(hypothesis.effects[0])
     told = not np.isinf(base.model.problem.amplitude_std).any()
     if known and told and len(coordinates) == 1 and coordinates[0].logarithmic:
-        return np.array([trial.point.x[:1] for trial in known]), known
-    path = _path(hypothesis)
-    return path, model.trials([model.start(base, x) for x in path])
-
-
-def _path(hypothesis: Hypothesis) -> np.ndarray:
-    """Points (n, k) from where an effect hardly acts to where it does, along its leading number."""
-    first = hypothesis.coordinates[0]
-    quantity = EFFECTS[hypothesis.effects[0]].quantities[0]
-    others = np.array([0.5 * (each.low + each.high) for each in hypothesis.coordinates])
-    if first.logarithmic:
-        leading = np.linspace(first.low, first.high, POINTS)
+        leading = tried(0, np.array([trial.point.x[:1] for trial in known]), known)
     else:
-        neutral = (
-            min(max(quantity.default, first.low), first.high)
-            if quantity.default == quantity.default
-            else first.low
-        )
-        leading = neutral + (first.high - neutral) * np.geomspace(1e-4, 1.0, POINTS)
-    path = np.repeat(others[None], POINTS, axis=0)
-    path[:, 0] = leading
+        leading = simulated(0, _path(hypothesis, 0))
+    yield leading
+    for number in [i for i, each in enumerate(coordinates) if each.logarithmic]:
+        way = simulated(number, _path(hypothesis, number)) if number else leading
+        yield way
+        yield simulated(number, _beyond(way))
+
+
+def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
+    """Points (n, k) from where an effect hardly acts to where it does, along one of its numbers.
+
+    The others are in the middle of their range, but for the leading one, which is neutral.
+    """
+    coordinates, along = hypothesis.coordinates, hypothesis.coordinates[number]
+    at = np.array([0.5 * (each.low + each.high) for each in coordinates])
+    first = coordinates[0]
+    neutral = min(max(first.neutral, first.low), first.high)
+    at[0] = neutral
+    path = np.repeat(at[None], POINTS, axis=0)
+    if along.logarithmic:
+        path[:, number] = np.linspace(along.low, along.high, POINTS)
+    else:
+        path[:, number] = neutral + (along.high - neutral) * np.geomspace(1e-4, 1.0, POINTS)
+    return path
+
+
+def _beyond(way: _Way) -> np.ndarray:
+    """Points (n, k) beyond that end of a logarithmic number's range where an effect is weaker."""
+    weaker = int(np.argmin(way.distance[[0, -1]]))
+    path = np.repeat(way.points[[-weaker]], POINTS, axis=0)
+    path[:, way.number] += (1.0, -1.0)[weaker] * np.linspace(-log(BEYOND), 0.0, POINTS)
     return path
 
 
@@ -161,20 +199,17 @@ def _weakest(left: np.ndarray) -> int:
     return int(seen[np.argmin(left[seen])]) if seen.size else int(np.argmax(left))
 
 
-def _detectable(hypothesis: Hypothesis, path: np.ndarray, distance: np.ndarray) -> float | None:
-    """Weakest value of the leading number at which the squared distance exceeds what shows."""
-    order = np.argsort(distance)
-    shown = [i for i in order if distance[i] >= SHOWN]
+def _detectable(hypothesis: Hypothesis, way: _Way, key: str) -> float | None:
+    """Weakest value of a number at which the squared distance exceeds what shows."""
+    distance, points = way.distance, way.points
+    shown = [i for i in np.argsort(distance) if distance[i] >= SHOWN]
     if not shown:
         return None
     i = shown[0]
-    key = hypothesis.coordinates[0].name.split(".")[1]
-    below = [j for j in (i - 1, i + 1) if 0 <= j < len(path) and distance[j] < SHOWN]
-    point = path[i].copy()
+    below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < SHOWN]
+    point = points[i].copy()
     if below:
         j = below[0]
         low, high = np.sqrt(distance[j]), np.sqrt(distance[i])
-        point[0] = path[j, 0] + (path[i, 0] - path[j, 0]) * (np.sqrt(SHOWN) - low) / (high - low)
-    values = hypothesis.in_key_units(point)[hypothesis.effects[0]]
-    value = values.get(key, inf)
-    return float(value)
+        point += (points[j] - points[i]) * (high - np.sqrt(SHOWN)) / (high - low)
+    return float(hypothesis.in_key_units(point)[hypothesis.effects[0]].get(key, inf))
