@@ -249,7 +249,8 @@ def _held_out(data):
 
 def _gain(held_out):
     if not held_out:
-        return None
+        keys = ("scheme", "rmse_base", "rmse_extended", "rmse_noise", "gain", "excess_removed", "ci95")
+        return {**dict.fromkeys(keys), "held_out": []}
     base, extended, noise = (
         float(np.sqrt(np.mean([row[f"rmse_{kind}"] ** 2 for row in held_out])))
         for kind in ("base", "extended", "noise")

@@ -36,7 +36,7 @@ def test_draws_and_says_what_it_shows(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_verdict(kind, verdict):
     diagnosed = found(verdict, tests=2 if verdict == "data-insufficient" else 4)
-    lacking = (kind == "gain" and diagnosed.document["gain"] is None) or (
+    lacking = (kind == "gain" and diagnosed.gain is None) or (
         kind == "energy" and verdict == "data-insufficient"
     )
     if lacking:

@@ -242,6 +242,16 @@ def test_text_of_the_user_is_not_markup(tmp_path):
 
 
 @pytest.mark.usefixtures("no_pictures")
+def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "consistent-with")
+    document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None}
+    document["rivals"] = []
+    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert "a number of the model that is no candidate" in plain(report.sentence(tmp_path))
+    assert report.write(tmp_path).exists()
+
+
+@pytest.mark.usefixtures("no_pictures")
 def test_numbers_that_are_missing(tmp_path):
     """Few tests, no velocity, no interval, nothing detectable, fits without numbers."""
     document, _ = fixture_diagnosis.write(tmp_path, "named", tests=5, velocity=False, known=False)

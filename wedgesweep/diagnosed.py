@@ -48,6 +48,12 @@ class Diagnosed:
         return tuple(attempts[0]) if attempts else ()
 
     @property
+    def gain(self) -> dict[str, Any] | None:
+        """The gain on held-out tests, None where nothing was held out."""
+        gain = self.document["gain"]
+        return gain if gain and gain.get("held_out") != [] else None
+
+    @property
     def models(self) -> tuple[str, ...]:
         """Models to show: base, and extended where something was added."""
         return ("base", "extended") if self.added else ("base",)

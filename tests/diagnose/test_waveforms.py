@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import AMPLITUDES, drawn, searched
+from tests.diagnose.drawn import AMPLITUDES, MODEL, drawn, searched
 from wedgesweep import response
 from wedgesweep.diagnose import simulation, waveforms
 from wedgesweep.diagnose.coordinates import Hypothesis
@@ -54,6 +54,13 @@ def test_nothing_is_left_of_the_right_model(level):
     """What noise and the jumps of friction leave is small beside what such a damper would."""
     force, v = seen(level, {})
     assert left(force + DAMPING * v, DAMPING * v) < 0.3
+
+
+def test_effects_with_mechanics_of_their_own_leave_no_force_to_tell():
+    model = MODEL + "[effects.viscous_damping]\ncoefficient_N_s_per_m = 5.0\n"
+    problem = drawn(model=model)
+    fit = searched(problem)[1].fit
+    assert np.isnan(waveforms.leftover_force(fit, problem.measured)).all()
 
 
 def test_the_base_supplies_what_friction_takes():

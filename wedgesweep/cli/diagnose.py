@@ -10,9 +10,10 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, jobs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from wedgesweep.diagnosed import Diagnosed
+    from wedgesweep.measured import Measurement
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
 
@@ -62,6 +63,7 @@ def diagnose(
     if directory.exists() and not directory.is_dir():
         message = f"{directory}: not a directory"
         raise Failure(message)
+    _say_what_is_there(measurement, chosen)
     processors = jobs(n_jobs)
     found = diagnosis.diagnose(measurement, chosen, processors, _said, calibrate)
     _clear(directory)
@@ -72,6 +74,14 @@ def diagnose(
         written = report.write(directory, processors)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {written}")
+
+
+def _say_what_is_there(measurement: "Measurement", chosen: "Sequence[str]") -> None:
+    from wedgesweep.effects import SCALES
+
+    there = [name for name in chosen if name in measurement.model.effects and name not in SCALES]
+    if there:
+        _said(f"part of the model on trial, so no candidates: {', '.join(there)}")
 
 
 def _clear(directory: Path) -> None:

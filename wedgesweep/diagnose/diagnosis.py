@@ -17,7 +17,7 @@ from wedgesweep.diagnose.score import Score
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
 from wedgesweep.diagnose.spectra import fitted, spectrum
 from wedgesweep.diagnose.verdict import Finding, Thresholds
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, SCALES
 from wedgesweep.measured import Measurement, Test
 
 # Explanations that a next test should tell apart where the verdict abstains.
@@ -88,9 +88,11 @@ def diagnose(
 ) -> Diagnosis:
     """Name what the model on trial misses, or say why it cannot be named.
 
+    ``effects``: the candidates; what the model on trial has already is none, unless it scales a number.
     ``calibrated``: with thresholds from simulations of these very tests, not the general ones.
     """
     problem = problem_of(measurement)
+    effects = _missing(effects, measurement)
     search = Search(problem, effects, threads, progress)
     base, explanations = explain(search)
     thresholds, simulated = verdict.DEFAULT, None
@@ -122,6 +124,11 @@ def diagnose(
         thresholds,
         simulated.as_dict() if simulated else None,
     )
+
+
+def _missing(effects: Sequence[str], measurement: Measurement) -> tuple[str, ...]:
+    """Effects that the model on trial may lack."""
+    return tuple(name for name in effects if name in SCALES or name not in measurement.model.effects)
 
 
 def _exactly(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep import parameters
+from wedgesweep import effects, parameters
 from wedgesweep.config import Config
 from wedgesweep.diagnose.spectra import FOLDED, REMOVED, regressors
 from wedgesweep.solvers import periodic
@@ -35,8 +35,8 @@ class Responses(NamedTuple):
 
 def records(model: Config, law: str, values: dict, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Parameter records of some tests, shape (n,): ``omega`` (rad/s) and ``amplitude`` (m) of shape (n,)."""
-    effects = {**model.effects, **values}
-    one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, effects)
+    numbers = effects.combined(model.effects, values)
+    one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, numbers)
     rows = np.repeat(one, omega.size)
     rows["omega"], rows["amplitude"] = omega, amplitude
     return rows

@@ -70,9 +70,12 @@ def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
 
     The measured acceleration less that of the model in the same state, times the mass that moves. Both in
     the harmonics that stand above the noise: the others, times omega^2 h^2, would hide the force. The
-    bolster's mean place, which no test tells, is where the model has no mean acceleration.
+    bolster's mean place, which no test tells, is where the model has no mean acceleration. NaN for a model
+    with effects that need the extended mechanics: what those do depends on more than the motion.
     """
     problem, rows = fit.model.problem, _rows(fit)
+    if rows["extended"].any():
+        return np.full((problem.tests, PHASES), np.nan)
     heard = _heard(problem)
     rate = velocity(problem, harmonics)
     x, v = -waveform(heard * harmonics[:, 0]), -waveform(heard * rate)
@@ -91,6 +94,8 @@ def _in_place(one: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         accelerations(one, x + place, v, acceleration)
         return float(acceleration.mean())
 
+    if not x.any():  # nothing was heard of the motion: no force is left either
+        return np.zeros_like(x)
     place = root_scalar(mean, x0=0.0, x1=FIRST_PLACE * np.ptp(x), method="secant", maxiter=20).root
     mean(place)
     return acceleration

@@ -1,5 +1,7 @@
 """Physics that the base model leaves out: one effect per file, each off at its neutral value."""
 
+from collections.abc import Mapping
+
 from wedgesweep.effects import (
     ageing,
     bolster_mass,
@@ -24,6 +26,9 @@ from wedgesweep.effects import (
     wedge_stiffness,
 )
 from wedgesweep.effects.base import Effect
+
+# Numbers of effects by name, in SI units or in those of their keys.
+Numbers = Mapping[str, Mapping[str, float]]
 
 # In the order of families in which a diagnosis lists them.
 MODULES = (
@@ -53,8 +58,23 @@ EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in MO
 
 FAMILIES = tuple(dict.fromkeys(effect.family for effect in EFFECTS.values()))
 
+# Effects that do nothing but scale a number.
+SCALES = tuple(
+    name for name, effect in EFFECTS.items() if [each.name for each in effect.quantities] == ["scale"]
+)
+
 # Fields of the parameter record that need the extended mechanics unless they are off.
 EXTENDING = tuple(f"{effect.name}_{name}" for effect in EFFECTS.values() for name in effect.extends)
+
+
+def combined(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
+    """Numbers of effects with others beside them, or in their place; what scales a number scales it again."""
+    scaled = {
+        name: {"scale": own.get(name, {}).get("scale", 1.0) * added[name]["scale"]}
+        for name in SCALES
+        if name in added
+    }
+    return {name: dict(numbers) for name, numbers in {**own, **added, **scaled}.items()}
 
 
 def neutral() -> dict[str, float]:

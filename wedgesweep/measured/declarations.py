@@ -7,7 +7,7 @@ from typing import Any
 from wedgesweep.config import toml
 from wedgesweep.config.keys import Choice, Flag, Number, Text, show
 from wedgesweep.config.tables import Table, TableList, table
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, SCALES
 from wedgesweep.quantity import Quantity
 
 UNITS = {
@@ -16,11 +16,7 @@ UNITS = {
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
 }
 # Effects that scale a number of the model, so that it may be known up to a relative std only.
-SCALES = tuple(
-    name
-    for name, effect in EFFECTS.items()
-    if effect.family == "parameters" and [each.name for each in effect.quantities] == ["scale"]
-)
+PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == "parameters")
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated where absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it where unknown", above=0.0)
@@ -85,7 +81,7 @@ COLUMNS = table(
     example="measurement.columns",
 )
 
-UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain, SCALES), default={})
+UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain, PARAMETERS), default={})
 
 TEST = Record(
     key="test",

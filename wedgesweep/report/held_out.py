@@ -13,7 +13,7 @@ HEAD = ("test", "left out with", "error before", "error after", "noise floor")
 
 def section(found: Diagnosed, draw: Pictures) -> Markup:
     """Section with the gain and its interval."""
-    gain = found.document["gain"]
+    gain = found.gain
     if gain is None:
         content: tuple[Markup, ...] = (html.paragraph(_why_not(found)),)
     else:

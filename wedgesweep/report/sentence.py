@@ -44,9 +44,10 @@ def _weakness(found: Diagnosed) -> str:
     if _unconfirmed(found):
         return "tests left out of the fit do not confirm it"
     misfit, method = found.document["misfit"], found.document["method"]
-    strong = method["strong_excess"]
-    if strong is None or misfit["excess_base"] < strong:
-        return f"excess misfit {digits.number(misfit['excess_base'])} over noise"
+    # Without a number: none is strong enough, and the base model has no steady response at all.
+    strong, excess = method["strong_excess"], misfit["excess_base"]
+    if excess is not None and (strong is None or excess < strong):
+        return f"excess misfit {digits.number(excess)} over noise"
     p = min(misfit["p_extended"], misfit["p_where_it_shows"])
     if p >= method["adequate_p"]:
         return "a number of the model that is no candidate could look like these two"
@@ -95,7 +96,7 @@ def _none(found: Diagnosed) -> str:
 
 def _unconfirmed(found: Diagnosed) -> bool:
     """Whether the cause may make held-out tests worse."""
-    gain = found.document["gain"]
+    gain = found.gain
     return gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
 
 
@@ -157,7 +158,7 @@ def _improvement(found: Diagnosed) -> str:
 
 
 def _gain(found: Diagnosed) -> str:
-    gain = found.document["gain"]
+    gain = found.gain
     if gain is None:
         return ", not tried on held-out tests"
     interval = (

@@ -7,6 +7,7 @@ from math import ceil, pi
 import numpy as np
 
 from wedgesweep.config import Config
+from wedgesweep.effects import combined
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
 
@@ -49,11 +50,8 @@ class Truth:
     @property
     def effects(self) -> dict[str, dict[str, float]]:
         """Effects of the config with the uncertain numbers at their true values, in SI units."""
-        effects = {name: dict(values) for name, values in self.config.effects.items()}
-        for name, factor in self.factors.items():
-            scale = effects.get(name, {}).get("scale", 1.0)
-            effects[name] = {"scale": scale * factor}
-        return effects
+        factors = {name: {"scale": factor} for name, factor in self.factors.items()}
+        return combined(self.config.effects, factors)
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""

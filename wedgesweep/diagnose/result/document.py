@@ -100,13 +100,15 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     return rows
 
 
-def _gain(gain: Gain | None) -> dict[str, Any] | None:
+def _gain(gain: Gain | None) -> dict[str, Any]:
+    """The gain, with null for every number where nothing was held out."""
     if gain is None or not gain.held_out:
-        return None
+        numbers = ("scheme", "rmse_base", "rmse_extended", "rmse_noise", "gain", "excess_removed", "ci95")
+        return {**dict.fromkeys(numbers), "held_out": []}
     base, extended, noise = np.sqrt(gain.totals())
+    schemes = dict.fromkeys(each.scheme for each in gain.held_out)
     return {
-        "scheme": "leave-one-frequency-out"
-        + (" and leave-one-amplitude-out" if any(h.scheme == "amplitude" for h in gain.held_out) else ""),
+        "scheme": " and ".join(f"leave-one-{scheme}-out" for scheme in schemes),
         "rmse_base": finite(base),
         "rmse_extended": finite(extended),
         "rmse_noise": finite(noise),

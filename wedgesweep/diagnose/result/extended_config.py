@@ -1,5 +1,6 @@
 """The extended model as extended.toml."""
 
+from wedgesweep import effects
 from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.result.estimates import uncertain
@@ -10,16 +11,18 @@ def extended(found: Diagnosis) -> str:
     best, problem = found.extended, found.problem
     document = {**problem.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
-    document["effects"] = {**document["effects"], **nuisance, **best.values}
+    document["effects"] = effects.combined(document["effects"], {**nuisance, **best.values})
+    # Repeated tests are one case, and single cases do not continue one another.
+    cases = dict.fromkeys(
+        (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))
+        for spectrum, amplitude in zip(problem.spectra, best.amplitudes(), strict=True)
+    )
+    document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {
         "omega_n_rad_per_s": problem.model.sweep.omega_n,
         "case": [
-            {
-                "friction_law": problem.law,
-                "frequency_hz": spectrum.frequency,
-                "amplitude_mm": float(1e3 * amplitude),
-            }
-            for spectrum, amplitude in zip(problem.spectra, best.amplitudes(), strict=True)
+            {"friction_law": problem.law, "frequency_hz": frequency, "amplitude_mm": amplitude}
+            for frequency, amplitude in cases
         ],
     }
     return _heading(found) + toml.dumps(document)

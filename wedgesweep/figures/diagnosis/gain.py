@@ -43,7 +43,7 @@ def draw(found: Diagnosed) -> Figure:
     To see: the grey line is what the extension gains on data that it has not seen; a plus at the noise mark
     predicts as well as can be. A row with the plus on the right speaks against the extension.
     """
-    gain = found.document["gain"]
+    gain = found.gain
     if gain is None:
         message = f"{NAME}: nothing was held out (no extended model, or too few tests)"
         raise ValueError(message)

@@ -1,0 +1,86 @@
+"""Measurements that are allowed and unusual, from the files to the files."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from tests.command import invoke
+from wedgesweep import config
+from wedgesweep.diagnose import simulation
+from wedgesweep.diagnosed import read
+from wedgesweep.solvers.periodic import at_rest
+
+MODEL = """\
+[sweep]
+friction_law = "static-dynamic"
+beta = 1.0
+amplitude_mm = 0.1
+[effects.friction_level]
+scale = 0.8
+[effects.preload]
+force_N = 5.0
+[solver]
+method = "event-driven"
+settle = "steady"
+continuation = true
+"""
+MEASURED = """\
+[measurement]
+title = "unusual"
+model = "model.toml"
+uncertain = { friction_level = 0.05 }
+columns.time = { column = "t", unit = "s" }
+columns.displacement = { column = "d", unit = "m" }
+columns.velocity = { column = "v", unit = "m/s" }
+"""
+TEST = """\
+[[measurement.test]]
+file = "{i}.csv"
+frequency_hz = {frequency}
+amplitude_mm = {amplitude}
+"""
+# The third repeats the second; in the last the bolster does not move. (Hz, mm)
+TESTS = ((5.0, 1.5), (11.0, 0.16), (11.0, 0.16), (24.0, 0.09), (24.0, 0.0005))
+SAMPLING, PERIODS, NOISE = 2000.0, 8.4, 0.04
+
+
+@pytest.fixture
+def measured(tmp_path):
+    model = config.parse(MODEL)
+    omega, amplitude = np.array([(2.0 * pi * f, 1e-3 * a) for f, a in TESTS]).T
+    rows = simulation.records(model, "static-dynamic", {}, omega, amplitude)
+    exact = simulation.respond(rows, at_rest(len(TESTS)), 40).harmonics
+    random = np.random.default_rng(0)
+    text = MEASURED
+    for i, (frequency, amplitude) in enumerate(TESTS):
+        time = np.arange(round(PERIODS / frequency * SAMPLING)) / SAMPLING
+        turns = np.exp(2j * pi * frequency * np.outer(np.arange(1, 41), time))
+        signals = (exact[i] @ turns).real
+        level = NOISE * np.maximum(signals.std(axis=1, keepdims=True), [[1e-6], [1e-4]])
+        table = np.c_[time, (signals + level * random.normal(size=signals.shape)).T]
+        np.savetxt(tmp_path / f"{i}.csv", table, delimiter=",", header="t,d,v", comments="")
+        text += TEST.format(i=i, frequency=frequency, amplitude=amplitude)
+    (tmp_path / "model.toml").write_text(MODEL)
+    (tmp_path / "measured.toml").write_text(text)
+    return tmp_path / "measured.toml"
+
+
+def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
+    out = measured.parent / "found"
+    said = invoke("diagnose", measured, "-o", out, "--effects", "preload,friction_level,wedge_stiffness")
+    assert "part of the model on trial, so no candidates: preload" in said
+    found = read(out)
+    assert found.verdict == "nothing-missing"
+    # What is uncertain scales the model's own number.
+    assert found.document["uncertain"]["friction_level"]["scale"] == pytest.approx(1.0, abs=0.02)
+    assert {effect for each in found.document["candidates"] for effect in each["effects"]} == {
+        "friction_level",
+        "wedge_stiffness",
+    }
+    assert np.isfinite(found.data["leftover_force"]).all()
+    extended = config.load(out / "extended.toml")
+    assert extended.effects["preload"] == {"force": 5.0}
+    assert extended.effects["friction_level"]["scale"] == pytest.approx(0.8, abs=0.02)
+    assert len(extended.sweep.cases) == len(set(TESTS))
+    invoke("run", out / "extended.toml", "-o", measured.parent / "extended.nc")
