@@ -104,6 +104,9 @@ class Search:
         start = model.start(None, np.zeros(0))
         trials = best_amplitudes(model, [replace(start, x=x) for x in model.uncertain_starts()])
         fits = self.each(lambda trial: refine(model, trial), trials)
+        if model.uncertain and min(fits, key=lambda fit: fit.q).p < LIKELY:
+            # Inputs may have made up for numbers that they should have led to.
+            fits += self.each(lambda trial: refine(model, _as_stated(model, trial)), trials)
         fit = detour.around(min(fits, key=lambda fit: fit.q))
         self._meet(fit)
         return self.explanation(fit)
