@@ -10,7 +10,7 @@ from tests import fixture_measured
 from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, csv_lines, lines, vibration
 from wedgesweep import measured
 from wedgesweep.measured import noise
-from wedgesweep.measured.declarations import SCALES
+from wedgesweep.measured.declarations import PARAMETERS
 from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.measured.sampling import even_grid, resolution
 
@@ -71,11 +71,11 @@ def test_a_model_instead_of_the_one_that_is_named(tmp_path):
 
 
 def test_the_scales_of_the_parameters_family_can_be_uncertain(tmp_path):
-    table = "".join(f"{name} = 0.0{i}\n" for i, name in enumerate(SCALES, 1))
+    table = "".join(f"{name} = 0.0{i}\n" for i, name in enumerate(PARAMETERS, 1))
     text = MEASURED.replace("[[measurement.test]]", f"[measurement.uncertain]\n{table}[[measurement.test]]")
     found = measured.read(fixture_measured.write(tmp_path, text)).uncertain
-    assert found == {name: i / 100.0 for i, name in enumerate(SCALES, 1)}
-    assert set(SCALES) == {"bolster_stiffness", "wedge_stiffness", "bolster_mass", "friction_level"}
+    assert found == {name: i / 100.0 for i, name in enumerate(PARAMETERS, 1)}
+    assert set(PARAMETERS) == {"bolster_stiffness", "wedge_stiffness", "bolster_mass", "friction_level"}
 
 
 def edited(number, edit):
@@ -131,6 +131,19 @@ TOML_FAULTS = {
     "negative frequency": (("20.0", "-20.0"), "test[0].frequency_hz: -20.0 is out of range"),
     "text as frequency": (("20.0", '"20"'), 'test[0].frequency_hz: "20" is not a finite number'),
     "above Nyquist": (("20.0", "600.0"), "one.csv: has 1.67 samples per period of 600 Hz; at least 5 are"),
+    "displacement's unit": (
+        ('column = "d", unit = "mm"', 'column = "d", unit = "m"'),
+        "one.csv: velocity is 0.001 times what displacement makes at 20 Hz; correct the units",
+    ),
+    "velocity's unit": (('unit = "mm/s"', 'unit = "m/s"'), "one.csv: velocity is 1e+03 times what"),
+    "amplitude in m": (
+        ("amplitude_mm = 0.3", "amplitude_mm = 0.0003"),
+        "one.csv moves 3.34e+03 times its ampl",
+    ),
+    "amplitude in um": (
+        ("amplitude_mm = 0.3", "amplitude_mm = 300"),
+        "no test moves more than 0.0033 times its",
+    ),
     "too few samples": (("20.0", "300.0"), "one.csv: has 3.33 samples per period of 300 Hz; at least 5 are"),
     "twice the same file": (
         ("[[measurement.test]]", '[[measurement.test]]\nfile = "one.csv"\n[[measurement.test]]'),
@@ -174,6 +187,14 @@ CSV_FAULTS = {
             for i, line in enumerate(lines())
         ],
         "one.csv: velocity never changes",
+    ),
+    "turned sign": (
+        csv_lines(*(sign * each for sign, each in zip((1.0, 1.0, -1.0), vibration(), strict=True))),
+        "one.csv: velocity falls where displacement rises",
+    ),
+    "swapped columns": (
+        csv_lines(*(vibration()[i] for i in (0, 2, 1))),
+        "times what displacement makes at 20 Hz",
     ),
     "drift": (lines(drift=0.02), "one.csv: the frequency drifts by +2.1 %"),
     "small drift over many periods": (

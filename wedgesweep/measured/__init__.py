@@ -23,6 +23,10 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         With everything that is wrong: in the file itself, in the data of each test and in the model.
     """
     from wedgesweep.measured import netcdf, toml_and_csv
+    from wedgesweep.measured.plausibility import amplitude_faults
 
     reader = netcdf if path.suffix in netcdf.SUFFIXES else toml_and_csv
-    return reader.read(path, model)
+    measurement = reader.read(path, model)
+    if faults := amplitude_faults(measurement.tests):
+        raise MeasuredError([f"{path}: {fault}" for fault in faults])
+    return measurement

@@ -9,6 +9,7 @@ import numpy as np
 from wedgesweep.measured import sampling
 from wedgesweep.measured.declarations import UNITS
 from wedgesweep.measured.measurement import Test
+from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
 
 
@@ -55,5 +56,5 @@ def build(
         displacement=displacement,
         velocity=channels.si("velocity"),
     )
-    problems.extend(frequency_faults(test, channels.file, at))
+    problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
     return None if len(problems) > before else test
