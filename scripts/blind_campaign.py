@@ -2,8 +2,8 @@
 
 Every set is made and diagnosed through the command line; the truth is compared afterwards. Finished sets are
 kept in the directory, so that a campaign can be stopped (Ctrl-C) and goes on where it was. At full size it
-takes hours. Writes docs/blind_campaign.txt and .jsonl (the records) and docs/blind-recovery.png (with --size
-below 1: into the directory only).
+takes hours. Writes blind_campaign.txt, .jsonl (the records) and blind-recovery.png into the directory and, if
+every set of the full size is there (or with --publish), into docs.
 """
 
 import argparse
@@ -34,6 +34,7 @@ def arguments():
         "--aic-every", type=int, default=5, help="sets of a kind per one with forward AIC (slow); 0: none"
     )
     parser.add_argument("--records", type=Path, help="sets finished elsewhere (.jsonl): not made again")
+    parser.add_argument("--publish", action="store_true", help="write to docs, whatever is missing")
     parser.add_argument("--tables", action="store_true", help="no new sets: the tables of those there are")
     return parser.parse_args()
 
@@ -126,12 +127,12 @@ def main():
     sets = Sets([r for r in records if "failure" not in r], [r for r in records if "failure" in r])
     text = report(sets, given.seed, given.size, sum(map(len, wanted)))
     print("\n" + text)
-    whole = given.size >= 1.0 and not given.only
-    docs = ROOT / "docs" if whole else out
-    (docs / "blind_campaign.txt").write_text(text)
-    (docs / "blind_campaign.jsonl").write_text("".join(json.dumps(r) + "\n" for r in sets.all))
-    if rows := recovery(sets):
-        blind_picture.draw(rows, docs / "blind-recovery.png")
+    whole = given.size >= 1.0 and len(sets.all) == sum(map(len, wanted)) and not given.only
+    for directory in (out, ROOT / "docs") if whole or given.publish else (out,):
+        (directory / "blind_campaign.txt").write_text(text)
+        (directory / "blind_campaign.jsonl").write_text("".join(json.dumps(r) + "\n" for r in sets.all))
+        if rows := recovery(sets):
+            blind_picture.draw(rows, directory / "blind-recovery.png")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,9 @@ from blind_judge import gain_in_truth
 from blind_sets import BlindSet
 from blind_strength import TONE
 
+from wedgesweep.compiled import source_digest
 from wedgesweep.config import toml
+from wedgesweep.provenance import git_commit
 
 ROOT = Path(__file__).parent.parent
 RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
@@ -114,6 +116,7 @@ def _run(one: BlindSet, out: Path, directory: Path) -> dict[str, Any]:
         "kind": one.kind,
         "index": one.index,
         "seed": one.seed,
+        "code": git_commit() or source_digest(),
         "truth": sorted(draft.hidden) or ([draft.foreign["name"]] if draft.foreign else []),
         "numbers": draft.hidden,
         **{key: getattr(draft, key) for key in ("law", "lean", "noise", "spread", "uncertain", "expected")},

@@ -386,7 +386,7 @@ def test_files_that_are_not_netcdf_or_hold_no_test(tmp_path):
     (tmp_path / "text.nc").write_text("text")
     assert "give the path of a netCDF file" in problems(tmp_path / "text.nc")[0]
     netCDF4.Dataset(tmp_path / "empty.nc", "w").close()
-    assert "no tests" in "".join(problems(tmp_path / "empty.nc"))
+    assert "no measured data; each test would be a group" in "".join(problems(tmp_path / "empty.nc"))
 
 
 def test_which_files_are_measured_data(tmp_path):

@@ -175,6 +175,7 @@ def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
     document["candidates"] = [each for each in document["candidates"] if len(each["effects"]) == 1][
         :candidates
     ]
+    document["detectable"], document["not_testable"] = {}, []
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 

@@ -12,6 +12,8 @@ from wedgesweep.errors import InputError
 
 JSON, DATASET = "diagnosis.json", "diagnosis.nc"
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")
+# Candidates whose fit ended without numbers that mean anything.
+FAILED, NO_BETTER = "failed", "no better"
 KEYS = (
     *("verdict", "causes", "rivals", "misfit", "gain", "detectable", "not_testable", "next_test"),
     *("title", "model", "version", "created", "method", "candidates"),

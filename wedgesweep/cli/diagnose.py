@@ -29,7 +29,8 @@ FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")
     "-o",
     "--output",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Directory of the result; default: MEASURED's name with -diagnosis, here.",
+    help="Directory of the result; default: MEASURED's name (its directory's, if that is measured.toml) "
+    "with -diagnosis, here.",
 )
 @N_JOBS
 @click.option("--effects", metavar="A,B,...", help="Only these candidates; default: all.")
@@ -59,7 +60,7 @@ def diagnose(
     from wedgesweep.diagnose import diagnosis, result
 
     measurement = data.read(measured, model)
-    directory = output or Path(f"{measured.resolve().parent.name}-diagnosis")
+    directory = output or Path(f"{_name(measured)}-diagnosis")
     if directory.exists() and not directory.is_dir():
         message = f"{directory}: not a directory"
         raise Failure(message)
@@ -74,6 +75,10 @@ def diagnose(
         written = report.write(directory, processors)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {written}")
+
+
+def _name(measured: Path) -> str:
+    return measured.resolve().parent.name if measured.name == "measured.toml" else measured.stem
 
 
 def _say_what_is_there(measurement: "Measurement", chosen: "Sequence[str]") -> None:
@@ -121,13 +126,17 @@ def _said(step: str) -> None:
 
 
 def _chosen(effects: str | None) -> tuple[str, ...]:
+    from wedgesweep.config.keys import hint
     from wedgesweep.effects import EFFECTS
 
     if effects is None:
         return tuple(EFFECTS)
     names = tuple(name.strip() for name in effects.split(",") if name.strip())
     unknown = [name for name in names if name not in EFFECTS]
-    if unknown or not names:
-        message = f"--effects: {', '.join(unknown) or 'nothing'} is none of {', '.join(EFFECTS)}"
+    if not names:
+        message = f"--effects: nothing is chosen; valid here: {', '.join(EFFECTS)}"
+        raise Failure(message)
+    if unknown:
+        message = "\n".join(f"--effects: unknown effect {name}; {hint(name, EFFECTS)}" for name in unknown)
         raise Failure(message)
     return names

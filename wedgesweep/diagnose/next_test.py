@@ -59,7 +59,7 @@ class _Prediction:
 
 
 def recommend(fits: Sequence[Fit]) -> NextTest | None:
-    """Test that separates most fits from one another; None where there is nothing to separate."""
+    """Test that separates most fits, the best one first; None where there is nothing to separate."""
     if len(fits) < 2:
         return None
     frequency, acceleration = (each.ravel() for each in np.meshgrid(FREQUENCIES, ACCELERATIONS))
@@ -74,8 +74,11 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     distances = np.array([_distances(one, other, weight) for (_, one), (_, other) in pairs])
     best = _choice(distances)
     here = distances[:, best]
-    told = np.flatnonzero(here >= ENOUGH) if (here >= ENOUGH).any() else np.arange(len(pairs))
-    closest = int(told[np.argmin(here[told])])
+    told = here >= ENOUGH if (here >= ENOUGH).any() else np.ones(len(pairs), bool)
+    # What it tells from the best one is of most interest.
+    from_best = told & [one is fits[0] for (one, _), _ in pairs]
+    chosen = np.flatnonzero(from_best if from_best.any() else told)
+    closest = int(chosen[np.argmin(here[chosen])])
     (one, _), (other, _) = pairs[closest]
     names = (" + ".join(one.effects) or "base", " + ".join(other.effects) or "base")
     return NextTest(float(frequency[best]), float(amplitude[best]), names, float(here[closest]))

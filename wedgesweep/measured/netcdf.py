@@ -80,15 +80,16 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 
 
 def _read(root: Any, path: Path, model: Path | None) -> Measurement:
+    groups = list(root.groups["tests"].groups.values()) if "tests" in root.groups else []
+    if not groups:
+        told = "no measured data; each test would be a group within the group tests"
+        raise MeasuredError([f"{path}: {told}"])
     problems: list[str] = []
     attributes = _attributes(root)
     unknown = [name for name in attributes if name not in ROOT_NAMES]
     problems.extend(f"{path}: {name}: unknown attribute; {hint(name, ROOT_NAMES)}" for name in unknown)
     config, law = _model(attributes, path, model, problems)
     uncertain = _uncertain(root, path, problems)
-    groups = list(root.groups["tests"].groups.values()) if "tests" in root.groups else []
-    if not groups:
-        problems.append(f"{path}: no tests; each is a group within the group tests")
     tests = [_test(group, path, problems) for group in groups]
     complete = tuple(test for test in tests if test)
     if problems or config is None:

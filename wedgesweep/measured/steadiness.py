@@ -36,7 +36,7 @@ def frequency_faults(test: Test, file: str, at: str) -> list[str]:
         told = f"covers {periods:.3g} periods of {found:.6g} Hz"
         return [f"{file}: {told}; at least {FEWEST_PERIODS} are needed"]
     tone = frequency.near(test.time, test.displacement, found, frequency.LOBE / periods)
-    return _contradiction(test, tone, file, at) or _drift(tone, periods, file)
+    return _drift(tone, periods, file) or _contradiction(test, tone, file, at)
 
 
 def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:

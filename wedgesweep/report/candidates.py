@@ -3,7 +3,7 @@
 from typing import Any
 
 from wedgesweep import digits
-from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.diagnosed import FAILED, NO_BETTER, Diagnosed
 from wedgesweep.effects import EFFECTS
 from wedgesweep.report import html, words
 from wedgesweep.report.html import Markup
@@ -67,9 +67,25 @@ def _summary(found: Diagnosed) -> str:
     best = (
         f", and {words.counted(pairs, 'pair')}, those that looked best on some of the tests" if pairs else ""
     )
-    failed = sum(each["status"] == "failed" for each in found.document["candidates"])
-    told = f" {words.counted(failed, 'fit')} failed." if failed else ""
-    return f"Beside the base model {singles} were fitted{best}.{told}"
+    return f"Beside the base model {singles} were fitted{best}.{_without_numbers(found)}{_unheard(found)}"
+
+
+def _without_numbers(found: Diagnosed) -> str:
+    status = [each["status"] for each in found.document["candidates"]]
+    failed, no_better = status.count(FAILED), status.count(NO_BETTER)
+    return (f" {words.counted(failed, 'fit')} failed." if failed else "") + (
+        f" {words.counted(no_better, 'fit')} ended no better than the base model, far from what it does best."
+        if no_better
+        else ""
+    )
+
+
+def _unheard(found: Diagnosed) -> str:
+    """The effect that was not fitted, as no test has a foreign tone."""
+    document = found.document
+    fitted = {effect for each in document["candidates"] for effect in each["effects"]}
+    left = sorted({*document["detectable"], *document["not_testable"]} - fitted)
+    return f" Not fitted, as nothing is heard of it: {words.listing(left)}." if left else ""
 
 
 def _ranking(found: Diagnosed) -> str:

@@ -1,5 +1,7 @@
 """What these tests can show, what they cannot, and what to measure next."""
 
+from math import floor, log10
+
 from wedgesweep import digits
 from wedgesweep.diagnosed import Diagnosed
 from wedgesweep.report import html, words
@@ -9,12 +11,12 @@ from wedgesweep.report.html import Markup
 def limits(found: Diagnosed) -> Markup:
     """Section on what would have shown and what cannot."""
     rows = [
-        [effect, name, words.with_unit(digits.short(value, 2), unit)]
-        for effect, smallest in found.document["detectable"].items()
-        for (name, unit), value in [(words.split_key(key), value) for key, value in smallest.items()]
+        [effect, name, words.with_unit(_weakest(name, value), unit)]
+        for effect, weakest in found.document["detectable"].items()
+        for (name, unit), value in [(words.split_key(key), value) for key, value in weakest.items()]
     ]
-    caption = "Smallest effect that these tests would have shown"
-    table = html.table(caption, ("effect", "number", "smallest value"), rows, 2)
+    caption = "Weakest effect that these tests would have shown"
+    table = html.table(caption, ("effect", "number", "weakest value"), rows, 2)
     hidden = found.document["not_testable"]
     return html.section(
         "limits",
@@ -24,11 +26,19 @@ def limits(found: Diagnosed) -> Markup:
     )
 
 
+def _weakest(name: str, value: float | None) -> str:
+    """A number to two digits; of a factor those of its distance from 1."""
+    if name != "scale" or value is None or value == 1.0:
+        return digits.short(value, 2)
+    return digits.fixed(value, max(1 - floor(log10(abs(value - 1.0))), 0))
+
+
 def _hidden(effects: list[str]) -> str:
     if not effects:
         return "There is no candidate that these tests cannot show at all."
     return (
-        f"Not testable, whatever their size: {words.listing(effects)}. The verdict says nothing about them."
+        f"Not testable: {words.listing(effects)}. What they would change of these tests, start phases, "
+        "amplitudes and uncertain numbers may change as well. The verdict says nothing about them."
     )
 
 

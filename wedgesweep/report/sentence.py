@@ -101,8 +101,9 @@ def _unconfirmed(found: Diagnosed) -> bool:
 
 
 def _unexplained(found: Diagnosed) -> str:
-    singles = [each for each in found.document["candidates"] if len(each["effects"]) == 1]
-    match len(singles):
+    document = found.document
+    singles = {each["effects"][0] for each in document["candidates"] if len(each["effects"]) == 1}
+    match len(singles.union(document["detectable"], document["not_testable"])):
         case 0:
             return "there is no candidate that would show in these tests"
         case 1:

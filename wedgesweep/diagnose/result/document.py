@@ -1,5 +1,6 @@
 """The content of diagnosis.json, as DIAGNOSIS.md has it."""
 
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from math import isfinite, log
 from typing import Any
@@ -11,9 +12,9 @@ from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.next_test import ENOUGH, NextTest
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
-from wedgesweep.diagnose.score import Score
-from wedgesweep.diagnose.search import PENALTY, Explanation
+from wedgesweep.diagnose.search import PENALTY, SLIGHT, Explanation
 from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
+from wedgesweep.diagnosed import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
 
@@ -33,7 +34,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "detectable": {
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
-        "not_testable": [score.effect for score in found.scores if not score.testable],
+        "not_testable": _not_testable(found),
         "next_test": _following(found.next_test),
         "extended": list(best.effects),
         "title": found.measurement.title,
@@ -44,6 +45,18 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": _method(found),
         "candidates": _candidates(found),
     }
+
+
+def _not_testable(found: Diagnosis) -> list[str]:
+    """Effects that the tests cannot show; what explains them all the same is so strong that it does show."""
+    finding = found.finding
+    explaining = {
+        effect
+        for each in (finding.cause, *finding.alternatives)
+        if each is not None
+        for effect in each.effects
+    }
+    return [score.effect for score in found.scores if not score.testable and score.effect not in explaining]
 
 
 def _causes(each: Explanation | None) -> list[dict[str, Any]]:
@@ -155,10 +168,12 @@ def _method(found: Diagnosis) -> dict[str, Any]:
 
 def _candidates(found: Diagnosis) -> list[dict[str, Any]]:
     scores = {score.effect: score for score in found.scores}
+    hidden = _not_testable(found)
     rows = []
     for each in sorted([found.base, *found.explanations], key=lambda one: one.penalised):
         score = scores.get(each.effects[0]) if len(each.effects) == 1 else None
-        numbers = parameters(each.fit) if isfinite(each.fit.q) else {}
+        status = _status(found, each, hidden)
+        numbers = parameters(each.fit) if status not in (FAILED, NO_BETTER) else {}
         rows.append(
             {
                 "effects": list(each.effects),
@@ -171,13 +186,16 @@ def _candidates(found: Diagnosis) -> list[dict[str, Any]]:
                 },
                 "score": None if score is None else finite(score.t2),
                 "retention": None if score is None else finite(score.retention),
-                "status": _status(each, score),
+                "status": status,
             }
         )
     return rows
 
 
-def _status(each: Explanation, score: Score | None) -> str:
+def _status(found: Diagnosis, each: Explanation, hidden: Sequence[str]) -> str:
+    """How a fit ended; one that ended above the base model that it contains has not found its minimum."""
     if not isfinite(each.fit.q):
-        return "failed"
-    return "not testable" if score is not None and not score.testable else "fitted"
+        return FAILED
+    if each.fit.q > found.base.fit.q + SLIGHT:
+        return NO_BETTER
+    return "not testable" if len(each.effects) == 1 and each.effects[0] in hidden else "fitted"

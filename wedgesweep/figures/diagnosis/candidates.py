@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.diagnosed import NO_BETTER, Diagnosed
 from wedgesweep.figures import style
 
 NAME = "candidates"
@@ -17,7 +17,11 @@ MOST = 20
 
 def shown(found: Diagnosed) -> list[dict[str, Any]]:
     """Return the best candidates that were fitted, and the base model wherever it stands."""
-    fitted = [each for each in found.document["candidates"] if each["penalised"] is not None]
+    fitted = [
+        each
+        for each in found.document["candidates"]
+        if each["penalised"] is not None and each["status"] != NO_BETTER
+    ]
     return [each for place, each in enumerate(fitted) if place < MOST or not each["effects"]]
 
 
