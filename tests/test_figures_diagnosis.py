@@ -90,7 +90,7 @@ def test_the_tests_with_the_largest_misfit_are_shown():
     assert ratio[chosen].min() >= np.delete(ratio, chosen).max()
     figure = diagnosis.FIGURES["waveforms"].draw(diagnosed, tests=[4])
     assert "run-04" in figure.axes[0].get_title()
-    assert len(figure.axes) == 2
+    assert len(figure.axes) == 3
 
 
 def test_velocity_is_the_rate_of_displacement_where_there_is_no_channel():

@@ -44,14 +44,14 @@ def heading(found: Diagnosed) -> str:
 
 SEE = {
     "waveforms": "The thick line is measured (mean of the periods), the dashed one is the base model. "
-    "A flat crest is friction that holds.",
+    "A flat crest is friction that holds. Below: models less measured; within grey is noise.",
     "phase-plane": "A loop pressed flat along zero velocity sticks there; "
     "a tilted or swollen one has another stiffness or energy loss.",
     "harmonics": "A mark off the measured dot by more than its bar is misfit. Odd harmonics come from what "
     "acts alike in both directions, even ones from what does not.",
     "leftover-force": "The force that the base model lacks to move as measured. A step at zero velocity is "
     "dry friction, a slope over velocity a damper, a slope over displacement a spring; a loop over both has "
-    "a memory.",
+    "a memory. Grey: the misfit of the test may be noise, and so may the force.",
 }
 
 
