@@ -197,6 +197,10 @@ CSV_FAULTS = {
         "times what displacement makes at 20 Hz",
     ),
     "drift": (lines(drift=0.02), "one.csv: the frequency drifts by +2.1 %"),
+    "too many samples": (
+        ["t,d,v", *(f"{i},{i % 7},{i % 5}" for i in range(300_001))],
+        "one.csv: has 300001 samples, at most 300000 are used; cut it shorter",
+    ),
     "small drift over many periods": (
         lines(periods=300.0, drift=5e-4),
         "one.csv: the frequency drifts by +0.05",

@@ -39,15 +39,19 @@ numba.config.CACHE_DIR = str(CACHE_DIR)  # type: ignore[attr-defined]
 Function = TypeVar("Function", bound=Callable)
 
 
+# A division by zero gives inf or NaN, as in numpy; threads run at once; nobody calls these from C, and
+# without a way to do so they compile in nine tenths of the time.
+OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+
+
 def compiled(function: Function) -> Function:
-    """Compile with numba; a division by zero gives inf or NaN, as in numpy, and threads run at once."""
-    return cast(Function, numba.njit(cache=True, error_model="numpy", nogil=True)(function))
+    """Compile with numba."""
+    return cast(Function, numba.njit(**OPTIONS)(function))
 
 
 def inlined(function: Function) -> Function:
     """``compiled``, and copied into its callers: for what is short and called in the innermost loops."""
-    compiler = numba.njit(cache=True, error_model="numpy", nogil=True, forceinline=True)
-    return cast(Function, compiler(function))
+    return cast(Function, numba.njit(forceinline=True, **OPTIONS)(function))
 
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:

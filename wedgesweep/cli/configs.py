@@ -55,10 +55,13 @@ def check(config_path: Path) -> None:
         return
     settings = config.load(config_path)
     click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
+    from wedgesweep import backend
     from wedgesweep.estimate import estimate
     from wedgesweep.sweep import Sweep
 
-    _print_estimate(estimate(Sweep(settings, Path(f"{config_path.stem}.nc"))))
+    sweep, n_jobs = Sweep(settings, Path(f"{config_path.stem}.nc")), jobs(None)
+    threads = backend.local(sweep.settings.method) is backend.threads
+    _print_estimate(estimate(sweep), n_jobs, 1 if threads else n_jobs + 1)
 
 
 def _grid(settings: "Config") -> str:
@@ -70,9 +73,8 @@ def _grid(settings: "Config") -> str:
     return f"{count} = {laws} friction laws x {betas} frequencies x {amplitudes} amplitudes"
 
 
-def _print_estimate(cost: "Estimate") -> None:
-    n_jobs = jobs(None)
-    memory = cost.process_bytes * (n_jobs + 1) + 2 * cost.dataset_bytes
+def _print_estimate(cost: "Estimate", n_jobs: int, processes: int) -> None:
+    memory = cost.process_bytes * processes + 2 * cost.dataset_bytes
     click.echo(
         f"time: about {duration(cost.seconds_on_one_job / n_jobs)} on {n_jobs} jobs "
         f"(from {cost.sampled.size} cases run now)\n"

@@ -12,6 +12,8 @@ FEWEST_PERIODS = 4
 WHOLE = 1e-3
 # With fewer samples a period two harmonics do not fit below what an anti-aliasing filter leaves.
 FEWEST_SAMPLES = 5
+# A record with more samples takes gigabytes; it says no more than a shorter one, or one at a lower rate.
+MOST_SAMPLES = 300_000
 # A drift by this many cycles over the record does no harm.
 SLIP = 0.02
 # Farther off than the search goes a line leaks less than this share of its amplitude into the stated one.
@@ -23,6 +25,9 @@ WORSE = 3.0
 
 def frequency_faults(test: Test, file: str, at: str) -> list[str]:
     """What is wrong with the frequency of a test, as its keys ``at`` a place state it and in the data."""
+    if test.time.size > MOST_SAMPLES:
+        told = f"has {test.time.size} samples, at most {MOST_SAMPLES} are used"
+        return [f"{file}: {told}; cut it shorter, or low-pass it and sample it down"]
     stated = test.frequency
     found = frequency.estimate_frequency(test.time, test.displacement) if stated is None else stated
     if isnan(found):
