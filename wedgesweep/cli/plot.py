@@ -41,6 +41,8 @@ and for both
   {ALL:<16} each of them that suits OUT
 """
 
+POSITIVE = click.FloatRange(min=0.0, min_open=True)
+
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
 @click.argument("kind", metavar="KIND", type=click.Choice([*DESCRIPTIONS, *diagnosis.DESCRIPTIONS, ALL]))
@@ -52,9 +54,13 @@ and for both
     help=f"File ({', '.join(FORMATS)}), for 'all' a directory; default: beside the data.",
 )
 @click.option("--format", "suffix", type=click.Choice(SUFFIXES), default="png", show_default=True)
-@click.option("--beta", type=float, help="Frequency ratio; the nearest in OUT is drawn.")
+@click.option("--beta", type=POSITIVE, help="Frequency ratio; the nearest in OUT is drawn.")
 @click.option(
-    "--amplitude", type=float, multiple=True, metavar="MM", help="Input amplitude; may be repeated."
+    "--amplitude",
+    type=POSITIVE,
+    multiple=True,
+    metavar="MM",
+    help="Input amplitude; the nearest in OUT is drawn; may be repeated.",
 )
 @click.option("--law", help="Friction law.")
 @click.pass_context
