@@ -23,13 +23,13 @@ run: install  ## run configs/quick.toml: dataset and figures into out/
 	$(BIN)/wedgesweep plot all $(OUT)/quick.nc -o $(OUT)/quick-figures
 
 test: install  ## all tests
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile
 
 check: install  ## linter, types and tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile
 
 reproduce: install  ## run the paper's 1,800 cases and check its claims
 	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
