@@ -31,8 +31,9 @@ CHANCE = 1e-5
 # A difference is significant if it is as improbable as 5 std of a normal variable.
 IMPROBABLE = 2.9e-7
 PADDING = 8
-# Frequencies that differ or change by less than this share are stated well enough.
-NEGLIGIBLE = 2e-3
+# Frequencies that differ or change by less than this share are the same, and by fewer cycles than this over
+# the record they do no harm.
+NEGLIGIBLE, SLIP = 2e-3, 0.02
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,10 @@ def actual(time: np.ndarray, displacement: np.ndarray, stated: float | None) -> 
     """
     if stated is None:
         return estimate_frequency(time, displacement)
-    tone = near(time, displacement, stated, LOBE / _cycle_count(time, stated))
-    close = abs(tone.frequency / stated - 1.0) < NEGLIGIBLE
-    return tone.frequency if close and tone.differs(stated) else stated
+    cycles = _cycle_count(time, stated)
+    tone = near(time, displacement, stated, LOBE / cycles)
+    off = abs(tone.frequency / stated - 1.0)
+    return tone.frequency if SLIP / cycles < off < NEGLIGIBLE and tone.differs(stated) else stated
 
 
 def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple[float, float]:

@@ -14,8 +14,6 @@ WHOLE = 1e-3
 FEWEST_SAMPLES = 5
 # A record with more samples takes gigabytes; it says no more than a shorter one, or one at a lower rate.
 MOST_SAMPLES = 300_000
-# A drift by this many cycles over the record does no harm.
-SLIP = 0.02
 # Farther off than the search goes a line leaks less than this share of its amplitude into the stated one.
 LEAKAGE = 0.3
 # A wrong frequency leaves this many times the variance that the right one leaves. Less may come from a tone
@@ -77,7 +75,7 @@ def _elsewhere(test: Test, stated: float) -> float:
 
 
 def _drift(tone: Tone, periods: float, file: str) -> list[str]:
-    if abs(tone.drift) < min(frequency.NEGLIGIBLE, SLIP / periods) or not tone.drifts:
+    if abs(tone.drift) < min(frequency.NEGLIGIBLE, frequency.SLIP / periods) or not tone.drifts:
         return []
     change = (
         f"by {100.0 * tone.drift:+.2g} % ({100.0 * tone.drift_std:.1g} % std) around {tone.frequency:.6g} Hz"
