@@ -23,7 +23,7 @@ RETAINED = 0.05
 # Squared distance from the base model that the tests would have shown.
 SHOWN = 12.6
 # Points between the weakest and the strongest value of an effect's leading number, and how many times weaker
-# than that it is looked for.
+# than that it may be said to show.
 POINTS, BEYOND = 12, 1e3
 # A direction of a response that is not smooth: two steps must agree this well.
 AGREE = 0.10
@@ -134,7 +134,7 @@ def _score(search: Search, base: Fit, effect: str, project: Projector, residual:
 
 
 def _ways(search: Search, base: Fit, model: Model, project: Projector) -> Iterator[_Way]:
-    """Along the leading number of an effect; along others, or beyond its range, if all of that would show."""
+    """Along the leading number of an effect; along others, if all of that would show."""
 
     def tried(number: int, points: np.ndarray, trials: Sequence[Trial]) -> _Way:
         changes = [_change(base, each) for each in trials]
@@ -153,9 +153,8 @@ def _ways(search: Search, base: Fit, model: Model, project: Projector) -> Iterat
         leading = simulated(0, _path(hypothesis, 0))
     yield leading
     for number in [i for i, each in enumerate(coordinates) if each.logarithmic]:
-        way = simulated(number, _path(hypothesis, number)) if number else leading
-        yield way
-        yield simulated(number, _beyond(way))
+        if number:
+            yield simulated(number, _path(hypothesis, number))
 
 
 def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
@@ -173,14 +172,6 @@ def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
         path[:, number] = np.linspace(along.low, along.high, POINTS)
     else:
         path[:, number] = neutral + (along.high - neutral) * np.geomspace(1e-4, 1.0, POINTS)
-    return path
-
-
-def _beyond(way: _Way) -> np.ndarray:
-    """Points (n, k) beyond that end of a logarithmic number's range where an effect is weaker."""
-    weaker = int(np.argmin(way.distance[[0, -1]]))
-    path = np.repeat(way.points[[-weaker]], POINTS, axis=0)
-    path[:, way.number] += (1.0, -1.0)[weaker] * np.linspace(-log(BEYOND), 0.0, POINTS)
     return path
 
 
@@ -205,11 +196,25 @@ def _detectable(hypothesis: Hypothesis, way: _Way, key: str) -> float | None:
     shown = [i for i in np.argsort(distance) if distance[i] >= SHOWN]
     if not shown:
         return None
-    i = shown[0]
+    i = int(shown[0])
     below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < SHOWN]
     point = points[i].copy()
     if below:
         j = below[0]
         low, high = np.sqrt(distance[j]), np.sqrt(distance[i])
         point += (points[j] - points[i]) * (high - np.sqrt(SHOWN)) / (high - low)
+    elif hypothesis.coordinates[way.number].logarithmic and i in (0, len(points) - 1):
+        point[way.number] += _beyond(points[:, way.number], distance, i)
     return float(hypothesis.in_key_units(point)[hypothesis.effects[0]].get(key, inf))
+
+
+def _beyond(x: np.ndarray, distance: np.ndarray, end: int) -> float:
+    """How far beyond an end of a logarithmic range an effect would fade that still shows there.
+
+    A weak effect changes responses by a power of its number, that of the last two points.
+    """
+    inwards = 1 if end == 0 else end - 1
+    slope = np.log(distance[end] / distance[inwards]) / (x[end] - x[inwards])
+    farthest = np.sign(x[end] - x[inwards]) * log(BEYOND)
+    fades = np.log(SHOWN / distance[end]) / slope if slope else farthest
+    return float(np.clip(fades, *sorted((0.0, farthest))))
