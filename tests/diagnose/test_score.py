@@ -4,7 +4,14 @@ from tests.diagnose.drawn import drawn
 from wedgesweep.diagnose import score
 from wedgesweep.diagnose.search import Search
 
-EFFECTS = ("velocity_lag", "stray_vibration", "viscous_damping", "stribeck", "cross_slip")
+EFFECTS = (
+    "velocity_lag",
+    "stray_vibration",
+    "viscous_damping",
+    "stribeck",
+    "cross_slip",
+    "fixture_resonance",
+)
 # Number with which an effect fades, its key's unit in SI, and its other numbers.
 FADING = {
     "velocity_lag": ("time", 1.0, {}),
@@ -28,6 +35,7 @@ def test_the_weakest_value_is_what_the_tests_would_have_shown():
     """Even where all of the range that a fit looks in would show, or the first number is not what fades."""
     weakest = scored()
     assert weakest["stribeck"].key == "velocity_mm_per_s"
+    assert weakest["fixture_resonance"].key == "frequency_hz"
     for effect, (name, unit, others) in FADING.items():
         detectable = unit * weakest[effect].detectable
         stronger, weaker = ({effect: {name: factor * detectable, **others}} for factor in (4.0, 0.25))

@@ -134,7 +134,10 @@ def _score(search: Search, base: Fit, effect: str, project: Projector, residual:
 
 
 def _ways(search: Search, base: Fit, model: Model, project: Projector) -> Iterator[_Way]:
-    """Along the leading number of an effect; along others, if all of that would show."""
+    """Along the leading number of an effect; along others, if it does not fade with the first.
+
+    Stribeck friction without a peak is not the base model: it fades with its velocity.
+    """
 
     def tried(number: int, points: np.ndarray, trials: Sequence[Trial]) -> _Way:
         changes = [_change(base, each) for each in trials]
@@ -152,21 +155,23 @@ def _ways(search: Search, base: Fit, model: Model, project: Projector) -> Iterat
     else:
         leading = simulated(0, _path(hypothesis, 0))
     yield leading
-    for number in [i for i, each in enumerate(coordinates) if each.logarithmic]:
-        if number:
+    if coordinates[0].logarithmic:  # it fades beyond its range
+        return
+    for number, each in enumerate(coordinates):
+        if each.logarithmic:
             yield simulated(number, _path(hypothesis, number))
 
 
 def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
     """Points (n, k) from where an effect hardly acts to where it does, along one of its numbers.
 
-    The others are in the middle of their range, but for the leading one, which is neutral.
+    The others are in the middle of their range, but for a leading one that is neutral somewhere.
     """
-    coordinates, along = hypothesis.coordinates, hypothesis.coordinates[number]
-    at = np.array([0.5 * (each.low + each.high) for each in coordinates])
-    first = coordinates[0]
+    first, along = hypothesis.coordinates[0], hypothesis.coordinates[number]
     neutral = min(max(first.neutral, first.low), first.high)
-    at[0] = neutral
+    at = np.array([0.5 * (each.low + each.high) for each in hypothesis.coordinates])
+    if not first.logarithmic:
+        at[0] = neutral
     path = np.repeat(at[None], POINTS, axis=0)
     if along.logarithmic:
         path[:, number] = np.linspace(along.low, along.high, POINTS)
