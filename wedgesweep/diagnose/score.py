@@ -168,7 +168,7 @@ def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
     The others are in the middle of their range, but for a leading one that is neutral somewhere.
     """
     first, along = hypothesis.coordinates[0], hypothesis.coordinates[number]
-    neutral = min(max(first.neutral, first.low), first.high)
+    neutral = _neutral(hypothesis)
     at = np.array([0.5 * (each.low + each.high) for each in hypothesis.coordinates])
     if not first.logarithmic:
         at[0] = neutral
@@ -178,6 +178,12 @@ def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
     else:
         path[:, number] = neutral + (along.high - neutral) * np.geomspace(1e-4, 1.0, POINTS)
     return path
+
+
+def _neutral(hypothesis: Hypothesis) -> float:
+    """Number in its range at which the leading one of an effect acts least, if it is no logarithm."""
+    first = hypothesis.coordinates[0]
+    return min(max(first.neutral, first.low), first.high)
 
 
 def _change(base: Fit, trial: Trial) -> np.ndarray:
@@ -210,16 +216,20 @@ def _detectable(hypothesis: Hypothesis, way: _Way, key: str) -> float | None:
         point += (points[j] - points[i]) * (high - np.sqrt(SHOWN)) / (high - low)
     elif hypothesis.coordinates[way.number].logarithmic and i in (0, len(points) - 1):
         point[way.number] += _beyond(points[:, way.number], distance, i)
+    elif i == 0:  # next to its neutral value it acts in proportion
+        neutral = _neutral(hypothesis)
+        point[way.number] = neutral + (point[way.number] - neutral) * np.sqrt(SHOWN / distance[i])
     return float(hypothesis.in_key_units(point)[hypothesis.effects[0]].get(key, inf))
 
 
 def _beyond(x: np.ndarray, distance: np.ndarray, end: int) -> float:
     """How far beyond an end of a logarithmic range an effect would fade that still shows there.
 
-    A weak effect changes responses by a power of its number, that of the last two points.
+    A weak effect changes responses by a power of its number, that of the last two points. 0 if it does not
+    fade by that: what a range ends with did show.
     """
     inwards = 1 if end == 0 else end - 1
     slope = np.log(distance[end] / distance[inwards]) / (x[end] - x[inwards])
-    farthest = np.sign(x[end] - x[inwards]) * log(BEYOND)
-    fades = np.log(SHOWN / distance[end]) / slope if slope else farthest
-    return float(np.clip(fades, *sorted((0.0, farthest))))
+    fades = np.log(SHOWN / distance[end]) / slope if slope else np.inf
+    outwards = fades * (x[end] - x[inwards]) > 0.0
+    return float(fades) if outwards and abs(fades) < log(BEYOND) else 0.0
