@@ -43,5 +43,10 @@ def fixed(value: float, places: int) -> str:
     return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
 
 
+def decimals(value: float, digits: int) -> int:
+    """Decimals with which a number that is not 0 has at least so many significant digits."""
+    return max(digits - 1 - floor(log10(abs(value))), 0)
+
+
 def _decimal(value: float, digits: int) -> str:
-    return fixed(value, 0 if value == 0.0 else max(digits - 1 - floor(log10(abs(value))), 0))
+    return fixed(value, 0 if value == 0.0 else decimals(value, digits))

@@ -10,10 +10,9 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, jobs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from wedgesweep.diagnosed import Diagnosed
-    from wedgesweep.measured import Measurement
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
 
@@ -64,7 +63,6 @@ def diagnose(
     if directory.exists() and not directory.is_dir():
         message = f"{directory}: not a directory"
         raise Failure(message)
-    _say_what_is_there(measurement, chosen)
     processors = jobs(n_jobs)
     found = diagnosis.diagnose(measurement, chosen, processors, _said, calibrate)
     _clear(directory)
@@ -79,14 +77,6 @@ def diagnose(
 
 def _name(measured: Path) -> str:
     return measured.resolve().parent.name if measured.name == "measured.toml" else measured.stem
-
-
-def _say_what_is_there(measurement: "Measurement", chosen: "Sequence[str]") -> None:
-    from wedgesweep.effects import SCALES
-
-    there = [name for name in chosen if name in measurement.model.effects and name not in SCALES]
-    if there:
-        _said(f"part of the model on trial, so no candidates: {', '.join(there)}")
 
 
 def _clear(directory: Path) -> None:

@@ -28,9 +28,7 @@ def print_measurement(measurement: "Measurement") -> None:
 
 
 def _row(test: "Test") -> tuple[str, ...]:
-    from wedgesweep.measured.frequency import actual
-
-    frequency = actual(test.time, test.displacement, test.frequency)
+    frequency = test.actual_frequency
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,

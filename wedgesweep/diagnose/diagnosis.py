@@ -50,12 +50,9 @@ class Diagnosis:
 
 def problem_of(measurement: Measurement) -> Problem:
     """Spectra of all tests at their actual frequencies; a common foreign tone is found."""
-    from wedgesweep.measured.frequency import actual
-
     tests = measurement.tests
-    frequencies = [actual(t.time, t.displacement, t.frequency) for t in tests]
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
-    records = [(test.time, s, f) for test, s, f in zip(tests, signals, frequencies, strict=True)]
+    records = [(test.time, s, test.actual_frequency) for test, s in zip(tests, signals, strict=True)]
     foreign = tone.find([fitted(*each) for each in records])
     found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
     known = [test.amplitude is not None for test in tests]
@@ -92,7 +89,7 @@ def diagnose(
     ``calibrated``: with thresholds from simulations of these very tests, not the general ones.
     """
     problem = problem_of(measurement)
-    effects = _missing(effects, measurement)
+    effects = _missing(effects, measurement, progress)
     search = Search(problem, effects, threads, progress)
     base, explanations = explain(search)
     thresholds, simulated = verdict.DEFAULT, None
@@ -126,9 +123,14 @@ def diagnose(
     )
 
 
-def _missing(effects: Sequence[str], measurement: Measurement) -> tuple[str, ...]:
+def _missing(
+    effects: Sequence[str], measurement: Measurement, progress: Callable[[str], None]
+) -> tuple[str, ...]:
     """Effects that the model on trial may lack."""
-    return tuple(name for name in effects if name in SCALES or name not in measurement.model.effects)
+    there = [name for name in effects if name in measurement.model.effects and name not in SCALES]
+    if there:
+        progress(f"part of the model on trial, so no candidates: {', '.join(there)}")
+    return tuple(name for name in effects if name not in there)
 
 
 def _exactly(

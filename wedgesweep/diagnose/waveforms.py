@@ -88,14 +88,14 @@ def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
 
 def _in_place(one: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """The model's acceleration about the mean place at which it averages to zero."""
-    acceleration = np.empty_like(x)
+    acceleration = np.zeros_like(x)
+    if not x.any():  # nothing was heard of the motion: no force is left either
+        return acceleration
 
     def mean(place: float) -> float:
         accelerations(one, x + place, v, acceleration)
         return float(acceleration.mean())
 
-    if not x.any():  # nothing was heard of the motion: no force is left either
-        return np.zeros_like(x)
     place = root_scalar(mean, x0=0.0, x1=FIRST_PLACE * np.ptp(x), method="secant", maxiter=20).root
     mean(place)
     return acceleration

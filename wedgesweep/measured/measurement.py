@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
+from wedgesweep.measured.frequency import actual
 
 
 class MeasuredError(InputError):
@@ -34,6 +36,11 @@ class Test:
     time: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray | None
+
+    @cached_property
+    def actual_frequency(self) -> float:
+        """Frequency (Hz) of the vibration: as stated, unless the record tells better or nothing is stated."""
+        return actual(self.time, self.displacement, self.frequency)
 
     @property
     def sampling_rate(self) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from wedgesweep.measured.cycles import cut
-from wedgesweep.measured.frequency import actual, stands_out
+from wedgesweep.measured.frequency import stands_out
 from wedgesweep.measured.measurement import Test
 
 # Sensors may lag, and their gain be off, by less than this.
@@ -19,8 +19,8 @@ def channel_faults(test: Test, file: str) -> list[str]:
     """What is wrong between the channels of a test whose frequency is in order."""
     if test.velocity is None:
         return []
-    at = actual(test.time, test.displacement, test.frequency)
-    moved, speed = (_fundamental(test, signal, at) for signal in (test.displacement, test.velocity))
+    at = test.actual_frequency
+    moved, speed = (_fundamental(test, signal) for signal in (test.displacement, test.velocity))
     if not (moved and speed):
         return []
     expected = 2j * np.pi * at * moved
@@ -36,7 +36,11 @@ def channel_faults(test: Test, file: str) -> list[str]:
 
 def amplitude_faults(tests: Sequence[Test]) -> list[str]:
     """What is wrong with the input amplitudes, as far as they are stated."""
-    moved = {test.file: _moved(test) / test.amplitude for test in tests if test.amplitude is not None}
+    moved = {
+        test.file: abs(_fundamental(test, test.displacement)) / test.amplitude
+        for test in tests
+        if test.amplitude is not None
+    }
     faults = [
         f"{file} moves {share:.3g} times its amplitude_mm; correct one of them"
         for file, share in moved.items()
@@ -49,13 +53,8 @@ def amplitude_faults(tests: Sequence[Test]) -> list[str]:
     return faults
 
 
-def _moved(test: Test) -> float:
-    at = actual(test.time, test.displacement, test.frequency)
-    return abs(_fundamental(test, test.displacement, at))
-
-
-def _fundamental(test: Test, signal: np.ndarray, at: float) -> complex:
-    """Complex amplitude of the fundamental at a frequency (Hz), 0 where it is lost in noise."""
-    if not stands_out(test.time, signal, at):
+def _fundamental(test: Test, signal: np.ndarray) -> complex:
+    """Complex amplitude of the fundamental of a channel, 0 where it is lost in noise."""
+    if not stands_out(test.time, signal, test.actual_frequency):
         return 0.0j
-    return complex(cut(test.time, signal, at).harmonics[:, 0].mean())
+    return complex(cut(test.time, signal, test.actual_frequency).harmonics[:, 0].mean())

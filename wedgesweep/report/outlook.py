@@ -1,7 +1,5 @@
 """What these tests can show, what they cannot, and what to measure next."""
 
-from math import floor, log10
-
 from wedgesweep import digits
 from wedgesweep.diagnosed import Diagnosed
 from wedgesweep.report import html, words
@@ -30,7 +28,7 @@ def _weakest(name: str, value: float | None) -> str:
     """A number to two digits; of a factor those of its distance from 1."""
     if name != "scale" or value is None or value == 1.0:
         return digits.short(value, 2)
-    return digits.fixed(value, max(1 - floor(log10(abs(value - 1.0))), 0))
+    return digits.fixed(value, digits.decimals(value - 1.0, 2))
 
 
 def _hidden(effects: list[str]) -> str:

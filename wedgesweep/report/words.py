@@ -1,10 +1,10 @@
 """Numbers, units and effects as a reader wants them, in plain text."""
 
 from collections.abc import Mapping, Sequence
-from math import floor, log10, sqrt
+from math import sqrt
 from typing import Any
 
-from wedgesweep.digits import LARGE, NO_BREAK, NONE, SMALL, fixed, number, short
+from wedgesweep.digits import LARGE, NO_BREAK, NONE, SMALL, decimals, fixed, number, short
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
@@ -80,8 +80,7 @@ def spread(found: Mapping[str, Any]) -> tuple[str, str, str] | None:
     width, largest = abs(ends[1] - ends[0]), max(map(abs, values))
     if width == 0.0 or not SMALL <= largest < LARGE:
         return number(values[0]), number(values[1]), number(values[2])
-    places = max(1 - floor(log10(width)), 0)
-    value, low, high = (_to_places(each, places) for each in values)
+    value, low, high = (_to_places(each, decimals(width, 2)) for each in values)
     return value, low, high
 
 

@@ -22,6 +22,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
     """The content of diagnosis.json."""
     finding, problem = found.finding, found.problem
     best = finding.best or found.base
+    hidden = _not_testable(found)
     return {
         "verdict": finding.verdict,
         "causes": _causes(finding.cause),
@@ -34,7 +35,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "detectable": {
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
-        "not_testable": _not_testable(found),
+        "not_testable": hidden,
         "next_test": _following(found.next_test),
         "extended": list(best.effects),
         "title": found.measurement.title,
@@ -43,7 +44,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "version": __version__,
         "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "method": _method(found),
-        "candidates": _candidates(found),
+        "candidates": _candidates(found, hidden),
     }
 
 
@@ -166,9 +167,8 @@ def _method(found: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _candidates(found: Diagnosis) -> list[dict[str, Any]]:
+def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]:
     scores = {score.effect: score for score in found.scores}
-    hidden = _not_testable(found)
     rows = []
     for each in sorted([found.base, *found.explanations], key=lambda one: one.penalised):
         score = scores.get(each.effects[0]) if len(each.effects) == 1 else None
