@@ -1,5 +1,6 @@
 """At which phase a foreign vibration met the input matters where the record is short of a beat."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -11,6 +12,7 @@ from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.meeting import met
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import refine
+from wedgesweep.diagnose.score import scores
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.spectra import spectrum
 from wedgesweep.solvers import periodic
@@ -55,6 +57,19 @@ def test_what_a_vibration_leaves_is_explained_by_the_phase_at_which_it_met_the_i
         before.append(anyhow.p)
     # In most phases it is no matter; in others nothing but the right one will do.
     assert min(before) < 1e-6
+
+
+def test_a_model_on_trial_may_have_the_vibration_itself():
+    """Its phases are as unknown as those of one that is a cause."""
+    table = f"[effects.stray_vibration]\nacceleration_m_per_s2 = {ACCELERATION}\nfrequency_hz = {TONE}\n"
+    for seed, phase in enumerate(np.arange(6) * pi / 3.0):
+        problem = replace(recorded(np.full(3, phase), seed), model=config.parse(MODEL + table))
+        search = Search(problem, ("viscous_damping",))
+        base = search.base()
+        assert base.fit.p > 1e-3
+    (damping,) = scores(search, base.fit)
+    assert damping.testable
+    assert search.single("viscous_damping", base.fit).penalised > base.penalised
 
 
 def test_a_fit_without_a_tone_stays_as_it_is():

@@ -49,11 +49,11 @@ class Diagnosis:
 
 
 def problem_of(measurement: Measurement) -> Problem:
-    """Spectra of all tests at their actual frequencies; a common foreign tone is found."""
+    """Spectra of all tests at their actual frequencies; a foreign tone is the model's, or it is found."""
     tests = measurement.tests
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
     records = [(test.time, s, test.actual_frequency) for test, s in zip(tests, signals, strict=True)]
-    foreign = tone.find([fitted(*each) for each in records])
+    foreign = tone.of(measurement.model.effects) or tone.find([fitted(*each) for each in records])
     found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
     known = [test.amplitude is not None for test in tests]
     return Problem(

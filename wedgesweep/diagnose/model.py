@@ -15,10 +15,9 @@ from wedgesweep.diagnose import simulation
 from wedgesweep.diagnose.coordinates import Hypothesis, Values
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.spectra import FOLDED
+from wedgesweep.diagnose.tone import TONE
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
 
-# The effect that answers to a foreign tone.
-TONE = "stray_vibration"
 # Standard deviations by which an uncertain number is well off.
 OFF = 1.5
 # A record was low-passed before it was sampled if that takes this much off Q.
@@ -145,7 +144,7 @@ class Model:
         self.problem, self.hypothesis, self.reference = problem, hypothesis, reference
         self.tolerance = tolerance
         self.size = len(hypothesis.coordinates)
-        self.toned = problem.tone is not None and TONE in hypothesis.effects
+        self.toned = problem.tone is not None and TONE in {*problem.model.effects, *hypothesis.effects}
         # An effect on trial is no nuisance at the same time: it is free of its prior.
         self.uncertain = {k: s for k, s in problem.uncertain.items() if k not in hypothesis.effects}
         self.low = np.r_[hypothesis.low, [0.2] * len(self.uncertain)]

@@ -13,10 +13,11 @@ import numpy as np
 
 from wedgesweep.diagnose import tone
 from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.model import TONE, Fit, Model, Trial
+from wedgesweep.diagnose.model import Fit, Model, Trial
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.tangents import tangents_of
+from wedgesweep.diagnose.tone import TONE
 
 # Share of a signal that must survive the nuisances for an effect to be testable.
 RETAINED = 0.05
@@ -53,14 +54,14 @@ class Projector:
     def __init__(self, fit: Fit) -> None:
         by_number, by_test = tangents_of(fit.model, fit.trial)
         tests, points, numbers = by_number.shape
-        local = np.zeros((tests, points, tests, 2))
+        known = np.zeros((tests, by_test.shape[-1]))
+        known[:, 1] = fit.model.amplitude_weight
+        local = np.zeros((tests, points, *known.shape))
         local[np.arange(tests), :, np.arange(tests)] = by_test
         tangents = np.concatenate(
             [local.reshape(tests * points, -1), by_number.reshape(tests * points, numbers)], axis=1
         )
-        priors = np.diag(
-            np.r_[np.stack([np.zeros(tests), fit.model.amplitude_weight], 1).ravel(), self._stiff(fit)]
-        )
+        priors = np.diag(np.r_[known.ravel(), self._stiff(fit)])
         matrix = np.concatenate([tangents, priors])
         matrix /= np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
         u, s, _ = np.linalg.svd(matrix, full_matrices=False)

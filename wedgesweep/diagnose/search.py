@@ -11,9 +11,10 @@ import numpy as np
 from wedgesweep.diagnose import detour
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.meeting import met
-from wedgesweep.diagnose.model import TONE, Fit, Model, Point, Trial
+from wedgesweep.diagnose.model import Fit, Model, Point, Trial
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import refine
+from wedgesweep.diagnose.tone import TONE
 from wedgesweep.solvers.periodic import at_rest
 
 # What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
@@ -107,8 +108,7 @@ class Search:
         if model.uncertain and min(fits, key=lambda fit: fit.q).p < LIKELY:
             # Inputs may have made up for numbers that they should have led to.
             fits += self.each(lambda trial: refine(model, _as_stated(model, trial)), trials)
-        fit = detour.around(min(fits, key=lambda fit: fit.q))
-        self._meet(fit)
+        fit = self._meeting(detour.around(min(fits, key=lambda fit: fit.q)))
         return self.explanation(fit)
 
     def base_again(self, base: Explanation, found: Sequence[Explanation]) -> Explanation:
@@ -121,14 +121,15 @@ class Search:
         x = np.array([numbers[name]["scale"] for name in model.uncertain])
         start = replace(best.trial.point, x=x, warm=at_rest(self.problem.tests))
         fit = refine(model, model.trial(start))
-        if not fit.q < base.fit.q - SLIGHT:
-            return base
-        self._meet(fit)
-        return self.explanation(fit)
+        return self.explanation(self._meeting(fit)) if fit.q < base.fit.q - SLIGHT else base
 
-    def _meet(self, fit: Fit) -> None:
-        """Learn from a fit's start phases how input and foreign tone met in each record."""
+    def _meeting(self, fit: Fit) -> Fit:
+        """The fit, followed on where its start phases tell how input and foreign tone met in each record."""
         self.problem = replace(self.problem, start=fit.trial.phase)
+        if not fit.model.toned:
+            return fit
+        model = self.model(*fit.effects)
+        return met(refine(model, model.trial(fit.trial.point)))
 
     def single(self, effect: str, base: Fit) -> Explanation:
         """Best fit of one effect; the trials among which it began are kept in ``along``."""
@@ -137,7 +138,7 @@ class Search:
         trials = best_amplitudes(model, [model.start(base, x) for x in points])
         self.along[effect] = trials
         trials = _best_along_first(trials)
-        if model.toned or _astray(base):
+        if effect == TONE or _astray(base):
             # What the base model made of the effect has led its own numbers far astray, or may have.
             fresh = best_amplitudes(model, [model.start(None, x) for x in points])
             trials = trials + fresh
@@ -146,10 +147,8 @@ class Search:
         # Where the base model will do, a cause could only be weak: one start is as good as another.
         followed = FOLLOWED if base.p < LIKELY else ((1, 3),)
         fit = best_of(model, trials, followed, HOPELESS * base.q)
-        if model.toned:
-            self._meet(fit)
-            model = self.model(effect)
-            fit = met(refine(model, model.trial(fit.trial.point)))
+        if effect == TONE:
+            fit = self._meeting(fit)
         self.progress(effect)
         return self.explanation(fit)
 

@@ -32,6 +32,9 @@ SAME = 0.98
 DOUBLED = 1e-4
 # Frequencies this many resolutions (one over the record) apart are told apart.
 RESOLVED = 1.2
+# Lines (resolutions) that a tone and a harmonic make together hide the noise as close as this; share of the
+# lines that must be left without them.
+APART, ENOUGH = 0.8, 0.3
 # Closer than this a tone is the harmonic; farther off it leaks into all of them, and is taken out.
 MINGLED = 0.05
 
@@ -194,6 +197,8 @@ def fitted(
     same = max(1.0, PARTS / (frequency * time[-1]))
     left = 1.0 - _share(turns @ matrix, inverse) / time.size
     seen = left > LEAST_LEFT
+    if tone is not None:
+        seen = _unmixed(seen, frequency / PARTS * parts, frequency, tone, time[-1])
     lines = noise.Lines(frequency / PARTS * parts[seen], turns[seen], left[seen], same)
     level, coherence = noise.levels(residual, lines)
     if abs(coherence) > SAME:
@@ -214,6 +219,18 @@ def fitted(
         design.covered,
         _folding(time, frequency, design, inverse),
     )
+
+
+def _unmixed(
+    seen: np.ndarray, lines: np.ndarray, frequency: float, tone: float, duration: float
+) -> np.ndarray:
+    """Which of the lines (Hz) that are seen lie beside those that a tone makes with the harmonics.
+
+    Those of a weak tone do not stand out of the noise, and still add to it. All, if too few would be left.
+    """
+    away = np.minimum(_beside(lines - tone, frequency), _beside(lines + tone, frequency))
+    clear = seen & (away * duration > APART)
+    return clear if clear.sum() > ENOUGH * seen.sum() else seen
 
 
 def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """A foreign tone: one frequency that stands out between the harmonics of several tests."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import ceil, pi
 from typing import NamedTuple
 
@@ -10,6 +10,8 @@ from scipy.special import gammaln, logsumexp, xlogy
 
 from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors, told_apart, within_band
 
+# The effect that makes one.
+TONE = "stray_vibration"
 # Chance of a tone where there is only noise.
 CHANCE = 1e-4
 # Grid points per resolution of the longest record.
@@ -29,6 +31,11 @@ class Tone(NamedTuple):
 
     frequency: float
     std: float
+
+
+def of(effects: Mapping[str, Mapping[str, float]]) -> Tone | None:
+    """The tone that a model says there is."""
+    return Tone(effects[TONE]["frequency"], 0.0) if TONE in effects else None
 
 
 def find(spectra: Sequence[Spectrum]) -> Tone | None:

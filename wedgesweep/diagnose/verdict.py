@@ -22,7 +22,7 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 GAP = 10.0
 # Least probability of the misfit that an explanation leaves: to be named, and to be an explanation at all.
 ADEQUATE, POSSIBLE = 0.01, 1e-3
-# And of that which the base model leaves, or an explanation in the few tests that show most.
+# And of that which the base model leaves.
 TOLERABLE = 1e-4
 # Share of the base model's excess whose tests a cause must explain for themselves.
 SHOWN = 0.9
@@ -113,7 +113,7 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     best = order[0]
     left = _left(base, best)
     # Where little shows, noise has a part in where: those tests hold more of it than others.
-    if best.fit.p < POSSIBLE or (left < TOLERABLE and base.fit.excess >= STRONG):
+    if (left if base.fit.excess >= STRONG else best.fit.p) < POSSIBLE:
         return Finding(_nobody(base), best, ())
     rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
     # What others can imitate may be none of them: then the closest one is only that.
