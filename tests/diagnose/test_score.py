@@ -1,8 +1,12 @@
 """Scores: what the tests could show of each effect before anything is fitted."""
 
+import numpy as np
+import pytest
+
 from tests.diagnose.drawn import drawn
 from wedgesweep.diagnose import score
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.tangents import tangents_of
 
 EFFECTS = (
     "velocity_lag",
@@ -47,3 +51,14 @@ def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():
     assert unheard.t2 is None
     assert unheard.testable
     assert 0.0 < unheard.detectable < 0.1
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_nuisances_take_out_start_phases_and_amplitudes_as_far_as_these_are_unknown(known):
+    fit = Search(drawn(std=1e-6, known=known), ()).base().fit
+    phase, amplitude = np.moveaxis(tangents_of(fit.model, fit.trial).by_test, -1, 0)
+    project = score.Projector(fit)
+    assert np.linalg.norm(project(phase)) < 1e-6 * np.linalg.norm(phase)
+    along = np.einsum("tm,tm->t", phase, amplitude) / np.einsum("tm,tm->t", phase, phase)
+    left = (amplitude - along[:, None] * phase) * known
+    assert project(amplitude)[: left.size] == pytest.approx(left.ravel(), abs=1e-3 * np.abs(amplitude).max())

@@ -7,7 +7,8 @@ import pytest
 
 from tests.command import invoke
 from wedgesweep import config
-from wedgesweep.diagnose import simulation
+from wedgesweep import measured as data
+from wedgesweep.diagnose import diagnosis, simulation
 from wedgesweep.diagnosed import read
 from wedgesweep.solvers.periodic import at_rest
 
@@ -84,3 +85,12 @@ def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
     assert extended.effects["friction_level"]["scale"] == pytest.approx(0.8, abs=0.02)
     assert len(extended.sweep.cases) == len(set(TESTS))
     invoke("run", out / "extended.toml", "-o", measured.parent / "extended.nc")
+
+
+def test_a_tone_that_the_model_has_is_not_looked_for(measured):
+    """Nobody hears it in these data: they have none."""
+    table = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.01\nfrequency_hz = 17.3\n"
+    assert diagnosis.problem_of(data.read(measured)).tone is None
+    (measured.parent / "model.toml").write_text(MODEL + table)
+    problem = diagnosis.problem_of(data.read(measured))
+    assert (problem.tone, problem.tone_std) == (17.3, 0.0)

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
 from wedgesweep import config, parameters, response
-from wedgesweep.effects import EFFECTS, FAMILIES
+from wedgesweep.effects import EFFECTS, FAMILIES, combined
 from wedgesweep.extended import rest
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, periodic, radau
@@ -213,6 +213,22 @@ def test_parameters_change_what_their_names_say():
         },
     )
     assert numbers(found, 5)["amplitude_ratio"] == pytest.approx(numbers(expected, 5)["amplitude_ratio"])
+
+
+def test_what_scales_a_number_scales_it_once_more_and_other_effects_take_one_anothers_place():
+    own = {
+        "friction_level": {"scale": 0.8},
+        "preload": {"force": 5.0},
+        "viscous_damping": {"coefficient": 2.0},
+    }
+    added = {"friction_level": {"scale": 1.1}, "preload": {"force": 3.0}, "bolster_mass": {"scale": 0.9}}
+    found = combined(own, added)
+    assert found.pop("friction_level") == {"scale": pytest.approx(0.88)}
+    assert found == {
+        "preload": {"force": 3.0},
+        "viscous_damping": {"coefficient": 2.0},
+        "bolster_mass": {"scale": 0.9},
+    }
 
 
 @pytest.mark.parametrize("name", EXTENDING)
