@@ -114,6 +114,18 @@ def test_a_wrong_config_is_reported_whole_and_nothing_is_run(here, command):
     assert not list(here.glob("*.nc*"))
 
 
+@pytest.mark.parametrize(
+    ("solver", "changing"),
+    [("duration_s = 0.1", 2), ('settle = "steady"', 0), ('settle = "steady"\nmax_periods = 10', 2)],
+)
+def test_cases_that_had_not_settled_are_counted(here, solver, changing):
+    sweep = '[sweep]\nfriction_law = "static-dynamic"\nbeta = [1.1, 2.0]\namplitude_mm = 1.0\n'
+    (here / "brief.toml").write_text(f'{sweep}[solver]\nmethod = "event-driven"\n{solver}\n')
+    for told in (run("brief.toml"), invoke("status", "brief.nc")):
+        assert "2 cases: 2 ok" in told
+        assert (f"{changing} of the ok ones had not settled" in told) == (changing > 0)
+
+
 def test_run_then_run_again_then_another_config(here):
     told = run("few.toml")
     assert "16 cases: 16 ok" in told

@@ -12,15 +12,28 @@ from wedgesweep.cases import describe
 from wedgesweep.dataset import STATUSES
 from wedgesweep.sweep import Sweep
 
+# A case has settled if its last two periods differ by less than this share of the input amplitude.
+SETTLED = 1e-3
+
 
 class Outcome(NamedTuple):
-    """Outcome of one case; amplitude in m, status one of dataset.STATUSES."""
+    """Outcome of one case; amplitude in m, status one of dataset.STATUSES.
+
+    ``period`` and ``periodicity``: the dataset's variables of these names.
+    """
 
     law: str
     beta: float
     amplitude: float
     status: str
     message: str
+    period: int
+    periodicity: float
+
+    @property
+    def settled(self) -> bool:
+        """Whether the response repeats, or all but does where nobody looked for its period."""
+        return self.period > 0 if self.period >= 0 else self.periodicity <= SETTLED
 
     def __str__(self) -> str:
         where = describe(self.law, self.beta, self.amplitude)
@@ -29,11 +42,12 @@ class Outcome(NamedTuple):
 
 def of_dataset(ds: xr.Dataset) -> list[Outcome]:
     """Outcomes of the cases of a dataset."""
-    frame = ds[["status", "message"]].to_dataframe().reset_index()
-    columns = ("friction_law", "beta", "amplitude", "status", "message")
+    frame = ds[["status", "message", "period", "periodicity"]].to_dataframe().reset_index()
+    columns = ("friction_law", "beta", "amplitude", "status", "message", "period", "periodicity")
     rows = zip(*(frame[name].tolist() for name in columns), strict=True)
     return [
-        Outcome(law, beta, amplitude, STATUSES[code], message) for law, beta, amplitude, code, message in rows
+        Outcome(law, beta, amplitude, STATUSES[code], message, period, periodicity)
+        for law, beta, amplitude, code, message, period, periodicity in rows
     ]
 
 
@@ -46,6 +60,8 @@ def of_journal(path: Path) -> list[Outcome]:
             **cases[record["index"]]._asdict(),
             status=STATUSES[record["status"]],
             message=record["message"].decode(),
+            period=int(record["period"]),
+            periodicity=float(record["periodicity"]),
         )
         for record in journal.read(path, Sweep(settings, path).dtype)
     ]
@@ -59,3 +75,8 @@ def counts(outcomes: Sequence[Outcome]) -> Counter[str]:
 def failures(outcomes: Sequence[Outcome]) -> list[Outcome]:
     """Those that did not end well."""
     return [outcome for outcome in outcomes if outcome.status != "ok"]
+
+
+def unsettled(outcomes: Sequence[Outcome]) -> list[Outcome]:
+    """Those that ended well, but not in a steady response."""
+    return [outcome for outcome in outcomes if outcome.status == "ok" and not outcome.settled]

@@ -29,6 +29,10 @@ def print_outcomes(found: Sequence["Outcome"], total: int | None = None) -> int:
     counts = ", ".join(f"{count} {status}" for status, count in outcomes.counts(found).most_common())
     remaining = "" if total is None else f", {total - len(found)} remaining"
     click.echo(f"{total or len(found)} cases: {counts or 'none finished'}{remaining}")
+    if changing := len(outcomes.unsettled(found)):
+        click.echo(
+            f"  {changing} of the ok ones had not settled when they ended (variables period, periodicity)"
+        )
     failed = outcomes.failures(found)
     for outcome in failed[:LISTED]:
         click.echo(f"  {outcome}")

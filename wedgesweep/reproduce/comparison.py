@@ -14,8 +14,8 @@ from wedgesweep.reproduce.runs import LAWS, Run, Runs
 # Inputs over the amplitude at which set-valued slip begins: stuck, near breakaway, beyond it.
 NEAR = 5.0
 ZONES = {"below breakaway": (0.0, 1.0), "near breakaway": (1.0, NEAR), "beyond": (NEAR, np.inf)}
-# A case has settled if its last two periods differ by less than this share of the input amplitude.
-SETTLED, FAR_FROM_SETTLED = 1e-3, 0.1
+# A case is far from settled if its last two periods differ by this share of the input amplitude.
+FAR_FROM_SETTLED = 0.1
 
 
 def spread(run: Run, laws: Iterable[str] = LAWS) -> xr.DataArray:
@@ -39,7 +39,7 @@ def zone(run: Run, name: str) -> xr.DataArray:
 
 def settled(run: Run) -> xr.DataArray:
     """Whether a case has settled under every law, over beta and amplitude."""
-    return (run.ds["periodicity"] <= SETTLED).all("friction_law")
+    return (run.ds["periodicity"] <= outcomes.SETTLED).all("friction_law")
 
 
 def _summary(values: xr.DataArray) -> dict[str, float]:
@@ -97,7 +97,7 @@ def _caveat(name: str, run: Run, law: str) -> dict[str, Any]:
             for number, word in enumerate(STATUSES)
             if number and (status == number).any()
         },
-        "not_settled": int((ds["periodicity"] > SETTLED).sum()),
+        "not_settled": int((ds["periodicity"] > outcomes.SETTLED).sum()),
         "far_from_settled": int((ds["periodicity"] > FAR_FROM_SETTLED).sum()),
         "lift_off": int((lifted > 0.0).sum()),
         "largest_lift_off_fraction": float(lifted.max()),
