@@ -10,8 +10,9 @@ import xarray as xr
 
 from wedgesweep import measured
 from wedgesweep.diagnose import diagnosis
+from wedgesweep.diagnose.amplitudes import best_amplitudes
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.search import Explanation, Search, best_amplitudes, best_of
+from wedgesweep.diagnose.search import Explanation, Search, best_of
 from wedgesweep.diagnose.spectra import Spectrum
 
 # A score is chi-squared with one degree of freedom: 5 % among 21 candidates.

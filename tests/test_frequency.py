@@ -100,6 +100,15 @@ def test_many_cycles_correct_a_clock_that_is_off_by_a_little():
     assert actual(t, signal, 20.2) == 20.2  # for the reader to refuse
 
 
+@pytest.mark.parametrize("cycles", [60.3, 300.3])
+def test_rounding_of_a_stated_frequency_is_no_misfit_of_a_long_record(cycles):
+    """A turn of 1/50 of a cycle in all, which takes a 10,000th off the fifth harmonic."""
+    random = np.random.default_rng(13)
+    t, signal = record(random, 20.0, cycles, STRONG_HARMONICS, 0.01)
+    stated = 20.0 * (1.0 + 0.019 / cycles)
+    assert abs(actual(t, signal, stated) - 20.0) < 0.2 * abs(stated - 20.0)
+
+
 def test_half_the_frequency_is_that_of_a_doubled_period_or_a_foreign_tone():
     """Weak lines half way between the harmonics do not make half the frequency the input's."""
     random = np.random.default_rng(13)

@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies
 
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
-from wedgesweep import config, parameters, response
+from wedgesweep import config, contact, parameters, response
 from wedgesweep.effects import EFFECTS, FAMILIES, combined
 from wedgesweep.extended import rest
 from wedgesweep.friction import LAW_NAMES
@@ -323,6 +323,47 @@ def test_both_solvers_agree_from_the_same_start(name, law):
         assert ours.numbers[number] == pytest.approx(radaus.numbers[number], rel=1e-4), number
     slipping = ~ours.waveforms["stuck"]
     np.testing.assert_array_equal(np.isnan(ours.waveforms["normal_force_column"][slipping]), False)
+
+
+@pytest.mark.parametrize("times", [1, 5, 15])
+def test_a_release_that_lasts_a_moment_is_not_missed(times):
+    """The bolster is released by half a percent more than holds it; a tone makes that a short moment."""
+    held = contact.breakaway_acceleration(parameters.record("coulomb", 1e-4, OMEGA_N)[0])
+    tone = {"acceleration": 0.5 * 1.005 * held, "frequency": times * OMEGA_N / (2.0 * pi)}
+    record = parameters.record(
+        "coulomb", 0.5 * 1.005 * held / OMEGA_N**2, OMEGA_N, effects={NOT_PERIODIC: tone}
+    )
+    # Both are largest at the same moment, three quarters of an input period from its start.
+    record["stray_vibration_phase"] = 0.5 * pi * (1.0 - 3.0 * times)
+    window = Window(OMEGA_N, 1, 2, 64)
+    fast, slow = (
+        response.evaluate(solver.solve(record, window, 1e-8, 60.0), record, 9).numbers
+        for solver in (event_driven, radau)
+    )
+    assert 0.8 < fast["stick_fraction"] < 1.0
+    assert slow["stick_fraction"] == pytest.approx(fast["stick_fraction"], abs=1e-5)
+    assert fast["amplitude_ratio"] > 0.0
+    assert slow["amplitude_ratio"] == pytest.approx(fast["amplitude_ratio"], rel=1e-3)
+
+
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_bristles_stick_where_the_face_all_but_rests(law):
+    """Far shorter than the motion they change little, least of all the share of time below the threshold."""
+    bristles = parameters.record(law, 3e-4, OMEGA_N, effects={"presliding": {"length": 1e-7}})
+    window = Window(OMEGA_N, 5, 2, 64)
+    expected = response.evaluate(
+        event_driven.solve(parameters.record(law, 3e-4, OMEGA_N), window, 1e-8, 60.0), bristles, 5
+    )
+    for solver in (event_driven, radau):
+        found = response.evaluate(solver.solve(bristles, window, 1e-6, 120.0), bristles, 5)
+        share = found.numbers["stick_fraction"]
+        assert share == pytest.approx(expected.numbers["stick_fraction"], abs=0.02)
+        assert found.waveforms["stuck"].mean() == pytest.approx(share, abs=0.03)
+
+
+def test_a_bolster_that_sticks_may_do_so_for_long():
+    record = with_effect("coulomb", "viscous_damping", {"coefficient": 5.0}, 1e-5)
+    assert numbers(record, 2500)["stick_fraction"] == 1.0
 
 
 def test_half_a_turn_of_the_slip_across_changes_nothing():

@@ -18,8 +18,6 @@ from wedgesweep.solvers.periodic import at_rest
 OTHERWISE = 0.05, 1.0
 # Damping that keeps a step finite where the tests leave a number open.
 LEAST_DAMPING = 1e-6
-# A bolster that moves less than this share of what was measured sticks.
-STICKS = 0.01
 # A test is in the way if its squared misfit grows by this factor.
 WORSE = 2.0
 # Inputs that are tried for tests that were left out, in standard deviations beside the stated ones.
@@ -32,7 +30,7 @@ def around(fit: Fit) -> Fit:
     """The fit, or a better one that was found without the tests that held it up."""
     if fit.model.toned or not fit.trial.found:
         return fit
-    left_out = _elsewhere_from_rest(fit) | _in_the_way(fit) | _sticks(fit)
+    left_out = _elsewhere_from_rest(fit) | _in_the_way(fit) | fit.trial.sticks
     if not 0 < left_out.sum() <= MOST * left_out.size:
         return fit
     rows = np.flatnonzero(~left_out)
@@ -63,12 +61,6 @@ def _elsewhere_from_rest(fit: Fit) -> np.ndarray:
     point = replace(fit.trial.point, warm=at_rest(fit.model.problem.tests))
     rest = fit.model.trial(point)
     return rest.found_tests & ~np.isclose(rest.by_test, fit.trial.by_test, *OTHERWISE)
-
-
-def _sticks(fit: Fit) -> np.ndarray:
-    """Whether (T,) a test was measured to move that sticks in the simulation: no slope leads out of there."""
-    measured = (np.abs(fit.model.problem.whitened) ** 2).sum(axis=(-2, -1))
-    return (np.abs(fit.trial.whitened) ** 2).sum(axis=(-2, -1)) < STICKS**2 * measured
 
 
 def _in_the_way(fit: Fit) -> np.ndarray:

@@ -22,6 +22,8 @@ from wedgesweep.solvers.periodic import Warm, at_rest, joined
 OFF = 1.5
 # A record was low-passed before it was sampled if that takes this much off Q.
 FILTERED = 1.0
+# A bolster that moves less than this share of what was measured sticks.
+STICKS = 0.01
 # An exactly known amplitude, as a relative standard deviation.
 EXACT = 1e-6
 
@@ -49,6 +51,7 @@ class Point:
 class Trial:
     """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left.
 
+    ``measured`` (T,): sum of squares of the whitened measurement.
     ``images`` (T, C, H) are those of harmonics above half the sampling rate, 0 in a record that looks as if
     it had been low-passed before it was sampled.
     """
@@ -61,6 +64,7 @@ class Trial:
     residual: np.ndarray
     prior: np.ndarray
     found_tests: np.ndarray
+    measured: np.ndarray
 
     @property
     def found(self) -> bool:
@@ -75,6 +79,12 @@ class Trial:
     def by_test(self) -> np.ndarray:
         """Squared misfit of each test, its amplitude's prior included (T,)."""
         return (self.residual**2).sum(-1) + self.prior[: len(self.residual)] ** 2
+
+    @cached_property
+    def sticks(self) -> np.ndarray:
+        """Whether (T,) a test was measured to move and sticks here: no slope leads out of there."""
+        moved = (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
+        return moved < STICKS**2 * self.measured
 
     @cached_property
     def q(self) -> float:
@@ -220,6 +230,7 @@ class Model:
         whitened = problem.whiten(shown)
         phase, images = self._aligned(harmonics, whitened)
         residual = real(problem.whitened - problem.whiten(images) - problem.turned(whitened, phase))
+        measured = (np.abs(problem.whitened) ** 2).sum(axis=(-2, -1))
         n = problem.tests
         return [
             Trial(
@@ -231,6 +242,7 @@ class Model:
                 residual[i],
                 self._prior(points[i]),
                 found[i],
+                measured,
             )
             for i in range(len(points))
         ]

@@ -9,9 +9,10 @@ from typing import TypeVar
 import numpy as np
 
 from wedgesweep.diagnose import detour
+from wedgesweep.diagnose.amplitudes import best_amplitudes
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.meeting import met
-from wedgesweep.diagnose.model import Fit, Model, Point, Trial
+from wedgesweep.diagnose.model import Fit, Model, Trial
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.refine import refine
 from wedgesweep.diagnose.tone import TONE
@@ -37,8 +38,6 @@ AS_STATED, HELD = 8, 1e-4
 SLIGHT = 1.0
 # Effects with states of their own take longest.
 LONGEST = ("column_compliance", "fixture_resonance", "presliding")
-# Input amplitudes that are tried where none is known, over the fundamental of the displacement.
-AMPLITUDES = np.geomspace(0.12, 8.0, 17)
 TONE_FREQUENCY = f"{TONE}.frequency_hz"
 
 
@@ -221,32 +220,6 @@ def _best_along_first(trials: Sequence[Trial]) -> list[Trial]:
     for trial in sorted(trials, key=lambda each: each.q):
         best.setdefault(float(trial.point.x[0]), trial)
     return list(best.values())
-
-
-def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
-    """Simulated points, with the unknown input amplitudes that suit each of them best."""
-    unknown = np.isinf(model.problem.amplitude_std)
-    if not unknown.any():
-        return model.trials(points)
-    best, least = list(points), np.full((len(points), model.problem.tests), np.inf)
-    climbing = list(points)
-    for rung in np.log(AMPLITUDES):
-        # Each rung starts from the response of the one below.
-        at = [replace(each, amplitude=np.where(unknown, rung, each.amplitude)) for each in climbing]
-        trials = model.trials(at)
-        climbing = [trial.point for trial in trials]
-        for i, trial in enumerate(trials):
-            misfit = np.where(trial.found_tests, trial.by_test, np.inf)
-            better = misfit < least[i]
-            least[i] = np.where(better, misfit, least[i])
-            best[i] = _tests_of(best[i], trial.point, better)
-    return model.trials(best)
-
-
-def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:
-    """A point with the amplitudes and states of some tests from another."""
-    amplitude = np.where(chosen, other.amplitude, one.amplitude)
-    return replace(one, amplitude=amplitude, warm=one.warm.where(chosen, other.warm))
 
 
 def best_of(

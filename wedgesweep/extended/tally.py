@@ -2,6 +2,7 @@
 
 from wedgesweep.compiled import compiled
 from wedgesweep.excitation import table_acceleration
+from wedgesweep.extended.faces import column_slip
 from wedgesweep.extended.jumps import combined
 from wedgesweep.extended.mechanics import forces, riding
 from wedgesweep.extended.mode import VELOCITY, X, held, stuck
@@ -22,9 +23,17 @@ def forces_and_power(t, y, mode, p):
 
 
 @compiled
+def sticks(y, mode, p):
+    """Whether the column face sticks: bristles end no branch at the threshold velocity."""
+    if abs(mode.column) == 1 and p.presliding_length > 0.0 and not p.set_valued:
+        return abs(column_slip(y, p)) <= p.threshold_velocity
+    return abs(mode.column) != 1
+
+
+@compiled
 def add(tally, t, y, weight, mode, p):
     """Add one point of the kept window; ``weight`` (s) as in a quadrature."""
-    add_motion(tally, y[X], y[VELOCITY], weight, abs(mode.column) != 1)
+    add_motion(tally, y[X], y[VELOCITY], weight, sticks(y, mode, p))
     now, power = forces_and_power(t, y, mode, p)
     tally.dissipated += weight * (power + damping_power(y, p))
     tally.supplied += weight * supplied_power(table_acceleration(t, p), y, p)

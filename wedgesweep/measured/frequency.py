@@ -31,9 +31,9 @@ CHANCE = 1e-5
 # A difference is significant if it is as improbable as 5 std of a normal variable.
 IMPROBABLE = 2.9e-7
 PADDING = 8
-# Frequencies that differ or change by less than this share are the same, and by fewer cycles than this over
-# the record they do no harm.
-NEGLIGIBLE, SLIP = 2e-3, 0.02
+# Frequencies that differ or change by less than this share are the same. In a record of few cycles (``FEW``)
+# they do no harm, if they differ by less than this part of a cycle over all of it.
+NEGLIGIBLE, SLIP, FEW = 2e-3, 0.02, 20.0
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,8 @@ def actual(time: np.ndarray, displacement: np.ndarray, stated: float | None) -> 
     cycles = _cycle_count(time, stated)
     tone = near(time, displacement, stated, LOBE / cycles)
     off = abs(tone.frequency / stated - 1.0)
-    return tone.frequency if SLIP / cycles < off < NEGLIGIBLE and tone.differs(stated) else stated
+    harmless = SLIP / cycles if cycles < FEW else 0.0
+    return tone.frequency if harmless < off < NEGLIGIBLE and tone.differs(stated) else stated
 
 
 def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple[float, float]:

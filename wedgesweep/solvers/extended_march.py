@@ -5,6 +5,7 @@ from math import pi
 import numpy as np
 
 from wedgesweep.compiled import compiled
+from wedgesweep.excitation import fastest
 from wedgesweep.extended import switching
 from wedgesweep.extended.mode import AGE
 from wedgesweep.solvers.extended_slide import slide
@@ -19,7 +20,7 @@ def march(t, y, mode, last_switch, h, stop, p, keeping, recorder, room):
 
     Returns the outcome (OK, LOCKED, FAILED, CHATTERING), time, mode, last switch and step reached.
     """
-    limit = room.counts[2] + SWITCHES_PER_PERIOD * (1.0 + (stop - t) * p.omega / (2.0 * pi))
+    limit = room.counts[2] + SWITCHES_PER_PERIOD * (1.0 + (stop - t) * fastest(p) / (2.0 * pi))
     while t < stop:
         t, switch, h = slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room)
         if switch < -1:

@@ -6,7 +6,7 @@ import numpy as np
 
 from wedgesweep.compiled import compiled, inlined
 from wedgesweep.extended.mode import VELOCITY, X, stuck
-from wedgesweep.extended.tally import add, forces_and_power
+from wedgesweep.extended.tally import add, forces_and_power, sticks
 from wedgesweep.solvers.dormand_prince import inside
 from wedgesweep.solvers.recorder import NODES, WEIGHTS, first_sample
 from wedgesweep.solvers.sticking import GOLDEN
@@ -56,7 +56,7 @@ def _add(share, t, h, weight, mode, recorder, p, room):
     if _has_forces(recorder):
         add(recorder.tally[0], t + share * h, y, weight * h, mode, p)
     else:
-        add_motion(recorder.tally[0], y[X], y[VELOCITY], weight * h, abs(mode.column) != 1)
+        add_motion(recorder.tally[0], y[X], y[VELOCITY], weight * h, sticks(y, mode, p))
 
 
 @compiled
@@ -93,7 +93,7 @@ def _fastest_point(share, room):
 def put_sample(i, t, y, mode, recorder, p):
     """Store a sample."""
     recorder.x[i], recorder.velocity[i] = y[X], y[VELOCITY]
-    recorder.sticks[i] = abs(mode.column) != 1
+    recorder.sticks[i] = sticks(y, mode, p)
     if not _has_forces(recorder):
         return
     if stuck(mode, p):

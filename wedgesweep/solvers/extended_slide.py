@@ -144,7 +144,7 @@ def slide(t, stop, y, mode, last_switch, h, p, keeping, recorder, room):
     longest = 2.0 * pi / (fastest(p) * LEAST_STUCK if stuck(mode, p) else fastest(p) * LEAST)
     forces = rate(t, y, mode, p, room.stages[0])
     switches_under(forces, t, y, mode, p, room.at_start)
-    most = room.counts[1] + MOST_STEPS
+    most = room.counts[1] + MOST_STEPS * (1.0 + (stop - t) * fastest(p) / (2.0 * pi))
     implicit = rosenbrock.stiff(mode, p)
     if implicit and last_switch >= 0:
         h = min(h, rosenbrock.first_step(p))

@@ -26,12 +26,18 @@ PERTURBATION = 1e-7
 
 
 class Pieces(Protocol):
-    """What an integrator needs; states y have the shape of ``scale``, the natural sizes of a case."""
+    """What an integrator needs; states y have the shape of ``scale``, the natural sizes of a case.
+
+    ``fastest``: highest angular frequency (rad/s) of the input. While the bolster sticks a piece either
+    ``waits``, and tells its ``release``, or ``rides``, and has switches like all others.
+    """
 
     scale: np.ndarray
+    fastest: float
 
     def initial(self, t: float, y: np.ndarray) -> tuple[Mode, bool]: ...
     def waits(self, mode: Mode) -> bool: ...
+    def rides(self, mode: Mode) -> bool: ...
     def release(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, int]: ...
     def rate(self, t: float, y: np.ndarray, mode: Mode) -> np.ndarray: ...
     def jacobian(self, t: float, y: np.ndarray, mode: Mode) -> np.ndarray: ...
@@ -39,6 +45,7 @@ class Pieces(Protocol):
     def first_locked(self, t: np.ndarray, y: np.ndarray, mode: Mode) -> int: ...
     def missed_switch(self, t: np.ndarray, y: np.ndarray, mode: Mode) -> bool: ...
     def successor(self, t: float, y: np.ndarray, mode: Mode, switch: int) -> tuple[Mode, bool]: ...
+    def contacts(self, y: np.ndarray, mode: Mode) -> np.ndarray: ...
     def normal_forces(self, t: np.ndarray, y: np.ndarray, mode: Mode) -> np.ndarray: ...
     def add(self, sums: np.ndarray, t: np.ndarray, y: np.ndarray, weight: np.ndarray, mode: Mode) -> None: ...
 
@@ -113,12 +120,16 @@ class Base:
     def __init__(self, parameters: np.ndarray) -> None:
         self.parameters, self.p = parameters, parameters[0]
         self.scale = np.array([self.p["amplitude"], self.p["amplitude"] * self.p["omega"]])
+        self.fastest = float(self.p["omega"])
 
     def initial(self, t, y):
         return contacts.initial(t, y[0], y[1], self.p)
 
     def waits(self, mode):
         return contacts.stuck(mode, self.p)
+
+    def rides(self, mode):
+        return False
 
     def release(self, t, stop, y, mode):
         return release(t, stop, y[0], mode, self.parameters)
@@ -142,6 +153,9 @@ class Base:
         if self.p["set_valued"] and switch < contacts.COLUMN_NORMAL:
             y[1] = 0.0
         return contacts.successor(t, y[0], y[1], mode, switch, self.p)
+
+    def contacts(self, y, mode):
+        return np.array(mode)
 
     def normal_forces(self, t, y, mode):
         return normal_forces(t, y, mode, self.parameters)
@@ -199,6 +213,15 @@ def extended_missed_switch(t, y, mode, parameters):
 
 
 @compiled
+def sticking(y, mode, parameters):
+    """Whether (n,) the column face sticks in states (SIZE, n)."""
+    found = np.empty(y.shape[1], np.bool_)
+    for i in range(found.size):
+        found[i] = extended_tally.sticks(y[:, i].copy(), mode, parameters[0])
+    return found
+
+
+@compiled
 def extended_add(sums, t, y, weight, mode, parameters):
     """Add points of one mode to the running sums; states (SIZE, n)."""
     for i in range(t.size):
@@ -221,12 +244,16 @@ class Extended:
     def __init__(self, parameters: np.ndarray) -> None:
         self.parameters, self.p = parameters, parameters[0]
         self.scale = modes.units(self.p)
+        self.fastest = excitation.fastest(self.p)
 
     def initial(self, t, y):
         return switching.initial(t, y, self.p)
 
     def waits(self, mode):
         return False
+
+    def rides(self, mode):
+        return modes.stuck(mode, self.p)
 
     def release(self, t, stop, y, mode):
         message = "the extended system integrates while it sticks"
@@ -253,6 +280,11 @@ class Extended:
 
     def successor(self, t, y, mode, switch):
         return switching.successor(t, y, mode, switch, self.p)
+
+    def contacts(self, y, mode):
+        found = np.tile(np.array(mode[:5]), (y.shape[1], 1))
+        found[sticking(y, mode, self.parameters), 0] = 0
+        return found
 
     def normal_forces(self, t, y, mode):
         return extended_normal_forces(t, y, mode, self.parameters)

@@ -17,6 +17,7 @@ from scipy.integrate import Radau, solve_ivp
 from wedgesweep import tally
 from wedgesweep.compiled import compiled
 from wedgesweep.contact import LOOK_AHEAD
+from wedgesweep.solvers import dips
 from wedgesweep.solvers.pieces import Mode, pieces_of
 from wedgesweep.solvers.sticking import LOCKED
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
@@ -24,8 +25,9 @@ from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_s
 # Absolute tolerances, as a share of rtol times input amplitude and input velocity: motions far smaller
 # than the input, as they occur near breakaway, are resolved as well.
 ABSOLUTE = 1e-2
-# A step this long cannot hold a stop and the start after it.
-STEPS_PER_PERIOD = 16
+# Steps per period of the fastest input: one as long cannot hold a stop and the start after it. While the
+# bolster rides nothing else limits them.
+STEPS_PER_PERIOD, STEPS_RIDING = 16, 64
 SWITCHES_PER_PERIOD = 1000
 # When a piece ends where it began, its first step is made shorter, down to this share of a period.
 SHORTER, SHORTEST = 10.0, 1e-13
@@ -100,7 +102,7 @@ class _Run:
         self.pieces = pieces_of(parameters)
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
-        self.period = 2.0 * pi / window.omega
+        self.period = 2.0 * pi / self.pieces.fastest
         self.atol = ABSOLUTE * rtol * self.pieces.scale
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
         self.tally = tally.empty()
@@ -163,7 +165,10 @@ class _Run:
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the switch before
         places = np.flatnonzero(np.isfinite(ahead)).tolist()
-        result = self._integrate(t, stop, y, mode, places)
+        rides = self.pieces.rides(mode)
+        result = self._integrate(t, stop, y, mode, places, rides)
+        if rides:
+            dips.cut(result, lambda t: self.pieces.switches(t, result.sol(t), mode)[places])
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
         if reached and result.t[-1] == t:
             self._shorten_first_step(t)
@@ -196,7 +201,9 @@ class _Run:
             message = f"no progress at t = {t:.6g} s"
             raise CaseError(message, "solver_failure")
 
-    def _integrate(self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int]) -> Any:
+    def _integrate(
+        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], rides: bool
+    ) -> Any:
         result = solve_ivp(
             self._rate(mode),
             (t, stop),
@@ -204,10 +211,10 @@ class _Run:
             method=SmallRadau if y.size == 2 else Radau,
             jac=lambda t, y: self.pieces.jacobian(t, y, mode),
             events=[*(self._event(t, mode, place) for place in places), _turn],
-            dense_output=t >= self.window.keep,
+            dense_output=rides or t >= self.window.keep,
             rtol=self.rtol,
             atol=self.atol,
-            max_step=self.period / STEPS_PER_PERIOD,
+            max_step=self.period / (STEPS_RIDING if rides else STEPS_PER_PERIOD),
             first_step=min(self.first_step, stop - t) if self.first_step else None,
         )
         self._check(result)
@@ -286,7 +293,7 @@ class _Run:
         if here.start < here.stop:
             y = state(samples.t[here])
             samples.x[here], samples.velocity[here] = y[:2]
-            samples.contact[here] = mode[:5]
+            samples.contact[here] = self.pieces.contacts(y, mode)
             samples.normal[:, here] = self.pieces.normal_forces(samples.t[here], y, mode)
 
 
