@@ -345,6 +345,9 @@ def test_netcdf_holds_the_same(tmp_path):
     write_netcdf(bench, tmp_path / "bench.nc")
     same(measured.read(tmp_path / "bench.nc"), bench)
     assert sorted(each.suffix for each in tmp_path.iterdir()) == [".csv", ".csv", ".nc", ".toml", ".toml"]
+    with netCDF4.Dataset(tmp_path / "bench.nc", "a") as file:
+        file["tests/0001/velocity"].setncattr("derived", np.int8(0))
+    assert "velocity is derived in some and measured in others" in problems(tmp_path / "bench.nc")[0]
 
 
 NETCDF_FAULTS = {

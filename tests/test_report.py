@@ -268,7 +268,7 @@ def test_numbers_that_are_missing(tmp_path):
         "velocity 5.10 mm/s, no interval",
         "too few tests for an interval",
         "No effect can be shown",
-        "No test has a known input amplitude",
+        "No test tells the energy",
     ):
         assert words in text
 

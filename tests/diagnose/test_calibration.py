@@ -64,3 +64,9 @@ def test_a_cause_that_is_not_found_again_stays_weak(monkeypatch):
     found = calibrate(base, lag, alone("cubic_stiffness"), ("cubic_stiffness",), 1, lambda step: None)
     assert found.found == 0.0
     assert found.thresholds.strong == np.inf
+
+
+def test_draws_whose_base_model_has_no_response_say_nothing_of_a_gain():
+    gains = np.array([np.inf, 3.0, -np.inf, np.nan])
+    assert calibration.Calibration(gains, None).least_gain == 3.0
+    assert calibration.Calibration(gains[:1], None).least_gain == 0.0

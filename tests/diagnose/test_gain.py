@@ -54,3 +54,12 @@ def test_tests_in_which_nothing_shows_do_not_make_an_effect_uncertain_that_shows
 def test_an_effect_that_one_test_denies_is_uncertain():
     assert predicted((6000.0, 42.0), (3200.0, 6200.0), (210.0, 31.0)).interval[0] < 0.0
     assert predicted((300.0, 340.0)).interval[0] < 0.0
+
+
+def test_a_fine_sweep_is_no_single_group():
+    """Each frequency lies within 2 % of the next, not of all."""
+    frequencies = np.arange(30.0, 38.1, 0.5)
+    found = gain.groups(frequencies[::-1].copy())
+    assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
+    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= gain.ALIKE
+    assert len(found) > 5

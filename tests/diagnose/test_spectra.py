@@ -186,3 +186,13 @@ def test_a_tone_is_not_drawn_to_where_a_record_begins_to_tell_it_from_a_harmonic
             spectra.append(spectrum(time, channels + foreign, frequency))
         found = tone.find(spectra)
         assert abs(found.frequency - 74.2) < 4.5 * found.std
+
+
+def test_a_slow_record_does_not_hide_a_tone_from_the_others():
+    """Sampled at 50 Hz it shows nothing beyond 20 Hz; alone, at 2 Hz, there is nothing to look at."""
+    spectra = spectra_with(np.random.default_rng(3), 0.3)
+    time = np.arange(105) / 50.0
+    slow = np.sin(2.0 * pi * 4.0 * time) + 0.04 * np.random.default_rng(1).normal(size=time.size)
+    found = tone.find([*spectra, spectrum(time, slow[None], 4.0)])
+    assert found.frequency == pytest.approx(47.3, abs=0.05)
+    assert tone.find([spectrum(25.0 * time, slow[None], 4.0 / 25.0)]) is None

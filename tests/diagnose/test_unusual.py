@@ -94,3 +94,19 @@ def test_a_tone_that_the_model_has_is_not_looked_for(measured):
     (measured.parent / "model.toml").write_text(MODEL + table)
     problem = diagnosis.problem_of(data.read(measured))
     assert (problem.tone, problem.tone_std) == (17.3, 0.0)
+
+
+def test_what_the_model_has_switched_off_is_a_candidate_still(measured):
+    silent = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.0\nfrequency_hz = 17.3\n"
+    (measured.parent / "model.toml").write_text(f"{MODEL}{silent}[effects.guide_friction]\n")
+    assert diagnosis.problem_of(data.read(measured)).tone is None
+    out = measured.parent / "found"
+    said = invoke("diagnose", measured, "-o", out, "--no-report", "--effects", "preload,guide_friction")
+    assert "no candidates: preload\n" in said
+    assert ["guide_friction"] in [each["effects"] for each in read(out).document["candidates"]]
+
+
+def test_a_place_that_cannot_be_written_to_is_told_at_once(measured):
+    said = invoke("diagnose", measured, "-o", measured / "below" / "it", code=2)
+    assert f"{measured}: not a directory" in said
+    assert "base model" not in said

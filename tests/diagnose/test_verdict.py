@@ -78,29 +78,48 @@ def test_where_nothing_shows_all_that_is_left_counts():
 
 
 @pytest.mark.parametrize(
-    ("q", "interval", "expected"),
+    ("q", "removed", "interval", "expected"),
     [
-        (705.0, [0.9, 1.02], "named"),
-        (705.0, [0.0, 1.0], "named"),
-        (705.0, None, "named"),
-        (705.0, [-0.3, 1.0], "consistent-with"),
-        (810.0, [0.9, 1.02], "consistent-with"),
-        (825.0, [0.9, 1.02], "none-of-mine"),
-        (810.0, [-0.3, 1.0], "none-of-mine"),
+        (705.0, 0.98, [0.9, 1.02], "named"),
+        (705.0, 0.5, [0.0, 1.0], "named"),
+        (705.0, 0.5, None, "named"),
+        (705.0, -0.1, None, "consistent-with"),
+        (810.0, -0.1, None, "consistent-with"),
+        (705.0, 0.5, [-0.3, 1.0], "consistent-with"),
+        (810.0, 0.98, [0.9, 1.02], "consistent-with"),
+        (825.0, 0.98, [0.9, 1.02], "none-of-mine"),
+        (810.0, 0.5, [-0.3, 1.0], "none-of-mine"),
     ],
 )
-def test_a_cause_that_may_make_unseen_tests_worse_is_none(q, interval, expected):
+def test_a_cause_that_may_make_unseen_tests_worse_is_none(q, removed, interval, expected):
     base, best = explained(5000.0), explained(q, "stribeck")
-    found = on_unseen_tests(verdict_of(base, best), base, interval)
+    found = on_unseen_tests(verdict_of(base, best), base, removed, interval)
     assert (found.verdict, found.best) == (expected, best)
     assert (found.cause is None) == (expected == "none-of-mine")
+
+
+def test_a_rival_that_will_do_is_not_called_none():
+    """The best one leaves a bit more than noise, a rival does not; other tests confirm neither."""
+    best, rival = explained(793.0, "stribeck"), explained(787.0, "preload", "end_stop")
+    base = explained(5000.0)
+    found = verdict_of(base, best, rival)
+    assert (found.verdict, found.best, found.rivals) == ("tied", best, (rival,))
+    assert rival.fit.p > verdict.ADEQUATE > best.fit.p
+    assert on_unseen_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "data-insufficient"
+
+
+def test_a_gain_that_chance_may_bring_is_not_called_none():
+    """The base model will not do, and what will gains less than a clean draw may."""
+    base, best = explained(860.0), explained(705.0, "stribeck")
+    assert base.fit.p < verdict.TOLERABLE
+    assert verdict_of(base, best, thresholds=Thresholds(least_gain=200.0)).verdict == "data-insufficient"
 
 
 def test_unconfirmed_weak_evidence_names_nothing():
     base, best, other = explained(5000.0), explained(690.0, "stribeck"), explained(720.0, "preload")
     for found in (verdict_of(explained(1200.0), best), verdict_of(base, best, other)):
         assert found.verdict == "consistent-with"
-        found = on_unseen_tests(found, base, [-0.3, 1.0])
+        found = on_unseen_tests(found, base, 0.5, [-0.3, 1.0])
         assert (found.verdict, found.cause) == ("data-insufficient", None)
         assert found.alternatives[0] is best
 
@@ -110,8 +129,8 @@ def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confi
     assert verdict.TOLERABLE < base.fit.p < verdict.POSSIBLE
     found = verdict_of(base, explained(780.0, "stribeck"))
     assert found.verdict == "consistent-with"
-    assert on_unseen_tests(found, base, [-0.3, 1.0]).verdict == "nothing-missing"
-    assert on_unseen_tests(found, base, [0.1, 1.0]).verdict == "consistent-with"
+    assert on_unseen_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "nothing-missing"
+    assert on_unseen_tests(found, base, 0.5, [0.1, 1.0]).verdict == "consistent-with"
 
 
 def test_equally_good_explanations_are_tied():

@@ -89,3 +89,17 @@ def test_the_energy_of_measured_tests_is_that_of_the_true_system():
 
     np.testing.assert_allclose(measured(extended.fit), energy, rtol=0.03)
     assert np.abs(measured(base.fit) / energy - 1.0).max() > 0.1
+
+
+@pytest.mark.parametrize("effect", ["displacement_gain]\nscale = 1.1", "velocity_lag]\ntime_s = 3e-4"])
+def test_channels_that_are_not_the_motion_tell_no_force(effect):
+    problem = drawn(model=f"{MODEL}[effects.{effect}\n")
+    fit = searched(problem)[1].fit
+    assert np.isnan(waveforms.leftover_force(fit, problem.measured)).all()
+
+
+def test_a_fixture_takes_energy_that_the_data_do_not_tell():
+    fit = searched(
+        drawn(model=f"{MODEL}[effects.fixture_resonance]\nfrequency_hz = 60.0\ndamping_ratio = 0.05\n")
+    )[1].fit
+    assert np.isnan(waveforms.supplied(fit, fit.trial.harmonics[:, 0, 0])).all()

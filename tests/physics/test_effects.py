@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
 from wedgesweep import config, contact, parameters, response
-from wedgesweep.effects import EFFECTS, FAMILIES, combined
+from wedgesweep.effects import EFFECTS, FAMILIES, acting, combined
 from wedgesweep.extended import rest
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, periodic, radau
@@ -376,3 +376,10 @@ def test_half_a_turn_of_the_slip_across_changes_nothing():
     ]
     assert ratios[1] == pytest.approx(ratios[0], rel=1e-9)
     assert ratios[2] != pytest.approx(ratios[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_a_table_with_neutral_values_acts_no_more_than_none(name):
+    off = {quantity.name: quantity.neutral * quantity.factor for quantity in EFFECTS[name].quantities}
+    assert acting({name: off}) == {}
+    assert acting({name: mild(name)}) == {name: mild(name)}

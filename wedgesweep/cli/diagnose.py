@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.options import N_JOBS, jobs
+from wedgesweep.cli.options import N_JOBS, jobs, require_place_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,9 +60,7 @@ def diagnose(
 
     measurement = data.read(measured, model)
     directory = output or Path(f"{_name(measured)}-diagnosis")
-    if directory.exists() and not directory.is_dir():
-        message = f"{directory}: not a directory"
-        raise Failure(message)
+    require_place_for(directory)
     processors = jobs(n_jobs)
     found = diagnosis.diagnose(measurement, chosen, processors, _said, calibrate)
     _clear(directory)

@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 
+from wedgesweep.cli.failure import Failure
+
 CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
 DATASET = click.argument("path", metavar="OUT", type=click.Path(path_type=Path))
 
@@ -32,6 +34,19 @@ class OutputPath(click.Path):
         if not os.access(path.parent, os.W_OK):
             self.fail(f"Directory '{path.parent}' is not writable.", param, ctx)
         return path
+
+
+def require_place_for(directory: Path) -> None:
+    """Say before any work is done that a directory cannot be made, or not be written to."""
+    place = directory.absolute()
+    while not place.exists():
+        place = place.parent
+    if not place.is_dir():
+        message = f"{place}: not a directory"
+        raise Failure(message)
+    if not os.access(place, os.W_OK):
+        message = f"{place}: cannot be written to"
+        raise Failure(message)
 
 
 def jobs(n_jobs: int | None) -> int:

@@ -28,8 +28,11 @@ class Calibration:
 
     @property
     def least_gain(self) -> float:
-        """Penalised gain that clean data of these tests practically never reach."""
-        return max(0.0, float(self.gains.max()))
+        """Penalised gain that clean data of these tests practically never reach.
+
+        A base model that has no response to its own data says nothing of it.
+        """
+        return float(self.gains[np.isfinite(self.gains)].max(initial=0.0))
 
     @property
     def thresholds(self) -> verdict.Thresholds:

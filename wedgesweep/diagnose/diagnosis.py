@@ -17,7 +17,7 @@ from wedgesweep.diagnose.score import Score
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
 from wedgesweep.diagnose.spectra import fitted, spectrum
 from wedgesweep.diagnose.verdict import Finding, Thresholds
-from wedgesweep.effects import EFFECTS, SCALES
+from wedgesweep.effects import EFFECTS, SCALES, acting
 from wedgesweep.measured import Measurement, Test
 
 # Explanations that a next test should tell apart where the verdict abstains.
@@ -53,7 +53,7 @@ def problem_of(measurement: Measurement) -> Problem:
     tests = measurement.tests
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
     records = [(test.time, s, test.actual_frequency) for test, s in zip(tests, signals, strict=True)]
-    foreign = tone.of(measurement.model.effects) or tone.find([fitted(*each) for each in records])
+    foreign = tone.of(acting(measurement.model.effects)) or tone.find([fitted(*each) for each in records])
     found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
     known = [test.amplitude is not None for test in tests]
     return Problem(
@@ -105,7 +105,7 @@ def diagnose(
     if finding.best is not None and problem.tests > 1:
         progress("held-out tests")
         measured_gain = gain.measure(base.fit, finding.best.fit, search.each)
-        finding = verdict.on_unseen_tests(finding, base, measured_gain.interval)
+        finding = verdict.on_unseen_tests(finding, base, measured_gain.excess_removed, measured_gain.interval)
         measured_gain = measured_gain if finding.best is not None else None
     progress("next test")
     following = next_test.recommend(_undecided(finding, explanations, thresholds))
@@ -127,7 +127,8 @@ def _missing(
     effects: Sequence[str], measurement: Measurement, progress: Callable[[str], None]
 ) -> tuple[str, ...]:
     """Effects that the model on trial may lack."""
-    there = [name for name in effects if name in measurement.model.effects and name not in SCALES]
+    own = acting(measurement.model.effects)
+    there = [name for name in effects if name in own and name not in SCALES]
     if there:
         progress(f"part of the model on trial, so no candidates: {', '.join(there)}")
     return tuple(name for name in effects if name not in there)

@@ -101,9 +101,8 @@ def measure(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) ->
     """Leave out one frequency, then one amplitude, and predict that; ``each`` maps a function."""
     problem = base.model.problem
     jobs = [("frequency", rows) for rows in groups(problem.omega)]
-    known = extended.amplitudes()
     if not np.isinf(problem.amplitude_std).any():
-        jobs += [("amplitude", rows) for rows in groups(known)]
+        jobs += [("amplitude", rows) for rows in groups(problem.amplitude)]
     jobs = [job for job in jobs if len(job[1]) < problem.tests]
     local = _local_numbers(extended)
     rows = each(lambda job: _held_out(base, extended, local, *job), jobs)
@@ -113,8 +112,13 @@ def measure(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) ->
 def groups(values: np.ndarray) -> list[np.ndarray]:
     """Indices of values that are alike, group by group."""
     order = np.argsort(values)
-    jumps = np.flatnonzero(np.diff(np.log(values[order])) > ALIKE) + 1
-    return np.split(order, jumps)
+    found = [[order[0]]]
+    for place in order[1:]:
+        # Compared with the first: in a fine sweep each is close to its neighbour.
+        if np.log(values[place] / values[found[-1][0]]) > ALIKE:
+            found.append([])
+        found[-1].append(place)
+    return [np.array(group) for group in found]
 
 
 def _local_numbers(fit: Fit) -> np.ndarray:

@@ -16,6 +16,7 @@ from wedgesweep.diagnose.coordinates import Hypothesis, Values
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.spectra import FOLDED
 from wedgesweep.diagnose.tone import TONE
+from wedgesweep.effects import acting
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
 
 # Standard deviations by which an uncertain number is well off.
@@ -154,7 +155,10 @@ class Model:
         self.problem, self.hypothesis, self.reference = problem, hypothesis, reference
         self.tolerance = tolerance
         self.size = len(hypothesis.coordinates)
-        self.toned = problem.tone is not None and TONE in {*problem.model.effects, *hypothesis.effects}
+        self.toned = problem.tone is not None and TONE in {
+            *acting(problem.model.effects),
+            *hypothesis.effects,
+        }
         # An effect on trial is no nuisance at the same time: it is free of its prior.
         self.uncertain = {k: s for k, s in problem.uncertain.items() if k not in hypothesis.effects}
         self.low = np.r_[hypothesis.low, [0.2] * len(self.uncertain)]

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.ndimage import minimum_filter1d
 
 from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.problem import Problem, real
 from wedgesweep.diagnose.tangents import AMPLITUDE_STEP, STEP, derivatives
 from wedgesweep.solvers.periodic import at_rest
@@ -129,9 +129,20 @@ def _responses(
         )
         for step in steps
     ]
-    done = simulation.respond(np.concatenate(rows), warm, problem.shape[1])
-    harmonics = done.harmonics[:, : problem.shape[0]].reshape(len(steps), omega.size, *problem.shape)
+    done = _simulated(model, np.concatenate(rows), warm)
+    harmonics = done.harmonics[:, : problem.shape[0], : problem.shape[1]]
+    harmonics = harmonics.reshape(len(steps), omega.size, *problem.shape)
     return harmonics, done.found.reshape(len(steps), -1), done.warm
+
+
+def _simulated(model: Model, rows: np.ndarray, warm: simulation.Warm) -> simulation.Responses:
+    """Responses of tests that nobody made, in which a foreign tone would meet the input in any way."""
+    harmonics, tone = model.problem.shape[1], model.problem.tone
+    if not model.toned or tone is None:
+        return simulation.respond(rows, warm, harmonics)
+    unknown = np.full(len(rows), np.nan)
+    anyhow = (simulation.Meeting(simulation.LONG, 0.0, np.nan),) * len(rows)
+    return simulation.respond_with_tone(rows, warm, harmonics, tone, anyhow, unknown)
 
 
 def _spread(fit: Fit) -> np.ndarray:

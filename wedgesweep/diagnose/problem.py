@@ -7,7 +7,7 @@ from math import inf, nan, pi
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.simulation import Meeting
+from wedgesweep.diagnose.simulation import LONGEST, Meeting
 from wedgesweep.diagnose.spectra import FOLDED, Spectrum
 
 # Phases at which the best rotation is looked for.
@@ -41,7 +41,8 @@ class Problem:
         """How input and tone met in each test; the input starts at phase 0 where that is not known yet."""
         starts = np.zeros(self.tests) if self.start is None else self.start
         return tuple(
-            Meeting(s.periods, float(start), _phase(s)) for s, start in zip(self.spectra, starts, strict=True)
+            Meeting(min(s.periods, LONGEST), float(start), _phase(s))
+            for s, start in zip(self.spectra, starts, strict=True)
         )
 
     @cached_property

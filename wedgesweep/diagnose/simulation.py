@@ -18,8 +18,9 @@ from wedgesweep.solvers.periodic import Warm
 TOLERANCE, TIGHT = 1e-6, 1e-8
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 2 * (FOLDED + 1)
-# Periods run before a response with a foreign tone is evaluated, and over which it is where no record says.
-TONE_SETTLING, LONG = 10, 12.0
+# Periods run before a response with a foreign tone is evaluated, and more from rest; over which it is where
+# no record says, and of a record that is longer than need be: by then tone and input have met in all ways.
+TONE_SETTLING, FROM_REST, LONG, LONGEST = 10, 30, 12.0, 60.0
 
 
 class Responses(NamedTuple):
@@ -82,7 +83,10 @@ def respond_with_tone(
     meetings = tuple(
         each._replace(periods=LONG) if one else each for each, one in zip(meetings, anyhow, strict=True)
     )
-    spectra, state = _recorded(rows, warm.state, harmonics, tone, meetings, tolerance)
+    state = warm.state
+    if not np.isfinite(state).all():
+        state = periodic.samples(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance)[2]
+    spectra, state = _recorded(rows, state, harmonics, tone, meetings, tolerance)
     late = np.where(np.isnan(ahead), shown, np.nan) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(late))
     if again.size:

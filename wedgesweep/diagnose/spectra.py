@@ -94,7 +94,8 @@ class Spectrum:
         """Power at some frequencies over the smooth noise, summed over channels (1 each in noise)."""
         padded = 8 * self.samples
         transform = np.fft.rfft(self.residual, padded, axis=1)
-        bins = np.round(frequencies * self.interval * padded).astype(int)
+        # What lies beyond the record's band says nothing, whatever it is.
+        bins = np.minimum(np.round(frequencies * self.interval * padded).astype(int), padded // 2)
         power = np.abs(transform[:, bins]) ** 2 / self.samples
         return sum(each / level(frequencies) for each, level in zip(power, self.level, strict=True))
 

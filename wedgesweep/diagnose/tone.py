@@ -48,8 +48,10 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     frequency = np.array([s.frequency for s in spectra])
     alike = np.abs(np.log(frequency / frequency[:, None])) < ALIKE
     longest = max(s.duration for s in spectra)
-    highest = min(BAND / s.interval for s in spectra)
+    highest = max(BAND / s.interval for s in spectra)
     grid = np.arange(LOWEST, highest, 1.0 / longest / FINE)
+    if not grid.size:
+        return None
     part = 2 if len(spectra) > 1 and alike.all() else 1
     separated = np.array(
         [told_apart(grid, s.frequency / part, s.duration, part * (s.harmonics + 1) - 1) for s in spectra]

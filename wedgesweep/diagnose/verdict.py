@@ -109,7 +109,8 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     if not order or order[0].penalised >= base.penalised - thresholds.least_gain:
         if base.fit.p >= TOLERABLE:
             return Finding(NOTHING, None, ())
-        return Finding(_nobody(base), order[0] if order else None, ())
+        will_do = bool(order) and order[0].fit.p >= ADEQUATE
+        return Finding(INSUFFICIENT if will_do else _nobody(base), order[0] if order else None, ())
     best = order[0]
     left = _left(base, best)
     # Where little shows, noise has a part in where: those tests hold more of it than others.
@@ -161,18 +162,23 @@ def where_it_shows(base: Fit, fit: Fit) -> float:
     return float(chdtrc(max(dof[rows].sum() - fit.model.size, 1), fit.trial.by_test[rows].sum()))
 
 
-def on_unseen_tests(finding: Finding, base: Explanation, interval: Sequence[float] | None) -> Finding:
+def on_unseen_tests(
+    finding: Finding, base: Explanation, removed: float, interval: Sequence[float] | None
+) -> Finding:
     """The finding, unless its cause may well make worse what it was not fitted to.
 
     Then nothing is missing where the base model will do. Else none is the cause; or if it leaves noise only,
     too few tests show it for others to confirm it: what would be named is weak evidence, else none.
-    ``interval``: 95 % interval of the excess that the cause removes there, None if there is none.
+    ``removed``: share of the excess that the cause removes there, and its 95 % interval; where the tests are
+    too few for one they can only make a name weak evidence.
     """
-    if finding.cause is None or interval is None or interval[0] >= 0.0:
+    if finding.cause is None or (removed if interval is None else interval[0]) >= 0.0:
         return finding
+    if interval is None:
+        return Finding(CONSISTENT, finding.best, finding.rivals) if finding.verdict == NAMED else finding
     if base.fit.p >= TOLERABLE:
         return Finding(NOTHING, None, ())
-    if _left(base, finding.cause) < ADEQUATE:
+    if _left(base, finding.cause) < ADEQUATE and none_will_do(finding.rivals or [finding.cause]):
         return Finding(_nobody(base), finding.best, finding.rivals)
     return Finding(CONSISTENT if finding.verdict == NAMED else INSUFFICIENT, finding.best, finding.rivals)
 

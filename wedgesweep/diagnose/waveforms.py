@@ -9,12 +9,15 @@ from wedgesweep.diagnose.accelerations import accelerations
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.simulation import records
+from wedgesweep.effects import EFFECTS, acting
 
 PHASES = 256
 # A harmonic counts as far as its square is above this many times its noise.
 HEARD = 4.0
 # First guess at the mean of a motion, over its peak-to-peak.
 FIRST_PLACE = 0.01
+# Effects after the mechanics.
+SENSOR = tuple(name for name, effect in EFFECTS.items() if effect.family == "sensor")
 # A plateau is where the velocity stays below this share of its peak.
 PLATEAU = 0.05
 
@@ -58,9 +61,11 @@ def supplied(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
 
     Amplitudes and the mass that moves are the fit's. So must be the phase of a fundamental that was measured:
     no record tells the input's. It is the work of the inertia forces that PHYSICS.md balances with friction,
-    pi m a omega^2 Re D_1.
+    pi m a omega^2 Re D_1. NaN where the base is not what the data are relative to.
     """
     one = _rows(fit)
+    fundamental = fundamental / one["displacement_gain_scale"]
+    fundamental = np.where(one["fixture_resonance_frequency"] > 0.0, np.nan, fundamental)
     moved = one["bolster_mass"] + 2.0 * one["wedge_mass"] * one["column_ratio"] * one["cos_column"]
     return pi * moved * one["amplitude"] * one["omega"] ** 2 * fundamental.real
 
@@ -71,10 +76,11 @@ def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     The measured acceleration less that of the model in the same state, times the mass that moves. Both in
     the harmonics that stand above the noise: the others, times omega^2 h^2, would hide the force. The
     bolster's mean place, which no test tells, is where the model has no mean acceleration. NaN for a model
-    with effects that need the extended mechanics: what those do depends on more than the motion.
+    with effects that need the extended mechanics, or on the sensors: what those do depends on more than the
+    motion, or the channels are not the motion.
     """
     problem, rows = fit.model.problem, _rows(fit)
-    if rows["extended"].any():
+    if rows["extended"].any() or set(acting(problem.model.effects)) & set(SENSOR):
         return np.full((problem.tests, PHASES), np.nan)
     heard = _heard(problem)
     rate = velocity(problem, harmonics)

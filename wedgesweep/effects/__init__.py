@@ -77,6 +77,19 @@ def combined(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
     return {name: dict(numbers) for name, numbers in {**own, **added, **scaled}.items()}
 
 
+def acting(effects: Numbers) -> dict[str, dict[str, float]]:
+    """Effects that change anything: a table with neutral values has switched nothing on."""
+    off = neutral()
+    return {
+        name: dict(numbers)
+        for name, numbers in effects.items()
+        if any(
+            numbers.get(each, off[f"{name}_{each}"]) != off[f"{name}_{each}"]
+            for each in EFFECTS[name].leading
+        )
+    }
+
+
 def neutral() -> dict[str, float]:
     """The parameter record's fields that belong to effects, with every effect off (SI units)."""
     return {

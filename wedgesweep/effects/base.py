@@ -24,6 +24,11 @@ class Effect:
     extends: tuple[str, ...] = ()
 
     @property
+    def leading(self) -> tuple[str, ...]:
+        """Names of the quantities that switch it on."""
+        return self.extends or (self.quantities[0].name,)
+
+    @property
     def fields(self) -> tuple[str, ...]:
         """Names of its numbers in the parameter record, in the order of ``quantities``."""
         return tuple(f"{self.name}_{quantity.name}" for quantity in self.quantities)

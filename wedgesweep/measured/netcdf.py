@@ -92,6 +92,13 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     uncertain = _uncertain(root, path, problems)
     tests = [_test(group, path, problems) for group in groups]
     complete = tuple(test for test in tests if test)
+    derived = {
+        bool(getattr(each.variables["velocity"], "derived", 0)) for each in groups if _has_velocity(each)
+    }
+    if len(derived) > 1:
+        problems.append(
+            f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
+        )
     if problems or config is None:
         raise MeasuredError(problems)
     variables = [groups[0].variables[name] for name in UNITS if name in groups[0].variables]
@@ -102,9 +109,13 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         law=law,
         uncertain=uncertain,
         tests=complete,
-        derived_velocity=any(bool(getattr(variable, "derived", 0)) for variable in variables),
+        derived_velocity=derived == {True},
         columns={each.name: {"column": each.name, "unit": each.units} for each in variables},
     )
+
+
+def _has_velocity(group: Any) -> bool:
+    return "velocity" in group.variables
 
 
 def _model(

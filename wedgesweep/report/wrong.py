@@ -132,6 +132,6 @@ def _energy(found: Diagnosed) -> str:
     ratio = found.data["simulated_energy"].sel(model="base") / found.data["measured_energy"]
     known = ratio.values[np.isfinite(ratio.values)]
     if not known.size:
-        return "No test has a known input amplitude."
+        return "No test tells the energy: that takes a known input of the side frame itself."
     low, high = (digits.number(each) for each in (known.min(), known.max()))
     return f"The base model takes {low} to {high} times the energy that was measured."

@@ -20,7 +20,9 @@ def draw(found: Diagnosed) -> Figure:
     """
     order = rows.shown(found, "energy")
     if not order.size:
-        message = f"{NAME}: no test has a known input amplitude, without which there is no energy"
+        message = (
+            f"{NAME}: no test has a known input of the side frame itself, without which there is no energy"
+        )
         raise ValueError(message)
     figure, (left, right) = rows.panels(found, order, 2)
     rows.draw_values(left, found, order, "energy", MJ)
