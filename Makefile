@@ -19,7 +19,7 @@ $(BIN)/.installed: pyproject.toml
 
 run: install  ## run configs/quick.toml: dataset and figures into out/
 	mkdir -p $(OUT)
-	$(BIN)/wedgesweep run configs/quick.toml -o $(OUT)/quick.nc
+	$(BIN)/wedgesweep run configs/quick.toml --fresh -o $(OUT)/quick.nc
 	$(BIN)/wedgesweep plot all $(OUT)/quick.nc -o $(OUT)/quick-figures
 
 test: install  ## all tests

@@ -16,6 +16,7 @@ from tests.command import invoke
 from tests.small_sweep import CONFIG, LOCKED
 from wedgesweep import config, figures
 from wedgesweep.cli import cli
+from wedgesweep.cli.failure import _failure
 from wedgesweep.cli.progress import Progress
 from wedgesweep.cli.words import duration, size
 
@@ -373,11 +374,35 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         (["stick-map", "few.toml"], "few.toml: not a netCDF dataset"),
         (["stickmap", "OUT"], "is not one of"),
         (["all", "OUT", "-o", "few.toml"], "few.toml: File exists"),
+        (["all", "absent/x.nc"], "absent/x.nc: no such file"),
+        (
+            ["stick-map", "OUT", "--format", "pdf", "-o", "x.png"],
+            "--format pdf and -o x.png are not the same",
+        ),
     ],
 )
 def test_plot_faults(here, drawn_dataset, arguments, words):
     replaced = [drawn_dataset if argument == "OUT" else argument for argument in arguments]
     assert words in invoke("plot", *replaced, code=2)
+    assert sorted(path.name for path in here.iterdir()) == ["few.toml", "locked.toml"]
+
+
+def test_a_case_takes_the_place_of_no_other_data(here):
+    xr.Dataset({"mine": 1.0}).to_netcdf("mine.nc")
+    told = invoke("case", "few.toml", "--beta", 1.1, "--amplitude", 1, "-o", "mine", code=2)
+    assert "mine.nc: holds a sweep, or something else" in told
+
+
+def test_another_solver_that_cannot_do_what_is_asked_is_told_with_its_file(here):
+    (here / "steady.toml").write_text(
+        FEW.replace("settle_periods = 3", 'method = "event-driven"\nsettle = "steady"')
+    )
+    assert 'steady.toml: solver "radau": solver.settle' in run("steady.toml", "--solver", "radau", code=2)
+
+
+def test_an_error_of_the_system_without_a_number_is_told():
+    assert str(_failure(TimeoutError("no answer"))) == "no answer"
+    assert str(_failure(TimeoutError())) == "TimeoutError"
 
 
 def test_plot_all(here, drawn_dataset):

@@ -209,3 +209,12 @@ def test_another_method_must_suit_the_other_settings():
     read = config.parse(SWEEP + STEADY)
     with pytest.raises(ConfigError, match=r'solver "radau": solver\.settle: .*\n.*solver\.continuation'):
         read.with_method("radau")
+
+
+def test_springs_that_soften_until_they_hold_no_weight_are_refused():
+    text = "[sweep]\nfriction_law = 'coulomb'\nbeta = 1.0\namplitude_mm = 0.1\n[effects.cubic_stiffness]\n"
+    with pytest.raises(
+        config.ConfigError, match=r"soft\.toml: effects\.cubic_stiffness\.coefficient_N_per_mm3: leaves"
+    ):
+        config.parse(f"{text}coefficient_N_per_mm3 = -2.0\n", "soft.toml")
+    config.parse(f"{text}coefficient_N_per_mm3 = -0.5\n", "soft.toml")

@@ -91,8 +91,9 @@ def restarted(case, state, period):
 def test_both_sides_are_steady_states(tmp_path, steep):
     swept = small_sweep.sweep(tmp_path, STEEP)
     line = swept.together[0]
-    up, states = batch.solve_batch(swept.parameters[line], line, swept.settings, swept.dtype, chain=True)
-    down, back = continuation._back(swept.parameters[line], line, swept.settings, swept.dtype, states[-1])
+    both = continuation.there_and_back(line)
+    found, ends = batch.solve_batch(swept.parameters[both], both, swept.settings, swept.dtype, chain=True)
+    (up, down), (states, back) = np.split(found, 2), np.split(ends, 2)
     stored = steep.isel(friction_law=0, amplitude=0)
     assert stored["amplitude_ratio"].values.tolist() == up["amplitude_ratio"].tolist()
     assert stored["amplitude_ratio_down"].values.tolist() == down["amplitude_ratio"][::-1].tolist()
@@ -104,6 +105,20 @@ def test_both_sides_are_steady_states(tmp_path, steep):
             ratio, moved = restarted(case, ends[at], int(records["period"][at]))
             assert ratio == pytest.approx(records["amplitude_ratio"][at], abs=1e-6)
             assert np.abs(moved).max() < 1e-6
+
+
+def test_the_way_down_begins_in_the_whole_state_of_the_way_up(tmp_path):
+    """Bristles and columns have states of their own, and a response over two periods is one there, too."""
+    effects = "[effects.presliding]\nlength_mm = 0.002\n"
+    swept = small_sweep.sweep(tmp_path, STEEP.replace("[0.0311, 0.2]", "0.0311") + effects)
+    ds = swept.run(n_jobs=1)
+    top = ds.isel(beta=-1, amplitude=0)
+    assert (top["coexisting"] == 0).all()
+    assert (top["period"] == top["period_down"]).all()
+    line = swept.together[0]
+    both = continuation.there_and_back(line)
+    found, _ = batch.solve_batch(swept.parameters[both], both, swept.settings, swept.dtype, chain=True)
+    assert found["settled_periods"][line.size] <= 2 * found["period"][line.size]
 
 
 def test_a_line_follows_its_neighbours_and_no_other_line(steep, tmp_path):

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from tests import fixture_dataset
-from wedgesweep import figures
+from wedgesweep import config, figures
 from wedgesweep.figures import amplitude_ratio, bifurcation, cases, friction_laws, stick_map
 from wedgesweep.friction import LAWS
+from wedgesweep.sweep import Sweep
 
 KINDS = sorted(figures.DESCRIPTIONS)
 FROM_LISTS = ("friction-laws", "phase-portrait")
@@ -151,18 +152,54 @@ def test_poincare_samples_are_one_per_period_at_phase_0(dataset):
 
 
 def test_friction_curves(dataset):
-    from wedgesweep import config
-
     settings = config.parse(dataset.attrs["config"])
     parameters = settings.record(settings.case_list()[0])[0]
     for law in LAWS:
-        velocity, coefficient = friction_laws.curve(law, parameters)
+        velocity, coefficient = friction_laws.curve(law, parameters, 4e-3)
         assert (np.diff(velocity) >= 0.0).all()
         assert coefficient == pytest.approx(-coefficient[::-1])
         peak = 0.29 if law == "coulomb" else 0.32
         assert coefficient.max() == pytest.approx(peak)
-    jump = friction_laws.curve("coulomb", parameters)
+    jump = friction_laws.curve("coulomb", parameters, 4e-3)
     assert sorted(jump[1][jump[0] == 0.0]) == [-0.29, 0.29]
+
+
+CROSSING = """
+[sweep]
+friction_law = ["coulomb", "static-dynamic"]
+beta = [0.5, 1.0]
+amplitude_mm = [0.1, 1.0]
+[effects.cross_slip]
+velocity_mm_per_s = 5.0
+[effects.bolster_mass]
+scale = 2.0
+"""
+
+
+def test_each_law_is_drawn_with_its_own_numbers(dataset):
+    """With slip across coulomb is regularised, and nothing else is."""
+    crossing = dataset.sel(friction_law=["coulomb", "static-dynamic"]).assign_attrs(config=CROSSING)
+    coulomb, static_dynamic = friction_laws.draw(crossing).axes
+    assert max(np.max(line.get_ydata()) for line in static_dynamic.lines) == pytest.approx(0.32)
+    told = [[text.get_text() for text in ax.texts][-1] for ax in (coulomb, static_dynamic)]
+    assert told == ["ramp up to $v_t$ = 0.001 mm/s", "ramp up to $v_t$ = 1 mm/s"]
+
+
+def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_their_own(tmp_path, dataset):
+    (tmp_path / "crossing.toml").write_text(CROSSING)
+    physics = Sweep(config.load(tmp_path / "crossing.toml"), tmp_path / "crossing.nc")._physics()
+    assert np.isnan([physics["frictionless_resonance"], physics["breakaway_acceleration"]]).all()
+    unknown = dataset.assign_attrs(physics)
+    assert np.isnan(amplitude_ratio.frictionless_ratio(unknown, np.array([1.0, 2.0]))).all()
+    assert not amplitude_ratio.draw(unknown).axes[0].get_legend_handles_labels()[1]
+    assert "breakaway" not in str(
+        [text.get_text() for text in stick_map.draw(unknown).legends[0].get_texts()]
+    )
+    heavy = dataset.assign_attrs(
+        config=CROSSING.replace("[effects.cross_slip]\nvelocity_mm_per_s = 5.0\n", "")
+    )
+    ratio = amplitude_ratio.frictionless_ratio(heavy, np.array([20.0]))
+    assert ratio < amplitude_ratio.frictionless_ratio(dataset, np.array([20.0]))
 
 
 def test_stick_map_cells_enclose_their_centres():

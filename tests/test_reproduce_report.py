@@ -103,6 +103,19 @@ def test_finished_runs_are_kept_and_others_made_again(tmp_path, configs):
     assert changed.breakaway.ds["amplitude"].values.tolist() == [6e-4]
 
 
+def test_an_unfinished_run_of_another_version_gives_way(tmp_path, configs):
+    def stop(records, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        running.obtain(tmp_path / "out", configs, 1, lambda line: None, stop)
+    assert list((tmp_path / "out").glob("*.partial"))
+    (configs / "paper.toml").write_text(TINY.replace("0.5", "0.6"))
+    runs, told = obtain(tmp_path, configs)
+    assert "running it again" in "".join(told)
+    assert runs.paper.ds["amplitude"].values.tolist() == [6e-4]
+
+
 def test_missing_configs_are_named(tmp_path):
     with pytest.raises(ConfigError, match="nowhere: no such folder"):
         obtain(tmp_path, tmp_path / "nowhere")

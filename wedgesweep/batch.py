@@ -18,14 +18,12 @@ def solve_batch(
     indices: np.ndarray,
     settings: Settings,
     dtype: np.dtype,
-    starts: np.ndarray | None = None,
     chain: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Records of some cases, and their states at the end, shape (n, 2).
+    """Records of some cases, and their states (m, m/s) at the end, shape (n, 2).
 
-    ``cases`` are parameter records, shape (n,); ``starts`` are states (m, m/s) at phase 0, shape (n, 2), rest
-    unless given; in a ``chain`` a case starts where the one before it ended, unless that failed. The wall
-    time of a case is its share of the batch's.
+    ``cases`` are parameter records, shape (n,); they start from rest, in a ``chain`` where the one before
+    ended, unless that failed. The wall time of a case is its share of the batch's.
     """
     began = perf_counter()
     settle = settings.settling(cases["omega"])
@@ -33,13 +31,12 @@ def solve_batch(
     batch = event_driven.empty_batch(
         len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
-    starts = np.zeros((len(cases), 2)) if starts is None else starts
     plan, rtol = _plan(settings, chain), _rtol(settings)
     # All cases have the effects of one config.
     if cases["extended"].any():
-        extended.run_batch(cases, settle, starts, plan, rtol, batch)
+        extended.run_batch(cases, settle, plan, rtol, batch)
     else:
-        event_driven.run_batch(cases, settle, starts, plan, tally.empty(), workspace(rtol), batch)
+        event_driven.run_batch(cases, settle, plan, tally.empty(), workspace(rtol), batch)
     records = dataset.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)

@@ -1,6 +1,7 @@
 """Cases to records: whatever becomes of a case, it is data."""
 
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -20,26 +21,30 @@ def describe(law: str, beta: float, amplitude: float) -> str:
     return f"{law}, beta {beta:.6g}, amplitude {amplitude * 1e3:.6g} mm"
 
 
-def is_compiled(method: str) -> bool:
-    """Whether a solver's compiled code is cached."""
-    return _compiled_mark(method).exists()
+def is_compiled(method: str, extended: bool = False) -> bool:
+    """Whether a solver's compiled code is cached, that of effects with mechanics of their own too."""
+    return _compiled_mark(method, extended).exists()
 
 
-def compile_once(method: str) -> None:
-    """Fill numba's cache here, so that the jobs of a first run do not all compile the same."""
-    if is_compiled(method):
+def compile_once(method: str, extended: bool = False) -> None:
+    """Fill numba's cache here, so that the jobs of a first run do not all compile the same.
+
+    Nor does that take from the time limit of a case.
+    """
+    if is_compiled(method, extended):
         return
     short = Settings(method=method, settle_periods=1, kept_periods=2, samples_per_period=32)
     # This case sticks and slips, so that nothing is left to compile.
-    case = parameters.record("coulomb", 5e-3, 85.0)
+    effects = {"viscous_damping": {"coefficient": 1.0}} if extended else {}
+    case = parameters.record("coulomb", 5e-3, 85.0, effects=effects)
     dtype = dataset.record_dtype({"phase": 64, "harmonic": dataset.HARMONICS, "part": 2})
-    solve_cases(case, np.array([0]), short, short.case_timeout, dtype)
-    _compiled_mark(method).touch()
+    solve_cases(case, np.array([0]), short, inf, dtype)
+    _compiled_mark(method, extended).touch()
 
 
-def _compiled_mark(method: str) -> Path:
+def _compiled_mark(method: str, extended: bool) -> Path:
     # That the folder exists says little: reading parameters compiles a first few functions.
-    return CACHE_DIR / f"{method}.complete"
+    return CACHE_DIR / f"{method}{'-extended' * extended}.complete"
 
 
 class Chunk(NamedTuple):

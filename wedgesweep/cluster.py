@@ -10,7 +10,7 @@ import joblib
 from joblib._dask import Batch, DaskDistributedBackend
 
 from wedgesweep.backend import parallel
-from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.errors import SweepError
 from wedgesweep.fingerprint import differences
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def dask(
 ) -> Iterator[joblib.Parallel]:
     """Workers of a running cluster, or of one with ``n_jobs`` processes here that ends with this run.
 
-    Raises SweepError if there is no cluster, MismatchError if its workers would compute other numbers.
+    Raises SweepError if there is no cluster, or if its workers would compute other numbers.
     """
     if importlib.util.find_spec("distributed") is None:
         message = "the dask backend needs Dask: pip install 'wedgesweep[dask]'"
@@ -92,7 +92,7 @@ def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -
             raise SweepError(message) from there
         if differing := differences(there, here):
             message = f"Dask worker {worker} would compute other numbers ({'; '.join(differing)})"
-            raise MismatchError(message)
+            raise SweepError(message)
 
 
 class _Dask(DaskDistributedBackend):

@@ -1,8 +1,9 @@
 """Sweeps up and down in beta: each case starts from the steady state of its neighbour.
 
 A response that exists beside another one is found by where it came from. A line holds the cases of one law
-and one amplitude over all frequencies; the way up starts from rest, the way down where the way up ended. A
-state at phase 0 of the input (m, m/s) is handed on as it is; behind a case that failed comes rest.
+and one amplitude over all frequencies, up and down again in one chain: the way up starts from rest, the way
+down where the way up ended. The state at phase 0 of the input is handed on as it is; behind a case that
+failed comes rest.
 """
 
 from collections.abc import Iterator
@@ -23,9 +24,9 @@ def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtyp
     """
     records = dataset.blank(dtype, indices)
     for line in lines(cases):
-        up, states = solve_batch(cases[line], indices[line], settings, dtype, chain=True)
-        end = states[-1] if up["status"][-1] == 0 else np.zeros(2)
-        down = _back(cases[line], indices[line], settings, dtype, end)[0][::-1]
+        both = there_and_back(line)
+        found, _ = solve_batch(cases[both], indices[both], settings, dtype, chain=True)
+        up, down = found[: line.size], found[line.size :][::-1]
         up["amplitude_ratio_down"], up["period_down"] = down["amplitude_ratio"], down["period"]
         up["coexisting"] = compared(up, settings.steady_tolerance)
         up["wall_time"] += down["wall_time"]
@@ -40,14 +41,9 @@ def lines(cases: np.ndarray) -> Iterator[np.ndarray]:
     yield from np.split(order, np.flatnonzero(line[1:] != line[:-1]) + 1)
 
 
-def _back(
-    cases: np.ndarray, indices: np.ndarray, settings: Settings, dtype: np.dtype, state: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Records and states of the way down from a state at the highest frequency, without waveforms."""
-    bare = dtype[[name for name in dtype.names or () if name not in dataset.WAVEFORMS]]
-    starts = np.zeros((len(cases), 2))
-    starts[0] = state
-    return solve_batch(cases[::-1].copy(), indices[::-1], settings, bare, starts, chain=True)
+def there_and_back(line: np.ndarray) -> np.ndarray:
+    """Places (2 n,) of a line on its way up and down."""
+    return np.concatenate([line, line[::-1]])
 
 
 def compared(records: np.ndarray, steady_tolerance: float) -> np.ndarray:

@@ -43,7 +43,7 @@ VARIABLES = (
     Variable("displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM),
     Variable("velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM),
     Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
-    Variable("dissipated_energy", "J", "energy dissipated by friction per forcing period"),
+    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers per forcing period"),
     Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
     Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
     Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),

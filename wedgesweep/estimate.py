@@ -12,7 +12,6 @@ from wedgesweep.sweep import Sweep
 
 MOST_CASES = 60
 SECONDS = 8.0
-CASE_TIMEOUT = 10.0
 GOLDEN = 0.6180339887498949
 
 
@@ -29,12 +28,12 @@ class Estimate:
 def estimate(sweep: Sweep) -> Estimate:
     """Run a few cases spread over the sweep, for some seconds, and scale their time up."""
     cases = len(sweep.parameters)
-    compile_once(sweep.settings.method)
-    sweep.solve(np.array([0]), CASE_TIMEOUT)  # the first case waits until its code is loaded
+    compile_once(sweep.settings.method, sweep.extended)
+    sweep.solve(np.array([0]))  # the first case waits until its code is loaded
     started = perf_counter()
     records = []
     for index in _spread(cases):
-        records.append(sweep.solve(np.array([index]), CASE_TIMEOUT))
+        records.append(sweep.solve(np.array([index])))
         if perf_counter() - started > SECONDS:
             break
     sampled = np.concatenate(records)

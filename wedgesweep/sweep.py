@@ -9,6 +9,7 @@ from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property, partial
+from math import nan
 from pathlib import Path
 
 import joblib
@@ -82,6 +83,11 @@ class Sweep:
     @property
     def journal_path(self) -> Path:
         return self.out.with_name(self.out.name + ".partial")
+
+    @property
+    def extended(self) -> bool:
+        """Whether its effects need the extended mechanics."""
+        return bool(self.parameters["extended"].any())
 
     @property
     def fingerprint(self) -> dict[str, str]:
@@ -171,7 +177,7 @@ class Sweep:
         rows = self.together
         todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
         if todo.size:
-            compile_once(self.settings.method)
+            compile_once(self.settings.method, self.extended)
         yield whole[~np.isin(whole["index"], todo)]
         with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:
@@ -223,10 +229,11 @@ class Sweep:
     def _physics(self) -> dict[str, float]:
         """Numbers of the suspension that figures refer to (SI)."""
         p = self.parameters[0]
+        numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["rest"])}
+        if p["extended"]:  # effects with mechanics of their own have neither
+            return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}
         coulomb = self.config.record(Case("coulomb", 1.0, 1e-3))[0]
-        return {
-            "omega_n": self.config.sweep.omega_n,
-            "rest_position": float(p["rest"]),
+        return numbers | {
             "frictionless_resonance": damper.resonance(p),
             "breakaway_acceleration": contact.breakaway_acceleration(coulomb),
         }

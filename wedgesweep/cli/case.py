@@ -98,8 +98,11 @@ def _require_no_sweep(path: Path) -> None:
     """Do not let one case take the place of a whole sweep."""
     from wedgesweep import dataset
 
-    if path.exists() and dataset.read(path)["status"].size > 1:
-        message = f"{path}: holds a sweep; choose another -o"
+    if not path.exists():
+        return
+    found = dataset.read(path)
+    if "status" not in found or found["status"].size > 1:
+        message = f"{path}: holds a sweep, or something else; choose another -o"
         raise Failure(message)
 
 

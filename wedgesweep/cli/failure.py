@@ -38,5 +38,6 @@ def _failure(error: Exception) -> Exception:
     if isinstance(error, (InputError, SweepError)):
         return Failure(str(error))
     if isinstance(error, OSError):
-        return Failure(": ".join(str(part) for part in (error.filename, error.strerror) if part))
+        told = ": ".join(str(part) for part in (error.filename, error.strerror) if part)
+        return Failure(told or str(error) or type(error).__name__)
     return error

@@ -29,6 +29,8 @@ class OutputPath(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        if self.allow_dash and path == Path("-"):
+            return path
         if not path.parent.is_dir():
             self.fail(f"'{path.parent}' is not a directory.", param, ctx)
         if not os.access(path.parent, os.W_OK):

@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
@@ -78,11 +79,15 @@ def plot(
     wanted = {"beta": beta, "amplitude": [value * 1e-3 for value in amplitude], "law": law}
     options = {name: value for name, value in wanted.items() if value not in (None, [])}
     if kind == ALL:
-        directory = output or _beside(path)
+        directory, found = output or _beside(path), _read(path)
         directory.mkdir(parents=True, exist_ok=True)
-        _draw_all(_read(path), directory, suffix, options)
+        _draw_all(found, directory, suffix, options)
         return
     _require_kind(kind, path)
+    asked = ctx.get_parameter_source("suffix") is not ParameterSource.DEFAULT
+    if output and asked and output.suffix.lower() != f".{suffix}":
+        message = f"--format {suffix} and -o {output} are not the same; leave one out"
+        raise click.UsageError(message)
     file = output or _beside(path) / f"{kind}.{suffix}"
     _require_place(file)
     try:

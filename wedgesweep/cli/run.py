@@ -16,6 +16,7 @@ from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
     from wedgesweep.backend import Backend
+    from wedgesweep.config import Config
     from wedgesweep.sweep import Sweep
 
 BACKENDS = ("threads", "loky", "dask")
@@ -63,10 +64,7 @@ def run(
     After an interruption or a kill the same command goes on where it stopped.
     """
     _require_sense(backend, scheduler, n_jobs)
-    from wedgesweep import config
-
-    settings = config.load(config_path)
-    settings = settings.with_method(solver) if solver else settings
+    settings = _settings(config_path, solver)
     from wedgesweep.errors import MismatchError
     from wedgesweep.sweep import CaseFailedError, Sweep
 
@@ -90,6 +88,16 @@ def run(
     except MismatchError as error:
         message = f"{error}; another -o keeps it, --fresh discards it"
         raise Failure(message) from error
+
+
+def _settings(config_path: Path, solver: str | None) -> "Config":
+    from wedgesweep import config
+
+    settings = config.load(config_path)
+    try:
+        return settings.with_method(solver) if solver else settings
+    except config.ConfigError as error:
+        raise config.ConfigError([f"{config_path}: {problem}" for problem in error.problems]) from error
 
 
 def _require_sense(backend: str | None, scheduler: str | None, n_jobs: int | None) -> None:
@@ -120,7 +128,7 @@ def _run(sweep: "Sweep", progress: Progress, options: dict[str, Any]) -> int:
     if stored is not None:
         click.echo(f"{sweep.out}: complete already; --fresh runs it again")
         return print_summary(stored)
-    tell_of_compiling(sweep.settings.method)
+    tell_of_compiling(sweep.settings.method, sweep.extended)
     if sweep.config.remark:
         click.echo(sweep.config.remark, err=True)
     started = perf_counter()
@@ -130,11 +138,11 @@ def _run(sweep: "Sweep", progress: Progress, options: dict[str, Any]) -> int:
     return code
 
 
-def tell_of_compiling(method: str) -> None:
+def tell_of_compiling(method: str, extended: bool = False) -> None:
     """Say why nothing seems to happen at first."""
     from wedgesweep.cases import is_compiled
 
-    if not is_compiled(method):
+    if not is_compiled(method, extended):
         click.echo("compiling once, for up to a minute; later runs start at once", err=True)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from math import pi, sqrt
+from math import isnan, pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,6 +14,9 @@ import numpy as np
 from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
+
+# The effect that may leave a suspension no place to rest.
+SOFTENING = "cubic_stiffness"
 
 # What needs numba or scipy is imported late, so that `wedgesweep --help` does not wait for it.
 if TYPE_CHECKING:
@@ -237,7 +240,17 @@ def parse(text: str, source: str = "<config>") -> Config:
     suspension, sweep = document["suspension"], document["sweep"]
     stiffness = suspension["bolster_spring_N_per_mm"] * 1e3
     sweep.setdefault("omega_n_rad_per_s", sqrt(stiffness / suspension["bolster_mass_kg"]))
-    return Config(document)
+    found = Config(document)
+    if SOFTENING in found.effects:
+        _require_rest(found, source)
+    return found
+
+
+def _require_rest(found: Config, source: str) -> None:
+    """Refuse springs that soften until they hold no weight."""
+    if isnan(found.record(Case("static-dynamic", 1.0, 1e-3))["rest"][0]):
+        problem = "leaves the springs no place to hold the weight; it must be larger"
+        raise ConfigError([f"{source}: effects.{SOFTENING}.coefficient_N_per_mm3: {problem}"])
 
 
 def schema() -> dict[str, Any]:

@@ -51,7 +51,7 @@ def _response(wedge, vertical, outward, p):
 
 @compiled
 def _static_place(p):
-    """Newton's method for z and Q of the frictionless equilibrium (m)."""
+    """Newton's method for z and Q of the frictionless equilibrium (m); NaN where none holds by itself."""
     lift = p.column_ratio * p.cos_column
     z, way = p.rest, 0.0
     for _ in range(ITERATIONS):
@@ -63,13 +63,14 @@ def _static_place(p):
         )
         by_z = _response(-p.wedge_spring * lift, -p.bolster_spring - 3.0 * cubic * z * z, 0.0, p)
         if p.column_compliance_stiffness == 0.0:
-            dz, dway = -residual[0] / by_z[0], 0.0
+            dz, dway, stable = -residual[0] / by_z[0], 0.0, by_z[0] < 0.0
         else:
             by_way = _response(-p.wedge_spring * p.lift_ratio, 0.0, -p.column_compliance_stiffness, p)
             determinant = by_z[0] * by_way[1] - by_way[0] * by_z[1]
             dz = -(residual[0] * by_way[1] - by_way[0] * residual[1]) / determinant
             dway = -(by_z[0] * residual[1] - residual[0] * by_z[1]) / determinant
+            stable = by_z[0] < 0.0 and determinant > 0.0
         z, way = z + dz, way + dway
         if abs(dz) + abs(dway) <= REACHED:
-            return z, way
+            return (z, way) if stable else (nan, nan)
     return nan, nan

@@ -16,15 +16,17 @@ FEW_BETAS = 40  # up to here every case gets a dot
 def frictionless_ratio(ds: xr.Dataset, beta: np.ndarray) -> np.ndarray:
     """Compute the amplitude ratio of the suspension without friction, NaN next to its resonance.
 
+    And everywhere, if there are effects with mechanics of their own.
+
     With the wedge travelling r z along the column, m = M_b + 2 M_w r^2 is the moving mass and
     M_b + 2 M_w r cos(gamma) the mass that the base acceleration u'' drives.
     """
     from wedgesweep import config
 
-    p = config.parse(ds.attrs["config"]).suspension
-    r = np.sin(p["wedge_angle"]) / np.sin(p["wedge_angle"] + p["column_angle"])
-    driven = p["bolster_mass"] + 2.0 * p["wedge_mass"] * r * np.cos(p["column_angle"])
-    moving = p["bolster_mass"] + 2.0 * p["wedge_mass"] * r**2
+    settings = config.parse(ds.attrs["config"])
+    p = settings.record(settings.case_list()[0])[0]
+    driven = p["bolster_mass"] + 2.0 * p["wedge_mass"] * p["column_ratio"] * p["cos_column"]
+    moving = p["bolster_mass"] + 2.0 * p["wedge_mass"] * p["column_ratio"] ** 2
     squared = (beta * ds.attrs["omega_n"] / ds.attrs["frictionless_resonance"]) ** 2
     detuning = np.abs(1.0 - squared)
     detuning[detuning < 1e-6] = np.nan
@@ -40,6 +42,8 @@ def _limits(beta: np.ndarray) -> tuple[float, float]:
 def _draw_reference(ax, ds: xr.Dataset) -> None:
     beta = np.linspace(0.0, float(ds["beta"].max()), 2000)
     ratio = frictionless_ratio(ds, beta)
+    if np.isnan(ratio).all():
+        return
     ax.plot(beta, ratio, color="black", linestyle="--", linewidth=1, label="no friction", zorder=3)
 
 
@@ -70,7 +74,8 @@ def draw(ds: xr.Dataset) -> Figure:
         ax.set_title(law, fontsize=10)
     style.decimal_ticks(axes[0].yaxis)
     axes[0].set(xlim=_limits(ds["beta"].values), ylim=(LOWEST, top))
-    axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
+    if axes[0].get_legend_handles_labels()[0]:
+        axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
     style.label(axes, style.BETA, "amplitude ratio $|x-y|/a$")
     style.add_amplitude_bar(figure, axes, norm)
     style.title(

@@ -14,12 +14,12 @@ REACH = 4.0  # the slip velocities shown, in threshold velocities
 POINTS = 200
 
 
-def curve(name: str, parameters) -> tuple[np.ndarray, np.ndarray]:
-    """Trace slip velocity (m/s) and signed coefficient, vertical where the law jumps."""
+def curve(name: str, parameters, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Trace slip velocity (m/s) up to ``reach`` and signed coefficient, vertical where the law jumps."""
     law = LAWS[name]
     threshold = float(parameters["threshold_velocity"])
     start = 0.0 if law.SET_VALUED else threshold
-    pieces = {1: np.linspace(start, REACH * threshold, POINTS)}
+    pieces = {1: np.linspace(start, reach, POINTS)}
     pieces[-1] = -pieces[1][::-1]
     if not law.SET_VALUED:
         pieces[0] = np.array([-threshold, threshold])
@@ -28,27 +28,29 @@ def curve(name: str, parameters) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([pieces[branch] for branch in order]), np.array(coefficients)
 
 
-def _annotate(ax, law: str, friction: dict[str, float]) -> None:
+def _annotate(ax, parameters) -> None:
     """Levels of the coefficients, and how the law behaves around rest."""
     for name, kind, side in (("s", "static", "bottom"), ("d", "dynamic", "top")):
-        ax.axhline(friction[kind], color="0.75", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
+        level = float(parameters[kind])
+        ax.axhline(level, color="0.75", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
         place = {"va": side, "transform": ax.get_yaxis_transform(), "color": style.GREY}
-        ax.text(0.02, friction[kind], f"$μ_{name}$ = {friction[kind]:g}", fontsize=8, **place)
-    threshold = friction["threshold_velocity"] * style.MM
-    ramp = f"ramp up to $v_t$ = {threshold:g} mm/s"
-    note = "set-valued at rest" if LAWS[law].SET_VALUED else ramp
+        ax.text(0.02, level, f"$μ_{name}$ = {level:g}", fontsize=8, **place)
+    ramp = f"ramp up to $v_t$ = {float(parameters['threshold_velocity']) * style.MM:g} mm/s"
+    note = "set-valued at rest" if parameters["set_valued"] else ramp
     ax.annotate(note, (0.97, 0.06), xycoords="axes fraction", ha="right", fontsize=8, color=style.GREY)
 
 
 def draw(ds: xr.Dataset) -> Figure:
     """Draw every law of the dataset, the others in grey behind it for comparison."""
     from wedgesweep import config
+    from wedgesweep.config import Case
 
     cases.require(ds, NAME, "config")
     settings = config.parse(ds.attrs["config"])
-    parameters = settings.record(settings.case_list()[0])[0]
     names = cases.laws(ds)
-    curves = {law: curve(law, parameters) for law in names}
+    parameters = {law: settings.record(Case(law, 1.0, 1e-3))[0] for law in names}
+    reach = REACH * settings.friction["threshold_velocity"]
+    curves = {law: curve(law, parameters[law], reach) for law in names}
     figure, axes = style.panels(len(names), size=(3.2, 3.0))
     for ax, law in zip(axes, names, strict=True):
         for velocity, coefficient in curves.values():
@@ -56,7 +58,7 @@ def draw(ds: xr.Dataset) -> Figure:
         velocity, coefficient = curves[law]
         ax.plot(velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7)
         ax.set_title(law, fontsize=10)
-        _annotate(ax, law, settings.friction)
+        _annotate(ax, parameters[law])
     style.label(axes, "slip velocity [mm/s]", "friction coefficient μ (signed)")
     grey = "; grey: the other laws" if len(names) > 1 else ""
     style.title(figure, "Friction laws", "positive: friction opposes a positive slip" + grey)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from wedgesweep import config
 from wedgesweep.config import Config, ConfigError
-from wedgesweep.errors import SweepError
+from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.sweep import Progress, Sweep
 
 CONFIG_NAMES = ("paper", "paper-y0", "breakaway")
@@ -127,7 +127,11 @@ def _obtain(sweep: Sweep, n_jobs: int, report: Callable[[str], None], progress: 
         report(f"{sweep.out}: kept from an earlier run")
         return Run(stored)
     report(f"{sweep.out}: {sweep.config.title}")
-    return Run(sweep.run(n_jobs, progress=progress, command=COMMAND))
+    try:
+        return Run(sweep.run(n_jobs, progress=progress, command=COMMAND))
+    except MismatchError as error:  # an unfinished run of another version
+        report(f"{error}; running it again")
+        return Run(sweep.run(n_jobs, progress=progress, command=COMMAND, fresh=True))
 
 
 def _stored(sweep: Sweep, report: Callable[[str], None]) -> xr.Dataset | None:

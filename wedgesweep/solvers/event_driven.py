@@ -162,8 +162,8 @@ def _settled(start, settle_periods, case, plan, sums, work):
 
 
 @compiled
-def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
-    """Run all cases of a batch, from ``starts`` (n, 2), into ``batch``."""
+def run_batch(parameters, settle_periods, plan, sums, work, batch):
+    """Run all cases of a batch, from rest or in a chain, into ``batch``."""
     sums, work, batch = borrowed(sums), borrowed(work), borrowed(batch)
     longest = plan.periods + LONGEST
     x = np.empty(longest * plan.samples_per_period)
@@ -172,7 +172,7 @@ def run_batch(parameters, settle_periods, starts, plan, sums, work, batch):
     for i in range(parameters.size):
         case = parameters[i : i + 1]
         cycle = 2.0 * pi / case[0].omega
-        start = (starts[i, 0], starts[i, 1])
+        start = (0.0, 0.0)
         if plan.chain and i > 0 and batch.outcome[i - 1] == OK:
             start = (batch.state[i - 1, 0], batch.state[i - 1, 1])
         work.counts[:] = 0

@@ -34,14 +34,12 @@ def run(
     return outcome, bench.reached[0], Trajectory(samples, bench.tally, window.periods, counts)
 
 
-def run_batch(parameters, settle_periods, starts, plan, rtol: float, batch) -> None:
+def run_batch(parameters, settle_periods, plan, rtol: float, batch) -> None:
     """As ``event_driven.run_batch``, for records of the extended system."""
     bench = tools(rtol, plan.samples_per_period, plan.periods + LONGEST)
     before = None
     for i in range(len(parameters)):
-        y = np.zeros(SIZE)
-        y[[X, VELOCITY]] = starts[i]
-        near = int(np.any(y))
+        y, near = np.zeros(SIZE), 0
         if plan.chain and before is not None:
             y[:], near = before, int(batch.period[i - 1])
         _run_case(i, y, near, parameters[i : i + 1], int(settle_periods[i]), plan, bench, batch)

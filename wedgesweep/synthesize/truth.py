@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import ceil, pi
+from math import ceil, exp, pi
 
 import numpy as np
 
@@ -101,7 +101,7 @@ def _drawn(
     phase, stray_phase, spread = random.random(3).tolist()
     return TrueTest(
         plan=test,
-        amplitude_mm=test.amplitude_mm * (1.0 + (test.amplitude_std or amplitude_error) * error),
+        amplitude_mm=test.amplitude_mm * exp((test.amplitude_std or amplitude_error) * error),
         phase_deg=360.0 * phase,
         sampling_hz=sampling_hz or round(SAMPLING_HZ * (1.0 + SAMPLING_SPREAD * (2.0 * spread - 1.0)), 3),
         offset=offset,
