@@ -60,9 +60,8 @@ def records(system: Config, law: str, tests: list[Test]) -> np.ndarray:
 def motion(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Smallest normal force (N) and share of time stuck of steady responses, (n,) each; NaN if it locks."""
     batch = event_driven.empty_batch(len(rows), 1, 0)
-    starts = np.zeros((len(rows), batch.state.shape[1]))
     settle = np.zeros(len(rows), np.int64)
-    event_driven.run_batch(rows, settle, starts, PLAN, tally.empty(), workspace(1e-7), batch)
+    event_driven.run_batch(rows, settle, PLAN, tally.empty(), workspace(1e-7), batch)
     force, stuck = (response.NUMBERS.index(n) for n in ("minimum_normal_force", "stick_fraction"))
     numbers = np.where((batch.outcome == 0)[:, None], batch.numbers, np.nan)
     return numbers[:, force], numbers[:, stuck]

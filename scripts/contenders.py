@@ -49,8 +49,7 @@ def loop_alone(records, rtol):
     settle = np.array([settings.window(omega).settle_periods for omega in cases["omega"]])
     plan = event_driven.Plan(settings.kept_periods, SAMPLES_PER_PERIOD, False, 0.0, 0)
     out = event_driven.empty_batch(len(cases), 1, 0)
-    starts = np.zeros((len(cases), 2))
-    event_driven.run_batch(cases, settle, starts, plan, tally.empty(), workspace(rtol), out)
+    event_driven.run_batch(cases, settle, plan, tally.empty(), workspace(rtol), out)
     return out.numbers[:, 0]
 
 

@@ -66,7 +66,10 @@ def test_a_strong_cause_is_named_with_its_numbers(hidden, tmp_path):
     assert found.document["gain"]["excess_removed"] > 0.8
     with xr.open_dataset(found.directory / DATASET) as ds:
         energy = ds["simulated_energy"].sel(model="extended") / ds["measured_energy"]
-        assert float(energy.median()) == pytest.approx(1.0, abs=0.02)
+        if "fixture_resonance" in truth["effects"]:  # data of a side frame whose input nobody knows
+            assert energy.isnull().all()
+        else:
+            assert float(energy.median()) == pytest.approx(1.0, abs=0.02)
 
 
 def test_in_clean_data_nothing_is_named(tmp_path):

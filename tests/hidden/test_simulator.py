@@ -29,8 +29,7 @@ def test_without_its_effects_it_is_the_base_model(outside, law, frequency, ampli
     record = parameters.record(law, amplitude, 2.0 * pi * frequency)
     batch = event_driven.empty_batch(1, dataset.HARMONICS, 0)
     plan = event_driven.Plan(1, PHASES, True, 1e-8, 400)
-    starts = np.zeros((1, batch.state.shape[1]))
-    event_driven.run_batch(record, np.zeros(1, np.int64), starts, plan, tally.empty(), workspace(1e-9), batch)
+    event_driven.run_batch(record, np.zeros(1, np.int64), plan, tally.empty(), workspace(1e-9), batch)
     turn = np.exp(-2j * pi * np.outer(np.arange(PHASES) / PHASES, np.arange(1, dataset.HARMONICS + 1)))
     ours = batch.spectra[0, 0] @ [1.0, 1j]
     theirs = -2.0 / PHASES * signal[0] @ turn

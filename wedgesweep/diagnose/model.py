@@ -85,7 +85,7 @@ class Trial:
     def sticks(self) -> np.ndarray:
         """Whether (T,) a test was measured to move and sticks here: no slope leads out of there."""
         moved = (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
-        return moved < STICKS**2 * self.measured
+        return self.found_tests & (moved < STICKS**2 * self.measured)
 
     @cached_property
     def q(self) -> float:
