@@ -325,13 +325,14 @@ def test_both_solvers_agree_from_the_same_start(name, law):
     np.testing.assert_array_equal(np.isnan(ours.waveforms["normal_force_column"][slipping]), False)
 
 
+@pytest.mark.parametrize("more", [5e-3, 2e-4])
 @pytest.mark.parametrize("times", [1, 5, 15])
-def test_a_release_that_lasts_a_moment_is_not_missed(times):
-    """The bolster is released by half a percent more than holds it; a tone makes that a short moment."""
+def test_a_release_that_lasts_a_moment_is_not_missed(times, more):
+    """The bolster is released by a bit more than holds it; a tone makes that a short moment."""
     held = contact.breakaway_acceleration(parameters.record("coulomb", 1e-4, OMEGA_N)[0])
-    tone = {"acceleration": 0.5 * 1.005 * held, "frequency": times * OMEGA_N / (2.0 * pi)}
+    tone = {"acceleration": 0.5 * (1.0 + more) * held, "frequency": times * OMEGA_N / (2.0 * pi)}
     record = parameters.record(
-        "coulomb", 0.5 * 1.005 * held / OMEGA_N**2, OMEGA_N, effects={NOT_PERIODIC: tone}
+        "coulomb", 0.5 * (1.0 + more) * held / OMEGA_N**2, OMEGA_N, effects={NOT_PERIODIC: tone}
     )
     # Both are largest at the same moment, three quarters of an input period from its start.
     record["stray_vibration_phase"] = 0.5 * pi * (1.0 - 3.0 * times)
@@ -340,7 +341,7 @@ def test_a_release_that_lasts_a_moment_is_not_missed(times):
         response.evaluate(solver.solve(record, window, 1e-8, 60.0), record, 9).numbers
         for solver in (event_driven, radau)
     )
-    assert 0.8 < fast["stick_fraction"] < 1.0
+    assert 0.8 < fast["stick_fraction"] < 0.9999
     assert slow["stick_fraction"] == pytest.approx(fast["stick_fraction"], abs=1e-5)
     assert fast["amplitude_ratio"] > 0.0
     assert slow["amplitude_ratio"] == pytest.approx(fast["amplitude_ratio"], rel=1e-3)
