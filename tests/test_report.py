@@ -150,8 +150,8 @@ def test_sentence(verdict, tmp_path):
         ),
         (
             "consistent-with",
-            {"misfit": {"excess_base": 3000.0, "p_extended": 0.4, "p_where_it_shows": 0.3}},
-            "(a number of the model that is no candidate could look like these two)",
+            {"misfit": {"excess_base": 3000.0}, "gain": {"ci95": None, "excess_removed": -0.1}},
+            "(tests left out of the fit do not confirm it)",
         ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
         ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
@@ -186,11 +186,12 @@ def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
         ("consistent-with", ["preload"], "(preload would leave no more than noise, too)"),
         ("data-insufficient", ["preload", "stribeck"], "cannot show what: 2 explanations will do; next test"),
         ("data-insufficient", ["preload"], "what: preload would leave no more than noise, but so few tests"),
+        ("data-insufficient", ["preload+bolster_mass"], "no candidate could look like these two"),
     ],
 )
 def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
-    document["rivals"] = [{"effects": [effect], "gap": 30.0} for effect in rivals]
+    document["rivals"] = [{"effects": names.split("+"), "gap": 30.0} for names in rivals]
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
@@ -245,10 +246,12 @@ def test_text_of_the_user_is_not_markup(tmp_path):
 @pytest.mark.usefixtures("no_pictures")
 def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "consistent-with")
-    document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None}
+    document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None, "p_where_it_shows": 0.002}
     document["rivals"] = []
     (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
-    assert "a number of the model that is no candidate" in plain(report.sentence(tmp_path))
+    assert "it leaves more than noise in the tests that show it, p = 0.002" in plain(
+        report.sentence(tmp_path)
+    )
     assert report.write(tmp_path).exists()
 
 

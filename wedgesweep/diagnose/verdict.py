@@ -8,7 +8,7 @@ from scipy.special import chdtrc
 
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Explanation, penalised
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import alike
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
     "nothing-missing",
@@ -32,8 +32,6 @@ STRONG = 800.0
 FEWEST_TESTS = 3
 # With this many rivals the tests show that something is wrong, but not what.
 MOST_TIED = 4
-# The family of effects that are numbers of the model.
-PARAMETERS = "parameters"
 # An uncertain number is a cause only if it is this many of its standard deviations off.
 UNCERTAIN = 3.0
 
@@ -125,19 +123,11 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
+    if alike(best.effects):
+        return Finding(INSUFFICIENT, best, others)
     if base.fit.excess < thresholds.strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
-    return Finding(CONSISTENT if others or _alike(best) else NAMED, best, others)
-
-
-def _alike(best: Explanation) -> bool:
-    """Whether a cause is two numbers of the model at once.
-
-    Masses, stiffnesses and forces that grow alike leave every response as it is, so that two of them that are
-    off look like a third: one that is no candidate, as the wedge's mass, may be.
-    """
-    families = [EFFECTS[effect].family for effect in best.effects]
-    return len(families) > 1 and set(families) == {PARAMETERS}
+    return Finding(CONSISTENT if others else NAMED, best, others)
 
 
 def _contains(each: Explanation, other: Explanation) -> bool:

@@ -1,6 +1,6 @@
 """Physics that the base model leaves out: one effect per file, each off at its neutral value."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from wedgesweep.effects import (
     ageing,
@@ -58,6 +58,8 @@ EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in MO
 
 FAMILIES = tuple(dict.fromkeys(effect.family for effect in EFFECTS.values()))
 
+# The family of effects that are numbers of the model.
+PARAMETERS = "parameters"
 # Effects that do nothing but scale a number.
 SCALES = tuple(
     name for name, effect in EFFECTS.items() if [each.name for each in effect.quantities] == ["scale"]
@@ -75,6 +77,15 @@ def combined(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
         if name in added
     }
     return {name: dict(numbers) for name, numbers in {**own, **added, **scaled}.items()}
+
+
+def alike(names: Sequence[str]) -> bool:
+    """Whether effects are several numbers of the model at once.
+
+    Masses, stiffnesses and forces that grow alike leave every response as it is, so that two of them that are
+    off look like a third: one that is no candidate, as the wedge's mass, may be.
+    """
+    return len(names) > 1 and {EFFECTS[name].family for name in names} == {PARAMETERS}
 
 
 def acting(effects: Numbers) -> dict[str, dict[str, float]]:

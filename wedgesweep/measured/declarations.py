@@ -8,6 +8,7 @@ from wedgesweep.config import toml
 from wedgesweep.config.keys import Choice, Flag, Number, Text, show
 from wedgesweep.config.tables import Table, TableList, table
 from wedgesweep.effects import EFFECTS, SCALES
+from wedgesweep.effects import PARAMETERS as FAMILY
 from wedgesweep.quantity import Quantity
 
 UNITS = {
@@ -16,7 +17,7 @@ UNITS = {
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
 }
 # Effects that scale a number of the model, so that it may be known up to a relative std only.
-PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == "parameters")
+PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == FAMILY)
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated where absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it where unknown", above=0.0)

@@ -5,6 +5,7 @@ from typing import Any
 
 from wedgesweep import digits
 from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.effects import alike
 from wedgesweep.report import words
 
 
@@ -49,8 +50,6 @@ def _weakness(found: Diagnosed) -> str:
     if excess is not None and (strong is None or excess < strong):
         return f"excess misfit {digits.number(excess)} over noise"
     p = min(misfit["p_extended"], misfit["p_where_it_shows"])
-    if p >= method["adequate_p"]:
-        return "a number of the model that is no candidate could look like these two"
     return f"it leaves more than noise in the tests that show it, {words.p_value(p)}"
 
 
@@ -81,10 +80,17 @@ def _many(found: Diagnosed) -> str:
         case []:
             return ""
         case [only]:
-            why = "tests left out of the fit do not" if _unconfirmed(found) else "so few tests cannot"
-            return f": {words.together(only['effects'])} would leave no more than noise, but {why} confirm it"
+            doubt = _doubt(found, only)
+            return f": {words.together(only['effects'])} would leave no more than noise, but {doubt}"
         case many:
             return f": {len(many)} explanations will do"
+
+
+def _doubt(found: Diagnosed, only: Mapping[str, Any]) -> str:
+    if alike(only["effects"]):
+        return "a number of the model that is no candidate could look like these two"
+    who = "tests left out of the fit do not" if _unconfirmed(found) else "so few tests cannot"
+    return f"{who} confirm it"
 
 
 def _none(found: Diagnosed) -> str:
@@ -97,7 +103,7 @@ def _none(found: Diagnosed) -> str:
 def _unconfirmed(found: Diagnosed) -> bool:
     """Whether the cause may make held-out tests worse."""
     gain = found.gain
-    return gain is not None and gain["ci95"] is not None and gain["ci95"][0] < 0.0
+    return gain is not None and (gain["ci95"] or [gain["excess_removed"]])[0] < 0.0
 
 
 def _unexplained(found: Diagnosed) -> str:
