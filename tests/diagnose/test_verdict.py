@@ -74,6 +74,14 @@ def test_tests_that_show_nothing_cannot_make_up_for_a_misfit():
     assert chi2.sf(doubtful.sum(), DOF) > chi2.sf(wrong.sum(), DOF) > verdict.ADEQUATE
 
 
+def test_what_leaves_too_much_where_it_shows_and_fails_on_unseen_tests_is_none():
+    base, doubtful = shared(2000.0, DOF / 12), shared(82.0, 54.0)
+    start, best = explained(base.sum(), by_test=base), explained(doubtful.sum(), "stribeck", by_test=doubtful)
+    assert best.fit.p > verdict.ADEQUATE > where_it_shows(start.fit, best.fit)
+    found = on_unseen_tests(verdict_of(start, best), start, 0.5, [-0.3, 1.0])
+    assert (found.verdict, found.best) == ("none-of-mine", best)
+
+
 def test_where_nothing_shows_all_that_is_left_counts():
     quiet = explained(600.0)
     assert where_it_shows(quiet.fit, quiet.fit) > 0.0

@@ -168,7 +168,8 @@ def on_unseen_tests(
         return Finding(CONSISTENT, finding.best, finding.rivals) if finding.verdict == NAMED else finding
     if base.fit.p >= TOLERABLE:
         return Finding(NOTHING, None, ())
-    if _left(base, finding.cause) < ADEQUATE and none_will_do(finding.rivals or [finding.cause]):
+    rival_will_do = any(each.fit.p >= ADEQUATE for each in finding.rivals)
+    if _left(base, finding.cause) < ADEQUATE and not rival_will_do:
         return Finding(_nobody(base), finding.best, finding.rivals)
     return Finding(CONSISTENT if finding.verdict == NAMED else INSUFFICIENT, finding.best, finding.rivals)
 
