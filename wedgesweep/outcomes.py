@@ -43,12 +43,10 @@ class Outcome(NamedTuple):
 def of_dataset(ds: xr.Dataset) -> list[Outcome]:
     """Outcomes of the cases of a dataset."""
     frame = ds[["status", "message", "period", "periodicity"]].to_dataframe().reset_index()
-    columns = ("friction_law", "beta", "amplitude", "status", "message", "period", "periodicity")
-    rows = zip(*(frame[name].tolist() for name in columns), strict=True)
-    return [
-        Outcome(law, beta, amplitude, STATUSES[code], message, period, periodicity)
-        for law, beta, amplitude, code, message, period, periodicity in rows
-    ]
+    frame = frame.rename(columns={"friction_law": "law"})
+    frame["status"] = [STATUSES[code] for code in frame["status"]]
+    rows = zip(*(frame[name].tolist() for name in Outcome._fields), strict=True)
+    return list(map(Outcome._make, rows))
 
 
 def of_journal(path: Path) -> list[Outcome]:

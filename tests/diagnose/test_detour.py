@@ -52,7 +52,7 @@ def test_around_a_test_that_sticks():
         model=MODEL + "[suspension]\ncolumn_angle_deg = 4.0\n",
     )
     held_up = refined(problem, ("end_stop", "bolster_mass"), (np.log(0.4322), np.log(150.6), 1.07))
-    assert held_up.trial.sticks.tolist() == [place == 5 for place in range(10)]
+    assert held_up.model.sticks(held_up.trial).tolist() == [place == 5 for place in range(10)]
     assert held_up.p < 1e-9
     found = detour.around(held_up)
     assert found.p > 0.01
@@ -73,7 +73,7 @@ def test_around_a_test_whose_input_led_to_where_it_sticks(true, off):
         model=MODEL + "[suspension]\ncolumn_angle_deg = 4.0\n",
     )
     held_up = refined(problem, (), ())
-    assert held_up.trial.sticks.tolist() == [False, True, False, False]
+    assert held_up.model.sticks(held_up.trial).tolist() == [False, True, False, False]
     found = detour.around(held_up)
     assert found.p > 0.01
     assert found.amplitudes()[1] == pytest.approx(1e-3 * true, rel=0.002)

@@ -52,7 +52,7 @@ class _Ladder:
         ]
         trials = self.model.trials(at)
         self.climbing = [trial.point for trial in trials]
-        self.sticking = np.array([trial.sticks for trial in trials]) & self.unknown
+        self.sticking = np.array([self.model.sticks(trial) for trial in trials]) & self.unknown
         self.held[self.sticking] = rungs[self.sticking]
         for i, trial in enumerate(trials):
             misfit = np.where(trial.found_tests, trial.by_test, np.inf)

@@ -30,7 +30,7 @@ def around(fit: Fit) -> Fit:
     """The fit, or a better one that was found without the tests that held it up."""
     if fit.model.toned or not fit.trial.found:
         return fit
-    left_out = _elsewhere_from_rest(fit) | _in_the_way(fit) | fit.trial.sticks
+    left_out = _elsewhere_from_rest(fit) | _in_the_way(fit) | fit.model.sticks(fit.trial)
     if not 0 < left_out.sum() <= MOST * left_out.size:
         return fit
     rows = np.flatnonzero(~left_out)

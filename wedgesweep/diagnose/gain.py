@@ -162,7 +162,7 @@ def predict(fit: Fit, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
             break
         trial = part.model.trial(_moved(part.model, trial, unknown))
     misfit = (trial.residual**2).sum(-1)
-    return np.where(trial.found_tests, misfit, (np.abs(part.model.problem.whitened) ** 2).sum((-2, -1)))
+    return np.where(trial.found_tests, misfit, part.model.problem.power)
 
 
 def _moved(model: Model, trial: Trial, unknown: np.ndarray) -> Point:

@@ -52,7 +52,6 @@ class Point:
 class Trial:
     """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left.
 
-    ``measured`` (T,): sum of squares of the whitened measurement.
     ``images`` (T, C, H) are those of harmonics above half the sampling rate, 0 in a record that looks as if
     it had been low-passed before it was sampled.
     """
@@ -65,7 +64,6 @@ class Trial:
     residual: np.ndarray
     prior: np.ndarray
     found_tests: np.ndarray
-    measured: np.ndarray
 
     @property
     def found(self) -> bool:
@@ -80,12 +78,6 @@ class Trial:
     def by_test(self) -> np.ndarray:
         """Squared misfit of each test, its amplitude's prior included (T,)."""
         return (self.residual**2).sum(-1) + self.prior[: len(self.residual)] ** 2
-
-    @cached_property
-    def sticks(self) -> np.ndarray:
-        """Whether (T,) a test was measured to move and sticks here: no slope leads out of there."""
-        moved = (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
-        return self.found_tests & (moved < STICKS**2 * self.measured)
 
     @cached_property
     def q(self) -> float:
@@ -234,7 +226,6 @@ class Model:
         whitened = problem.whiten(shown)
         phase, images = self._aligned(harmonics, whitened)
         residual = real(problem.whitened - problem.whiten(images) - problem.turned(whitened, phase))
-        measured = (np.abs(problem.whitened) ** 2).sum(axis=(-2, -1))
         n = problem.tests
         return [
             Trial(
@@ -246,7 +237,6 @@ class Model:
                 residual[i],
                 self._prior(points[i]),
                 found[i],
-                measured,
             )
             for i in range(len(points))
         ]
@@ -267,6 +257,11 @@ class Model:
 
     def trial(self, point: Point) -> Trial:
         return self.trials([point])[0]
+
+    def sticks(self, trial: Trial) -> np.ndarray:
+        """Whether (T,) a test was measured to move and sticks in a trial: no slope leads out of there."""
+        moved = (np.abs(trial.whitened) ** 2).sum(axis=(-2, -1))
+        return trial.found_tests & (moved < STICKS**2 * self.problem.power)
 
     def _prior(self, point: Point) -> np.ndarray:
         return np.r_[point.amplitude * self.amplitude_weight, (point.x[self.size :] - 1.0) / self.prior_std]

@@ -150,6 +150,11 @@ class Problem:
         return self.whiten(self.measured)
 
     @cached_property
+    def power(self) -> np.ndarray:
+        """Sum of squares of what was measured, over its noise (T,)."""
+        return (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
+
+    @cached_property
     def orders(self) -> np.ndarray:
         return np.arange(1, self.shape[1] + 1)
 

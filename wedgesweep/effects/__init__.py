@@ -59,7 +59,7 @@ EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in MO
 FAMILIES = tuple(dict.fromkeys(effect.family for effect in EFFECTS.values()))
 
 # The family of effects that are numbers of the model.
-PARAMETERS = "parameters"
+OF_THE_MODEL = "parameters"
 # Effects that do nothing but scale a number.
 SCALES = tuple(
     name for name, effect in EFFECTS.items() if [each.name for each in effect.quantities] == ["scale"]
@@ -85,20 +85,12 @@ def alike(names: Sequence[str]) -> bool:
     Masses, stiffnesses and forces that grow alike leave every response as it is, so that two of them that are
     off look like a third: one that is no candidate, as the wedge's mass, may be.
     """
-    return len(names) > 1 and {EFFECTS[name].family for name in names} == {PARAMETERS}
+    return len(names) > 1 and {EFFECTS[name].family for name in names} == {OF_THE_MODEL}
 
 
 def acting(effects: Numbers) -> dict[str, dict[str, float]]:
     """Effects that change anything: a table with neutral values has switched nothing on."""
-    off = neutral()
-    return {
-        name: dict(numbers)
-        for name, numbers in effects.items()
-        if any(
-            numbers.get(each, off[f"{name}_{each}"]) != off[f"{name}_{each}"]
-            for each in EFFECTS[name].leading
-        )
-    }
+    return {name: dict(numbers) for name, numbers in effects.items() if EFFECTS[name].acts(numbers)}
 
 
 def neutral() -> dict[str, float]:

@@ -1,5 +1,6 @@
 """What every effect declares."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from wedgesweep.quantity import Quantity
@@ -23,10 +24,11 @@ class Effect:
     quantities: tuple[Quantity, ...]
     extends: tuple[str, ...] = ()
 
-    @property
-    def leading(self) -> tuple[str, ...]:
-        """Names of the quantities that switch it on."""
-        return self.extends or (self.quantities[0].name,)
+    def acts(self, numbers: Mapping[str, float]) -> bool:
+        """Whether numbers (SI units; left out: off) change anything."""
+        leading = self.extends or (self.quantities[0].name,)
+        off = {each.name: each.neutral * each.factor for each in self.quantities}
+        return any(numbers.get(name, off[name]) != off[name] for name in leading)
 
     @property
     def fields(self) -> tuple[str, ...]:

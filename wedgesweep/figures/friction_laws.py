@@ -43,12 +43,11 @@ def _annotate(ax, parameters) -> None:
 def draw(ds: xr.Dataset) -> Figure:
     """Draw every law of the dataset, the others in grey behind it for comparison."""
     from wedgesweep import config
-    from wedgesweep.config import Case
 
     cases.require(ds, NAME, "config")
     settings = config.parse(ds.attrs["config"])
     names = cases.laws(ds)
-    parameters = {law: settings.record(Case(law, 1.0, 1e-3))[0] for law in names}
+    parameters = {law: settings.record(config.Case(law, 1.0, 1e-3))[0] for law in names}
     reach = REACH * settings.friction["threshold_velocity"]
     curves = {law: curve(law, parameters[law], reach) for law in names}
     figure, axes = style.panels(len(names), size=(3.2, 3.0))

@@ -7,8 +7,7 @@ from typing import Any
 from wedgesweep.config import toml
 from wedgesweep.config.keys import Choice, Flag, Number, Text, show
 from wedgesweep.config.tables import Table, TableList, table
-from wedgesweep.effects import EFFECTS, SCALES
-from wedgesweep.effects import PARAMETERS as FAMILY
+from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
 from wedgesweep.quantity import Quantity
 
 UNITS = {
@@ -17,7 +16,7 @@ UNITS = {
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
 }
 # Effects that scale a number of the model, so that it may be known up to a relative std only.
-PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == FAMILY)
+PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated where absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it where unknown", above=0.0)

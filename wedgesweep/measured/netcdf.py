@@ -92,9 +92,8 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     uncertain = _uncertain(root, path, problems)
     tests = [_test(group, path, problems) for group in groups]
     complete = tuple(test for test in tests if test)
-    derived = {
-        bool(getattr(each.variables["velocity"], "derived", 0)) for each in groups if _has_velocity(each)
-    }
+    velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
+    derived = {bool(getattr(variable, "derived", 0)) for variable in velocities}
     if len(derived) > 1:
         problems.append(
             f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
@@ -112,10 +111,6 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         derived_velocity=derived == {True},
         columns={each.name: {"column": each.name, "unit": each.units} for each in variables},
     )
-
-
-def _has_velocity(group: Any) -> bool:
-    return "velocity" in group.variables
 
 
 def _model(

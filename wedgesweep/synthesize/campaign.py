@@ -78,7 +78,7 @@ def _name(i: int, test: TrueTest) -> str:
 
 def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
     """What happens in each test; raises SynthesisError with every test that fails."""
-    compile_once("radau")
+    compile_once("radau", bool(truth.record(truth.tests[0])["extended"][0]))
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
         joblib.delayed(_motion)(
