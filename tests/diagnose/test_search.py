@@ -1,5 +1,7 @@
 """Where the search for an explanation goes on, and where it ends."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from tests.diagnose.drawn import MODEL, drawn, searched
 from wedgesweep.diagnose import detour, diagnosis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.refine import refine
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.search import Search, best_of
 
 CANDIDATES = ("displacement_gain", "velocity_lag")
 
@@ -38,6 +40,15 @@ def test_the_right_way_is_found_though_its_start_looks_worst():
     search, _, _ = searched(drawn({"velocity_lag": {"time": truth}}), "velocity_lag")
     search.along["velocity_lag"] = sorted(search.along["velocity_lag"], key=lambda trial: trial.q)[-3:]
     assert search.everywhere()[0].fit.x[0] == pytest.approx(truth, rel=0.05)
+
+
+def test_what_rough_trials_leave_is_not_taken_for_what_a_fit_leaves():
+    search = Search(drawn({"velocity_lag": {"time": 3e-4}}), ())
+    model = search.model("displacement_gain")
+    trial = model.trial(model.start(None, np.array([1.02])))
+    flattered = replace(trial, residual=0.1 * trial.residual)
+    fit = best_of(model, [flattered])
+    assert fit.q == pytest.approx(model.trial(fit.trial.point).q, rel=1e-3)
 
 
 @pytest.mark.parametrize("length", [0.9e-6, 1.03e-6, 1.5e-6])

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose import simulation, verdict
 from wedgesweep.diagnose.model import Fit, Model, Trial
 from wedgesweep.diagnose.refine import ITERATIONS, refine, restrict
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
@@ -188,7 +188,7 @@ def _begin(search: Search, first: Alone, other: Alone, apart: bool) -> list[Fit]
     """Starts of a second effect beside a fitted one, on some of the tests: the best, or all if ``apart``."""
     fit, few = first.fit, first.few
     hypothesis = search.model(*fit.effects, *other.fit.effects).hypothesis
-    model = Model(few.model.problem, hypothesis, few.model.reference)
+    model = Model(few.model.problem, hypothesis, few.model.reference, simulation.ROUGH)
     known = fit.x[: fit.model.size]
 
     def tried(points: np.ndarray) -> list[Trial]:

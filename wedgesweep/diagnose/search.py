@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from wedgesweep.diagnose import detour
+from wedgesweep.diagnose import detour, simulation
 from wedgesweep.diagnose.amplitudes import best_amplitudes
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.meeting import met
@@ -90,10 +90,10 @@ class Search:
         # What was simulated of each effect over its range beside the base model.
         self.along: dict[str, Sequence[Trial]] = {}
 
-    def model(self, *effects: str) -> Model:
+    def model(self, *effects: str, tolerance: float = simulation.TOLERANCE) -> Model:
         tone = self.problem.tone
         fixed = ((TONE_FREQUENCY, tone),) if tone is not None and TONE in effects else ()
-        return Model(self.problem, Hypothesis(effects, fixed), self.reference)
+        return Model(self.problem, Hypothesis(effects, fixed), self.reference, tolerance)
 
     def explanation(self, fit: Fit) -> Explanation:
         return Explanation(fit, self.price)
@@ -132,14 +132,14 @@ class Search:
 
     def single(self, effect: str, base: Fit) -> Explanation:
         """Best fit of one effect; the trials among which it began are kept in ``along``."""
-        model = self.model(effect)
+        model, rough = self.model(effect), self.model(effect, tolerance=simulation.ROUGH)
         points = model.hypothesis.starts()
-        trials = best_amplitudes(model, [model.start(base, x) for x in points])
+        trials = best_amplitudes(rough, [model.start(base, x) for x in points])
         self.along[effect] = trials
         trials = _best_along_first(trials)
         if effect == TONE or _astray(base):
             # What the base model made of the effect has led its own numbers far astray, or may have.
-            fresh = best_amplitudes(model, [model.start(None, x) for x in points])
+            fresh = best_amplitudes(rough, [model.start(None, x) for x in points])
             trials = trials + fresh
             if _astray(base):
                 trials = trials + [_as_stated(model, trial) for trial in _leading(fresh, FOLLOWED[0][0])]
@@ -230,8 +230,9 @@ def best_of(
 ) -> Fit:
     """Follow the best few trials a little way, the best of these further, the best of those to the end.
 
-    ``limit``: misfit that the first few iterations must get below.
+    ``limit``: misfit that the first few iterations must get below. The trials may be a rougher model's.
     """
+    trials = model.trials([trial.point for trial in _leading(trials, followed[0][0])])
     for entering, iterations in followed:
         fits = [refine(model, trial, iterations) for trial in _leading(trials, entering)]
         trials = [fit.trial for fit in fits]

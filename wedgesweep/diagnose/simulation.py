@@ -13,9 +13,9 @@ from wedgesweep.diagnose.spectra import FOLDED, REMOVED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
-# Errors (shares of the input amplitude, and of a step) that add nothing to the noise of 4 % data, and those
-# that add nothing to derivatives either.
-TOLERANCE, TIGHT = 1e-6, 1e-8
+# Errors (shares of the input amplitude, and of a step) that add nothing to the noise of 4 % data, those that
+# add nothing to derivatives either; rough ones do where it is only asked from where a fit should begin.
+TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 2 * (FOLDED + 1)
 # Periods run before a response with a foreign tone is evaluated, and more from rest; over which it is where
