@@ -122,7 +122,7 @@ def _run(one: BlindSet, out: Path, directory: Path) -> dict[str, Any]:
         **{key: getattr(draft, key) for key in ("law", "lean", "noise", "spread", "uncertain", "expected")},
         **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
         "excess": found["misfit"]["excess_base"],
-        "p_extended": found["misfit"]["p_extended"],
+        **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
         "gain_in_truth": gain_in_truth(draft, found),
     }
     return {**record, "seconds": {key: round(value, 1) for key, value in took.items()}}

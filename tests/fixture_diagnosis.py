@@ -178,6 +178,8 @@ def _document(verdict, data, causes, attempt, rivals, known):
             "p_base": float(chi2.sf(base, dof)),
             "p_extended": float(chi2.sf(extended, dof - 2 * len(attempt))),
             "p_where_it_shows": float(chi2.sf(extended, dof - 2 * len(attempt))),
+            "p_constant": 1.0,
+            "least_constant": None,
             "tests": _tests(data, known),
         },
         "gain": _gain(held_out),

@@ -153,6 +153,23 @@ def test_sentence(verdict, tmp_path):
             {"misfit": {"excess_base": 3000.0}, "gain": {"ci95": None, "excess_removed": -0.1}},
             "(tests left out of the fit do not confirm it)",
         ),
+        (
+            "consistent-with",
+            {"misfit": {"excess_base": 3000.0, "p_constant": 0.002, "least_constant": "stribeck.peak_mm"}},
+            "(stribeck.peak_mm would have to differ from test to test, p = 0.002 for the same in all)",
+        ),
+        (
+            "none-of-mine",
+            {
+                "misfit": {
+                    "p_where_it_shows": 0.2,
+                    "p_extended": 0.2,
+                    "p_constant": 1e-9,
+                    "least_constant": "a.b",
+                }
+            },
+            "noise, and a.b would have to differ from test to test, p < 0.001 for the same",
+        ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
         ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
         ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),

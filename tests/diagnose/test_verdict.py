@@ -7,13 +7,14 @@ import pytest
 from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, verdict
+from wedgesweep.diagnose.constancy import Constancy
 from wedgesweep.diagnose.search import Explanation
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_unseen_tests, where_it_shows
 
 DOF, PRICE = 700, 12.6
 
 
-def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None):
+def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None, constant=1.0):
     problem = SimpleNamespace(tests=tests, uncertain=uncertain or {}, dof=np.full(tests, DOF / tests))
     model = SimpleNamespace(problem=problem, size=numbers * len(effects))
     fit = SimpleNamespace(
@@ -25,7 +26,13 @@ def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_te
         effects=effects,
         values={effect: {"scale": scale} for effect in effects},
     )
-    return Explanation(fit, PRICE)
+    return priced(fit, constant)
+
+
+def priced(fit, constant=1.0):
+    found = Explanation(fit, PRICE)
+    vars(found)["constancy"] = Constancy(constant, None)
+    return found
 
 
 def verdict_of(base, *others, thresholds=verdict.DEFAULT):
@@ -55,6 +62,50 @@ def test_two_numbers_of_the_model_may_stand_for_a_third():
     best = explained(705.0, "bolster_stiffness", "viscous_damping")
     found = verdict_of(explained(5000.0), best, explained(2000.0, "bolster_stiffness"))
     assert (found.verdict, found.cause) == ("named", best)
+
+
+@pytest.mark.parametrize(
+    ("base", "constant", "expected"),
+    [
+        (5000.0, 0.02, "named"),
+        (5000.0, 0.002, "consistent-with"),
+        (5000.0, 1e-4, "none-of-mine"),
+        (1000.0, 1e-4, "none-of-mine"),
+    ],
+)
+def test_a_cause_has_the_same_numbers_in_all_tests(base, constant, expected):
+    """What is left may be noise as a whole, and yet point the way in which they would have to differ."""
+    best = explained(705.0, "friction_level", constant=constant)
+    assert verdict_of(explained(base), best).verdict == expected
+
+
+def test_what_has_not_is_no_rival_either():
+    best = explained(705.0, "bolster_mass")
+    for constant, expected in ((0.5, "consistent-with"), (1e-4, "named")):
+        other = explained(760.0, "bolster_stiffness", constant=constant)
+        assert verdict_of(explained(5000.0), best, other).verdict == expected
+    for constant, expected in ((0.5, "tied"), (1e-4, "named")):
+        rival = explained(700.0, "bolster_stiffness", constant=constant)
+        found = verdict_of(explained(5000.0), best, rival)
+        assert found.verdict == expected
+        assert (found.best is best) == (expected == "named")
+
+
+def test_what_hardly_shows_beside_an_effect_is_not_named():
+    """Many will do for a number that differs a little from test to test."""
+    half, pair = (
+        explained(760.0, "friction_level", constant=1e-4),
+        explained(690.0, "friction_level", "ageing"),
+    )
+    found = verdict_of(explained(5000.0), half, pair)
+    assert (found.verdict, found.alternatives) == ("data-insufficient", (pair,))
+    wrong = explained(2000.0, "friction_level")
+    assert verdict_of(explained(5000.0), wrong, pair).verdict == "named"
+
+
+def test_a_cause_takes_something_off_though_others_that_do_not_qualify_take_more():
+    refuted, idle = explained(690.0, "friction_level", constant=1e-4), explained(709.0, "preload")
+    assert verdict_of(explained(715.0), refuted, idle).verdict == "none-of-mine"
 
 
 def shared(there, elsewhere):
@@ -221,7 +272,7 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     worse = explained(900.0, "stribeck").fit
     monkeypatch.setattr(diagnosis, "exact", lambda fit: worse if fit is first.fit else fit)
     monkeypatch.setattr(diagnosis, "met", lambda fit: fit)
-    search = SimpleNamespace(progress=lambda step: None, explanation=lambda fit: Explanation(fit, PRICE))
+    search = SimpleNamespace(progress=lambda step: None, explanation=priced)
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
     found, order = diagnosis._exactly(search, base, tied, [first, second], verdict.DEFAULT)

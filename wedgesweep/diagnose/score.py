@@ -15,8 +15,8 @@ from wedgesweep.diagnose import tone
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model, Trial
 from wedgesweep.diagnose.problem import Problem, real
+from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.tangents import tangents_of
 from wedgesweep.diagnose.tone import TONE
 
 # Share of a signal that must survive the nuisances for an effect to be testable.
@@ -48,43 +48,10 @@ class Score:
         return self.retention >= RETAINED and self.detectable is not None
 
 
-class Projector:
-    """Takes out of a change of the responses what the nuisances of a fit can imitate."""
-
-    def __init__(self, fit: Fit) -> None:
-        by_number, by_test = tangents_of(fit.model, fit.trial)
-        tests, points, numbers = by_number.shape
-        known = np.zeros((tests, by_test.shape[-1]))
-        known[:, 1] = fit.model.amplitude_weight
-        local = np.zeros((tests, points, *known.shape))
-        local[np.arange(tests), :, np.arange(tests)] = by_test
-        tangents = np.concatenate(
-            [local.reshape(tests * points, -1), by_number.reshape(tests * points, numbers)], axis=1
-        )
-        priors = np.diag(np.r_[known.ravel(), self._stiff(fit)])
-        matrix = np.concatenate([tangents, priors])
-        matrix /= np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
-        u, s, _ = np.linalg.svd(matrix, full_matrices=False)
-        self._basis = u[:, s > 1e-9]
-        self._extra = len(priors)
-
-    @staticmethod
-    def _stiff(fit: Fit) -> np.ndarray:
-        numbers = np.zeros(len(fit.x))
-        numbers[fit.model.size :] = 1.0 / fit.model.prior_std
-        return numbers
-
-    def __call__(self, change: np.ndarray) -> np.ndarray:
-        """What is left of a change (T, m), as one vector."""
-        vector = np.r_[change.ravel(), np.zeros(self._extra)]
-        return vector - self._basis @ (self._basis.T @ vector)
-
-
 def scores(search: Search, base: Fit) -> list[Score]:
     """Score of every effect of a search, in its order."""
     project = Projector(base)
-    residual = project(base.trial.residual)
-    found = search.each(lambda effect: _score(search, base, effect, project, residual), search.effects)
+    found = search.each(lambda effect: _score(search, base, effect, project), search.effects)
     return [*found, _unheard(search.problem, base)] if search.unheard else found
 
 
@@ -97,8 +64,7 @@ def _unheard(problem: Problem, base: Fit) -> Score:
     search = Search(silent, (TONE,))
     model = search.model()
     fit = Fit(model, model.trial(base.trial.point), base.covariance, base.arrived)
-    project = Projector(fit)
-    return replace(_score(search, fit, TONE, project, project(fit.trial.residual)), t2=None)
+    return replace(_score(search, fit, TONE, Projector(fit)), t2=None)
 
 
 class _Way(NamedTuple):
@@ -119,7 +85,7 @@ class _Way(NamedTuple):
         return (self.left**2).sum(axis=1)
 
 
-def _score(search: Search, base: Fit, effect: str, project: Projector, residual: np.ndarray) -> Score:
+def _score(search: Search, base: Fit, effect: str, project: Projector) -> Score:
     model = search.model(effect)
     for way in _ways(search, base, model, project):
         if way.distance.min() < SHOWN:
@@ -129,7 +95,7 @@ def _score(search: Search, base: Fit, effect: str, project: Projector, residual:
     retention = float(size[weak] / way.sizes[weak]) if way.sizes[weak] > 0.0 else 0.0
     t2 = None
     if retention >= RETAINED and size[weak] > 0.0:
-        t2 = float((way.left[weak] @ residual) ** 2 / size[weak] ** 2)
+        t2 = float((way.left[weak] @ project.misfit) ** 2 / size[weak] ** 2)
     key = model.hypothesis.coordinates[way.number].name.split(".")[1]
     return Score(effect, t2, retention, key, _detectable(model.hypothesis, way, key))
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import log
 from typing import TypeVar
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from wedgesweep.diagnose import detour, simulation
 from wedgesweep.diagnose.amplitudes import best_amplitudes
+from wedgesweep.diagnose.constancy import Constancy, constancy
 from wedgesweep.diagnose.coordinates import Hypothesis
 from wedgesweep.diagnose.meeting import met
 from wedgesweep.diagnose.model import Fit, Model, Trial
@@ -49,7 +51,7 @@ def unknown_reference(problem: Problem) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Explanation:
-    """A hypothesis with its fit, and what it costs."""
+    """A hypothesis with its fit, and what a number costs."""
 
     fit: Fit
     price: float
@@ -57,6 +59,16 @@ class Explanation:
     @property
     def effects(self) -> tuple[str, ...]:
         return self.fit.effects
+
+    @cached_property
+    def constancy(self) -> Constancy:
+        """Whether its numbers are the same in all tests."""
+        return constancy(self.fit)
+
+    @property
+    def adequacy(self) -> float:
+        """Probability of what it leaves or, where that is possible and less, of numbers that are constant."""
+        return min(self.fit.p, self.constancy.p) if self.fit.p >= LIKELY else self.fit.p
 
     @property
     def penalised(self) -> float:

@@ -68,7 +68,7 @@ class Finding:
     def alternatives(self) -> tuple[Explanation, ...]:
         """What the tests cannot tell from the cause or, where they cannot show one, from one another."""
         best = self.best
-        if self.verdict == INSUFFICIENT and best is not None and best.fit.p >= POSSIBLE:
+        if self.verdict == INSUFFICIENT and best is not None and best.adequacy >= POSSIBLE:
             return (best, *self.rivals)
         return self.rivals
 
@@ -84,9 +84,9 @@ def eligible(each: Explanation) -> bool:
 
 
 def none_will_do(found: Sequence[Explanation]) -> bool:
-    """Whether even the best of explanations, if there is any, leaves more than noise."""
+    """Whether even the best of explanations, if there is any, will not do."""
     best = min(found, key=penalised, default=None)
-    return best is not None and best.fit.p < ADEQUATE
+    return best is not None and best.adequacy < ADEQUATE
 
 
 def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
@@ -107,36 +107,50 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     if not order or order[0].penalised >= base.penalised - thresholds.least_gain:
         if base.fit.p >= TOLERABLE:
             return Finding(NOTHING, None, ())
-        will_do = bool(order) and order[0].fit.p >= ADEQUATE
+        will_do = bool(order) and order[0].adequacy >= ADEQUATE
         return Finding(INSUFFICIENT if will_do else _nobody(base), order[0] if order else None, ())
-    best = order[0]
+    better = [each for each in order if each.penalised < base.penalised - thresholds.least_gain]
+    best = next((each for each in better if each.adequacy >= POSSIBLE), None)
+    if best is None:
+        return Finding(_nobody(base), order[0], ())
     left = _left(base, best)
     # Where little shows, noise has a part in where: those tests hold more of it than others.
-    if (left if base.fit.excess >= STRONG else best.fit.p) < POSSIBLE:
+    if left < POSSIBLE and base.fit.excess >= STRONG:
         return Finding(_nobody(base), best, ())
-    rivals = tuple(each for each in order[1:] if each.penalised - best.penalised < thresholds.gap)
-    # What others can imitate may be none of them: then the closest one is only that.
-    others = tuple(each for each in order[1:] if each.fit.p >= ADEQUATE and not _contains(each, best))
-    if len(best.effects) > 1 and len(others) >= MOST_TIED:
-        return Finding(INSUFFICIENT, best, others)
+    near = [each for each in order if each.penalised - best.penalised < thresholds.gap and each is not best]
+    rivals = tuple(each for each in near if each.adequacy >= POSSIBLE)
+    if len(best.effects) > 1 and len(_others(order, best)) >= MOST_TIED:
+        return Finding(INSUFFICIENT, best, _others(order, best))
     if len(rivals) >= MOST_TIED or base.fit.model.problem.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    if alike(best.effects):
-        return Finding(INSUFFICIENT, best, others)
+    if alike(best.effects) or _half_does(order, best):
+        return Finding(INSUFFICIENT, best, _others(order, best))
     if base.fit.excess < thresholds.strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
+    others = _others(order, best)
     return Finding(CONSISTENT if others else NAMED, best, others)
 
 
-def _contains(each: Explanation, other: Explanation) -> bool:
-    return set(other.effects) <= set(each.effects)
+def _half_does(order: Sequence[Explanation], best: Explanation) -> bool:
+    """Whether one effect of a pair alone leaves noise only, but with numbers that differ from test to test.
+
+    What is beside it hardly shows then, and many will do for that.
+    """
+    halves = [each for each in order if set(each.effects) < set(best.effects)]
+    return any(each.fit.p >= ADEQUATE > each.adequacy for each in halves)
+
+
+def _others(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
+    """Explanations that will do as well: what others can imitate may be none of them."""
+    beside = [each for each in order if not set(best.effects) <= set(each.effects)]
+    return tuple(each for each in beside if each.adequacy >= ADEQUATE)
 
 
 def _left(base: Explanation, best: Explanation) -> float:
     """Probability of what an explanation leaves, over all tests or where there was more: the smaller one."""
-    return min(best.fit.p, where_it_shows(base.fit, best.fit))
+    return min(best.adequacy, where_it_shows(base.fit, best.fit))
 
 
 def where_it_shows(base: Fit, fit: Fit) -> float:
@@ -168,7 +182,7 @@ def on_unseen_tests(
         return Finding(CONSISTENT, finding.best, finding.rivals) if finding.verdict == NAMED else finding
     if base.fit.p >= TOLERABLE:
         return Finding(NOTHING, None, ())
-    rival_will_do = any(each.fit.p >= ADEQUATE for each in finding.rivals)
+    rival_will_do = any(each.adequacy >= ADEQUATE for each in finding.rivals)
     if _left(base, finding.cause) < ADEQUATE and not rival_will_do:
         return Finding(_nobody(base), finding.best, finding.rivals)
     return Finding(CONSISTENT if finding.verdict == NAMED else INSUFFICIENT, finding.best, finding.rivals)

@@ -1,6 +1,6 @@
 """The answer of a diagnosis in one sentence, with its numbers and intervals."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wedgesweep import digits
@@ -49,8 +49,21 @@ def _weakness(found: Diagnosed) -> str:
     strong, excess = method["strong_excess"], misfit["excess_base"]
     if excess is not None and (strong is None or excess < strong):
         return f"excess misfit {digits.number(excess)} over noise"
+    if _varies(misfit):
+        return _differing(misfit)
     p = min(misfit["p_extended"], misfit["p_where_it_shows"])
     return f"it leaves more than noise in the tests that show it, {words.p_value(p)}"
+
+
+def _varies(misfit: Mapping[str, Any]) -> bool:
+    """Whether what speaks against a fit most is that a number would not be the same in all tests."""
+    constant = misfit["p_constant"]
+    return constant is not None and constant < min(misfit["p_extended"], misfit["p_where_it_shows"])
+
+
+def _differing(misfit: Mapping[str, Any]) -> str:
+    number, p = misfit["least_constant"], words.p_value(misfit["p_constant"])
+    return f"{number} would have to differ from test to test, {p} for the same in all"
 
 
 def _tied(found: Diagnosed) -> str:
@@ -89,8 +102,19 @@ def _many(found: Diagnosed) -> str:
 def _doubt(found: Diagnosed, only: Mapping[str, Any]) -> str:
     if alike(only["effects"]):
         return "a number of the model that is no candidate could look like these two"
+    if half := _half_that_does(found, only["effects"]):
+        return f"{half} alone leaves hardly more, with numbers that differ from test to test"
     who = "tests left out of the fit do not" if _unconfirmed(found) else "so few tests cannot"
     return f"{who} confirm it"
+
+
+def _half_that_does(found: Diagnosed, pair: Sequence[str]) -> str | None:
+    """Effect of a pair that leaves noise only without the other, None if there is none."""
+    adequate = found.document["method"]["adequate_p"]
+    halves = [
+        each for each in found.document["candidates"] if each["effects"] and set(each["effects"]) < set(pair)
+    ]
+    return next((each["effects"][0] for each in halves if (each["p"] or 0.0) >= adequate), None)
 
 
 def _none(found: Diagnosed) -> str:
@@ -125,6 +149,7 @@ def _attempt(found: Diagnosed) -> str:
     misfit = found.document["misfit"]
     where = misfit["p_where_it_shows"]
     there = f" ({words.p_value(where)} in the tests that show it)" if where < misfit["p_extended"] else ""
+    there = f", and {_differing(misfit)}" if _varies(misfit) else there
     error = _error(found, "extended")
     return f"; the best attempt, {words.together(found.added)}, is still off by {error}{there}{unseen}"
 

@@ -12,7 +12,7 @@ from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.next_test import ENOUGH, NextTest
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
-from wedgesweep.diagnose.search import PENALTY, SLIGHT, Explanation
+from wedgesweep.diagnose.search import LIKELY, PENALTY, SLIGHT, Explanation
 from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
 from wedgesweep.diagnosed import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
@@ -87,8 +87,15 @@ def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
         "p_base": finite(base.p),
         "p_extended": finite(best.fit.p),
         "p_where_it_shows": finite(where_it_shows(base, best.fit)),
+        **_constancy(best),
         "tests": _tests(found),
     }
+
+
+def _constancy(best: Explanation) -> dict[str, Any]:
+    """Whether the numbers are the same in all tests; null where the fit is out of the question anyhow."""
+    p, number = best.constancy if best.fit.p >= LIKELY else (None, None)
+    return {"p_constant": finite(p), "least_constant": number}
 
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
