@@ -213,6 +213,15 @@ def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
     assert words in plain(report.sentence(tmp_path))
 
 
+def test_a_half_that_does_without_the_other_is_told(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
+    document["rivals"] = [{"effects": ["end_stop", "velocity_lag"], "gap": 0.0}]
+    for p, words in ((0.04, "but end_stop alone leaves hardly more"), (1e-9, "but so few tests")):
+        next(each for each in document["candidates"] if each["effects"] == ["end_stop"])["p"] = p
+        (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+        assert words in plain(report.sentence(tmp_path))
+
+
 def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=6)
     document["rivals"] = [{"effects": ["ageing"], "gap": 0.0}]
