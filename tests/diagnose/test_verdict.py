@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, verdict
 from wedgesweep.diagnose.constancy import Constancy
-from wedgesweep.diagnose.search import Explanation
+from wedgesweep.diagnose.search import POSSIBLE, Explanation
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_unseen_tests, where_it_shows
 
 DOF, PRICE = 700, 12.6
@@ -187,7 +187,7 @@ def test_unconfirmed_weak_evidence_names_nothing():
 
 def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confirm():
     base = explained(830.0)
-    assert verdict.TOLERABLE < base.fit.p < verdict.POSSIBLE
+    assert verdict.TOLERABLE < base.fit.p < POSSIBLE
     found = verdict_of(base, explained(780.0, "stribeck"))
     assert found.verdict == "consistent-with"
     assert on_unseen_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "nothing-missing"

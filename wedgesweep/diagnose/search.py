@@ -30,8 +30,8 @@ HOPELESS = 100.0
 AGAIN = ((None, 3), (4, 5), (2, 8))
 # Best explanations of which those that leave more than noise look for a way around what holds them up.
 DETOURS = 8
-# Least probability of a misfit at which a model may do.
-LIKELY = 1e-3
+# Least probability of what is left at which a model is possible at all.
+POSSIBLE = 1e-3
 # Relative error of a stated input amplitude that is no measurement's, but the base model's.
 ASTRAY = 0.3
 # Then fits begin with iterations in which it is no further off than this.
@@ -68,7 +68,7 @@ class Explanation:
     @property
     def adequacy(self) -> float:
         """Probability of what it leaves or, where that is possible and less, of numbers that are constant."""
-        return min(self.fit.p, self.constancy.p) if self.fit.p >= LIKELY else self.fit.p
+        return min(self.fit.p, self.constancy.p) if self.fit.p >= POSSIBLE else self.fit.p
 
     @property
     def penalised(self) -> float:
@@ -116,7 +116,7 @@ class Search:
         start = model.start(None, np.zeros(0))
         trials = best_amplitudes(model, [replace(start, x=x) for x in model.uncertain_starts()])
         fits = self.each(lambda trial: refine(model, trial), trials)
-        if model.uncertain and min(fits, key=lambda fit: fit.q).p < LIKELY:
+        if model.uncertain and min(fits, key=lambda fit: fit.q).p < POSSIBLE:
             # Inputs may have made up for numbers that they should have led to.
             fits += self.each(lambda trial: refine(model, _as_stated(model, trial)), trials)
         fit = self._meeting(detour.around(min(fits, key=lambda fit: fit.q)))
@@ -156,7 +156,7 @@ class Search:
             if _astray(base):
                 trials = trials + [_as_stated(model, trial) for trial in _leading(fresh, FOLLOWED[0][0])]
         # Where the base model will do, a cause could only be weak: one start is as good as another.
-        followed = FOLLOWED if base.p < LIKELY else ((1, 3),)
+        followed = FOLLOWED if base.p < POSSIBLE else ((1, 3),)
         fit = best_of(model, trials, followed, HOPELESS * base.q)
         if effect == TONE:
             fit = self._meeting(fit)
@@ -170,7 +170,7 @@ class Search:
     def around(self, found: Sequence[Explanation]) -> list[Explanation]:
         """Explanations, the best first; the best ones of them around what held up their fits."""
         best = sorted(found, key=penalised)[:DETOURS]
-        best = [each for each in best if each.fit.p < LIKELY]
+        best = [each for each in best if each.fit.p < POSSIBLE]
         again = self.each(lambda each: self.explanation(detour.around(met(each.fit))), best)
         return best_of_each([*again, *found], penalised)
 

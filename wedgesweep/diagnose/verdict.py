@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.search import Explanation, penalised
+from wedgesweep.diagnose.search import POSSIBLE, Explanation, penalised
 from wedgesweep.effects import alike
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
@@ -20,8 +20,8 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 )
 # Penalised misfits closer than this cannot be told apart.
 GAP = 10.0
-# Least probability of the misfit that an explanation leaves: to be named, and to be an explanation at all.
-ADEQUATE, POSSIBLE = 0.01, 1e-3
+# Least probability of what an explanation leaves to be named; POSSIBLE is that to be one at all.
+ADEQUATE = 0.01
 # And of that which the base model leaves.
 TOLERABLE = 1e-4
 # Share of the base model's excess whose tests a cause must explain for themselves.

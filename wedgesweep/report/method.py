@@ -12,8 +12,9 @@ STEPS = (
     "for a right model. Start phase, amplitude and uncertain numbers are fitted first, for the base model "
     "too.",
     "Every candidate is fitted alone, then pairs of them; each fitted number costs a penalty. A cause must "
-    "leave nothing but noise and lead its rivals by more than the tie width. To be named "
-    "it must be the only one that leaves noise only; a pair that many imitate is not reported.",
+    "leave nothing but noise, with numbers that are the same in all tests (a Lagrange multiplier test), and "
+    "lead its rivals by more than the tie width. To be named it must be the only one that leaves noise only; "
+    "a pair that many imitate is not reported.",
     "The gain counts on held-out tests only: each frequency, then each amplitude, is left out of the fit and "
     "predicted.",
 )

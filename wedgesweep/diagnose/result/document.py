@@ -12,7 +12,7 @@ from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.gain import Gain
 from wedgesweep.diagnose.next_test import ENOUGH, NextTest
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
-from wedgesweep.diagnose.search import LIKELY, PENALTY, SLIGHT, Explanation
+from wedgesweep.diagnose.search import PENALTY, POSSIBLE, SLIGHT, Explanation
 from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
 from wedgesweep.diagnosed import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
@@ -94,7 +94,7 @@ def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
 
 def _constancy(best: Explanation) -> dict[str, Any]:
     """Whether the numbers are the same in all tests; null where the fit is out of the question anyhow."""
-    p, number = best.constancy if best.fit.p >= LIKELY else (None, None)
+    p, number = best.constancy if best.fit.p >= POSSIBLE else (None, None)
     return {"p_constant": finite(p), "least_constant": number}
 
 
