@@ -143,9 +143,13 @@ def _half_does(order: Sequence[Explanation], best: Explanation) -> bool:
 
 
 def _others(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
-    """Explanations that will do as well: what others can imitate may be none of them."""
-    beside = [each for each in order if not set(best.effects) <= set(each.effects)]
-    return tuple(each for each in beside if each.adequacy >= ADEQUATE)
+    """Explanations that leave noise only, too: what others can imitate may be none of them.
+
+    What is part of the best one, or more than it, is no other.
+    """
+    mine = set(best.effects)
+    beside = [each for each in order if not (mine <= set(each.effects) or set(each.effects) <= mine)]
+    return tuple(each for each in beside if each.fit.p >= ADEQUATE)
 
 
 def _left(base: Explanation, best: Explanation) -> float:
