@@ -89,10 +89,8 @@ def test_what_has_not_is_no_rival_but_shows_that_others_imitate():
 
 def test_what_hardly_shows_beside_an_effect_is_not_named():
     """Many will do for a number that differs a little from test to test."""
-    half, pair = (
-        explained(760.0, "friction_level", constant=1e-4),
-        explained(690.0, "friction_level", "ageing"),
-    )
+    half = explained(760.0, "friction_level", constant=1e-4)
+    pair = explained(690.0, "friction_level", "ageing")
     found = verdict_of(explained(5000.0), half, pair)
     assert (found.verdict, found.alternatives) == ("data-insufficient", (pair,))
     wrong = explained(2000.0, "friction_level")

@@ -67,7 +67,10 @@ class Explanation:
 
     @property
     def adequacy(self) -> float:
-        """Probability of what it leaves or, where that is possible and less, of numbers that are constant."""
+        """Probability of what it leaves, or of numbers that are constant, if that is less.
+
+        The latter takes simulations: it is not looked at where the former is out of the question.
+        """
         return min(self.fit.p, self.constancy.p) if self.fit.p >= POSSIBLE else self.fit.p
 
     @property

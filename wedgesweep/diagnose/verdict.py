@@ -104,12 +104,12 @@ def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explan
 def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: Thresholds) -> Finding:
     """Weigh the base model against everything that was fitted."""
     order = ranked(explanations, thresholds.gap)
-    if not order or order[0].penalised >= base.penalised - thresholds.least_gain:
+    better = [each for each in order if each.penalised < base.penalised - thresholds.least_gain]
+    if not better:
         if base.fit.p >= TOLERABLE:
             return Finding(NOTHING, None, ())
         will_do = bool(order) and order[0].adequacy >= ADEQUATE
         return Finding(INSUFFICIENT if will_do else _nobody(base), order[0] if order else None, ())
-    better = [each for each in order if each.penalised < base.penalised - thresholds.least_gain]
     best = next((each for each in better if each.adequacy >= POSSIBLE), None)
     if best is None:
         return Finding(_nobody(base), order[0], ())
@@ -119,17 +119,17 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(_nobody(base), best, ())
     near = [each for each in order if each.penalised - best.penalised < thresholds.gap and each is not best]
     rivals = tuple(each for each in near if each.adequacy >= POSSIBLE)
-    if len(best.effects) > 1 and len(_others(order, best)) >= MOST_TIED:
-        return Finding(INSUFFICIENT, best, _others(order, best))
+    others = _others(order, best)
+    if len(best.effects) > 1 and len(others) >= MOST_TIED:
+        return Finding(INSUFFICIENT, best, others)
     if len(rivals) >= MOST_TIED or base.fit.model.problem.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
     if alike(best.effects) or _half_does(order, best):
-        return Finding(INSUFFICIENT, best, _others(order, best))
+        return Finding(INSUFFICIENT, best, others)
     if base.fit.excess < thresholds.strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
-    others = _others(order, best)
     return Finding(CONSISTENT if others else NAMED, best, others)
 
 

@@ -146,12 +146,16 @@ def _attempt(found: Diagnosed) -> str:
     if not found.added:
         return ""
     unseen = ", and may make tests worse that it was not fitted to" if _unconfirmed(found) else ""
-    misfit = found.document["misfit"]
+    left = f"{_error(found, 'extended')}{_against(found.document['misfit'])}"
+    return f"; the best attempt, {words.together(found.added)}, is still off by {left}{unseen}"
+
+
+def _against(misfit: Mapping[str, Any]) -> str:
+    """What speaks against an attempt beside all that it leaves."""
+    if _varies(misfit):
+        return f", and {_differing(misfit)}"
     where = misfit["p_where_it_shows"]
-    there = f" ({words.p_value(where)} in the tests that show it)" if where < misfit["p_extended"] else ""
-    there = f", and {_differing(misfit)}" if _varies(misfit) else there
-    error = _error(found, "extended")
-    return f"; the best attempt, {words.together(found.added)}, is still off by {error}{there}{unseen}"
+    return f" ({words.p_value(where)} in the tests that show it)" if where < misfit["p_extended"] else ""
 
 
 TEMPLATES = {
