@@ -7,7 +7,8 @@ import pytest
 
 from tests.diagnose.drawn import AMPLITUDES, FREQUENCIES, drawn, searched
 from wedgesweep.diagnose import diagnosis, verdict
-from wedgesweep.diagnose.constancy import constancy
+from wedgesweep.diagnose.constancy import _constant, constancy
+from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Search
 
 # Sessions of twelve tests; of one that wears the last ones differ from the first by a little.
@@ -55,3 +56,21 @@ def test_the_base_model_and_a_single_test_have_nothing_that_could_differ():
     _, base, (single,) = searched(drawn(tests=[0]), "friction_level")
     assert constancy(base.fit) == (1.0, None)
     assert constancy(single.fit).p == pytest.approx(1.0)
+
+
+def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
+    """At the least Q the misfit with the pulls on the priors has nothing in it that could be taken up."""
+    off = 0.03 * np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
+    problem = drawn({"friction_level": {"scale": 1.1}}, uncertain={"wedge_stiffness": 0.05}, off=off)
+    _, _, (single,) = searched(problem, "friction_level")
+    pulls = (single.fit.trial.prior**2).sum()
+    assert pulls > 5.0
+    assert (Projector(single.fit).misfit ** 2).sum() == pytest.approx(single.fit.q, abs=0.02 * pulls)
+
+
+def test_of_two_numbers_either_may_seem_not_to_be_constant_by_chance():
+    _, _, (single,) = searched(drawn({"cross_slip": RIGHT["cross_slip"]}, seed=4), "cross_slip")
+    project = Projector(single.fit)
+    alone = [_constant(project, tangent) for tangent in np.moveaxis(project.by_number, -1, 0)]
+    assert min(alone) < 0.5
+    assert single.constancy.p == pytest.approx(2.0 * min(alone))

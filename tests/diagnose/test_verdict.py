@@ -266,7 +266,8 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     worse = explained(900.0, "stribeck").fit
     monkeypatch.setattr(diagnosis, "exact", lambda fit: worse if fit is first.fit else fit)
     monkeypatch.setattr(diagnosis, "met", lambda fit: fit)
-    search = SimpleNamespace(progress=lambda step: None, explanation=priced)
+    monkeypatch.setattr(diagnosis, "profiled", lambda fit, each: fit)
+    search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
     found, order = diagnosis._exactly(search, base, tied, [first, second], verdict.DEFAULT)

@@ -12,6 +12,7 @@ from wedgesweep.diagnose.meeting import met
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test import NextTest
 from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.profile import profiled
 from wedgesweep.diagnose.refine import exact
 from wedgesweep.diagnose.score import Score
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
@@ -144,7 +145,7 @@ def _exactly(
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
         search.progress(f"exact fit of {' + '.join(finding.best.effects)}")
-        done.append(search.explanation(exact(met(finding.best.fit))))
+        done.append(search.explanation(profiled(exact(met(finding.best.fit)), search.each)))
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)

@@ -5,6 +5,7 @@ each test its start phase and its input amplitude. Phases have a closed way out 
 """
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -92,7 +93,7 @@ def least(trials: Sequence[Trial]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Fit:
-    """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``trial.point.x``."""
+    """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``trial.point.x``: see profile.py, too."""
 
     model: "Model"
     trial: Trial
@@ -158,6 +159,13 @@ class Model:
         self.width = np.r_[hypothesis.width, [0.1] * len(self.uncertain)]
         self.prior_std = np.array(list(self.uncertain.values()))
         self.amplitude_weight = 1.0 / np.maximum(problem.amplitude_std, EXACT)
+
+    def holding(self, number: int, value: float) -> "Model":
+        """The model with one of its numbers known."""
+        held = copy(self)
+        held.low, held.high = self.low.copy(), self.high.copy()
+        held.low[number] = held.high[number] = value
+        return held
 
     @property
     def dof(self) -> int:

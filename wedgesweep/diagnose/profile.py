@@ -1,0 +1,86 @@
+"""How far numbers may be from where a fit ended, by what Q rises there (profile likelihood).
+
+Next to breakaway Q is rugged: a fit stops short of the least Q, and the curvature there makes a number seem
+more certain than it is. So each number is held where its interval should end, and the rest are fitted
+again, as MINUIT's MINOS does (James and Roos, 1975, Computer Physics Communications 10, 343).
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import chdtri
+
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.refine import exact, refine
+
+# Rise of Q at the ends of a 95 % interval of one number.
+RISE = float(chdtri(1, 0.05))
+# An end is found if Q has risen by this share of that, or after so many tries.
+CLOSE, TRIES = 0.8, 5
+# The next try is no more than this many times further off.
+FURTHER = 3.0
+# Iterations of a fit with a number held.
+ITERATIONS = 10
+# A fit that takes this much off Q is better, and is gone on from, so many times at the most.
+LOWER, ONWARD = 0.5, 6
+
+
+class Way(NamedTuple):
+    """End of an interval, in standard deviations by the curvature, and the fit of the least Q on the way."""
+
+    end: float
+    least: Fit
+
+
+def profiled(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
+    """A fit or a better one next to it, its covariance no less than where Q says that intervals end.
+
+    ``each`` maps a function. An interval is never narrower than by the curvature at the minimum: where Q is
+    rugged a fit with a number held may have stopped short, too.
+    """
+    for _ in range(ONWARD):
+        numbers = np.flatnonzero(np.diag(fit.covariance)[: fit.model.size] > 0.0)
+        ways = each(lambda way, fit=fit: _way(fit, *way), list(product(numbers, (1.0, -1.0))))
+        least = min((way.least for way in ways), key=lambda found: found.q, default=fit)
+        better = fit if least is fit else exact(replace(least, model=fit.model))
+        if better.q > fit.q - LOWER:
+            return _widened(fit, numbers, [way.end for way in ways])
+        fit = better
+    return _widened(fit, numbers, [way.end for way in ways])
+
+
+def _widened(fit: Fit, numbers: np.ndarray, ends: list[float]) -> Fit:
+    """The fit with a covariance by the further of both ends of each number."""
+    wider = np.ones(len(fit.x))
+    wider[numbers] = np.maximum(np.reshape(ends, (-1, 2)).max(axis=1) / np.sqrt(RISE), 1.0)
+    return replace(fit, covariance=wider[:, None] * fit.covariance * wider)
+
+
+def _way(fit: Fit, number: int, side: float) -> Way:
+    """Out from a fit along one number until Q has risen enough, or is lower than where it began."""
+    std = np.sqrt(fit.covariance[number, number])
+    bound = (fit.model.high if side > 0.0 else fit.model.low)[number]
+    furthest = abs(bound - fit.x[number]) / std
+    end, held = np.sqrt(RISE), fit
+    for _ in range(TRIES):
+        off = min(end, furthest)
+        held = _held(fit, held, number, fit.x[number] + side * off * std)
+        rise = held.q - fit.q
+        if rise < -LOWER:
+            return Way(end, held)
+        share = np.sqrt(RISE / max(rise, RISE / FURTHER**2))
+        end = max(off * share, np.sqrt(RISE))
+        if rise > CLOSE * RISE or off == furthest:
+            break
+    return Way(end, fit)
+
+
+def _held(fit: Fit, start: Fit, number: int, value: float) -> Fit:
+    """Fit with a number held, from where the others go with it by the covariance."""
+    model = fit.model.holding(number, value)
+    along = fit.covariance[:, number] / fit.covariance[number, number]
+    x = np.clip(start.x + along * (value - start.x[number]), model.low, model.high)
+    return refine(model, model.trial(replace(start.trial.point, x=x)), ITERATIONS)
