@@ -165,10 +165,10 @@ def test_sentence(verdict, tmp_path):
                     "p_where_it_shows": 0.2,
                     "p_extended": 0.2,
                     "p_constant": 1e-9,
-                    "least_constant": "a.b",
+                    "least_constant": "friction_level.scale",
                 }
             },
-            "noise, and a.b would have to differ from test to test, p < 0.001 for the same",
+            "takes a friction_level.scale that differs from test to test (p < 0.001 for the same in all)",
         ),
         ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
         ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),

@@ -50,7 +50,8 @@ def _weakness(found: Diagnosed) -> str:
     if excess is not None and (strong is None or excess < strong):
         return f"excess misfit {digits.number(excess)} over noise"
     if _varies(misfit):
-        return _differing(misfit)
+        number, constant = misfit["least_constant"], words.p_value(misfit["p_constant"])
+        return f"{number} would have to differ from test to test, {constant} for the same in all"
     p = min(misfit["p_extended"], misfit["p_where_it_shows"])
     return f"it leaves more than noise in the tests that show it, {words.p_value(p)}"
 
@@ -59,11 +60,6 @@ def _varies(misfit: Mapping[str, Any]) -> bool:
     """Whether what speaks against a fit most is that a number would not be the same in all tests."""
     constant = misfit["p_constant"]
     return constant is not None and constant < min(misfit["p_extended"], misfit["p_where_it_shows"])
-
-
-def _differing(misfit: Mapping[str, Any]) -> str:
-    number, p = misfit["least_constant"], words.p_value(misfit["p_constant"])
-    return f"{number} would have to differ from test to test, {p} for the same in all"
 
 
 def _tied(found: Diagnosed) -> str:
@@ -145,17 +141,18 @@ def _unexplained(found: Diagnosed) -> str:
 def _attempt(found: Diagnosed) -> str:
     if not found.added:
         return ""
-    unseen = ", and may make tests worse that it was not fitted to" if _unconfirmed(found) else ""
-    left = f"{_error(found, 'extended')}{_against(found.document['misfit'])}"
-    return f"; the best attempt, {words.together(found.added)}, is still off by {left}{unseen}"
-
-
-def _against(misfit: Mapping[str, Any]) -> str:
-    """What speaks against an attempt beside all that it leaves."""
+    misfit, left = found.document["misfit"], _error(found, "extended")
+    against = [f"is still off by {left}"]
     if _varies(misfit):
-        return f", and {_differing(misfit)}"
-    where = misfit["p_where_it_shows"]
-    return f" ({words.p_value(where)} in the tests that show it)" if where < misfit["p_extended"] else ""
+        against.append(
+            f"takes a {misfit['least_constant']} that differs from test to test "
+            f"({words.p_value(misfit['p_constant'])} for the same in all)"
+        )
+    elif misfit["p_where_it_shows"] < misfit["p_extended"]:
+        against[0] += f" ({words.p_value(misfit['p_where_it_shows'])} in the tests that show it)"
+    if _unconfirmed(found):
+        against.append("may make tests worse that it was not fitted to")
+    return f"; the best attempt, {words.together(found.added)}, {words.listing(against)}"
 
 
 TEMPLATES = {
