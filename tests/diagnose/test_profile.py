@@ -75,3 +75,8 @@ def test_a_number_at_its_bound_keeps_its_interval(lag):
     found = profiled(fit, serial)
     assert np.isfinite(std(found)).all()
     assert (std(found) >= std(fit)).all()
+
+
+def test_what_has_no_steady_response_has_no_profile(lag):
+    lost = replace(lag, trial=replace(lag.trial, found_tests=np.zeros(lag.model.problem.tests, bool)))
+    np.testing.assert_array_equal(std(profiled(lost, serial)), std(lost))

@@ -41,21 +41,17 @@ def profiled(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     ``each`` maps a function. An interval is never narrower than by the curvature at the minimum: where Q is
     rugged a fit with a number held may have stopped short, too.
     """
-    for _ in range(ONWARD):
-        numbers = np.flatnonzero(np.diag(fit.covariance)[: fit.model.size] > 0.0)
-        ways = each(lambda way, fit=fit: _way(fit, *way), list(product(numbers, (1.0, -1.0))))
+    sides = list(product(range(fit.model.size), (1.0, -1.0)))
+    ends = np.full((fit.model.size, 2), np.sqrt(RISE))
+    for _ in range(ONWARD if fit.trial.found else 0):
+        ways = each(lambda side, fit=fit: _way(fit, *side), sides)
+        ends = np.reshape([way.end for way in ways], ends.shape)
         least = min((way.least for way in ways), key=lambda found: found.q, default=fit)
         better = fit if least is fit else exact(replace(least, model=fit.model))
         if better.q > fit.q - LOWER:
-            return _widened(fit, numbers, [way.end for way in ways])
+            break
         fit = better
-    return _widened(fit, numbers, [way.end for way in ways])
-
-
-def _widened(fit: Fit, numbers: np.ndarray, ends: list[float]) -> Fit:
-    """The fit with a covariance by the further of both ends of each number."""
-    wider = np.ones(len(fit.x))
-    wider[numbers] = np.maximum(np.reshape(ends, (-1, 2)).max(axis=1) / np.sqrt(RISE), 1.0)
+    wider = np.r_[ends.max(axis=1) / np.sqrt(RISE), np.ones(len(fit.x) - fit.model.size)]
     return replace(fit, covariance=wider[:, None] * fit.covariance * wider)
 
 
