@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.special import chdtri
 
 from tests.diagnose.drawn import LAG, drawn, searched
-from wedgesweep.diagnose.profile import profiled
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.profile import RISE, profiled
 from wedgesweep.diagnose.refine import exact, refine
 
 
@@ -53,26 +53,49 @@ def test_a_fit_that_stopped_short_goes_on_to_the_least_q(lag):
     assert found.x[0] == pytest.approx(lag.x[0], abs=0.1 * std(lag)[0])
 
 
-def test_the_ends_of_an_interval_are_where_q_has_risen_by_its_share(lag):
-    """Of two numbers that do much the same: the other one is fitted again at each end."""
-    truth = {"stribeck": {"peak": 0.03, "velocity": 7e-3}}
-    _, _, (single,) = searched(drawn(truth, law="coulomb"), "stribeck")
-    fit = profiled(exact(single.fit), serial)
-    for number in range(2):
-        for side in (-1.0, 1.0):
-            end = fit.x[number] + side * 1.96 * std(fit)[number]
-            model = fit.model.holding(number, np.clip(end, fit.model.low[number], fit.model.high[number]))
-            x = fit.x.copy()
-            x[number] = model.low[number]
-            held = refine(model, model.trial(replace(fit.trial.point, x=x)))
-            assert held.q - fit.q > 0.75 * chdtri(1, 0.05)
+def rises(fit):
+    """What Q rises at both ends of the interval of a fit's only number."""
+    off = np.sqrt(RISE) * std(fit)[0]
+    models = [fit.model.holding(0, fit.x[0] + side * off) for side in (-1.0, 1.0)]
+    points = [replace(fit.trial.point, x=np.r_[each.low[0], fit.x[1:]]) for each in models]
+    return [refine(m, m.trial(p)).q - fit.q for m, p in zip(models, points, strict=True)]
 
 
-def test_a_number_at_its_bound_keeps_its_interval(lag):
-    """Clean data: the lag is close to zero, and less than zero it cannot be."""
+def compliance(level):
+    """Fit of columns so stiff that they hardly show, before and after."""
+    _, _, (single,) = searched(
+        drawn({"column_compliance": {"stiffness": 1e6}}, level=level), "column_compliance"
+    )
+    fit = exact(single.fit)
+    return fit, profiled(fit, serial)
+
+
+def test_where_q_is_steeper_to_one_side_the_other_side_tells():
+    before, fit = compliance(0.1)
+    assert max(rises(before)) > 1.2 * min(rises(before))
+    assert min(rises(fit)) > 0.9 * RISE
+
+
+def test_where_q_is_rugged_the_interval_is_wider_than_by_its_curvature():
+    before, fit = compliance(0.3)
+    assert max(rises(before)) < RISE / 2.0
+    assert min(rises(fit)) > RISE / 2.0
+
+
+def test_no_number_is_tried_beyond_its_bound(monkeypatch):
+    """Clean data: the lag is zero or next to it, and less than zero it cannot be."""
     _, _, (single,) = searched(drawn(), "velocity_lag")
     fit = exact(single.fit)
+    assert fit.x[0] < 1.9 * std(fit)[0]
+    tried, holding = [], Model.holding
+
+    def told(model, number, value):
+        tried.append(value)
+        return holding(model, number, value)
+
+    monkeypatch.setattr(Model, "holding", told)
     found = profiled(fit, serial)
+    assert min(tried) == 0.0 < max(tried)
     assert np.isfinite(std(found)).all()
     assert (std(found) >= std(fit)).all()
 
