@@ -140,10 +140,6 @@ TOML_FAULTS = {
         ("amplitude_mm = 0.3", "amplitude_mm = 0.0003"),
         "one.csv moves 3.34e+03 times its ampl",
     ),
-    "amplitude in um": (
-        ("amplitude_mm = 0.3", "amplitude_mm = 300"),
-        "no test moves more than 0.0033 times its",
-    ),
     "too few samples": (("20.0", "300.0"), "one.csv: has 3.33 samples per period of 300 Hz; at least 5 are"),
     "twice the same file": (
         ("[[measurement.test]]", '[[measurement.test]]\nfile = "one.csv"\n[[measurement.test]]'),
@@ -216,6 +212,16 @@ def test_faults_of_the_document(tmp_path, fault):
     assert len(found) == 1, found
     assert words in found[0]
     assert found[0].startswith(str(tmp_path))
+
+
+def test_where_no_test_moves_the_amplitudes_are_in_another_unit_and_in_one_the_bolster_may_stick(tmp_path):
+    text = MEASURED.replace("amplitude_mm = 0.3", "amplitude_mm = 300")
+    assert len(measured.read(fixture_measured.write(tmp_path, text)).tests) == 1
+    _, again = text.split("[[measurement.test]]")
+    (tmp_path / "two.csv").write_bytes((tmp_path / "one.csv").read_bytes())
+    text += "[[measurement.test]]" + again.replace("one.csv", "two.csv")
+    (found,) = problems(fixture_measured.write(tmp_path, text))
+    assert "no test moves more than 0.0033 times its amplitude_mm (one.csv)" in found
 
 
 @pytest.mark.parametrize("start", [0.4, 0.8, 3.5, 4.0])
