@@ -11,13 +11,13 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import chdtri
 
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.refine import exact, refine
 
-# Rise of Q at the ends of a 95 % interval of one number.
-RISE = float(chdtri(1, 0.05))
+# Half a 95 % interval of one number in standard deviations, and the rise of Q at its ends.
+TWO_SIDED = 1.959964
+RISE = TWO_SIDED**2
 # An end is found if Q has risen by this share of that, or after so many tries.
 CLOSE, TRIES = 0.8, 5
 # The next try is no more than this many times further off.
@@ -42,7 +42,7 @@ def profiled(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     rugged a fit with a number held may have stopped short, too.
     """
     sides = list(product(range(fit.model.size), (1.0, -1.0)))
-    ends = np.full((fit.model.size, 2), np.sqrt(RISE))
+    ends = np.full((fit.model.size, 2), TWO_SIDED)
     for _ in range(ONWARD if fit.trial.found else 0):
         ways = each(lambda side, fit=fit: _way(fit, *side), sides)
         ends = np.reshape([way.end for way in ways], ends.shape)
@@ -51,7 +51,7 @@ def profiled(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
         if better.q > fit.q - LOWER:
             break
         fit = better
-    wider = np.r_[ends.max(axis=1) / np.sqrt(RISE), np.ones(len(fit.x) - fit.model.size)]
+    wider = np.r_[ends.max(axis=1) / TWO_SIDED, np.ones(len(fit.x) - fit.model.size)]
     return replace(fit, covariance=wider[:, None] * fit.covariance * wider)
 
 
@@ -60,7 +60,7 @@ def _way(fit: Fit, number: int, side: float) -> Way:
     std = np.sqrt(fit.covariance[number, number])
     bound = (fit.model.high if side > 0.0 else fit.model.low)[number]
     furthest = abs(bound - fit.x[number]) / std
-    end, held = np.sqrt(RISE), fit
+    end, held = TWO_SIDED, fit
     for _ in range(TRIES):
         off = min(end, furthest)
         held = _held(fit, held, number, fit.x[number] + side * off * std)
@@ -68,7 +68,7 @@ def _way(fit: Fit, number: int, side: float) -> Way:
         if rise < -LOWER:
             return Way(end, held)
         share = np.sqrt(RISE / max(rise, RISE / FURTHER**2))
-        end = max(off * share, np.sqrt(RISE))
+        end = max(off * share, TWO_SIDED)
         if rise > CLOSE * RISE or off == furthest:
             break
     return Way(end, fit)

@@ -6,12 +6,10 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.profile import TWO_SIDED
 from wedgesweep.diagnose.search import TONE_FREQUENCY
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
-
-# 95 % of a normal distribution.
-TWO_SIDED = 1.959964
 
 
 def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
