@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from wedgesweep import reproduce as reproduction
+from wedgesweep.figures import suspects as picture
 from wedgesweep.reproduce import chandiramani, chandiramani_page, observations, search, separation, trials
 from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
 from wedgesweep.reproduce.search import Effort
@@ -191,8 +192,9 @@ def test_the_sweep_is_left_out_where_the_recordings_cannot_win():
 def test_one_more_observation_met_is_worth_more_than_coming_closer():
     near, met_one = np.full(7, 3.0), np.r_[0.5, np.full(6, 4.0)]
     losses = trials.loss(np.stack([near, met_one, np.full(7, np.inf), np.full(7, 1.0)]))
-    assert losses[1] < losses[0] < losses[2] == 7.0
-    assert losses[3] == 0.0
+    assert losses[1] < losses[0] < losses[2] == pytest.approx(7.0 * (1.0 + trials.EDGE))
+    # Of two that meet the same the one further from the edges is better, but for nothing that is missed.
+    assert trials.loss(np.full((1, 7), 0.5))[0] < losses[3] < trials.loss(np.r_[1.2, np.zeros(6)][None])[0]
 
 
 def test_the_search_finds_the_input_of_20_hz_and_the_same_each_time():
@@ -202,6 +204,59 @@ def test_the_search_finds_the_input_of_20_hz_and_the_same_each_time():
     assert trials.described(question, found.point)["amplitude_20_hz_mm"] == pytest.approx(0.05, rel=0.05)
     np.testing.assert_array_equal(found.point, again.point)
     assert (trials.met(trials.distances(question, found.alike, search.SEARCH_HERTZ)) <= found.met).all()
+
+
+@pytest.mark.parametrize("suspect", ["small-input", "guide-friction"])
+def test_a_response_that_would_lift_off_has_no_numbers(suspect):
+    """At 30 Hz an input of 0.1 mm throws the bolster at 0.4 g, one of 2 mm at 7 g."""
+    own = (0.1,) if suspect == "guide-friction" else ()
+    rows = trials.at(np.repeat(alone(suspect=suspect, own=own), 2), 30.0, np.array([0.1e-3, 2e-3]))
+    found = trials.respond(rows, trials.ROUGH)
+    assert found.lifted[0] == 0.0 < found.lifted[1] < 1.0
+    assert np.isfinite(found.extremes[0]).all()
+    assert np.isnan(found.extremes[1]).all()
+    slow, fast = trials.record(rows, np.array([[0.1e-3, 0.1e-3], [0.1e-3, 2e-3]]), trials.ROUGH)
+    assert np.isinf(observations.of_tests(slow, fast)[1, 2:]).all()
+
+
+def test_a_recording_shows_one_period_like_all_others():
+    """On a fixture with hardly any damping this bolster answers with twice the input's period."""
+    static_dynamic = Law("static-dynamic", "static-dynamic")
+    row = BY_NAME["fixture-resonance"].record(static_dynamic, -4.0, np.array([0.5, 0.0]))
+    rows, amplitudes = np.repeat(row, 2), np.array([0.1e-3, 0.06e-3])
+    assert trials.respond(trials.at(rows, 30.0, amplitudes), trials.ROUGH).warm.period.tolist() == [1, 2]
+    _, fast = trials.record(rows, np.stack([amplitudes, amplitudes], axis=1), trials.ROUGH)
+    assert [np.isfinite(each).tolist() for each in fast] == [[True, False]] * 3
+
+
+def test_each_input_alone_decides_its_own_observations():
+    """What lets the search take the best input of each recording, and no cheaper test could."""
+    question = Question(BY_NAME["guide-friction"], COULOMB, 4.0, AN_INPUT_EACH)
+    one, other = np.array([[0.6, 0.7, 0.6, 0.2, 0.1], [0.7, 0.6, 0.75, 0.8, 0.1]])
+    of_one, of_other = (
+        trials.distances(question, point[None], search.SEARCH_HERTZ, np.array([np.inf]))[0]
+        for point in (one, other)
+    )
+    for inputs, decided in AN_INPUT_EACH.separate:
+        mixed, expected = one.copy(), of_one.copy()
+        mixed[inputs], expected[decided] = other[inputs], of_other[decided]
+        found = trials.distances(question, mixed[None], search.SEARCH_HERTZ, np.array([np.inf]))[0]
+        np.testing.assert_array_equal(found, expected)
+        assert not np.array_equal(found, of_one)
+    assert sorted(k for _, decided in AN_INPUT_EACH.separate for k in range(7)[decided]) == list(range(7))
+
+
+def test_input_by_input_keeps_the_suspect_and_what_was_better():
+    question = Question(BY_NAME["guide-friction"], COULOMB, 4.0, AN_INPUT_EACH)
+    random = np.random.default_rng(3)
+    points, tries = random.random((2, 6, 5))
+    always = np.full(6, np.inf)
+    before = trials.distances(question, points, search.SEARCH_HERTZ, always)
+    after, found = search._input_by_input(question, points, before, tries)
+    np.testing.assert_array_equal(after[:, 4:], points[:, 4:])
+    assert (trials.loss(found) <= trials.loss(before)).all()
+    assert (trials.loss(found) < trials.loss(before)).any()
+    np.testing.assert_array_equal(found, trials.distances(question, after, search.SEARCH_HERTZ, always))
 
 
 def test_trials_stay_within_the_ranges_and_start_points_are_kept():
@@ -259,3 +314,18 @@ def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     found = {each["suspect"]: each["met"] for each in content["suspects"]}
     monkeypatch.setattr(chandiramani, "RECORDED", found)
     assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is True
+
+
+def test_the_figure_leaves_out_what_has_no_response():
+    suspect = {
+        "words": "any",
+        "met": 3,
+        "distances": {"one": 1.0},
+        "peak_to_peak_mm": [0.1, None, 1e-9],
+        "slow": {"peak_to_peak": 0.03},
+        "fast": {"peak_to_peak": None},
+    }
+    figure = picture.draw([20.0, 30.0, 40.0], [suspect], observations.LEVELS, 1.5, (33.0, 37.0))
+    swept, recorded = (line.get_ydata() for line in figure.axes[0].lines[-2:])
+    np.testing.assert_array_equal(swept, [0.1, np.nan, picture.LEAST])
+    np.testing.assert_array_equal(recorded, [0.03, np.nan])

@@ -59,6 +59,20 @@ def test_it_is_what_a_long_run_ends_in(name):
         np.testing.assert_allclose(found.extremes[i], extremes, rtol=1e-5)
 
 
+@pytest.mark.parametrize("name", [None, "viscous_damping", "guide_friction"])
+def test_forces_tell_for_how_long_a_normal_force_is_negative(name):
+    rows = records(name, cases=(("coulomb", 2.2, 0.3e-3), ("static-dynamic", 2.2, 3e-3)))
+    found = periodic.respond(rows, periodic.at_rest(2), 1e-8, 400, 256, 7, 1e-9, forces=True)
+    assert found.lifted[0] == 0.0 < found.lifted[1]
+    for i in range(2):
+        run = event_driven.solve(rows[i : i + 1], Window(float(rows["omega"][i]), 150, 1, 256), 1e-9, 60.0)
+        share = run.tally["lifted_time"][0] / run.tally["time"][0]
+        assert found.lifted[i] == pytest.approx(share, abs=1e-4)
+    silent = respond(rows)
+    assert np.isnan(silent.lifted).all()
+    np.testing.assert_array_equal(silent.spectra, found.spectra)
+
+
 def test_a_neighbour_that_is_already_steady_costs_one_period():
     rows = records()
     first = respond(rows)

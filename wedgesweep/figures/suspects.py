@@ -25,8 +25,8 @@ def draw(
 ) -> Figure:
     """Draw a panel per suspect: its sweep, its recordings, and the levels seen (mm, by frequency).
 
-    A suspect is what chandiramani.document tells of it; ``factor`` is the tolerance of the levels, and the
-    jump was seen within ``jump_hertz``.
+    A suspect is what chandiramani.document tells of it, None where there is no such response; ``factor`` is
+    the tolerance of the levels, and the jump was seen within ``jump_hertz``.
     """
     figure, axes = style.panels(len(suspects), columns=COLUMNS, size=(3.1, 2.6))
     for ax, suspect in zip(axes, suspects, strict=True):
@@ -34,10 +34,10 @@ def draw(
         for frequency, level in levels.items():
             bar = [[level * (1.0 - 1.0 / factor)], [level * (factor - 1.0)]]
             ax.errorbar([frequency], [level], bar, color="black", capsize=3, linewidth=1.3)
-        swept = np.maximum(suspect["peak_to_peak_mm"], LEAST)
+        swept = _shown(suspect["peak_to_peak_mm"])
         ax.plot(hertz, swept, "-o", color=style.BLUE, markersize=2.5, linewidth=1.3)
         recorded = [suspect[name]["peak_to_peak"] for name in ("slow", "fast")]
-        ax.plot(list(levels), np.maximum(recorded, LEAST), "D", color=style.VERMILLION, markersize=5)
+        ax.plot(list(levels), _shown(recorded), "D", color=style.VERMILLION, markersize=5)
         ax.set_title(f"{suspect['words']}: {suspect['met']} of {len(suspect['distances'])}", fontsize=9)
         ax.set_yscale("log")
         style.decimal_ticks(ax.yaxis)
@@ -49,6 +49,10 @@ def draw(
         "In the titles: how many of the observations each meets.",
     )
     return figure
+
+
+def _shown(levels: Sequence[float | None]) -> np.ndarray:
+    return np.maximum(np.array(levels, float), LEAST)
 
 
 def _key() -> list[Line2D]:

@@ -69,7 +69,7 @@ def investigate(
     report(f"{len(briefly)} searches of {len(suspects)} suspects: laws, leans, readings of the inputs")
     promising = [each for suspect in suspects for each in _promising(_best_of(briefly, suspect))]
     thoroughly = _search(((question, well, start) for question, start in promising), n_jobs)
-    cases = [computed(_best_of(thoroughly, suspect)[0]) for suspect in suspects]
+    cases = [_closest(_best_of(thoroughly, suspect)) for suspect in suspects]
     for case in cases:
         report(f"{case.met} of {len(OBSERVATIONS)}: {case.found.question.suspect.words}")
     rivals = _rivals(cases)
@@ -108,6 +108,11 @@ def _best_of(found: Iterable[Found], suspect: Suspect) -> list[Found]:
     """Outcomes for a suspect, the best first: what meets as much with fewer inputs says more."""
     own = [each for each in found if each.question.suspect.name == suspect.name]
     return sorted(own, key=lambda each: (-each.met, each.question.reading.inputs, each.loss))
+
+
+def _closest(outcomes: Sequence[Found]) -> Case:
+    """The best of a suspect's outcomes once they are computed finely; the first of equals."""
+    return max(map(computed, outcomes), key=lambda case: (case.met, -case.found.question.reading.inputs))
 
 
 def _promising(ordered: Sequence[Found]) -> Iterator[tuple[Question, np.ndarray]]:
@@ -176,6 +181,5 @@ def _told(case: Case) -> dict[str, Any]:
         "distances": dict(zip(names, case.distances.tolist(), strict=True)),
         "slow": {name: float(values[0]) for name, values in case.slow._asdict().items()},
         "fast": {name: float(values[0]) for name, values in case.fast._asdict().items()},
-        "lift_off_fraction": case.lift_off,
         "peak_to_peak_mm": case.sweep.tolist(),
     }

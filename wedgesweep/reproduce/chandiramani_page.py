@@ -41,8 +41,14 @@ def answer(content: dict[str, Any]) -> str:
     most = max(each["met"] for each in suspects)
     closest = [each["words"] for each in suspects if each["met"] == most]
     if survivors:
-        return f"All {total} observations are reproduced by {' and by '.join(survivors)}; by nothing else."
-    return f"No single change reproduces all {total} observations. The most, {most}: {', '.join(closest)}."
+        return (
+            f"All {total} observations are reproduced by {' and by '.join(survivors)}; "
+            "the search found no other change that does."
+        )
+    return (
+        f"The search found no single change that reproduces all {total} observations. "
+        f"The most, {most}: {', '.join(closest)}."
+    )
 
 
 def observed(content: dict[str, Any]) -> str:
@@ -55,7 +61,9 @@ def observed(content: dict[str, Any]) -> str:
     )
     note = (
         "Each suspect at its best point, law, lean and reading of the inputs. A number tells how many "
-        "tolerances an observation is missed by; - that there is nothing of it at all."
+        "tolerances an observation is missed by; - that there is nothing of it at all. Responses with a "
+        "negative normal force, where a real wedge would lift off, count for nothing, nor do recordings in "
+        "which one period is not like the next."
     )
     return f"{table(head, rows)}\n\n{note}"
 
@@ -77,7 +85,6 @@ def _best(suspects: Sequence[dict[str, Any]]) -> str:
             f"{number(each['slow']['peak_to_peak'])}, {number(each['slow']['plateau'])}",
             f"{number(each['fast']['peak_to_peak'])}, {number(each['fast']['plateau'])}, "
             f"{number(each['fast']['distortion'])}",
-            number(each["lift_off_fraction"]),
         )
         for each in suspects
     )
@@ -89,7 +96,6 @@ def _best(suspects: Sequence[dict[str, Any]]) -> str:
         "numbers",
         "20 Hz: peak-to-peak (mm), plateau",
         "30 Hz: peak-to-peak (mm), plateau, distortion",
-        "lift-off (share of time)",
     )
     return table(head, rows)
 

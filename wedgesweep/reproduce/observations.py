@@ -59,7 +59,9 @@ OBSERVATIONS = (
     ),
     Observation("jump", "peak-to-peak jumps near 35 Hz", "x 1.5 within 2 Hz between 33 and 37 Hz, to stay"),
 )
-OF_TESTS = 5  # of these are seen in the recordings at 20 and 30 Hz, the others in the sweep
+# Which of these are seen in the recordings at 20 and 30 Hz, and which in the sweep.
+OF_SLOW, OF_FAST, OF_SWEEP = slice(0, 2), slice(2, 5), slice(5, 7)
+OF_TESTS = OF_FAST.stop
 
 
 class Recording(NamedTuple):

@@ -1,6 +1,7 @@
 """Search of a suspect's ranges: differential evolution (Storn and Price, 1997), the same each time.
 
 Distances jump where a motion begins to stick, so that no gradient is asked for. A generation is one batch.
+Where each recording has an input of its own, every other generation looks for these alone, one by one.
 """
 
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ class Effort:
 
 
 # All questions are looked through, and the most promising of each suspect searched well.
-THROUGH, WELL = Effort(6, 6), Effort(10, 14)
+THROUGH, WELL = Effort(6, 6), Effort(10, 28)
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,13 @@ def search(question: Question, effort: Effort, start: np.ndarray | None = None) 
     if start is not None:
         points[: len(start)] = start[: len(points)]
     found = distances(question, points, SEARCH_HERTZ)
-    seen = [(points.copy(), found.copy())]
-    for _ in range(effort.generations):
-        trials = _trials(points, loss(found), random)
-        tried = distances(question, trials, SEARCH_HERTZ, loss(found))
-        better = loss(tried) <= loss(found)
-        points[better], found[better] = trials[better], tried[better]
-        seen.append((trials[better], tried[better]))
+    seen = [(points, found)]
+    for generation in range(effort.generations):
+        select = _input_by_input if generation % 2 and question.reading.separate else _whole
+        chosen, found = select(question, points, found, _trials(points, loss(found), random))
+        moved = (chosen != points).any(axis=1)
+        seen.append((chosen[moved], found[moved]))
+        points = chosen
     return _best(question, *(np.concatenate(each) for each in zip(*seen, strict=True)))
 
 
@@ -92,6 +93,33 @@ def _trials(points: np.ndarray, losses: np.ndarray, random: np.random.Generator)
     trials = np.where(taken, moved, points)
     # What leaves the ranges comes back in, as from a mirror.
     return 1.0 - np.abs(1.0 - np.abs(trials) % 2.0)
+
+
+def _whole(
+    question: Question, points: np.ndarray, found: np.ndarray, trials: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The better one of each point and its trial, and its distances."""
+    tried = distances(question, trials, SEARCH_HERTZ, loss(found))
+    better = (loss(tried) <= loss(found))[:, None]
+    return np.where(better, trials, points), np.where(better, tried, found)
+
+
+def _input_by_input(
+    question: Question, points: np.ndarray, found: np.ndarray, trials: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The points with each input of the trial that is better for what it alone decides, and their distances.
+
+    The sweep is computed for the better half of the points.
+    """
+    trials = np.hstack([trials[:, : question.reading.inputs], points[:, question.reading.inputs :]])
+    promising = loss(found) <= np.median(loss(found))
+    tried = distances(question, trials, SEARCH_HERTZ, np.where(promising, np.inf, -np.inf))
+    chosen, distance = points.copy(), found.copy()
+    for inputs, decided in question.reading.separate:
+        better = loss(tried[:, decided]) <= loss(found[:, decided])
+        chosen[better, inputs] = trials[better, inputs]
+        distance[better, decided] = tried[better, decided]
+    return chosen, distance
 
 
 def _best(question: Question, points: np.ndarray, found: np.ndarray) -> Found:

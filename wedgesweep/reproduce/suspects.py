@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep import parameters
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
-from wedgesweep.reproduce.observations import SLOW_HERTZ
+from wedgesweep.reproduce.observations import OF_FAST, OF_SLOW, OF_SWEEP, SLOW_HERTZ
 
 # Where the two faces can stick one at a time, set-valued friction has no rigid linkage to rely on (see
 # parameters.REGULARISING): there it is a ramp, here up to a twentieth of the largest velocity at 20 Hz,
@@ -100,6 +100,13 @@ class Reading:
     name: str
     inputs: int
     power: float | None  # amplitude ~ 1/f^power over the sweep; None: a fourth free number tells 0 from 2
+
+    @property
+    def separate(self) -> tuple[tuple[slice, slice], ...]:
+        """Inputs and the observations that each alone decides; none where one input decides all."""
+        if self.power is not None:
+            return ()
+        return (slice(0, 1), OF_SLOW), (slice(1, 2), OF_FAST), (slice(2, 4), OF_SWEEP)
 
     def amplitudes(self, shares: np.ndarray, hertz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Amplitudes (m) of the recordings at 20 and 30 Hz, shape (n, 2), and of the sweep, (n, f).

@@ -24,6 +24,8 @@ class Accuracy(NamedTuple):
 # A search asks for tenths of tolerances; what is told of its outcome is computed again.
 ROUGH, FINE = Accuracy(1e-5, 80, 1e-6), Accuracy(1e-7, 1000, 1e-8)
 SAMPLES_PER_PERIOD, HARMONICS = 256, 40
+# What an observation that is met costs at the edge of its tolerance: its middle is the better answer.
+EDGE = 0.01
 
 
 @dataclass(frozen=True)
@@ -61,20 +63,30 @@ def at(records: np.ndarray, hertz: float, amplitude: np.ndarray) -> np.ndarray:
 def respond(
     records: np.ndarray, accuracy: Accuracy, before: Periodic | None = None, harmonics: int = HARMONICS
 ) -> Periodic:
-    """Steady responses, from rest or from the states of others; shape (n,)."""
+    """Steady responses, from rest or from the states of others; shape (n,).
+
+    One with a negative normal force at any time, at which a real wedge would lift off, has no numbers.
+    """
     warm = periodic.at_rest(len(records)) if before is None else before.warm
     tolerance, most, rtol = accuracy
-    return periodic.respond(records, warm, tolerance, most, SAMPLES_PER_PERIOD, harmonics, rtol)
+    found = periodic.respond(records, warm, tolerance, most, SAMPLES_PER_PERIOD, harmonics, rtol, forces=True)
+    lifts = found.lifted > 0.0
+    found.spectra[lifts], found.extremes[lifts] = np.nan, np.nan
+    return found
 
 
 def record(records: np.ndarray, amplitudes: np.ndarray, accuracy: Accuracy) -> tuple[Recording, Recording]:
     """The recordings at 20 and 30 Hz, each from rest; ``amplitudes`` (m) has shape (n, 2)."""
     slow = respond(at(records, SLOW_HERTZ, amplitudes[:, 0]), accuracy)
     fast = respond(at(records, FAST_HERTZ, amplitudes[:, 1]), accuracy)
-    return (
-        observations.recording(slow.spectra, slow.extremes),
-        observations.recording(fast.spectra, fast.extremes),
-    )
+    return _recorded(slow), _recorded(fast)
+
+
+def _recorded(found: Periodic) -> Recording:
+    """What a recording shows; no numbers where the periods differ, as the spectra are those of their mean."""
+    shows = (found.warm.period == 1) & np.isfinite(found.extremes).all(axis=1)
+    numbers = observations.recording(found.spectra, found.extremes)
+    return Recording(*(np.where(shows, each, np.nan) for each in numbers))
 
 
 def sweep(records: np.ndarray, amplitudes: np.ndarray, hertz: np.ndarray, accuracy: Accuracy) -> np.ndarray:
@@ -115,7 +127,8 @@ def loss(found: np.ndarray) -> np.ndarray:
 
     A miss costs at most 1: to meet one more is better than to come a little closer to two.
     """
-    return (1.0 - 1.0 / (1.0 + np.maximum(found - 1.0, 0.0))).sum(axis=1)
+    missed = 1.0 - 1.0 / (1.0 + np.maximum(found - 1.0, 0.0))
+    return (missed + EDGE * np.minimum(found, 1.0)).sum(axis=1)
 
 
 def met(found: np.ndarray) -> np.ndarray:

@@ -69,7 +69,8 @@ class Periodic(NamedTuple):
 
     ``spectra`` (n, 2, H), complex: D_h, h = 1..H, of displacement x - y = -z and of its rate, as the sensors
     show them; ``warm``: where they were found. ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
-    ``periods`` run, ``extremes`` (n, 2) lowest and highest deflection (m), ``stuck`` share of time.
+    ``periods`` run, ``extremes`` (n, 2) lowest and highest deflection (m), ``stuck`` share of time,
+    ``lifted`` share of time with a negative normal force (NaN if no forces were asked for).
     """
 
     spectra: Any
@@ -78,6 +79,7 @@ class Periodic(NamedTuple):
     periods: Any
     extremes: Any
     stuck: Any
+    lifted: Any
 
 
 def respond(
@@ -88,6 +90,7 @@ def respond(
     samples_per_period: int,
     harmonics: int,
     rtol: float,
+    forces: bool = False,
 ) -> Periodic:
     """Steady responses of parameter records, shape (n,).
 
@@ -105,6 +108,8 @@ def respond(
         Samples from which the harmonics are taken, and how many.
     rtol : float
         Relative tolerance of a step.
+    forces : bool
+        Look at the normal forces, too, which takes an extended case twice the time.
     """
     n = len(parameters)
     found = Periodic(
@@ -114,8 +119,9 @@ def respond(
         np.zeros(n, np.int64),
         np.full((n, 2), np.nan),
         np.full(n, np.nan),
+        np.full(n, np.nan),
     )
-    bench = tools(rtol, samples_per_period, forces=False)
+    bench = tools(rtol, samples_per_period, forces=forces)
     motion = np.full((n, 2, samples_per_period), np.nan)
     _respond_all(parameters, tolerance, most_periods, bench, found, motion, passage())
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
@@ -154,6 +160,8 @@ def _reduce(i, periods, bench, found, motion):
     one = bench.tally[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time
+    if bench.normal.shape[1] > 0:
+        found.lifted[i] = one.lifted_time / one.time
 
 
 @compiled
