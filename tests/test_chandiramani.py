@@ -283,7 +283,7 @@ def outcome():
     """A search too small to find much, of two suspects."""
     suspects = [replace(BY_NAME[name], laws=(COULOMB,)) for name in ("small-input", "guide-friction")]
     told = []
-    return chandiramani.investigate(1, told.append, suspects, (Effort(2, 1), Effort(2, 1))), told
+    return chandiramani.investigate(1, told.append, suspects, (Effort(2, 1),) * 3), told
 
 
 def test_an_investigation_asks_every_question_and_tells_of_every_suspect(outcome):

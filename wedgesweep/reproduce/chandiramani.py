@@ -1,11 +1,12 @@
 """Chandiramani's experiment: which changes of the model bring what was observed, and how to tell them apart.
 
 Every suspect is searched under each friction law, both leans of the columns and each reading of the
-unknown inputs: all questions briefly, then the most promising law and lean of each suspect well.
+unknown inputs: all questions briefly, the most promising laws and leans of each suspect well, and the best
+one deeply.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -15,13 +16,15 @@ import numpy as np
 from wedgesweep.backend import loky
 from wedgesweep.reproduce.best import HERTZ, Case, computed
 from wedgesweep.reproduce.observations import OBSERVATIONS
-from wedgesweep.reproduce.search import THROUGH, WELL, Effort, Found, search
+from wedgesweep.reproduce.search import DEEPLY, THROUGH, WELL, Effort, Found, search
 from wedgesweep.reproduce.separation import Separation, separate
 from wedgesweep.reproduce.suspects import AN_INPUT_EACH, LEANS, READINGS, SUSPECTS, Suspect
 from wedgesweep.reproduce.trials import ROUGH, Question, described, record
 
 # Pairs of law and lean of each suspect that are searched well.
 PROMISING = 2
+# Points of each earlier outcome from which the last search of a suspect starts.
+STARTS = 5
 # How many observations each suspect meets. A run that finds another number has found a change.
 RECORDED = {
     "small-input": 4,
@@ -59,22 +62,25 @@ def investigate(
     n_jobs: int,
     report: Report,
     suspects: Sequence[Suspect] = SUSPECTS,
-    efforts: tuple[Effort, Effort] = (THROUGH, WELL),
+    efforts: tuple[Effort, Effort, Effort] = (THROUGH, WELL, DEEPLY),
 ) -> Investigation:
     """Search all suspects; takes minutes, and the same numbers come out each time."""
     _compile(suspects)
-    through, well = efforts
+    through, well, deeply = efforts
     questions = [_questions(suspect) for suspect in suspects]
     briefly = _search(((q, through, None) for each in questions for q in each), n_jobs)
     report(f"{len(briefly)} searches of {len(suspects)} suspects: laws, leans, readings of the inputs")
     promising = [each for suspect in suspects for each in _promising(_best_of(briefly, suspect))]
-    thoroughly = _search(((question, well, start) for question, start in promising), n_jobs)
-    cases = [_closest(_best_of(thoroughly, suspect)) for suspect in suspects]
+    found = _search(((question, well, start) for question, start in promising), n_jobs)
+    report(f"{len(found)} of them searched well; the best of each suspect next")
+    best = [_widest(_best_of(found, suspect)) for suspect in suspects]
+    found += _search(((question, deeply, start) for question, start in best), n_jobs)
+    cases = [_closest(_best_of(found, suspect)) for suspect in suspects]
     for case in cases:
         report(f"{case.met} of {len(OBSERVATIONS)}: {case.found.question.suspect.words}")
     rivals = _rivals(cases)
     pairs, next_test = separate([each.found for each in rivals])
-    return Investigation(_merged(briefly, thoroughly), cases, rivals, pairs, next_test)
+    return Investigation(_merged(briefly, found), cases, rivals, pairs, next_test)
 
 
 def _questions(suspect: Suspect) -> list[Question]:
@@ -111,8 +117,17 @@ def _best_of(found: Iterable[Found], suspect: Suspect) -> list[Found]:
 
 
 def _closest(outcomes: Sequence[Found]) -> Case:
-    """The best of a suspect's outcomes once they are computed finely; the first of equals."""
-    return max(map(computed, outcomes), key=lambda case: (case.met, -case.found.question.reading.inputs))
+    """The best of a suspect's outcomes once they are computed finely."""
+    cases = map(computed, outcomes)
+    return max(cases, key=lambda case: (case.met, -case.found.question.reading.inputs, -case.loss))
+
+
+def _widest(ordered: Sequence[Found]) -> tuple[Question, np.ndarray]:
+    """The widest question with the law and the lean of the best outcome, and where to start."""
+    best = ordered[0].question
+    alike = [each for each in ordered if (each.question.law, each.question.lean) == (best.law, best.lean)]
+    starts = [each.question.reading.as_an_input_each(each.alike[:STARTS]) for each in alike]
+    return replace(best, reading=AN_INPUT_EACH), np.concatenate(starts)
 
 
 def _promising(ordered: Sequence[Found]) -> Iterator[tuple[Question, np.ndarray]]:
@@ -127,9 +142,9 @@ def _promising(ordered: Sequence[Found]) -> Iterator[tuple[Question, np.ndarray]
         yield wide.question, np.concatenate(starts)
 
 
-def _merged(briefly: Sequence[Found], thoroughly: Sequence[Found]) -> list[Found]:
-    """One outcome per question, the later one where there are two."""
-    again = {_name(each.question): each for each in thoroughly}
+def _merged(briefly: Sequence[Found], later: Sequence[Found]) -> list[Found]:
+    """One outcome per question, the last one where there are several."""
+    again = {_name(each.question): each for each in later}
     return [again.get(_name(each.question), each) for each in briefly]
 
 

@@ -24,8 +24,8 @@ class Effort:
     generations: int
 
 
-# All questions are looked through, and the most promising of each suspect searched well.
-THROUGH, WELL = Effort(6, 6), Effort(10, 28)
+# All questions are looked through, the most promising of each suspect searched well, and the best one deeply.
+THROUGH, WELL, DEEPLY = Effort(6, 6), Effort(10, 14), Effort(20, 60)
 
 
 @dataclass(frozen=True)
