@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from wedgesweep import reproduce as reproduction
+from wedgesweep import response
 from wedgesweep.figures import suspects as picture
 from wedgesweep.reproduce import chandiramani, chandiramani_page, observations, search, separation, trials
 from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
 from wedgesweep.reproduce.search import Effort
-from wedgesweep.reproduce.suspects import AN_INPUT_EACH, COULOMB, READINGS, SUSPECTS, Law
+from wedgesweep.reproduce.suspects import AN_INPUT_EACH, COULOMB, READINGS, STATIC_DYNAMIC, SUSPECTS, Law
 from wedgesweep.reproduce.trials import FINE, Question
+from wedgesweep.solvers import radau
+from wedgesweep.solvers.trajectory import Window
 
 HERTZ = np.arange(20.0, 41.0)
 BY_NAME = {suspect.name: suspect for suspect in SUSPECTS}
@@ -221,12 +224,42 @@ def test_a_response_that_would_lift_off_has_no_numbers(suspect):
 
 def test_a_recording_shows_one_period_like_all_others():
     """On a fixture with hardly any damping this bolster answers with twice the input's period."""
-    static_dynamic = Law("static-dynamic", "static-dynamic")
-    row = BY_NAME["fixture-resonance"].record(static_dynamic, -4.0, np.array([0.5, 0.0]))
+    row = BY_NAME["fixture-resonance"].record(STATIC_DYNAMIC, -4.0, np.array([0.5, 0.0]))
     rows, amplitudes = np.repeat(row, 2), np.array([0.1e-3, 0.06e-3])
     assert trials.respond(trials.at(rows, 30.0, amplitudes), trials.ROUGH).warm.period.tolist() == [1, 2]
     _, fast = trials.record(rows, np.stack([amplitudes, amplitudes], axis=1), trials.ROUGH)
     assert [np.isfinite(each).tolist() for each in fast] == [[True, False]] * 3
+
+
+def by_radau(row):
+    """Steady numbers of a case, and its spectra as a recording takes them."""
+    run = radau.solve(row, Window(float(row["omega"][0]), 60, 1, 256), 1e-8, 600.0)
+    found = response.evaluate(run, row, 40)
+    spectra = [found.spectra[f"{each}_harmonics"] for each in ("displacement", "velocity")]
+    extremes = np.array([[run.tally["lowest"][0], run.tally["highest"][0]]])
+    assert found.numbers["periodicity"] < 1e-6
+    assert found.numbers["lift_off_fraction"] == 0.0
+    return observations.recording((np.array(spectra) @ [1.0, 1j])[None], extremes)
+
+
+def test_more_preload_brings_all_that_was_seen_by_either_solver():
+    """What the search finds for preload, rounded: next to breakaway, the columns leaning the other way."""
+    (_, force) = BY_NAME["preload"].free[0]
+    low, high = force.search
+    row = BY_NAME["preload"].record(STATIC_DYNAMIC, -4.0, [(13.3 - low) / (high - low)])
+    levels = trials.sweep(row, np.full((1, HERTZ.size), 0.486e-3), HERTZ, FINE)
+    tested = ((20.0, 0.554e-3), (30.0, 0.617e-3))
+    slow, fast = (by_radau(trials.at(row, hertz, np.array([a]))) for hertz, a in tested)
+    assert (observations.of_tests(slow, fast) <= 1.0).all()
+    assert (observations.of_sweep(HERTZ, levels) <= 1.0).all()
+    again = trials.record(row, np.array([[a for _, a in tested]]), FINE)
+    for one, other in zip((slow, fast), again, strict=True):
+        np.testing.assert_allclose(one.peak_to_peak, other.peak_to_peak, rtol=1e-5)
+        np.testing.assert_allclose(one.plateau, other.plateau, atol=1 / 256)
+        np.testing.assert_allclose(one.distortion, other.distortion, rtol=1e-4)
+    for hertz in (33.0, 35.0):
+        found = by_radau(trials.at(row, hertz, np.array([0.486e-3])))
+        np.testing.assert_allclose(found.peak_to_peak, levels[:, int(hertz - 20.0)], rtol=1e-5)
 
 
 def test_each_input_alone_decides_its_own_observations():
