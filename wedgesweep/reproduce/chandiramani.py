@@ -23,8 +23,6 @@ from wedgesweep.reproduce.trials import ROUGH, Question, described, record
 
 # Pairs of law and lean of each suspect that are searched well.
 PROMISING = 2
-# Points of each earlier outcome from which the last search of a suspect starts.
-STARTS = 5
 # How many observations each suspect meets. A run that finds another number has found a change.
 RECORDED = {
     "small-input": 4,
@@ -73,8 +71,9 @@ def investigate(
     promising = [each for suspect in suspects for each in _promising(_best_of(briefly, suspect))]
     found = _search(((question, well, start) for question, start in promising), n_jobs)
     report(f"{len(found)} of them searched well; the best of each suspect next")
-    best = [_widest(_best_of(found, suspect)) for suspect in suspects]
-    found += _search(((question, deeply, start) for question, start in best), n_jobs)
+    best = [_widest(_best_of(found, suspect)[0]) for suspect in suspects]
+    # From anew: points that are known to be good would all lead to where these are.
+    found += _search(((question, deeply, None) for question in best), n_jobs)
     cases = [_closest(_best_of(found, suspect)) for suspect in suspects]
     for case in cases:
         report(f"{case.met} of {len(OBSERVATIONS)}: {case.found.question.suspect.words}")
@@ -122,12 +121,9 @@ def _closest(outcomes: Sequence[Found]) -> Case:
     return max(cases, key=lambda case: (case.met, -case.found.question.reading.inputs, -case.loss))
 
 
-def _widest(ordered: Sequence[Found]) -> tuple[Question, np.ndarray]:
-    """The widest question with the law and the lean of the best outcome, and where to start."""
-    best = ordered[0].question
-    alike = [each for each in ordered if (each.question.law, each.question.lean) == (best.law, best.lean)]
-    starts = [each.question.reading.as_an_input_each(each.alike[:STARTS]) for each in alike]
-    return replace(best, reading=AN_INPUT_EACH), np.concatenate(starts)
+def _widest(best: Found) -> Question:
+    """The question with the same law and lean that holds all readings of the inputs."""
+    return replace(best.question, reading=AN_INPUT_EACH)
 
 
 def _promising(ordered: Sequence[Found]) -> Iterator[tuple[Question, np.ndarray]]:
