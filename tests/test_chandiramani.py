@@ -263,7 +263,7 @@ def test_more_preload_brings_all_that_was_seen_by_either_solver():
 
 
 def test_each_input_alone_decides_its_own_observations():
-    """What lets the search take the best input of each recording, and no cheaper test could."""
+    """What lets the search take the best input of each recording."""
     question = Question(BY_NAME["guide-friction"], COULOMB, 4.0, AN_INPUT_EACH)
     one, other = np.array([[0.6, 0.7, 0.6, 0.2, 0.1], [0.7, 0.6, 0.75, 0.8, 0.1]])
     of_one, of_other = (

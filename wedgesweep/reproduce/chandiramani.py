@@ -132,10 +132,9 @@ def _promising(ordered: Sequence[Found]) -> Iterator[tuple[Question, np.ndarray]
     for pair in pairs[:PROMISING]:
         alike = [each for each in ordered if (each.question.law.name, each.question.lean) == pair]
         single = next(each for each in alike if each.question.reading != AN_INPUT_EACH)
-        wide = next(each for each in alike if each.question.reading == AN_INPUT_EACH)
         yield single.question, single.point[None]
         starts = [each.question.reading.as_an_input_each(each.point[None]) for each in alike]
-        yield wide.question, np.concatenate(starts)
+        yield _widest(single), np.concatenate(starts)
 
 
 def _merged(briefly: Sequence[Found], later: Sequence[Found]) -> list[Found]:
