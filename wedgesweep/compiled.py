@@ -4,8 +4,9 @@ numba's own cache looks only at the file of the function itself, so that an edit
 a stale caller behind. A cache folder per state of the compiled sources rules that out.
 """
 
+import inspect
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -13,7 +14,9 @@ from typing import Any, TypeVar, cast
 import numba
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
+from numba.extending import intrinsic, overload
+
+from wedgesweep.inner_code import InnerCompiler
 
 PACKAGE = Path(__file__).parent
 
@@ -41,17 +44,29 @@ Function = TypeVar("Function", bound=Callable)
 
 # A division by zero gives inf or NaN, as in numpy; threads run at once; nobody calls these from C, and
 # without a way to do so they compile in nine tenths of the time.
-OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+# Unless it is said, functions inherit ``forceinline`` from those that call them.
+OPTIONS: dict[str, Any] = {
+    "error_model": "numpy",
+    "nogil": True,
+    "no_cfunc_wrapper": True,
+    "forceinline": False,
+}
+INNER: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
 
 
 def compiled(function: Function) -> Function:
-    """Compile with numba."""
-    return cast(Function, numba.njit(**OPTIONS)(function))
+    """Compile with numba: for what Python calls."""
+    return cast(Function, numba.njit(cache=True, **OPTIONS)(function))
+
+
+def inner(function: Function) -> Function:
+    """Compile for other compiled functions alone: their code holds it, see inner_code.py."""
+    return cast(Function, numba.njit(**INNER)(function))
 
 
 def inlined(function: Function) -> Function:
-    """``compiled``, and copied into its callers: for what is short and called in the innermost loops."""
-    return cast(Function, numba.njit(forceinline=True, **OPTIONS)(function))
+    """``inner``, and copied into its callers: for what is short and called in the innermost loops."""
+    return cast(Function, numba.njit(**INNER | {"forceinline": True})(function))
 
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
@@ -99,3 +114,46 @@ class Pointer(types.WrapperAddressProtocol):
 
     def signature(self) -> Any:
         return self._signature
+
+
+def _named(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
+    """A function of these arguments that returns an expression: numba compiles it like any other."""
+    exec(f"def function({', '.join(arguments)}):\n    return {body}", scope)
+    return cast(Callable, scope["function"])
+
+
+def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
+    """A function for compiled code, made anew for every type of its parameter record ``p``.
+
+    ``choose`` gets the fields of the record's type and returns the plain function that is compiled then: what a
+    record has no fields for costs nothing. Python calls ``function`` itself.
+    """
+    arguments = list(inspect.signature(function).parameters)
+    place = arguments.index("p")
+
+    def chosen(*kinds: Any) -> Callable | None:
+        record = kinds[place]
+        return choose(record.fields) if isinstance(record, types.Record) else None
+
+    listed = _named(arguments, f"chosen({', '.join(arguments)})", chosen=chosen)
+    overload(function, jit_options=INNER | {"forceinline": True})(listed)
+    return function
+
+
+def forward(arguments: Sequence[str], target: Callable) -> Callable:
+    """A plain function that passes its arguments on to compiled code."""
+    return _named(arguments, f"target({', '.join(arguments)})", target=target)
+
+
+def term(owner: str, off: str) -> Callable[[Function], Function]:
+    """Let a function of a record p act where the record has a part named ``owner``.
+
+    Elsewhere it is the expression ``off`` of its arguments, which a compiler removes.
+    """
+
+    def decorate(function: Function) -> Function:
+        arguments = list(inspect.signature(function).parameters)
+        present, absent = forward(arguments, inlined(function)), _named(arguments, off)
+        return by_record(function, lambda fields: present if owner in fields else absent)
+
+    return decorate

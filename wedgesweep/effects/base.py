@@ -29,8 +29,3 @@ class Effect:
         leading = self.extends or (self.quantities[0].name,)
         off = {each.name: each.neutral * each.factor for each in self.quantities}
         return any(numbers.get(name, off[name]) != off[name] for name in leading)
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """Names of its numbers in the parameter record, in the order of ``quantities``."""
-        return tuple(f"{self.name}_{quantity.name}" for quantity in self.quantities)

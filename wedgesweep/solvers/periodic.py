@@ -1,7 +1,6 @@
 """Steady responses of many cases, each started from a state nearby: what a fit asks for.
 
-Works alike for the base model, whose states are the first two of the extended system's, and for every
-effect. See settling.py for the way to a steady state.
+See shooting.py for the way to a steady state.
 """
 
 from collections.abc import Sequence
@@ -12,13 +11,15 @@ import numpy as np
 
 from wedgesweep import response, sensor
 from wedgesweep.compiled import compiled
-from wedgesweep.extended.mode import SIZE
-from wedgesweep.solvers.march import OK
-from wedgesweep.solvers.passage import clear, passage, tools
-from wedgesweep.solvers.repetition import LONGEST
-from wedgesweep.solvers.settling import settle
+from wedgesweep.hybrid.accumulators import clear
+from wedgesweep.hybrid.interface import scales
+from wedgesweep.hybrid.state import OK
+from wedgesweep.solvers.period_detection import LONGEST_PERIOD
+from wedgesweep.solvers.period_map import memory, period_map
+from wedgesweep.solvers.shooting import Shooting, settle
+from wedgesweep.systems import grouped, state_count
 
-__all__ = ["OK", "SIZE", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
+__all__ = ["OK", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
 
 # Time constants after which the lag of the velocity channel has forgotten how it began.
 LAG_TIMES = 16.0
@@ -27,8 +28,8 @@ LAG_TIMES = 16.0
 class Warm(NamedTuple):
     """Where steady responses were found, a row a case, and so where to look for those of their neighbours.
 
-    ``state`` (n, SIZE) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
-    periods (0: it does not repeat), ``map`` (n, SIZE, SIZE) the derivative of the state a period later by
+    ``state`` (n, S) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
+    periods (0: it does not repeat), ``map`` (n, S, S) the derivative of the state a period later by
     that at phase 0 (NaN: unknown).
     """
 
@@ -54,9 +55,8 @@ class Warm(NamedTuple):
 
 def at_rest(cases: int) -> Warm:
     """No neighbour."""
-    return Warm(
-        np.full((cases, SIZE), np.nan), np.zeros(cases, np.int64), np.full((cases, SIZE, SIZE), np.nan)
-    )
+    n = state_count()
+    return Warm(np.full((cases, n), np.nan), np.zeros(cases, np.int64), np.full((cases, n, n), np.nan))
 
 
 def joined(some: Sequence[Warm]) -> Warm:
@@ -121,46 +121,57 @@ def respond(
         np.full(n, np.nan),
         np.full(n, np.nan),
     )
-    bench = tools(rtol, samples_per_period, forces=forces)
+    room = memory(rtol, samples_per_period, energies=forces, forces=False)
     motion = np.full((n, 2, samples_per_period), np.nan)
-    _respond_all(parameters, tolerance, most_periods, bench, found, motion, passage())
+    for rows, cases in grouped(parameters):
+        _respond_all(cases, rows, Search(tolerance, most_periods), room, found, motion, period_map(cases.dtype))
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
     _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found
 
 
+class Search(NamedTuple):
+    """When a response counts as steady, and after how many periods as one that is not."""
+
+    tolerance: float
+    most_periods: int
+
+
 @compiled
-def _respond_all(parameters, tolerance, most, bench, found, motion, passage):
-    for i in range(parameters.size):
-        case = parameters[i : i + 1]
-        y, before = found.warm.state[i].copy(), found.warm.period[i]
-        outcome, period, run, kept = settle(
-            y, before, found.warm.map[i], case, tolerance, most, bench, passage
-        )
+def _respond_all(cases, rows, search, room, found, motion, period_map):
+    """Respond to the cases, which stand in these rows of all that is found."""
+    for k in range(cases.size):
+        i, case = rows[k], cases[k : k + 1]
+        n = len(scales(case[0]))
+        y, before = found.warm.state[i, :n].copy(), found.warm.period[i]
+        jacobian = found.warm.map[i, :n, :n].copy()
+        shooting = Shooting(case, period_map, search.tolerance, search.most_periods, room)
+        outcome, period, run, kept = settle(y, before, jacobian, shooting)
         if outcome == OK and not kept:
             # Of a response that does not repeat, the mean over as many periods as there is room for.
-            kept = period if period else LONGEST
-            clear(bench.tally)
-            outcome = passage(run if period == 0 else 0, kept, y, case, True, bench)
+            kept = period if period else LONGEST_PERIOD
+            clear(room.sums)
+            outcome = period_map(run if period == 0 else 0, kept, y, case, True, room)
             run += kept
         found.outcome[i], found.periods[i] = outcome, run
-        found.warm.state[i], found.warm.period[i] = y, period
+        found.warm.state[i], found.warm.period[i], found.warm.map[i] = 0.0, period, np.nan
+        found.warm.state[i, :n], found.warm.map[i, :n, :n] = y, jacobian
         if outcome != OK:
             found.warm.state[i] = np.nan
         else:
-            _reduce(i, kept, bench, found, motion[i])
+            _reduce(i, kept, room, found, motion[i])
 
 
 @compiled
-def _reduce(i, periods, bench, found, motion):
+def _reduce(i, periods, room, found, motion):
     """Write what the kept periods come to; ``motion`` (2, samples): displacement x - y and its rate."""
-    n = periods * bench.samples_per_period
-    response.mean_period(-bench.x[:n], motion[0])
-    response.mean_period(-bench.velocity[:n], motion[1])
-    one = bench.tally[0]
+    n = periods * room.samples_per_period
+    response.mean_period(-room.x[:n], motion[0])
+    response.mean_period(-room.velocity[:n], motion[1])
+    one = room.sums[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time
-    if bench.normal.shape[1] > 0:
+    if room.energies:
         found.lifted[i] = one.lifted_time / one.time
 
 
@@ -186,29 +197,43 @@ def samples(
     n, kept = len(parameters), periods * samples_per_period
     x, velocity = np.full((n, kept), np.nan), np.full((n, kept), np.nan)
     state = np.array(states, dtype=float)
-    slowest = float((parameters["velocity_lag_time"] * parameters["omega"]).max()) / (2.0 * pi)
+    slowest = float((parameters["velocity_lag"]["time"] * parameters["input"]["omega"]).max()) / (2.0 * pi)
     # The lag of the velocity channel dies out before the kept samples.
     before = min(settle_periods, ceil(LAG_TIMES * slowest))
-    bench = tools(rtol, samples_per_period, before + periods, forces=False)
-    _sample_all(parameters, settle_periods - before, before, periods, bench, x, velocity, state, passage())
+    room = memory(rtol, samples_per_period, before + periods, energies=False, forces=False)
+    spans = np.array([settle_periods - before, before + periods])
+    for rows, cases in grouped(parameters):
+        _sample_all(cases, rows, spans, room, Sampled(x, velocity, state), period_map(cases.dtype))
     return x, velocity, state
 
 
+class Sampled(NamedTuple):
+    """Samples (n, k) of displacement (m) and velocity (m/s), and states (n, S) before and after."""
+
+    x: Any
+    velocity: Any
+    state: Any
+
+
 @compiled
-def _sample_all(parameters, settle_periods, before, periods, bench, x, velocity, state, passage):
-    for i in range(parameters.size):
-        case = parameters[i : i + 1]
+def _sample_all(cases, rows, spans, room, out, period_map):
+    """Run the cases, which stand in these rows: periods that are not kept, and those that are."""
+    for k in range(cases.size):
+        i, case = rows[k], cases[k : k + 1]
         p = case[0]
-        y = state[i].copy() if np.isfinite(state[i]).all() else np.zeros(SIZE)
+        n = len(scales(p))
+        y = out.state[i, :n].copy() if np.isfinite(out.state[i]).all() else np.zeros(n)
         outcome = OK
-        if settle_periods > 0:
-            outcome = passage(0, settle_periods, y, case, False, bench)
+        if spans[0] > 0:
+            outcome = period_map(0, spans[0], y, case, False, room)
         if outcome == OK:
-            outcome = passage(settle_periods, before + periods, y, case, True, bench)
-        state[i] = y
+            outcome = period_map(spans[0], spans[1], y, case, True, room)
+        out.state[i] = 0.0
+        out.state[i, :n] = y
         if outcome != OK:
-            state[i] = np.nan
+            out.state[i] = np.nan
         else:
-            step = 2.0 * pi / p.omega / bench.samples_per_period
-            x[i] = p.displacement_gain_scale * bench.x[-x.shape[1] :]
-            velocity[i] = sensor.lagged(bench.velocity, step, False, p)[-x.shape[1] :]
+            step = 2.0 * pi / p.input.omega / room.samples_per_period
+            samples = out.x.shape[1]
+            out.x[i] = p.displacement_gain.scale * room.x[-samples:]
+            out.velocity[i] = sensor.lagged(room.velocity, step, False, p)[-samples:]

@@ -1,0 +1,112 @@
+"""Where a function of one variable is zero, or smallest: the one way to locate an event.
+
+A function is a compiled one of the arguments (place, context), known by the type of its context (a NamedTuple):
+numba could not cache code that passes functions along. So one search serves event functions on the dense output of
+a step, of a closed form, and of a system at rest.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+from numba.core import types
+from numba.extending import overload
+
+from wedgesweep.compiled import INNER, inner, forward
+
+GOLDEN = 0.6180339887498949
+MOST_ITERATIONS = 100
+
+Function = TypeVar("Function", bound=Callable)
+_FUNCTIONS: dict[type, Callable] = {}
+
+
+def searched(context: type) -> Callable[[Function], Function]:
+    """Make a compiled function of (place, context) the one of a type of context."""
+
+    def decorate(function: Function) -> Function:
+        _FUNCTIONS[context] = function
+        return function
+
+    return decorate
+
+
+def _value(place, context):
+    """The function of a context, at a place."""
+
+
+@overload(_value, jit_options=INNER | {"forceinline": True})
+def _of_context(place, context):
+    if not isinstance(context, types.NamedTuple | types.NamedUniTuple):
+        return None
+    return forward(("place", "context"), _FUNCTIONS[context.instance_class])
+
+
+class Bracket(NamedTuple):
+    """Two places, and what a function is there: positive at ``low``, not positive at ``high``."""
+
+    low: float
+    at_low: float
+    high: float
+    at_high: float
+
+
+@inner
+def zero(context, bracket, close):
+    """Place in a bracket at which a function is zero, to within ``close`` (Illinois method)."""
+    low, at_low, high, at_high = bracket
+    for _ in range(MOST_ITERATIONS):
+        place = high - at_high * (high - low) / (at_high - at_low)
+        if not low < place < high:
+            place = 0.5 * (low + high)
+        value = _value(place, context)
+        if value == 0.0 or high - low < close:
+            return place
+        if value > 0.0:
+            if place - low < close:
+                return place
+            low, at_low = place, value
+            at_high *= 0.5
+        else:
+            if high - place < close:
+                return place
+            high, at_high = place, value
+            at_low *= 0.5
+    return high
+
+
+@inner
+def zero_after_start(context, bracket, nearest, close):
+    """``zero`` of a function that begins at its zero, before a positive part; the low end if that cannot be seen.
+
+    ``nearest``: distance from the low end below which nothing is looked for.
+    """
+    start, _, high, at_high = bracket
+    place = 0.5 * (start + high)
+    while place - start > nearest:
+        value = _value(place, context)
+        if value > 0.0:
+            return zero(context, Bracket(place, value, high, at_high), close)
+        high, at_high = place, value
+        place = 0.5 * (start + high)
+    return start
+
+
+@inner
+def minimum(context, low, high, close):
+    """Place between two others at which a function is smallest, or at least not positive (golden section)."""
+    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_left, at_right = _value(left, context), _value(right, context)
+    while high - low > close:
+        if at_left <= 0.0:
+            return left
+        if at_right <= 0.0:
+            return right
+        if at_left < at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = _value(left, context)
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = _value(right, context)
+    return 0.5 * (low + high)
