@@ -22,7 +22,7 @@ from blind_strength import TONE
 
 from wedgesweep.compiled import source_digest
 from wedgesweep.config import toml
-from wedgesweep.provenance import git_commit
+from wedgesweep.sweep.provenance import git_commit
 
 ROOT = Path(__file__).parent.parent
 RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"

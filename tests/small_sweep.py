@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import config
-from wedgesweep.sweep import Sweep
+from wedgesweep.sweep.run import Sweep
 
 ROOT = Path(__file__).parent.parent
 CONFIG = """\

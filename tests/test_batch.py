@@ -10,12 +10,14 @@ from hypothesis import settings as hypothesis_settings
 
 from tests import small_sweep
 from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
-from wedgesweep import cases, dataset, parameters, sweep
-from wedgesweep.dataset import STATUSES
+from wedgesweep import parameters
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.response import NUMBERS
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.march import SWITCHES_PER_PERIOD
+from wedgesweep.sweep import cases, dataset
+from wedgesweep.sweep import run as sweep
+from wedgesweep.sweep.dataset import STATUSES
 
 EVENT_DRIVEN = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 STEADY = EVENT_DRIVEN.replace("settle_periods = 3", 'settle = "steady"\nsteady_tolerance = 1e-9\nrtol = 1e-9')

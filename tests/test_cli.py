@@ -194,7 +194,7 @@ def test_an_unfinished_sweep_of_another_config_is_refused(here):
 
 def test_status_of_a_sweep_that_another_version_left(here, monkeypatch):
     run("locked.toml", "--fail-fast", code=1)
-    monkeypatch.setattr("wedgesweep.fingerprint.__version__", "99.0")
+    monkeypatch.setattr("wedgesweep.sweep.fingerprint.__version__", "99.0")
     told = invoke("status", "locked.nc", code=1)
     assert "cannot be continued as things are: wedgesweep: " in told
     assert "there, 99.0 now" in told

@@ -8,11 +8,13 @@ from click.testing import CliRunner
 
 from tests import small_sweep
 from tests.small_sweep import LOCKED, assert_same_numbers
-from wedgesweep import batch, continuation, dataset, journal, response, sweep
+from wedgesweep import response
 from wedgesweep.cli import cli
-from wedgesweep.dataset import APART, STATUSES
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
+from wedgesweep.sweep import batch, continuation, dataset, journal
+from wedgesweep.sweep import run as sweep
+from wedgesweep.sweep.dataset import APART, STATUSES
 
 CONTINUED = {variable.name for variable in dataset.CONTINUED}
 # Friction that falls steeply: below 0.05 mm there is a motion over two periods beside one over a single one.

@@ -9,9 +9,10 @@ import pytest
 import xarray as xr
 
 from tests import small_sweep
-from wedgesweep import config, dataset, provenance
-from wedgesweep.dataset import STATUSES, VARIABLES
+from wedgesweep import config
 from wedgesweep.errors import SweepError
+from wedgesweep.sweep import dataset, provenance
+from wedgesweep.sweep.dataset import STATUSES, VARIABLES
 
 FEW = small_sweep.CONFIG.replace("0.8, 1.1, 1.6, ", "")
 

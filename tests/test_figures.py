@@ -10,7 +10,7 @@ from tests import fixture_dataset
 from wedgesweep import config, figures
 from wedgesweep.figures import amplitude_ratio, bifurcation, cases, friction_laws, stick_map
 from wedgesweep.friction import LAWS
-from wedgesweep.sweep import Sweep
+from wedgesweep.sweep.run import Sweep
 
 KINDS = sorted(figures.DESCRIPTIONS)
 FROM_LISTS = ("friction-laws", "phase-portrait")

@@ -11,39 +11,42 @@ PACKAGE = Path(__file__).parent.parent / "wedgesweep"
 FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
 
 NUMERICS = (
-    *("quantity.py", "parameters.py", "excitation.py", "damper.py", "contact.py", "tally.py"),
+    *("outcome.py", "quantity.py", "parameters.py", "excitation.py", "damper.py", "contact.py", "tally.py"),
     *("friction/", "effects/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
-    *("dataset", "sweep", "backend", "journal", "cases", "outcomes", "provenance", "fingerprint", "estimate"),
-    *("batch", "cluster", "continuation", "config", "figures", "reproduce", "measured", "synthesize", "cli"),
-    *("report", "diagnosed"),
+    *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report", "diagnosed"),
 )
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
-    ("config/",): ("xarray", "joblib", *(f"wedgesweep.{name}" for name in ("sweep", "dataset", "measured"))),
+    ("config/",): ("xarray", "joblib", "wedgesweep.sweep", "wedgesweep.measured"),
     ("measured/",): (
         "xarray",
         *(f"wedgesweep.{name}" for name in ("simulate", "solvers", "sweep", "synthesize")),
     ),
     # Synthetic data come from another integrator than a fit uses.
-    ("synthesize/",): ("xarray", "wedgesweep.sweep", "wedgesweep.batch", "wedgesweep.solvers.event_driven"),
-    ("dataset.py", "journal.py", "cases.py", "batch.py", "continuation.py"): (
-        "wedgesweep.sweep",
-        "wedgesweep.figures",
+    ("synthesize/",): (
+        *("xarray", "wedgesweep.sweep.run", "wedgesweep.sweep.batch"),
+        "wedgesweep.solvers.event_driven",
     ),
-    ("figures/",): tuple(f"wedgesweep.{name}" for name in ("sweep", "journal", "report", "diagnose", "cli")),
-    ("report/", "diagnosed.py"): ("wedgesweep.sweep", "wedgesweep.diagnose", "wedgesweep.cli"),
+    ("sweep/",): tuple(
+        f"wedgesweep.{name}" for name in ("figures", "report", "diagnose", "measured", "reproduce", "cli")
+    ),
+    tuple(f"sweep/{name}.py" for name in ("dataset", "journal", "cases", "batch", "continuation")): (
+        "wedgesweep.sweep.run",
+    ),
+    ("figures/",): tuple(f"wedgesweep.{name}" for name in ("sweep", "report", "diagnose", "cli")),
+    ("report/", "diagnosed.py"): ("wedgesweep.sweep.run", "wedgesweep.diagnose", "wedgesweep.cli"),
     ("digits.py",): ("numpy", "wedgesweep"),
 }
 ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/",),
     "joblib": (
-        *("backend.py", "cluster.py", "sweep.py", "synthesize/", "cli/"),
+        *("sweep/backend.py", "sweep/cluster.py", "sweep/run.py", "synthesize/", "cli/"),
         "reproduce/chandiramani.py",
     ),
-    "distributed": ("cluster.py",),
+    "distributed": ("sweep/cluster.py",),
     "wedgesweep.cli": ("cli/", "__main__.py"),
 }
 

@@ -14,12 +14,13 @@ import xarray as xr
 
 from tests import small_sweep
 from tests.small_sweep import CASES, CONFIG, LOCKED, assert_same_numbers
-from wedgesweep import cases, config, journal
-from wedgesweep.dataset import STATUSES
+from wedgesweep import config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.response import Response
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.sweep import CaseFailedError
+from wedgesweep.sweep import cases, journal
+from wedgesweep.sweep.dataset import STATUSES
+from wedgesweep.sweep.run import CaseFailedError
 
 TIMED_OUT = STATUSES.index("time_limit")
 
@@ -170,7 +171,7 @@ def test_another_config_is_not_mixed_in(tmp_path, change):
 def test_another_version_is_not_mixed_in(tmp_path, monkeypatch):
     sweep = small_sweep.sweep(tmp_path)
     interrupted(sweep, 3)
-    monkeypatch.setattr("wedgesweep.fingerprint.__version__", "99.0")
+    monkeypatch.setattr("wedgesweep.sweep.fingerprint.__version__", "99.0")
     with pytest.raises(MismatchError, match=r"wedgesweep: .* there, 99\.0 now"):
         sweep.run(n_jobs=1)
 

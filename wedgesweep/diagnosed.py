@@ -7,8 +7,8 @@ from typing import Any
 
 import xarray as xr
 
-from wedgesweep import dataset
 from wedgesweep.errors import InputError
+from wedgesweep.sweep import dataset
 
 JSON, DATASET = "diagnosis.json", "diagnosis.nc"
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")

@@ -6,10 +6,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from wedgesweep import dataset, parameters, response, tally
+from wedgesweep import parameters, response, tally
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.march import workspace
+from wedgesweep.sweep import dataset
 
 PHASES, SETTLE = 128, 60
 

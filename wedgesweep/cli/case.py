@@ -59,7 +59,7 @@ def case(
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
     tell_of_compiling(settings.solver.method)
-    from wedgesweep.sweep import Sweep
+    from wedgesweep.sweep.run import Sweep
 
     ds = Sweep(settings, stem).run_here(command=command_line())
     _print_numbers(ds)
@@ -96,7 +96,7 @@ def _with_suffix(stem: Path, suffix: str) -> Path:
 
 def _require_no_sweep(path: Path) -> None:
     """Do not let one case take the place of a whole sweep."""
-    from wedgesweep import dataset
+    from wedgesweep.sweep import dataset
 
     if not path.exists():
         return
@@ -107,8 +107,8 @@ def _require_no_sweep(path: Path) -> None:
 
 
 def _print_numbers(ds: "xr.Dataset") -> None:
-    from wedgesweep.cases import describe
-    from wedgesweep.dataset import VARIABLES
+    from wedgesweep.sweep.cases import describe
+    from wedgesweep.sweep.dataset import VARIABLES
 
     where = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
     click.echo(f"{describe(*where)}, {ds['frequency'].item():.6g} Hz")
@@ -122,7 +122,8 @@ def _print_numbers(ds: "xr.Dataset") -> None:
 
 
 def _write(ds: "xr.Dataset", stem: Path) -> None:
-    from wedgesweep import dataset, figures
+    from wedgesweep import figures
+    from wedgesweep.sweep import dataset
 
     file, picture = _with_suffix(stem, ".nc"), _with_suffix(stem, ".png")
     dataset.write(ds, file)

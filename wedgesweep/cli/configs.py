@@ -13,7 +13,7 @@ from wedgesweep.cli.words import duration, size
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
-    from wedgesweep.estimate import Estimate
+    from wedgesweep.sweep.estimate import Estimate
 
 STANDARD_OUTPUT = Path("-")
 
@@ -55,9 +55,9 @@ def check(config_path: Path) -> None:
         return
     settings = config.load(config_path)
     click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
-    from wedgesweep import backend
-    from wedgesweep.estimate import estimate
-    from wedgesweep.sweep import Sweep
+    from wedgesweep.sweep import backend
+    from wedgesweep.sweep.estimate import estimate
+    from wedgesweep.sweep.run import Sweep
 
     sweep, n_jobs = Sweep(settings, Path(f"{config_path.stem}.nc")), jobs(None)
     threads = backend.local(sweep.settings.method) is backend.threads

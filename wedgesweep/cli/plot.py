@@ -101,7 +101,8 @@ def _beside(path: Path) -> Path:
 
 
 def _read(path: Path) -> "xr.Dataset | Diagnosed":
-    from wedgesweep import dataset, diagnosed
+    from wedgesweep import diagnosed
+    from wedgesweep.sweep import dataset
 
     return diagnosed.read(path) if path.is_dir() else dataset.read(path)
 

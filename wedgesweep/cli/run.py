@@ -15,9 +15,9 @@ from wedgesweep.cli.words import duration
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
-    from wedgesweep.backend import Backend
     from wedgesweep.config import Config
-    from wedgesweep.sweep import Sweep
+    from wedgesweep.sweep.backend import Backend
+    from wedgesweep.sweep.run import Sweep
 
 BACKENDS = ("threads", "loky", "dask")
 
@@ -66,7 +66,7 @@ def run(
     _require_sense(backend, scheduler, n_jobs)
     settings = _settings(config_path, solver)
     from wedgesweep.errors import MismatchError
-    from wedgesweep.sweep import CaseFailedError, Sweep
+    from wedgesweep.sweep.run import CaseFailedError, Sweep
 
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"))
     progress = Progress()
@@ -114,10 +114,10 @@ def _require_sense(backend: str | None, scheduler: str | None, n_jobs: int | Non
 def _backend(name: str | None, scheduler: str | None) -> "Backend | None":
     """The backend of a name; None leaves the choice to the sweep."""
     if name == "dask":
-        from wedgesweep import cluster
+        from wedgesweep.sweep import cluster
 
         return partial(cluster.dask, scheduler=scheduler)
-    from wedgesweep import backend
+    from wedgesweep.sweep import backend
 
     return {None: None, "threads": backend.threads, "loky": backend.loky}[name]
 
@@ -140,7 +140,7 @@ def _run(sweep: "Sweep", progress: Progress, options: dict[str, Any]) -> int:
 
 def tell_of_compiling(method: str, extended: bool = False) -> None:
     """Say why nothing seems to happen at first."""
-    from wedgesweep.cases import is_compiled
+    from wedgesweep.sweep.cases import is_compiled
 
     if not is_compiled(method, extended):
         click.echo("compiling once, for up to a minute; later runs start at once", err=True)

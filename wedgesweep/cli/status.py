@@ -22,7 +22,7 @@ def status(ctx: click.Context, path: Path) -> None:
 
 
 def _finished(path: Path) -> int:
-    from wedgesweep import dataset
+    from wedgesweep.sweep import dataset
 
     ds = dataset.read(path)
     click.echo(f"{path}: complete\ntitle: {ds.attrs.get('title', 'none')}")
@@ -33,8 +33,9 @@ def _finished(path: Path) -> int:
 
 
 def _unfinished(partial: Path) -> int:
-    from wedgesweep import config, journal, outcomes
-    from wedgesweep.fingerprint import differences, fingerprint
+    from wedgesweep import config
+    from wedgesweep.sweep import journal, outcomes
+    from wedgesweep.sweep.fingerprint import differences, fingerprint
 
     header = journal.header(partial)
     settings = config.parse(header["config"], str(partial))

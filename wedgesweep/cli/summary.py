@@ -10,21 +10,21 @@ from wedgesweep.cli.failure import SOME_FAILED
 if TYPE_CHECKING:
     import xarray as xr
 
-    from wedgesweep.outcomes import Outcome
+    from wedgesweep.sweep.outcomes import CaseResult
 
 LISTED = 5
 
 
 def print_summary(ds: "xr.Dataset") -> int:
     """Print counts and the first failures; the exit code that they mean."""
-    from wedgesweep import outcomes
+    from wedgesweep.sweep import outcomes
 
     return print_outcomes(outcomes.of_dataset(ds))
 
 
-def print_outcomes(found: Sequence["Outcome"], total: int | None = None) -> int:
+def print_outcomes(found: Sequence["CaseResult"], total: int | None = None) -> int:
     """As print_summary, of the finished cases of ``total``."""
-    from wedgesweep import outcomes
+    from wedgesweep.sweep import outcomes
 
     counts = ", ".join(f"{count} {status}" for status, count in outcomes.counts(found).most_common())
     remaining = "" if total is None else f", {total - len(found)} remaining"

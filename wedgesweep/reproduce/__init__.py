@@ -11,7 +11,7 @@ from wedgesweep.reproduce import report as files
 from wedgesweep.reproduce.claims import check
 from wedgesweep.reproduce.page import PICTURES
 from wedgesweep.reproduce.runs import Run, obtain
-from wedgesweep.sweep import Progress
+from wedgesweep.sweep.run import Progress
 
 # Of a checkout; an installed package has none beside it.
 CONFIGS = Path(__file__).parents[2] / "configs"

@@ -13,13 +13,13 @@ from typing import Any
 import joblib
 import numpy as np
 
-from wedgesweep.backend import loky
 from wedgesweep.reproduce.best import HERTZ, Case, computed
 from wedgesweep.reproduce.observations import OBSERVATIONS
 from wedgesweep.reproduce.search import DEEPLY, THROUGH, WELL, Effort, Found, search
 from wedgesweep.reproduce.separation import Separation, separate
 from wedgesweep.reproduce.suspects import AN_INPUT_EACH, LEANS, READINGS, SUSPECTS, Suspect
 from wedgesweep.reproduce.trials import ROUGH, Question, described, record
+from wedgesweep.sweep.backend import loky
 
 # Pairs of law and lean of each suspect that are searched well.
 PROMISING = 2

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from wedgesweep import outcomes
-from wedgesweep.dataset import STATUSES
 from wedgesweep.reproduce.runs import LAWS, Run, Runs
+from wedgesweep.sweep import outcomes
+from wedgesweep.sweep.dataset import STATUSES
 
 # Inputs over the amplitude at which set-valued slip begins: stuck, near breakaway, beyond it.
 NEAR = 5.0

@@ -12,7 +12,7 @@ import xarray as xr
 from wedgesweep import config
 from wedgesweep.config import Config, ConfigError
 from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.sweep import Progress, Sweep
+from wedgesweep.sweep.run import Progress, Sweep
 
 CONFIG_NAMES = ("paper", "paper-y0", "breakaway")
 LAWS = ("coulomb", "static-dynamic", "exponential")

@@ -4,10 +4,10 @@ from dataclasses import replace
 from math import nan
 
 from wedgesweep import parameters, simulate
-from wedgesweep.dataset import HARMONICS
 from wedgesweep.reproduce.runs import MM, Run
 from wedgesweep.response import NUMBERS
 from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep.dataset import HARMONICS
 
 
 def single(

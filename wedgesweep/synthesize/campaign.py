@@ -7,11 +7,11 @@ from typing import Any
 import joblib
 import numpy as np
 
-from wedgesweep.cases import compile_once
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep.cases import compile_once
 from wedgesweep.synthesize import files, noise
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady

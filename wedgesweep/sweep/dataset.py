@@ -10,8 +10,9 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep.errors import SweepError
+from wedgesweep.outcome import Outcome
 
-STATUSES = ("ok", "locked", "time_limit", "solver_failure", "not_finite", "not_run")
+STATUSES = tuple(map(str, Outcome))
 HARMONICS = 9
 
 
@@ -124,7 +125,7 @@ def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
     records["index"] = indices
     for name in {"period", "period_down", "coexisting"} & set(dtype.names or ()):
         records[name] = -1
-    records["status"] = STATUSES.index("not_run")
+    records["status"] = Outcome.NOT_RUN
     return records
 
 

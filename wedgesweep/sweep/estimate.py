@@ -7,8 +7,8 @@ from time import perf_counter
 
 import numpy as np
 
-from wedgesweep.cases import compile_once
-from wedgesweep.sweep import Sweep
+from wedgesweep.sweep.cases import compile_once
+from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
 SECONDS = 8.0

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from wedgesweep import __version__
 from wedgesweep.config import Config
-from wedgesweep.fingerprint import fingerprint
+from wedgesweep.sweep.fingerprint import fingerprint
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "joblib")
 SOURCE = "wedgesweep: friction wedge suspension of a three-piece bogie, half model"
 REFERENCES = (

@@ -4,11 +4,12 @@ from time import perf_counter
 
 import numpy as np
 
-from wedgesweep import dataset, response, tally
+from wedgesweep import response, tally
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers import event_driven, extended
 from wedgesweep.solvers.event_driven import Batch, Plan
 from wedgesweep.solvers.march import OK, workspace
+from wedgesweep.sweep import dataset
 
 WAVEFORMS = ("normal_force_column", "normal_force_bolster", "stuck")
 

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from wedgesweep import dataset
-from wedgesweep.batch import solve_batch
 from wedgesweep.simulate import Settings
+from wedgesweep.sweep import dataset
+from wedgesweep.sweep.batch import solve_batch
 
 COEXISTING, ALONE, NOT_TOLD = 1, 0, -1
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import joblib
 from joblib._dask import Batch, DaskDistributedBackend
 
-from wedgesweep.backend import parallel
 from wedgesweep.errors import SweepError
-from wedgesweep.fingerprint import differences
+from wedgesweep.sweep.backend import parallel
+from wedgesweep.sweep.fingerprint import differences
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -16,14 +16,16 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep import contact, damper, dataset, journal, provenance
-from wedgesweep.backend import Backend, local
-from wedgesweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
+from wedgesweep import contact, damper
 from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.fingerprint import differences, fingerprint
-from wedgesweep.journal import Journal
+from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
+from wedgesweep.sweep import dataset, journal, provenance
+from wedgesweep.sweep.backend import Backend, local
+from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
+from wedgesweep.sweep.fingerprint import differences, fingerprint
+from wedgesweep.sweep.journal import Journal
 
 # Called with the records of cases as they finish and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
@@ -173,7 +175,7 @@ class Sweep:
         self, kept: Journal, pool: joblib.Parallel, case_timeout: float | None
     ) -> Generator[np.ndarray, None, None]:
         # A time limit depends on the machine and its load: those cases are tried again.
-        whole = kept.records[kept.records["status"] != dataset.STATUSES.index("time_limit")]
+        whole = kept.records[kept.records["status"] != Outcome.TIME_LIMIT]
         rows = self.together
         todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
         if todo.size:
@@ -210,7 +212,7 @@ class Sweep:
         return self.settings.case_timeout if case_timeout is None else case_timeout
 
     def _require_ok(self, records: np.ndarray) -> None:
-        failed = records[records["status"] != 0]
+        failed = records[records["status"] != Outcome.OK]
         if failed.size:
             case = self.config.case_list()[failed[0]["index"]]
             message = f"{describe(*case)}: {failed[0]['message'].decode()}"

@@ -13,7 +13,7 @@ from wedgesweep import __version__
 from wedgesweep.config import Config
 from wedgesweep.config.keys import show
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 SAME_RESULTS = ("numpy", "scipy", "numba")
 # Nothing in these folders changes a number.
 PRESENTATION = ("cli", "figures", "reproduce")

@@ -8,12 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep import dataset, parameters, simulate
-from wedgesweep.batch import solve_batch
+from wedgesweep import parameters, simulate
 from wedgesweep.compiled import CACHE_DIR
-from wedgesweep.continuation import solve_lines
+from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep import dataset
+from wedgesweep.sweep.batch import solve_batch
+from wedgesweep.sweep.continuation import solve_lines
 
 
 def describe(law: str, beta: float, amplitude: float) -> str:
@@ -85,14 +87,14 @@ def solve_cases(
         started = perf_counter()
         try:
             _solve_case(cases[case : case + 1], settings, case_timeout, records[case])
-            status, message = "ok", ""
+            outcome, message = Outcome.OK, ""
         except CaseError as error:
-            status, message = error.status, str(error)
+            outcome, message = Outcome[error.status.upper()], str(error)
         except Exception as error:  # one bad case must not take the sweep with it
-            status, message = "solver_failure", f"{type(error).__name__}: {error}"
-        if status != "ok":
+            outcome, message = Outcome.SOLVER_FAILURE, f"{type(error).__name__}: {error}"
+        if outcome != Outcome.OK:
             records[case] = dataset.blank(dtype, indices[case : case + 1])[0]
-        records[case]["status"] = dataset.STATUSES.index(status)
+        records[case]["status"] = outcome
         records[case]["message"] = message.encode()[: dataset.MESSAGE_BYTES]
         records[case]["wall_time"] = perf_counter() - started
     return records

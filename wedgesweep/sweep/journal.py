@@ -13,7 +13,7 @@ from zlib import crc32
 import numpy as np
 
 from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.fingerprint import differences
+from wedgesweep.sweep.fingerprint import differences
 
 try:
     import fcntl
