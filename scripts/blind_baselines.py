@@ -10,10 +10,10 @@ import xarray as xr
 
 from wedgesweep import measured
 from wedgesweep.diagnose import diagnosis
-from wedgesweep.diagnose.amplitudes import best_amplitudes
-from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Explanation, Search, best_of
-from wedgesweep.diagnose.spectra import Spectrum
+from wedgesweep.diagnose.steady.amplitude_grid import best_amplitudes
+from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.steady.spectra import Spectrum
 
 # A score is chi-squared with one degree of freedom: 5 % among 21 candidates.
 SCORED = 9.2
@@ -37,9 +37,9 @@ def aic(data: Path, result: Path, candidates: Sequence[str]) -> list[str]:
     The same simulations and the same fits as the diagnosis, but for the noise: white, from the samples.
     """
     measurement = replace(measured.read(data), derived_velocity=False)
-    problem = diagnosis.problem_of(measurement)
-    problem = replace(problem, spectra=tuple(map(_independent, problem.spectra)))
-    search = Search(problem, candidates)
+    data = diagnosis.fit_data_of(measurement)
+    data = replace(data, spectra=tuple(map(_independent, data.spectra)))
+    search = Search(data, candidates)
     best = search.base()
     for size in (1, 2):
         if size == 1:
@@ -55,7 +55,7 @@ def aic(data: Path, result: Path, candidates: Sequence[str]) -> list[str]:
 
 
 def _criterion(each: Explanation) -> float:
-    return each.fit.q + 2.0 * each.fit.model.size
+    return each.fit.chi2 + 2.0 * each.fit.model.size
 
 
 def _independent(spectrum: Spectrum) -> Spectrum:

@@ -7,10 +7,10 @@ import numpy as np
 from blind_bench import Test, records
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import COMPARED, Spectrum, placed, within_band
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.spectra import COMPARED, Spectrum, tone_position, within_band
 from wedgesweep.solvers.periodic import at_rest
 from wedgesweep.synthesize.noise import AR1_CORRELATION
 
@@ -30,7 +30,7 @@ def harmonics(system: Config, law: str, tests: list[Test]) -> tuple[np.ndarray |
     if TONE in system.effects:
         tone = system.effects[TONE]["frequency"]
         # How tone and input meet is drawn later, with the data.
-        anyhow = (simulation.Meeting(PERIODS, 0.0, np.nan),) * len(tests)
+        anyhow = (simulation.ToneTiming(PERIODS, 0.0, np.nan),) * len(tests)
         unknown = np.full(len(tests), np.nan)
         done = simulation.respond_with_tone(rows, cold, COMPARED, tone, anyhow, unknown)
     else:
@@ -53,7 +53,9 @@ def _spectrum(mean: np.ndarray, frequency: float, tone: float | None, noise: str
     """A record as it would be without noise, but knowing its noise."""
     samples = round(PERIODS / frequency * SAMPLING_HZ)
     count = within_band(COMPARED, frequency, 1.0 / SAMPLING_HZ)
-    told, covered = (False, None) if tone is None else placed(tone, frequency, PERIODS / frequency, count)
+    told, covered = (
+        (False, None) if tone is None else tone_position(tone, frequency, PERIODS / frequency, count)
+    )
     columns = [*range(count), *([mean.shape[1] - 1] if told else [])]
     channels = 1 if noise == "differentiated" else 2
     mean = mean[:channels, columns]
@@ -97,7 +99,7 @@ def excess(
         _spectrum(each, test.frequency_hz, tone, noise, level) for each, test in zip(mean, tests, strict=True)
     )
     told = 1e-3 * np.array([test.amplitude_mm for test in tests])
-    problem = Problem(
+    data = FitData(
         model,
         law,
         tuple(f"test {i}" for i in range(len(tests))),
@@ -107,7 +109,7 @@ def excess(
         uncertain,
         tone,
     )
-    return Search(problem, ()).base().fit.q
+    return Search(data, ()).base().fit.chi2
 
 
 def reach(target: float, excess_at: Callable[[float], float]) -> float | None:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
-from wedgesweep.diagnose.spectra import BAND, REMOVED, Spectrum, regressors, told_apart, within_band
+from wedgesweep.diagnose.steady.spectra import BAND, REMOVED, Spectrum, regressors, resolvable, within_band
 
 # The effect that makes one.
 TONE = "stray_vibration"
@@ -54,7 +54,7 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
         return None
     part = 2 if len(spectra) > 1 and alike.all() else 1
     separated = np.array(
-        [told_apart(grid, s.frequency / part, s.duration, part * (s.harmonics + 1) - 1) for s in spectra]
+        [resolvable(grid, s.frequency / part, s.duration, part * (s.harmonics + 1) - 1) for s in spectra]
     )
     power = np.where(separated, [s.excess_at(grid) for s in spectra], 0.0)
     count = np.array([[s.mean.shape[0]] for s in spectra]) * separated
@@ -130,7 +130,7 @@ def between(spectra: Sequence[Spectrum]) -> float:
     """A frequency (Hz) that most tests tell from their harmonics, closest to the middle of theirs."""
     middle = float(np.exp(np.mean([np.log(s.frequency) for s in spectra])))
     grid = middle * np.geomspace(0.5, 4.0, 400)
-    telling = np.array([s.separates(grid) for s in spectra]).sum(axis=0)
+    telling = np.array([s.resolves(grid) for s in spectra]).sum(axis=0)
     best = np.flatnonzero(telling == telling.max())
     return float(grid[best[np.argmin(np.abs(np.log(grid[best] / middle)))]])
 

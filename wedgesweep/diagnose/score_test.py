@@ -1,6 +1,6 @@
 """What the tests could show of each effect, before anything is fitted.
 
-A score test asks whether the misfit of the base model points the way in which an effect would change the
+A score test asks whether the misfit of the base model points the scan in which an effect would change the
 response, once what phases, amplitudes and uncertain numbers can take up is taken out of both.
 """
 
@@ -11,18 +11,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose import tone
-from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.model import Fit, Model, Trial
-from wedgesweep.diagnose.problem import Problem, real
+from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.tone import TONE
+from wedgesweep.diagnose.steady import tone
+from wedgesweep.diagnose.steady.fit_data import FitData, real
+from wedgesweep.diagnose.steady.model import Evaluation, Fit, Model
+from wedgesweep.diagnose.steady.tone import TONE
 
 # Share of a signal that must survive the nuisances for an effect to be testable.
 RETAINED = 0.05
 # Squared distance from the base model that the tests would have shown.
-SHOWN = 12.6
+DETECTABLE = 12.6
 # Points between the weakest and the strongest value of an effect's leading number, and how many times weaker
 # than that it may be said to show.
 POINTS, BEYOND = 12, 1e3
@@ -52,22 +52,22 @@ def scores(search: Search, base: Fit) -> list[Score]:
     """Score of every effect of a search, in its order."""
     project = Projector(base)
     found = search.each(lambda effect: _score(search, base, effect, project), search.effects)
-    return [*found, _unheard(search.problem, base)] if search.unheard else found
+    return [*found, _undetected_tone(search.data, base)] if search.tone_undetected else found
 
 
-def _unheard(problem: Problem, base: Fit) -> Score:
+def _undetected_tone(data: FitData, base: Fit) -> Score:
     """Score of a foreign tone where none stands out: what would have shown, between the harmonics."""
-    frequency = tone.between(problem.spectra)
+    frequency = tone.between(data.spectra)
     silent = replace(
-        problem, spectra=tuple(s.with_silence(frequency) for s in problem.spectra), tone=frequency
+        data, spectra=tuple(s.with_undetected_tone(frequency) for s in data.spectra), tone=frequency
     )
     search = Search(silent, (TONE,))
     model = search.model()
-    fit = Fit(model, model.trial(base.trial.point), base.covariance, base.arrived)
+    fit = Fit(model, model.evaluate(base.evaluation.point), base.covariance, base.converged)
     return replace(_score(search, fit, TONE, Projector(fit)), t2=None)
 
 
-class _Way(NamedTuple):
+class _Scan(NamedTuple):
     """Points (n, k) along one number of an effect.
 
     ``sizes`` (n,): how far the responses there are from the base model's; ``left``: what is left of that, a
@@ -87,38 +87,38 @@ class _Way(NamedTuple):
 
 def _score(search: Search, base: Fit, effect: str, project: Projector) -> Score:
     model = search.model(effect)
-    for way in _ways(search, base, model, project):
-        if way.distance.min() < SHOWN:
+    for scan in _scans(search, base, model, project):
+        if scan.distance.min() < DETECTABLE:
             break
-    size = np.sqrt(way.distance)
+    size = np.sqrt(scan.distance)
     weak = _weakest(size)
-    retention = float(size[weak] / way.sizes[weak]) if way.sizes[weak] > 0.0 else 0.0
+    retention = float(size[weak] / scan.sizes[weak]) if scan.sizes[weak] > 0.0 else 0.0
     t2 = None
     if retention >= RETAINED and size[weak] > 0.0:
-        t2 = float((way.left[weak] @ project.misfit) ** 2 / size[weak] ** 2)
-    key = model.hypothesis.coordinates[way.number].name.split(".")[1]
-    return Score(effect, t2, retention, key, _detectable(model.hypothesis, way, key))
+        t2 = float((scan.left[weak] @ project.misfit) ** 2 / size[weak] ** 2)
+    key = model.hypothesis.parameters[scan.number].name.split(".")[1]
+    return Score(effect, t2, retention, key, _detectable(model.hypothesis, scan, key))
 
 
-def _ways(search: Search, base: Fit, model: Model, project: Projector) -> Iterator[_Way]:
+def _scans(search: Search, base: Fit, model: Model, project: Projector) -> Iterator[_Scan]:
     """Along the leading number of an effect; along others, if it does not fade with the first.
 
     Stribeck friction without a peak is not the base model: it fades with its velocity.
     """
 
-    def tried(number: int, points: np.ndarray, trials: Sequence[Trial]) -> _Way:
-        changes = [_change(base, each) for each in trials]
+    def tried(number: int, points: np.ndarray, evaluations: Sequence[Evaluation]) -> _Scan:
+        changes = [_change(base, each) for each in evaluations]
         left = np.array([project(each) for each in changes])
-        return _Way(number, points, np.array([np.linalg.norm(each) for each in changes]), left)
+        return _Scan(number, points, np.array([np.linalg.norm(each) for each in changes]), left)
 
-    def simulated(number: int, points: np.ndarray) -> _Way:
-        return tried(number, points, model.trials([model.start(base, x) for x in points]))
+    def simulated(number: int, points: np.ndarray) -> _Scan:
+        return tried(number, points, model.evaluate_all([model.start(base, x) for x in points]))
 
-    hypothesis, coordinates = model.hypothesis, model.hypothesis.coordinates
-    known = search.along.get(hypothesis.effects[0])
-    told = not np.isinf(base.model.problem.amplitude_std).any()
+    hypothesis, coordinates = model.hypothesis, model.hypothesis.parameters
+    known = search.scans.get(hypothesis.effects[0])
+    told = not np.isinf(base.model.data.amplitude_std).any()
     if known and told and len(coordinates) == 1 and coordinates[0].logarithmic:
-        leading = tried(0, np.array([trial.point.x[:1] for trial in known]), known)
+        leading = tried(0, np.array([evaluation.point.x[:1] for evaluation in known]), known)
     else:
         leading = simulated(0, _path(hypothesis, 0))
     yield leading
@@ -134,9 +134,9 @@ def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
 
     The others are in the middle of their range, but for a leading one that is neutral somewhere.
     """
-    first, along = hypothesis.coordinates[0], hypothesis.coordinates[number]
+    first, along = hypothesis.parameters[0], hypothesis.parameters[number]
     neutral = _neutral(hypothesis)
-    at = np.array([0.5 * (each.low + each.high) for each in hypothesis.coordinates])
+    at = np.array([0.5 * (each.low + each.high) for each in hypothesis.parameters])
     if not first.logarithmic:
         at[0] = neutral
     path = np.repeat(at[None], POINTS, axis=0)
@@ -149,16 +149,18 @@ def _path(hypothesis: Hypothesis, number: int) -> np.ndarray:
 
 def _neutral(hypothesis: Hypothesis) -> float:
     """Number in its range at which the leading one of an effect acts least, if it is no logarithm."""
-    first = hypothesis.coordinates[0]
+    first = hypothesis.parameters[0]
     return min(max(first.neutral, first.low), first.high)
 
 
-def _change(base: Fit, trial: Trial) -> np.ndarray:
+def _change(base: Fit, evaluation: Evaluation) -> np.ndarray:
     """How a trial's responses differ from the base model's (T, m), turned alike; none where not found."""
-    problem = base.model.problem
-    both = problem.turned(np.stack([trial.whitened, base.trial.whitened]), np.stack([base.trial.phase] * 2))
+    data = base.model.data
+    both = data.rotated(
+        np.stack([evaluation.whitened, base.evaluation.whitened]), np.stack([base.evaluation.phase] * 2)
+    )
     change = real(both[0] - both[1])
-    change[~trial.found_tests] = 0.0
+    change[~evaluation.found_tests] = 0.0
     return change
 
 
@@ -168,24 +170,24 @@ def _weakest(left: np.ndarray) -> int:
     return int(seen[np.argmin(left[seen])]) if seen.size else int(np.argmax(left))
 
 
-def _detectable(hypothesis: Hypothesis, way: _Way, key: str) -> float | None:
+def _detectable(hypothesis: Hypothesis, scan: _Scan, key: str) -> float | None:
     """Weakest value of a number at which the squared distance exceeds what shows."""
-    distance, points = way.distance, way.points
-    shown = [i for i in np.argsort(distance) if distance[i] >= SHOWN]
+    distance, points = scan.distance, scan.points
+    shown = [i for i in np.argsort(distance) if distance[i] >= DETECTABLE]
     if not shown:
         return None
     i = int(shown[0])
-    below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < SHOWN]
+    below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < DETECTABLE]
     point = points[i].copy()
     if below:
         j = below[0]
         low, high = np.sqrt(distance[j]), np.sqrt(distance[i])
-        point += (points[j] - points[i]) * (high - np.sqrt(SHOWN)) / (high - low)
-    elif hypothesis.coordinates[way.number].logarithmic and i in (0, len(points) - 1):
-        point[way.number] += _beyond(points[:, way.number], distance, i)
+        point += (points[j] - points[i]) * (high - np.sqrt(DETECTABLE)) / (high - low)
+    elif hypothesis.parameters[scan.number].logarithmic and i in (0, len(points) - 1):
+        point[scan.number] += _beyond(points[:, scan.number], distance, i)
     elif i == 0:  # next to its neutral value it acts in proportion
         neutral = _neutral(hypothesis)
-        point[way.number] = neutral + (point[way.number] - neutral) * np.sqrt(SHOWN / distance[i])
+        point[scan.number] = neutral + (point[scan.number] - neutral) * np.sqrt(DETECTABLE / distance[i])
     return float(hypothesis.in_key_units(point)[hypothesis.effects[0]].get(key, inf))
 
 
@@ -197,6 +199,6 @@ def _beyond(x: np.ndarray, distance: np.ndarray, end: int) -> float:
     """
     inwards = 1 if end == 0 else end - 1
     slope = np.log(distance[end] / distance[inwards]) / (x[end] - x[inwards])
-    fades = np.log(SHOWN / distance[end]) / slope if slope else np.inf
+    fades = np.log(DETECTABLE / distance[end]) / slope if slope else np.inf
     outwards = fades * (x[end] - x[inwards]) > 0.0
     return float(fades) if outwards and abs(fades) < log(BEYOND) else 0.0

@@ -1,7 +1,7 @@
 """A hypothesis on the tests of a problem: what it simulates at a point, and how far that is from the data.
 
 Unknown are the numbers of the hypothesis, the uncertain numbers of the model with their priors, and of
-each test its start phase and its input amplitude. Phases have a closed way out (``Problem.start_phase``).
+each test its start phase and its input amplitude. Phases have a closed way out (``FitData.start_phase``).
 """
 
 from collections.abc import Sequence
@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.coordinates import Hypothesis, Values
-from wedgesweep.diagnose.problem import Problem, real
-from wedgesweep.diagnose.spectra import FOLDED
-from wedgesweep.diagnose.tone import TONE
+from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData, real
+from wedgesweep.diagnose.steady.spectra import SIMULATED
+from wedgesweep.diagnose.steady.tone import TONE
 from wedgesweep.effects import acting
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
 
@@ -34,26 +34,28 @@ EXACT = 1e-6
 class Point:
     """A guess: numbers ``x`` (k + u,) of hypothesis and uncertain model, ``amplitude`` (T,) in logarithm.
 
-    ``ahead`` (T,): phase (rad) of the vibration behind a foreign tone, NaN where it is not known: see
+    ``tone_phase`` (T,): phase (rad) of the vibration behind a foreign tone, NaN where it is not known: see
     meeting.py.
     """
 
     x: np.ndarray
     amplitude: np.ndarray
-    ahead: np.ndarray
+    tone_phase: np.ndarray
     warm: Warm
 
     def moved(self, numbers: np.ndarray, local: np.ndarray) -> "Point":
-        """After steps of the numbers (k,) and of what is local to tests (T, L): amplitude, ``ahead``."""
-        ahead = self.ahead + local[..., 1] if local.shape[-1] > 1 else self.ahead
-        return replace(self, x=self.x + numbers, amplitude=self.amplitude + local[..., 0], ahead=ahead)
+        """After steps of the numbers (k,) and of what is local to tests (T, L): amplitude, ``tone_phase``."""
+        tone_phase = self.tone_phase + local[..., 1] if local.shape[-1] > 1 else self.tone_phase
+        return replace(
+            self, x=self.x + numbers, amplitude=self.amplitude + local[..., 0], tone_phase=tone_phase
+        )
 
 
 @dataclass(frozen=True)
-class Trial:
+class Evaluation:
     """A simulated point: whitened harmonics (T, C, H), their rotation (T,) and what is left.
 
-    ``images`` (T, C, H) are those of harmonics above half the sampling rate, 0 in a record that looks as if
+    ``aliases`` (T, C, H) are those of harmonics above half the sampling rate, 0 in a record that looks as if
     it had been low-passed before it was sampled.
     """
 
@@ -61,7 +63,7 @@ class Trial:
     whitened: np.ndarray
     harmonics: np.ndarray
     phase: np.ndarray
-    images: np.ndarray
+    aliases: np.ndarray
     residual: np.ndarray
     prior: np.ndarray
     found_tests: np.ndarray
@@ -71,42 +73,42 @@ class Trial:
         return bool(self.found_tests.all())
 
     @property
-    def unfiltered(self) -> np.ndarray:
+    def aliased(self) -> np.ndarray:
         """Whether (T, 1, 1) images are part of what is compared."""
-        return (self.images != 0.0).any(axis=(-2, -1), keepdims=True)
+        return (self.aliases != 0.0).any(axis=(-2, -1), keepdims=True)
 
     @cached_property
-    def by_test(self) -> np.ndarray:
+    def chi2_by_test(self) -> np.ndarray:
         """Squared misfit of each test, its amplitude's prior included (T,)."""
         return (self.residual**2).sum(-1) + self.prior[: len(self.residual)] ** 2
 
     @cached_property
-    def q(self) -> float:
+    def chi2(self) -> float:
         return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
 
 
-def least(trials: Sequence[Trial]) -> np.ndarray:
+def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:
     """Which of some trials leaves least of each test, (T,)."""
-    misfit = [np.where(each.found_tests, each.by_test, np.inf) for each in trials]
+    misfit = [np.where(each.found_tests, each.chi2_by_test, np.inf) for each in evaluations]
     return np.argmin(misfit, axis=0)
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``trial.point.x``: see profile.py, too."""
+    """Where a fit ended; ``covariance`` (k + u, k + u) is that of ``evaluation.point.x``."""
 
     model: "Model"
-    trial: Trial
+    evaluation: Evaluation
     covariance: np.ndarray
-    arrived: bool
+    converged: bool
 
     @property
     def effects(self) -> tuple[str, ...]:
         return self.model.hypothesis.effects
 
     @property
-    def q(self) -> float:
-        return self.trial.q
+    def chi2(self) -> float:
+        return self.evaluation.chi2
 
     @property
     def dof(self) -> int:
@@ -114,16 +116,16 @@ class Fit:
 
     @property
     def excess(self) -> float:
-        return self.q - self.dof
+        return self.chi2 - self.dof
 
     @property
     def x(self) -> np.ndarray:
-        return self.trial.point.x
+        return self.evaluation.point.x
 
     @property
     def p(self) -> float:
         """Probability of a misfit this large if the model is right."""
-        return float(chdtrc(self.dof, self.q))
+        return float(chdtrc(self.dof, self.chi2))
 
     @property
     def values(self) -> Values:
@@ -132,7 +134,7 @@ class Fit:
 
     def amplitudes(self) -> np.ndarray:
         """Input amplitudes (T,) in m."""
-        return self.model.reference * np.exp(self.trial.point.amplitude)
+        return self.model.reference * np.exp(self.evaluation.point.amplitude)
 
 
 class Model:
@@ -140,25 +142,25 @@ class Model:
 
     def __init__(
         self,
-        problem: Problem,
+        data: FitData,
         hypothesis: Hypothesis,
         reference: np.ndarray,
         tolerance: float = simulation.TOLERANCE,
     ) -> None:
-        self.problem, self.hypothesis, self.reference = problem, hypothesis, reference
+        self.data, self.hypothesis, self.reference = data, hypothesis, reference
         self.tolerance = tolerance
-        self.size = len(hypothesis.coordinates)
-        self.toned = problem.tone is not None and TONE in {
-            *acting(problem.model.effects),
+        self.size = len(hypothesis.parameters)
+        self.has_tone = data.tone is not None and TONE in {
+            *acting(data.model.effects),
             *hypothesis.effects,
         }
-        # An effect on trial is no nuisance at the same time: it is free of its prior.
-        self.uncertain = {k: s for k, s in problem.uncertain.items() if k not in hypothesis.effects}
+        # A candidate effect is no nuisance at the same time: it is free of its prior.
+        self.uncertain = {k: s for k, s in data.uncertain.items() if k not in hypothesis.effects}
         self.low = np.r_[hypothesis.low, [0.2] * len(self.uncertain)]
         self.high = np.r_[hypothesis.high, [5.0] * len(self.uncertain)]
-        self.width = np.r_[hypothesis.width, [0.1] * len(self.uncertain)]
+        self.scale = np.r_[hypothesis.scale, [0.1] * len(self.uncertain)]
         self.prior_std = np.array(list(self.uncertain.values()))
-        self.amplitude_weight = 1.0 / np.maximum(problem.amplitude_std, EXACT)
+        self.amplitude_weight = 1.0 / np.maximum(data.amplitude_std, EXACT)
 
     def holding(self, number: int, value: float) -> "Model":
         """The model with one of its numbers known."""
@@ -170,16 +172,16 @@ class Model:
     @property
     def dof(self) -> int:
         """Data less what is fitted without a prior: phases, unknown amplitudes, the hypothesis."""
-        return int(self.problem.dof.sum()) - int(self.tones.sum()) - self.size
+        return int(self.data.dof.sum()) - int(self.tone_tests.sum()) - self.size
 
     @property
-    def tones(self) -> np.ndarray:
+    def tone_tests(self) -> np.ndarray:
         """Whether (T,) a test has a tone that the hypothesis answers to; its phase is free."""
-        return np.array([self.toned and s.toned for s in self.problem.spectra])
+        return np.array([self.has_tone and s.has_tone for s in self.data.spectra])
 
-    def meets(self, point: Point) -> bool:
+    def fits_tone_phase(self, point: Point) -> bool:
         """Whether phases of a foreign vibration that acts are among what is unknown of the tests."""
-        return self.toned and bool(np.isfinite(point.ahead).any())
+        return self.has_tone and bool(np.isfinite(point.tone_phase).any())
 
     def uncertain_starts(self) -> np.ndarray:
         """Uncertain numbers (1 + 2 u, u) as stated, and each of them well off to either side."""
@@ -193,55 +195,57 @@ class Model:
 
     def simulate(self, points: Sequence[Point]) -> tuple[np.ndarray, np.ndarray, Warm]:
         """Harmonics (n, T, C, K) of points, found or not (n, T), and where to go on from (n T rows)."""
-        problem = self.problem
+        data = self.data
         rows = np.concatenate(
             [
                 simulation.records(
-                    problem.model,
-                    problem.law,
+                    data.model,
+                    data.law,
                     self.values(point.x),
-                    problem.omega,
+                    data.omega,
                     self.reference * np.exp(point.amplitude),
                 )
                 for point in points
             ]
         )
-        ahead = np.concatenate([point.ahead for point in points])
-        done = self._respond(rows, ahead, joined([point.warm for point in points]))
-        shape = (len(points), problem.tests)
-        harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : problem.shape[0]]
+        tone_phase = np.concatenate([point.tone_phase for point in points])
+        done = self._respond(rows, tone_phase, joined([point.warm for point in points]))
+        shape = (len(points), data.tests)
+        harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : data.shape[0]]
         return harmonics, done.found.reshape(shape), done.warm
 
-    def _respond(self, rows: np.ndarray, ahead: np.ndarray, warm: Warm) -> simulation.Responses:
-        tone = self.problem.tone
-        if self.toned and tone is not None:
-            times = len(rows) // self.problem.tests
-            meetings = self.problem.meetings * times
-            harmonics = self.problem.shape[1]
-            return simulation.respond_with_tone(rows, warm, harmonics, tone, meetings, ahead, self.tolerance)
-        done = simulation.respond(rows, warm, FOLDED, self.tolerance)
+    def _respond(self, rows: np.ndarray, tone_phase: np.ndarray, warm: Warm) -> simulation.Responses:
+        tone = self.data.tone
+        if self.has_tone and tone is not None:
+            times = len(rows) // self.data.tests
+            timings = self.data.timings * times
+            harmonics = self.data.shape[1]
+            return simulation.respond_with_tone(
+                rows, warm, harmonics, tone, timings, tone_phase, self.tolerance
+            )
+        done = simulation.respond(rows, warm, SIMULATED, self.tolerance)
         if tone is None:
             return done
         silent = np.zeros((len(rows), 2, 1))  # a periodic response has nothing there
         return done._replace(harmonics=np.concatenate([done.harmonics, silent], axis=-1))
 
-    def trials(self, points: Sequence[Point]) -> list[Trial]:
+    def evaluate_all(self, points: Sequence[Point]) -> list[Evaluation]:
         """Simulate many points at once."""
-        problem = self.problem
+        data = self.data
         harmonics, found, after = self.simulate(points)
         harmonics = np.where(found[:, :, None, None], harmonics, 0.0)
-        shown = problem.shown(harmonics)
-        whitened = problem.whiten(shown)
-        phase, images = self._aligned(harmonics, whitened)
-        residual = real(problem.whitened - problem.whiten(images) - problem.turned(whitened, phase))
-        n = problem.tests
+        shown = data.compared(harmonics)
+        whitened = data.whiten(shown)
+        phase, aliases = self._aligned(harmonics, whitened)
+        residual = real(data.whitened - data.whiten(aliases) - data.rotated(whitened, phase))
+        n = data.tests
         return [
-            Trial(
+            Evaluation(
                 replace(points[i], warm=after.of(slice(i * n, (i + 1) * n))),
                 whitened[i],
                 shown[i],
                 phase[i],
-                images[i],
+                aliases[i],
                 residual[i],
                 self._prior(points[i]),
                 found[i],
@@ -251,25 +255,25 @@ class Model:
 
     def _aligned(self, harmonics: np.ndarray, whitened: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Start phases (n, T), and images (n, T, C, H) in each record unless something kept them out."""
-        problem = self.problem
-        phase = problem.start_phase(whitened)
-        images = problem.images(harmonics, phase)
-        if not images.any():
-            return phase, images
-        left = problem.whitened - problem.turned(whitened, phase)
-        both = np.stack([left - problem.whiten(images), left])
+        data = self.data
+        phase = data.start_phase(whitened)
+        aliases = data.aliases(harmonics, phase)
+        if not aliases.any():
+            return phase, aliases
+        left = data.whitened - data.rotated(whitened, phase)
+        both = np.stack([left - data.whiten(aliases), left])
         with_images, without = (np.abs(both) ** 2).sum((-2, -1), keepdims=True)
-        images[np.broadcast_to(with_images > without + FILTERED, images.shape)] = 0.0
-        phase = problem.start_phase(whitened, problem.whiten(images))
-        return phase, np.where(images != 0.0, problem.images(harmonics, phase), 0.0)
+        aliases[np.broadcast_to(with_images > without + FILTERED, aliases.shape)] = 0.0
+        phase = data.start_phase(whitened, data.whiten(aliases))
+        return phase, np.where(aliases != 0.0, data.aliases(harmonics, phase), 0.0)
 
-    def trial(self, point: Point) -> Trial:
-        return self.trials([point])[0]
+    def evaluate(self, point: Point) -> Evaluation:
+        return self.evaluate_all([point])[0]
 
-    def sticks(self, trial: Trial) -> np.ndarray:
+    def sticks(self, evaluation: Evaluation) -> np.ndarray:
         """Whether (T,) a test was measured to move and sticks in a trial: no slope leads out of there."""
-        moved = (np.abs(trial.whitened) ** 2).sum(axis=(-2, -1))
-        return trial.found_tests & (moved < STICKS**2 * self.problem.power)
+        moved = (np.abs(evaluation.whitened) ** 2).sum(axis=(-2, -1))
+        return evaluation.found_tests & (moved < STICKS**2 * self.data.power)
 
     def _prior(self, point: Point) -> np.ndarray:
         return np.r_[point.amplitude * self.amplitude_weight, (point.x[self.size :] - 1.0) / self.prior_std]
@@ -277,9 +281,9 @@ class Model:
     def start(self, base: "Fit | None", x: np.ndarray) -> Point:
         """Point with the numbers of the hypothesis and everything else as a base fit has it."""
         if base is None:
-            nothing = np.zeros(self.problem.tests)
+            nothing = np.zeros(self.data.tests)
             ones = np.ones(len(self.uncertain))
             return Point(np.r_[x, ones], nothing, np.full(nothing.size, np.nan), at_rest(nothing.size))
         known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
         rest = [known.get(name, 1.0) for name in self.uncertain]
-        return replace(base.trial.point, x=np.r_[x, rest])
+        return replace(base.evaluation.point, x=np.r_[x, rest])

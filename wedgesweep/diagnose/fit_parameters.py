@@ -25,7 +25,7 @@ Values = dict[str, dict[str, float]]
 
 
 @dataclass(frozen=True)
-class Coordinate:
+class FitParameter:
     """One fitted number; ``width`` is a change of it that matters. An angle has no bounds."""
 
     name: str
@@ -39,7 +39,7 @@ class Coordinate:
         return self.name.endswith("_deg")
 
     @property
-    def width(self) -> float:
+    def scale(self) -> float:
         return 0.5 if self.logarithmic else 0.1 * (self.high - self.low)
 
     def along(self, points: int) -> np.ndarray:
@@ -60,16 +60,16 @@ def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
             yield quantity, by_key.get(key + PHASE)
 
 
-def _coordinates(effect: str) -> Iterator[Coordinate]:
+def _coordinates(effect: str) -> Iterator[FitParameter]:
     for quantity, phase in _split(effect):
         low, high = quantity.search or (0.0, 0.0)
         name = f"{effect}.{quantity.key}"
         if phase:
-            yield from (Coordinate(f"{name}.{part}", -high, high) for part in ("cos", "sin"))
+            yield from (FitParameter(f"{name}.{part}", -high, high) for part in ("cos", "sin"))
         elif quantity.logarithmic:
-            yield Coordinate(name, log(low), log(high), True)
+            yield FitParameter(name, log(low), log(high), True)
         else:
-            yield Coordinate(name, low, high, neutral=quantity.neutral)
+            yield FitParameter(name, low, high, neutral=quantity.neutral)
 
 
 @dataclass(frozen=True)
@@ -83,21 +83,21 @@ class Hypothesis:
     fixed: tuple[tuple[str, float], ...] = ()
 
     @cached_property
-    def coordinates(self) -> tuple[Coordinate, ...]:
+    def parameters(self) -> tuple[FitParameter, ...]:
         known = {name for name, _ in self.fixed}
         return tuple(each for name in self.effects for each in _coordinates(name) if each.name not in known)
 
     @cached_property
     def low(self) -> np.ndarray:
-        return np.array([-inf if each.angle else each.low for each in self.coordinates])
+        return np.array([-inf if each.angle else each.low for each in self.parameters])
 
     @cached_property
     def high(self) -> np.ndarray:
-        return np.array([inf if each.angle else each.high for each in self.coordinates])
+        return np.array([inf if each.angle else each.high for each in self.parameters])
 
     @cached_property
-    def width(self) -> np.ndarray:
-        return np.array([each.width for each in self.coordinates])
+    def scale(self) -> np.ndarray:
+        return np.array([each.scale for each in self.parameters])
 
     def in_key_units(self, x: np.ndarray) -> Values:
         """Every number of every effect by its key, in the key's unit."""
@@ -142,15 +142,15 @@ class Hypothesis:
                     x.append(log(value) if quantity.logarithmic else value)
         return np.array(x)
 
-    def mild(self, x: np.ndarray) -> np.ndarray:
+    def near_neutral(self, x: np.ndarray) -> np.ndarray:
         """A point (k,) with neutral numbers, but for logarithms, whose neutral value may be infinite."""
-        neutral = np.clip([each.neutral for each in self.coordinates], self.low, self.high)
-        return np.where([each.logarithmic for each in self.coordinates], x, neutral)
+        neutral = np.clip([each.neutral for each in self.parameters], self.low, self.high)
+        return np.where([each.logarithmic for each in self.parameters], x, neutral)
 
     def starts(self) -> np.ndarray:
         """Points from which a fit may start, shape (n, k)."""
-        neutral = np.clip(np.zeros(len(self.coordinates)), self.low, self.high)
-        if len(self.coordinates) > 3:  # amplitudes with phases: linear enough to start at zero
+        neutral = np.clip(np.zeros(len(self.parameters)), self.low, self.high)
+        if len(self.parameters) > 3:  # amplitudes with phases: linear enough to start at zero
             return neutral[None]
-        ways = [each.along(FURTHER if i else ALONG) for i, each in enumerate(self.coordinates)]
+        ways = [each.along(FURTHER if i else ALONG) for i, each in enumerate(self.parameters)]
         return np.array(list(product(*ways)))

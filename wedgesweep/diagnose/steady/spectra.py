@@ -12,14 +12,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import gammaincc
 
-from wedgesweep.diagnose import noise
-from wedgesweep.diagnose.folding import Folding, folding
-from wedgesweep.diagnose.noise import Smooth
+from wedgesweep.diagnose.steady import noise_psd
+from wedgesweep.diagnose.steady.aliasing import AliasMap, alias_map
+from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
 
 # Harmonics that are compared with a simulation, and that are taken out before the noise is measured.
 COMPARED, REMOVED = 16, 40
 # Harmonics that a simulation knows of, and whose images beyond half the sampling rate count.
-FOLDED = 127
+SIMULATED = 127
 # Highest frequency that is used, over the sampling rate.
 BAND = 0.4
 # The noise is looked at between harmonics, at multiples of this part of the input frequency.
@@ -34,7 +34,7 @@ DOUBLED = 1e-4
 RESOLVED = 1.2
 # Lines (resolutions) that a tone and a harmonic make together hide the noise as close as this; share of the
 # lines that must be left without them.
-APART, ENOUGH = 0.8, 0.3
+TONE_LINE_WIDTH, LEAST_CLEAR_SHARE = 0.8, 0.3
 # Closer than this a tone is the harmonic; farther off it leaks into all of them, and is taken out.
 MINGLED = 0.05
 
@@ -48,7 +48,7 @@ class Spectrum:
     ``coherence``: of the noise of both channels, complex; ``level``: its smooth spectrum, per channel.
     ``residual`` (channels, n): what is left of the record. ``tone``: a foreign frequency (Hz) whose complex
     amplitude is the last column of ``mean``. A tone that the record cannot tell from a harmonic has none, and
-    that harmonic, ``covered`` (1, 2, ...), says nothing. ``folding``: what harmonics above half the sampling
+    that harmonic, ``masked`` (1, 2, ...), says nothing. ``folding``: what harmonics above half the sampling
     rate add to ``mean``, None for nothing.
     """
 
@@ -60,10 +60,10 @@ class Spectrum:
     variance: np.ndarray
     coherence: complex
     residual: np.ndarray
-    level: tuple[Smooth, ...]
+    level: tuple[SmoothPSD, ...]
     tone: float | None = None
-    covered: int | None = None
-    folding: Folding | None = None
+    masked: int | None = None
+    alias_map: AliasMap | None = None
 
     @property
     def duration(self) -> float:
@@ -71,14 +71,14 @@ class Spectrum:
         return self.samples * self.interval
 
     @property
-    def points(self) -> int:
+    def observations(self) -> int:
         """Real numbers that say something."""
-        return 2 * (self.mean.size - (self.covered is not None) * self.mean.shape[0])
+        return 2 * (self.mean.size - (self.masked is not None) * self.mean.shape[0])
 
     @property
-    def toned(self) -> bool:
+    def has_tone(self) -> bool:
         """Whether a foreign tone shows, by itself or mixed up with a harmonic."""
-        return self.tone is not None or self.covered is not None
+        return self.tone is not None or self.masked is not None
 
     @property
     def sample_noise(self) -> np.ndarray:
@@ -99,23 +99,23 @@ class Spectrum:
         power = np.abs(transform[:, bins]) ** 2 / self.samples
         return sum(each / level(frequencies) for each, level in zip(power, self.level, strict=True))
 
-    def with_silence(self, frequency: float) -> "Spectrum":
+    def with_undetected_tone(self, frequency: float) -> "Spectrum":
         """As if a tone had been looked for at a frequency (Hz), and nothing been there but noise."""
-        if not self.separates(np.array([frequency]))[0]:
+        if not self.resolves(np.array([frequency]))[0]:
             return self
-        variance = [4.0 / self.samples * level.fair(np.array([frequency])) for level in self.level]
+        variance = [4.0 / self.samples * level.unbiased(np.array([frequency])) for level in self.level]
         mean = np.concatenate([self.mean, np.zeros((len(self.mean), 1))], axis=1)
         return replace(
             self,
             mean=mean,
             variance=np.concatenate([self.variance, variance], axis=1),
             tone=frequency,
-            folding=None,
+            alias_map=None,
         )
 
-    def separates(self, frequencies: np.ndarray) -> np.ndarray:
+    def resolves(self, frequencies: np.ndarray) -> np.ndarray:
         """Whether the record tells these frequencies from the harmonics, in the band of those compared."""
-        return told_apart(frequencies, self.frequency, self.duration, self.harmonics)
+        return resolvable(frequencies, self.frequency, self.duration, self.harmonics)
 
 
 def _beside(frequencies: np.ndarray | float, frequency: float) -> np.ndarray:
@@ -128,15 +128,15 @@ def within_band(most: int, frequency: float, interval: float) -> int:
     return min(most, int(BAND / interval / frequency))
 
 
-def told_apart(tones: np.ndarray, frequency: float, duration: float, harmonics: int) -> np.ndarray:
+def resolvable(tones: np.ndarray, frequency: float, duration: float, harmonics: int) -> np.ndarray:
     """Whether a record (s) tells tones (Hz) from the harmonics, in the band of those that are compared."""
     resolved = _beside(tones, frequency) * duration > RESOLVED
     return resolved & (tones < frequency * (harmonics + 1))
 
 
-def placed(tone: float, frequency: float, duration: float, harmonics: int) -> tuple[bool, int | None]:
+def tone_position(tone: float, frequency: float, duration: float, harmonics: int) -> tuple[bool, int | None]:
     """Whether a record tells a tone from the harmonics that are compared, and else which one it covers."""
-    if told_apart(np.array(tone), frequency, duration, harmonics):
+    if resolvable(np.array(tone), frequency, duration, harmonics):
         return True, None
     closest = round(tone / frequency)
     covers = _beside(tone, frequency) * duration <= RESOLVED and 1 <= closest <= harmonics
@@ -200,8 +200,8 @@ def fitted(
     seen = left > LEAST_LEFT
     if tone is not None:
         seen = _unmixed(seen, frequency / PARTS * parts, frequency, tone, time[-1])
-    lines = noise.Lines(frequency / PARTS * parts[seen], turns[seen], left[seen], same)
-    level, coherence = noise.levels(residual, lines)
+    lines = noise_psd.SpectralLines(frequency / PARTS * parts[seen], turns[seen], left[seen], same)
+    level, coherence = noise_psd.levels(residual, lines)
     if abs(coherence) > SAME:
         mean, residual, level, coherence = mean[:1], residual[:1], level[:1], 0.0j
     at = frequency * np.arange(1, design.harmonics + 1)
@@ -212,13 +212,13 @@ def fitted(
         time.size,
         interval,
         mean,
-        np.array([design.scatter(inverse) * each.fair(at) for each in level]),
+        np.array([design.scatter(inverse) * each.unbiased(at) for each in level]),
         coherence,
         residual,
         level,
         design.tone,
-        design.covered,
-        _folding(time, frequency, design, inverse),
+        design.masked,
+        _alias_map(time, frequency, design, inverse),
     )
 
 
@@ -230,8 +230,8 @@ def _unmixed(
     Those of a weak tone do not stand out of the noise, and still add to it. All, if too few would be left.
     """
     away = np.minimum(_beside(lines - tone, frequency), _beside(lines + tone, frequency))
-    clear = seen & (away * duration > APART)
-    return clear if clear.sum() > ENOUGH * seen.sum() else seen
+    clear = seen & (away * duration > TONE_LINE_WIDTH)
+    return clear if clear.sum() > LEAST_CLEAR_SHARE * seen.sum() else seen
 
 
 def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
@@ -239,11 +239,13 @@ def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
     return ((products @ inverse) * products.conj()).sum(axis=1).real
 
 
-def _folding(time: np.ndarray, frequency: float, design: "_Design", inverse: np.ndarray) -> Folding | None:
+def _alias_map(time: np.ndarray, frequency: float, design: "_Design", inverse: np.ndarray) -> AliasMap | None:
     """What harmonics up to FOLDED add to those that are read; None where they are all read as themselves."""
-    if (FOLDED + REMOVED) * frequency * time[-1] < time.size - 1:
+    if (SIMULATED + REMOVED) * frequency * time[-1] < time.size - 1:
         return None
-    return folding(design.read(inverse @ design.matrix.T), _turns(time, frequency, FOLDED), design.removed)
+    return alias_map(
+        design.read(inverse @ design.matrix.T), _turns(time, frequency, SIMULATED), design.removed
+    )
 
 
 class _Design(NamedTuple):
@@ -255,7 +257,7 @@ class _Design(NamedTuple):
     harmonics: int
     removed: int
     tone: float | None
-    covered: int | None
+    masked: int | None
 
     def read(self, solution: np.ndarray) -> np.ndarray:
         """Complex amplitudes (columns, ...) from a solution (2 + ..., ...)."""
@@ -276,11 +278,11 @@ def _design(
     if doubled:
         half = _turns(time, 0.5 * frequency, 2 * kept + 1)[::2].T
         columns += [half.real, half.imag]
-    told, covered = (False, None) if tone is None else placed(tone, frequency, time[-1], kept)
+    told, masked = (False, None) if tone is None else tone_position(tone, frequency, time[-1], kept)
     if tone is not None and _beside(tone, frequency) * time[-1] > MINGLED:
         turn = np.exp(2j * pi * tone * time)[:, None]
         columns += [turn.real, turn.imag]
     matrix = np.concatenate(columns, axis=1)
     if told:
         places = np.c_[places, [matrix.shape[1] - 2, matrix.shape[1] - 1]]
-    return _Design(matrix, places[0], places[1], kept, removed, tone if told else None, covered)
+    return _Design(matrix, places[0], places[1], kept, removed, tone if told else None, masked)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import drawn
-from wedgesweep.diagnose import score
+from tests.diagnose.synthetic import drawn
+from wedgesweep.diagnose import score_test
+from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.tangents import tangents_of
 
 EFFECTS = (
     "velocity_lag",
@@ -26,7 +26,7 @@ FADING = {
 
 def scored(effects=None):
     search = Search(drawn(effects), EFFECTS)
-    return {each.effect: each for each in score.scores(search, search.base().fit)}
+    return {each.effect: each for each in score_test.scores(search, search.base().fit)}
 
 
 def test_an_effect_that_is_there_scores_and_one_that_is_not_does_not():
@@ -43,21 +43,21 @@ def test_the_weakest_value_is_what_the_tests_would_have_shown():
     for effect, (name, unit, others) in FADING.items():
         detectable = unit * weakest[effect].detectable
         stronger, weaker = ({effect: {name: factor * detectable, **others}} for factor in (4.0, 0.25))
-        assert scored(stronger)[effect].t2 > score.SHOWN > scored(weaker)[effect].t2
+        assert scored(stronger)[effect].t2 > score_test.DETECTABLE > scored(weaker)[effect].t2
 
 
 def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():
-    unheard = scored()["stray_vibration"]
-    assert unheard.t2 is None
-    assert unheard.testable
-    assert 0.0 < unheard.detectable < 0.1
+    tone_undetected = scored()["stray_vibration"]
+    assert tone_undetected.t2 is None
+    assert tone_undetected.testable
+    assert 0.0 < tone_undetected.detectable < 0.1
 
 
 @pytest.mark.parametrize("known", [True, False])
 def test_nuisances_take_out_start_phases_and_amplitudes_as_far_as_these_are_unknown(known):
     fit = Search(drawn(std=1e-6, known=known), ()).base().fit
-    phase, amplitude = np.moveaxis(tangents_of(fit.model, fit.trial).by_test, -1, 0)
-    project = score.Projector(fit)
+    phase, amplitude = np.moveaxis(jacobian(fit.model, fit.evaluation).by_local, -1, 0)
+    project = score_test.Projector(fit)
     assert np.linalg.norm(project(phase)) < 1e-6 * np.linalg.norm(phase)
     along = np.einsum("tm,tm->t", phase, amplitude) / np.einsum("tm,tm->t", phase, phase)
     left = (amplitude - along[:, None] * phase) * known

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import ndtr, stdtrit
 
-from wedgesweep.diagnose.equations import equations_of
-from wedgesweep.diagnose.model import Fit, Model, Point, Trial
-from wedgesweep.diagnose.refine import refine, restrict
+from wedgesweep.diagnose.least_squares import refine, subset_fit
+from wedgesweep.diagnose.normal_equations import normal_equations
+from wedgesweep.diagnose.steady.model import Evaluation, Fit, Model, Point
 
 # Iterations that adapt a fit to fewer tests, and the phase and amplitude to a held-out one.
 ADAPT, LOCAL = 6, 4
@@ -32,16 +32,16 @@ class HeldOut:
     scheme: str
     base: float
     extended: float
-    points: int
+    observations: int
     local: float
 
     @property
     def noise(self) -> float:
         """Squared misfit that noise leaves after phase and amplitude are fitted."""
-        return self.points - self.local
+        return self.observations - self.local
 
     def rmse(self, squared: float) -> float:
-        return float(np.sqrt(squared / self.points))
+        return float(np.sqrt(squared / self.observations))
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Gain:
     held_out: tuple[HeldOut, ...]
 
     def _total(self, part: Callable[[HeldOut], float], chosen: Sequence[HeldOut]) -> float:
-        return sum(map(part, chosen)) / sum(each.points for each in chosen)
+        return sum(map(part, chosen)) / sum(each.observations for each in chosen)
 
     def totals(self, chosen: Sequence[HeldOut] | None = None) -> tuple[float, float, float]:
         """Mean squares of base, extended and noise."""
@@ -97,13 +97,13 @@ class Gain:
         return [float(low), float(high)]
 
 
-def measure(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) -> Gain:
+def cross_validate(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) -> Gain:
     """Leave out one frequency, then one amplitude, and predict that; ``each`` maps a function."""
-    problem = base.model.problem
-    jobs = [("frequency", rows) for rows in groups(problem.omega)]
-    if not np.isinf(problem.amplitude_std).any():
-        jobs += [("amplitude", rows) for rows in groups(problem.amplitude)]
-    jobs = [job for job in jobs if len(job[1]) < problem.tests]
+    data = base.model.data
+    jobs = [("frequency", rows) for rows in groups(data.omega)]
+    if not np.isinf(data.amplitude_std).any():
+        jobs += [("amplitude", rows) for rows in groups(data.amplitude)]
+    jobs = [job for job in jobs if len(job[1]) < data.tests]
     local = _local_numbers(extended)
     rows = each(lambda job: _held_out(base, extended, local, *job), jobs)
     return Gain(tuple(one for group in rows for one in group))
@@ -124,27 +124,27 @@ def groups(values: np.ndarray) -> list[np.ndarray]:
 def _local_numbers(fit: Fit) -> np.ndarray:
     """Numbers (T,) that each test determines: phase, and amplitude as far as it is not known before."""
     model = fit.model
-    inner = equations_of(model, fit.trial).inner
+    inner = normal_equations(model, fit.evaluation).local_block
     known = model.amplitude_weight**2
     both = inner[:, 1, 1] - inner[:, 0, 1] ** 2 / inner[:, 0, 0]
-    return 1.0 + np.clip(1.0 - known / both, 0.0, 1.0) + model.tones
+    return 1.0 + np.clip(1.0 - known / both, 0.0, 1.0) + model.tone_tests
 
 
 def _held_out(base: Fit, extended: Fit, local: np.ndarray, scheme: str, rows: np.ndarray) -> list[HeldOut]:
-    rest = np.setdiff1d(np.arange(base.model.problem.tests), rows)
+    rest = np.setdiff1d(np.arange(base.model.data.tests), rows)
     misfits = [_predict(fit, rest, rows) for fit in (base, extended)]
-    problem = base.model.problem
+    data = base.model.data
     return [
-        HeldOut(int(test), scheme, float(b), float(e), int(problem.points[test]), float(local[test]))
+        HeldOut(int(test), scheme, float(b), float(e), int(data.observations[test]), float(local[test]))
         for test, b, e in zip(rows, *misfits, strict=True)
     ]
 
 
 def _predict(fit: Fit, rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Squared misfits (rows,) after a fit to the rest of the tests."""
-    trained = restrict(fit, rest)
+    trained = subset_fit(fit, rest)
     if len(fit.x):
-        trained = refine(trained.model, trained.trial, ADAPT)
+        trained = refine(trained.model, trained.evaluation, ADAPT)
     return predict(fit, trained.x, rows)
 
 
@@ -154,25 +154,25 @@ def predict(fit: Fit, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
     A known amplitude may move within its prior; an unknown one comes from the fundamental of the displacement
     alone, so that the rest of the test is a prediction.
     """
-    part = restrict(fit, rows)
-    unknown = np.isinf(part.model.problem.amplitude_std)
-    trial = part.model.trial(replace(part.trial.point, x=x))
+    part = subset_fit(fit, rows)
+    unknown = np.isinf(part.model.data.amplitude_std)
+    evaluation = part.model.evaluate(replace(part.evaluation.point, x=x))
     for _ in range(LOCAL):
-        if not trial.found:
+        if not evaluation.found:
             break
-        trial = part.model.trial(_moved(part.model, trial, unknown))
-    misfit = (trial.residual**2).sum(-1)
-    return np.where(trial.found_tests, misfit, part.model.problem.power)
+        evaluation = part.model.evaluate(_moved(part.model, evaluation, unknown))
+    misfit = (evaluation.residual**2).sum(-1)
+    return np.where(evaluation.found_tests, misfit, part.model.data.power)
 
 
-def _moved(model: Model, trial: Trial, unknown: np.ndarray) -> Point:
+def _moved(model: Model, evaluation: Evaluation, unknown: np.ndarray) -> Point:
     """Point with each amplitude moved: by its prior and data, or to match the fundamental."""
-    point = trial.point
-    equations = equations_of(model, trial)
+    point = evaluation.point
+    equations = normal_equations(model, evaluation)
     still = np.zeros(len(point.x))
-    local = equations.local(still, 0.0)[:, 1:]
-    measured = np.abs(model.problem.measured[:, 0, 0])
-    simulated = np.abs(trial.harmonics[:, 0, 0])
+    local = equations.local_step(still, 0.0)[:, 1:]
+    measured = np.abs(model.data.measured[:, 0, 0])
+    simulated = np.abs(evaluation.harmonics[:, 0, 0])
     match = np.log(measured / np.where(simulated > 0.0, simulated, measured))
     local[:, 0] = np.where(unknown, match, local[:, 0])
     return point.moved(still, np.clip(local, -0.3, 0.3))

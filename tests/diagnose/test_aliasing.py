@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from wedgesweep import config
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.jacobian import AMPLITUDE_STEP, jacobian
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import FOLDED, spectrum
-from wedgesweep.diagnose.tangents import AMPLITUDE_STEP, tangents_of
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.spectra import SIMULATED, spectrum
 from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCY = 31.266
@@ -37,12 +37,12 @@ def sampled(harmonics, ratio, periods=8.4, phase=0.0):
 @pytest.mark.parametrize("ratio", [20.3, 40.3, 49.5, 63.05, 130.0])
 def test_images_are_what_is_read_beside_the_harmonics(ratio):
     rng = np.random.default_rng(0)
-    harmonics = rng.normal(size=(2, FOLDED, 2)) @ [1.0, 1j] / np.arange(1, FOLDED + 1)
+    harmonics = rng.normal(size=(2, SIMULATED, 2)) @ [1.0, 1j] / np.arange(1, SIMULATED + 1)
     time, channels = sampled(harmonics, ratio)
     found = spectrum(time, channels, FREQUENCY)
-    images = found.mean - harmonics[:, : found.harmonics]
-    np.testing.assert_allclose(images, found.folding(harmonics), atol=1e-9)
-    assert np.abs(images).max() > 1e-3
+    aliases = found.mean - harmonics[:, : found.harmonics]
+    np.testing.assert_allclose(aliases, found.alias_map(harmonics), atol=1e-9)
+    assert np.abs(aliases).max() > 1e-3
 
 
 def bench(highest, ratio=63.05, level=0.01):
@@ -50,39 +50,39 @@ def bench(highest, ratio=63.05, level=0.01):
     rng = np.random.default_rng(1)
     model = config.parse(PULSES)
     rows = simulation.records(model, "coulomb", {}, np.array([2.0 * pi * FREQUENCY]), np.array([AMPLITUDE]))
-    harmonics = simulation.respond(rows, at_rest(1), FOLDED, simulation.TIGHT).harmonics[0]
+    harmonics = simulation.respond(rows, at_rest(1), SIMULATED, simulation.TIGHT).harmonics[0]
     time, channels = sampled(harmonics[:, :highest], ratio, phase=1.0)
     channels += level * channels.std(axis=1, keepdims=True) * rng.normal(size=channels.shape)
     found = spectrum(time, channels, FREQUENCY)
-    return Problem(model, "coulomb", ("one",), (found,), np.array([AMPLITUDE]), np.array([1e-4]), {})
+    return FitData(model, "coulomb", ("one",), (found,), np.array([AMPLITUDE]), np.array([1e-4]), {})
 
 
-@pytest.mark.parametrize(("highest", "unfiltered"), [(FOLDED, True), (31, False)])
-def test_the_right_model_leaves_noise_whether_or_not_the_record_was_low_passed(highest, unfiltered):
+@pytest.mark.parametrize(("highest", "aliased"), [(SIMULATED, True), (31, False)])
+def test_the_right_model_leaves_noise_whether_or_not_the_record_was_low_passed(highest, aliased):
     fit = Search(bench(highest), ()).base().fit
     assert fit.p > 0.01
-    assert fit.trial.unfiltered.all() == unfiltered
+    assert fit.evaluation.aliased.all() == aliased
 
 
 def test_pulses_sampled_often_enough_have_no_images():
-    fit = Search(bench(FOLDED, ratio=400.0), ()).base().fit
+    fit = Search(bench(SIMULATED, ratio=400.0), ()).base().fit
     assert fit.p > 0.01
-    assert not fit.trial.unfiltered.any()
+    assert not fit.evaluation.aliased.any()
 
 
 def test_without_their_images_the_pulses_are_not_explained():
-    problem = bench(FOLDED)
-    fit = Search(problem, ()).base().fit
-    left = problem.whitened - problem.turned(fit.trial.whitened, fit.trial.phase)
-    assert (np.abs(left) ** 2).sum() > 2.0 * fit.q
+    data = bench(SIMULATED)
+    fit = Search(data, ()).base().fit
+    left = data.whitened - data.rotated(fit.evaluation.whitened, fit.evaluation.phase)
+    assert (np.abs(left) ** 2).sum() > 2.0 * fit.chi2
 
 
 def test_images_are_part_of_the_derivatives():
-    fit = Search(bench(FOLDED), ()).base().fit
-    here, point = fit.trial, fit.trial.point
-    there = fit.model.trial(replace(point, amplitude=point.amplitude + AMPLITUDE_STEP))
-    by_test = tangents_of(fit.model, here).by_test[0]
-    expected = by_test @ [there.phase[0] - here.phase[0], AMPLITUDE_STEP]
+    fit = Search(bench(SIMULATED), ()).base().fit
+    here, point = fit.evaluation, fit.evaluation.point
+    there = fit.model.evaluate(replace(point, amplitude=point.amplitude + AMPLITUDE_STEP))
+    by_local = jacobian(fit.model, here).by_local[0]
+    expected = by_local @ [there.phase[0] - here.phase[0], AMPLITUDE_STEP]
     change = there.residual[0] - here.residual[0]
     # Without the images' part 2.4 % would be left.
     assert np.linalg.norm(change - expected) < 0.012 * np.linalg.norm(change)

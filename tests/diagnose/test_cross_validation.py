@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import LAG, drawn, searched
-from wedgesweep.diagnose import gain
-from wedgesweep.diagnose.gain import Gain, HeldOut
+from tests.diagnose.synthetic import LAG, drawn, searched
+from wedgesweep.diagnose import cross_validation
+from wedgesweep.diagnose.cross_validation import Gain, HeldOut
 
 
 def test_gain_on_held_out_tests_reaches_the_noise():
     _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    measured = gain.measure(base.fit, lag.fit, lambda function, items: list(map(function, items)))
+    measured = cross_validation.cross_validate(
+        base.fit, lag.fit, lambda function, items: list(map(function, items))
+    )
     assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
     assert measured.interval is None  # six tests are too few for one
@@ -22,15 +24,19 @@ def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
         left = []
         for seed in range(12):
             _, base, _ = searched(drawn(seed=seed, std=std, known=known))
-            local = gain._local_numbers(base.fit)
+            local = cross_validation._local_numbers(base.fit)
             assert ((least <= local) & (local <= most)).all()
-            left.append((base.fit.trial.residual**2).sum() - (base.fit.model.problem.points - local).sum())
+            left.append(
+                (base.fit.evaluation.residual**2).sum() - (base.fit.model.data.observations - local).sum()
+            )
         assert np.mean(left) == pytest.approx(0.0, abs=3.0 * np.sqrt(2.0 * 384 / 12))
 
 
 def test_retuning_alone_gains_nothing():
     _, base, (lag,) = searched(drawn(), "velocity_lag")
-    measured = gain.measure(base.fit, lag.fit, lambda function, items: list(map(function, items)))
+    measured = cross_validation.cross_validate(
+        base.fit, lag.fit, lambda function, items: list(map(function, items))
+    )
     base_square, extended, noise = measured.totals()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
@@ -59,7 +65,7 @@ def test_an_effect_that_one_test_denies_is_uncertain():
 def test_a_fine_sweep_is_no_single_group():
     """Each frequency lies within 2 % of the next, not of all."""
     frequencies = np.arange(30.0, 38.1, 0.5)
-    found = gain.groups(frequencies[::-1].copy())
+    found = cross_validation.groups(frequencies[::-1].copy())
     assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
-    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= gain.ALIKE
+    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= cross_validation.ALIKE
     assert len(found) > 5

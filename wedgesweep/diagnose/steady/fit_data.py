@@ -7,15 +7,15 @@ from math import inf, nan, pi
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.simulation import LONGEST, Meeting
-from wedgesweep.diagnose.spectra import FOLDED, Spectrum
+from wedgesweep.diagnose.steady.simulation import LONGEST_SIMULATED, ToneTiming
+from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
 # Phases at which the best rotation is looked for.
 TURNS = 256
 
 
 @dataclass(frozen=True)
-class Problem:
+class FitData:
     """What the measurement says, with T tests, C channels and H harmonics (absent ones weigh nothing).
 
     ``amplitude`` (T,): input amplitude in m, NaN where unknown; ``amplitude_std`` (T,): relative, 0 where
@@ -37,11 +37,11 @@ class Problem:
     start: np.ndarray | None = None
 
     @cached_property
-    def meetings(self) -> tuple[Meeting, ...]:
+    def timings(self) -> tuple[ToneTiming, ...]:
         """How input and tone met in each test; the input starts at phase 0 where that is not known yet."""
         starts = np.zeros(self.tests) if self.start is None else self.start
         return tuple(
-            Meeting(min(s.periods, LONGEST), float(start), _phase(s))
+            ToneTiming(min(s.periods, LONGEST_SIMULATED), float(start), _phase(s))
             for s, start in zip(self.spectra, starts, strict=True)
         )
 
@@ -63,7 +63,7 @@ class Problem:
         """Harmonics, and the tone where there is one."""
         return self.shape[1] + (self.tone is not None)
 
-    def subset(self, rows: np.ndarray) -> "Problem":
+    def subset(self, rows: np.ndarray) -> "FitData":
         """The same problem with some of its tests."""
         return replace(
             self,
@@ -93,8 +93,8 @@ class Problem:
         """One over the noise of a real part, (T, C, H); 0 where absent or covered by a tone."""
         weight = np.sqrt(2.0 / self._padded([s.variance for s in self.spectra], inf))
         for row, spectrum in zip(weight, self.spectra, strict=True):
-            if spectrum.covered is not None:
-                row[:, spectrum.covered - 1] = 0.0
+            if spectrum.masked is not None:
+                row[:, spectrum.masked - 1] = 0.0
         return weight
 
     @cached_property
@@ -102,14 +102,14 @@ class Problem:
         return np.array([s.coherence for s in self.spectra])
 
     @cached_property
-    def points(self) -> np.ndarray:
+    def observations(self) -> np.ndarray:
         """Real numbers that each test contributes, (T,)."""
-        return np.array([s.points for s in self.spectra])
+        return np.array([s.observations for s in self.spectra])
 
     @property
     def dof(self) -> np.ndarray:
         """Points of each test less its start phase, and its amplitude where that is unknown, (T,)."""
-        return self.points - 1 - np.isinf(self.amplitude_std)
+        return self.observations - 1 - np.isinf(self.amplitude_std)
 
     def whiten(self, harmonics: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) over their noise, complex, with the channels' common noise taken out."""
@@ -120,25 +120,25 @@ class Problem:
             scaled = np.stack([scaled[..., 0, :], second], axis=-2)
         return scaled
 
-    def shown(self, simulated: np.ndarray) -> np.ndarray:
+    def compared(self, simulated: np.ndarray) -> np.ndarray:
         """Of simulated harmonics (..., K), a tone last, those that are compared (..., H)."""
         if self.tone is None:
             return simulated[..., : self.shape[1]]
         return np.concatenate([simulated[..., : self.shape[1]], simulated[..., -1:]], axis=-1)
 
-    def images(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
+    def aliases(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
         """What simulated harmonics (..., T, C, K) at phases (..., T) add to those compared (..., T, C, H).
 
         Nothing but by those above half the sampling rate, see folding.py.
         """
         found = np.zeros((*simulated.shape[:-1], self.columns), complex)
-        if simulated.shape[-1] < FOLDED:
+        if simulated.shape[-1] < SIMULATED:
             return found
-        orders = np.arange(1, FOLDED + 1)
+        orders = np.arange(1, SIMULATED + 1)
         for i, spectrum in enumerate(self.spectra):
-            if spectrum.folding is not None:
+            if spectrum.alias_map is not None:
                 turn = np.exp(1j * orders * phase[..., i, None, None])
-                read = spectrum.folding(simulated[..., i, :, :FOLDED] * turn)
+                read = spectrum.alias_map(simulated[..., i, :, :SIMULATED] * turn)
                 found[..., i, :, : spectrum.harmonics] = read[..., : spectrum.harmonics]
                 if spectrum.tone is not None:
                     found[..., i, :, -1] = read[..., -1]
@@ -175,7 +175,7 @@ class Problem:
             phase = phase + np.clip(step, -0.02, 0.02)
         return phase
 
-    def turned(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
+    def rotated(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) turned by phases (..., T); a tone turns to suit the measurement."""
         turn = np.exp(1j * self.orders * phase[..., None])
         if self.tone is not None:

@@ -10,24 +10,24 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.model import Fit, Model, Point, least
-from wedgesweep.diagnose.refine import refine
+from wedgesweep.diagnose.least_squares import refine
+from wedgesweep.diagnose.steady.model import Fit, Model, Point, best_evaluation_per_test
 
 # Phases that are tried.
 PHASES = 12
 
 
-def met(fit: Fit) -> Fit:
+def with_tone_phase(fit: Fit) -> Fit:
     """A fit followed on with the phases of a foreign vibration among what is unknown, if that is better."""
-    if not fit.model.toned or not fit.trial.found or fit.model.meets(fit.trial.point):
+    if not fit.model.has_tone or not fit.evaluation.found or fit.model.fits_tone_phase(fit.evaluation.point):
         return fit
-    again = refine(fit.model, fit.model.trial(_at_best_phases(fit.model, fit.trial.point)))
-    return min(fit, again, key=lambda each: each.q)
+    again = refine(fit.model, fit.model.evaluate(_at_best_phases(fit.model, fit.evaluation.point)))
+    return min(fit, again, key=lambda each: each.chi2)
 
 
 def _at_best_phases(model: Model, point: Point) -> Point:
     """The point with the phase that leaves least of each test in which a tone shows."""
     phases = 2.0 * np.pi / PHASES * np.arange(PHASES)
-    told = np.where(model.tones, 0.0, np.nan)
-    trials = model.trials([replace(point, ahead=told + phase) for phase in phases])
-    return replace(point, ahead=told + phases[least(trials)])
+    told = np.where(model.tone_tests, 0.0, np.nan)
+    evaluations = model.evaluate_all([replace(point, tone_phase=told + phase) for phase in phases])
+    return replace(point, tone_phase=told + phases[best_evaluation_per_test(evaluations)])

@@ -1,4 +1,4 @@
-"""Steady responses of the model on trial to the measured tests, each started from a neighbour's."""
+"""Steady responses of the base model to the measured tests, each started from a neighbour's."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -9,7 +9,7 @@ import numpy as np
 
 from wedgesweep import effects, parameters
 from wedgesweep.config import Config
-from wedgesweep.diagnose.spectra import FOLDED, REMOVED, regressors
+from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
@@ -17,10 +17,10 @@ from wedgesweep.solvers.periodic import Warm
 # add nothing to derivatives either; rough ones do where it is only asked from where a fit should begin.
 TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
 MOST_PERIODS = 40
-SAMPLES_PER_PERIOD = 2 * (FOLDED + 1)
+SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
 # Periods run before a response with a foreign tone is evaluated, and more from rest; over which it is where
 # no record says, and of a record that is longer than need be: by then tone and input have met in all ways.
-TONE_SETTLING, FROM_REST, LONG, LONGEST = 10, 30, 12.0, 60.0
+TONE_SETTLING, FROM_REST, LONG, LONGEST_SIMULATED = 10, 30, 12.0, 60.0
 
 
 class Responses(NamedTuple):
@@ -49,7 +49,7 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOL
     return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
 
 
-class Meeting(NamedTuple):
+class ToneTiming(NamedTuple):
     """How input and foreign tone met in a record, ``periods`` of the input long.
 
     At its first sample the input was at the phase ``start`` (rad), the tone in the displacement at ``tone``
@@ -66,32 +66,32 @@ def respond_with_tone(
     warm: Warm,
     harmonics: int,
     tone: float,
-    meetings: Sequence[Meeting],
-    ahead: np.ndarray,
+    timings: Sequence[ToneTiming],
+    tone_phase: np.ndarray,
     tolerance: float = TOLERANCE,
 ) -> Responses:
     """Responses under a foreign tone (Hz), which do not repeat: harmonics, and the tone in the last column.
 
-    Each row as in its record, with the vibration behind the tone ``ahead`` (n,) of the parameters' phase
+    Each row as in its record, with the vibration behind the tone ``tone_phase`` (n,) of the parameters' phase
     (rad). Where that is not known (NaN), first with any phase, which tells how the response lags behind, then
     with that at which both met; if no tone shows either, a span of ``LONG`` periods stands for all ways.
     """
     rows = rows.copy()
-    rows["stray_vibration_phase"] += np.nan_to_num(ahead)
-    shown = np.array([meeting.tone for meeting in meetings])
-    anyhow = np.isnan(ahead) & np.isnan(shown)
-    meetings = tuple(
-        each._replace(periods=LONG) if one else each for each, one in zip(meetings, anyhow, strict=True)
+    rows["stray_vibration_phase"] += np.nan_to_num(tone_phase)
+    shown = np.array([timing.tone for timing in timings])
+    anyhow = np.isnan(tone_phase) & np.isnan(shown)
+    timings = tuple(
+        each._replace(periods=LONG) if one else each for each, one in zip(timings, anyhow, strict=True)
     )
     state = warm.state
     if not np.isfinite(state).all():
         state = periodic.samples(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance)[2]
-    spectra, state = _recorded(rows, state, harmonics, tone, meetings, tolerance)
-    late = np.where(np.isnan(ahead), shown, np.nan) - np.angle(spectra[:, 0, -1])
+    spectra, state = _recorded(rows, state, harmonics, tone, timings, tolerance)
+    late = np.where(np.isnan(tone_phase), shown, np.nan) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(late))
     if again.size:
         rows["stray_vibration_phase"][again] += late[again]
-        chosen = tuple(meetings[i] for i in again)
+        chosen = tuple(timings[i] for i in again)
         spectra[again], state[again] = _recorded(
             rows[again], state[again], harmonics, tone, chosen, tolerance
         )
@@ -104,7 +104,7 @@ def _recorded(
     states: np.ndarray,
     harmonics: int,
     tone: float,
-    meetings: Sequence[Meeting],
+    timings: Sequence[ToneTiming],
     tolerance: float,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Harmonics and tone (n, 2, H + 1) over the span of each record, from phase 0 of the input, and states.
@@ -112,13 +112,13 @@ def _recorded(
     The tone's phase is that at the first sample of the record.
     """
     spectra = np.full((len(rows), 2, harmonics + 1), np.nan, complex)
-    longest = ceil(max(meeting.periods for meeting in meetings)) + 1
+    longest = ceil(max(timing.periods for timing in timings)) + 1
     x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, SAMPLES_PER_PERIOD, tolerance)
     turn = 2.0 * pi / SAMPLES_PER_PERIOD
-    for i, meeting in enumerate(meetings):
-        start = meeting.start % (2.0 * pi)
+    for i, timing in enumerate(timings):
+        start = timing.start % (2.0 * pi)
         first = round(start / turn)
-        count = round(meeting.periods * SAMPLES_PER_PERIOD)
+        count = round(timing.periods * SAMPLES_PER_PERIOD)
         ratio = 2.0 * pi * tone / float(rows["omega"][i])
         signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
         found = signals @ _projection(ratio, harmonics, count).T

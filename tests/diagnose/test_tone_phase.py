@@ -6,15 +6,15 @@ from math import pi
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import MODEL
+from tests.diagnose.synthetic import MODEL
 from wedgesweep import config
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.meeting import met
-from wedgesweep.diagnose.problem import Problem
-from wedgesweep.diagnose.refine import refine
-from wedgesweep.diagnose.score import scores
+from wedgesweep.diagnose.least_squares import refine
+from wedgesweep.diagnose.score_test import scores
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import spectrum
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.spectra import spectrum
+from wedgesweep.diagnose.steady.tone_phase import with_tone_phase
 from wedgesweep.solvers import periodic
 
 TONE, ACCELERATION, NOISE = 14.41, 7e-3, 0.01
@@ -40,17 +40,17 @@ def recorded(phases, seed):
     )
     names = tuple(f"{frequency:g} Hz" for frequency in FREQUENCIES)
     exact = np.full(3, 1e-4)
-    return Problem(model, "static-dynamic", names, spectra, AMPLITUDES, exact, {}, TONE, 0.01)
+    return FitData(model, "static-dynamic", names, spectra, AMPLITUDES, exact, {}, TONE, 0.01)
 
 
 def test_what_a_vibration_leaves_is_explained_by_the_phase_at_which_it_met_the_input():
     before = []
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):
-        problem = recorded(np.full(3, phase), seed)
-        assert [each.covered for each in problem.spectra] == [3, None, None]
-        model = Search(problem, ("stray_vibration",)).model("stray_vibration")
-        anyhow = refine(model, model.trial(model.start(None, np.array([ACCELERATION]))))
-        fit = met(anyhow)
+        data = recorded(np.full(3, phase), seed)
+        assert [each.masked for each in data.spectra] == [3, None, None]
+        model = Search(data, ("stray_vibration",)).model("stray_vibration")
+        anyhow = refine(model, model.evaluate(model.start(None, np.array([ACCELERATION]))))
+        fit = with_tone_phase(anyhow)
         assert fit.p > 1e-3
         found = fit.values["stray_vibration"]["acceleration_m_per_s2"]
         assert found == pytest.approx(ACCELERATION, rel=0.05)
@@ -63,8 +63,8 @@ def test_a_model_on_trial_may_have_the_vibration_itself():
     """Its phases are as unknown as those of one that is a cause."""
     table = f"[effects.stray_vibration]\nacceleration_m_per_s2 = {ACCELERATION}\nfrequency_hz = {TONE}\n"
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):
-        problem = replace(recorded(np.full(3, phase), seed), model=config.parse(MODEL + table))
-        search = Search(problem, ("viscous_damping",))
+        data = replace(recorded(np.full(3, phase), seed), model=config.parse(MODEL + table))
+        search = Search(data, ("viscous_damping",))
         base = search.base()
         assert base.fit.p > 1e-3
     (damping,) = scores(search, base.fit)
@@ -73,6 +73,6 @@ def test_a_model_on_trial_may_have_the_vibration_itself():
 
 
 def test_a_fit_without_a_tone_stays_as_it_is():
-    problem = recorded(np.zeros(3), 0)
-    base = Search(problem, ()).base().fit
-    assert met(base) is base
+    data = recorded(np.zeros(3), 0)
+    base = Search(data, ()).base().fit
+    assert with_tone_phase(base) is base

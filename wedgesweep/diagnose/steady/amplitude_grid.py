@@ -6,7 +6,7 @@ from math import log
 
 import numpy as np
 
-from wedgesweep.diagnose.model import Model, Point, Trial
+from wedgesweep.diagnose.steady.model import Evaluation, Model, Point
 
 # Lowest rung, over the fundamental of the displacement, and the factor from one to the next.
 LOWEST, STEP = 0.12, 1.3
@@ -16,21 +16,21 @@ USUAL, MOST = 17, 28
 BETWEEN = 8
 
 
-def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Trial]:
+def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Evaluation]:
     """Simulated points, with the unknown input amplitudes that suit each of them best."""
-    if not np.isinf(model.problem.amplitude_std).any():
-        return model.trials(points)
-    ladder = _Ladder(model, points)
-    for rung in range(MOST):
-        if rung >= USUAL and not ladder.sticking.any():
+    if not np.isinf(model.data.amplitude_std).any():
+        return model.evaluate_all(points)
+    search = _AmplitudeGridSearch(model, points)
+    for level in range(MOST):
+        if level >= USUAL and not search.sticking.any():
             break
-        ladder.climb(np.full(ladder.least.shape, log(LOWEST) + rung * log(STEP)))
-    if ladder.best_sticks.any():
-        ladder.climb_between()
-    return model.trials(ladder.best)
+        search.evaluate_level(np.full(search.least.shape, log(LOWEST) + level * log(STEP)))
+    if search.best_sticks.any():
+        search.refine_near_breakaway()
+    return model.evaluate_all(search.best)
 
 
-class _Ladder:
+class _AmplitudeGridSearch:
     """Points (n) on their way up, and the best of each test so far: its misfit ``least`` (n, T).
 
     ``sticking`` (n, T): whether a test sticks on this rung; ``best_sticks`` (n, T): whether it does on its
@@ -38,36 +38,36 @@ class _Ladder:
     """
 
     def __init__(self, model: Model, points: Sequence[Point]) -> None:
-        self.model, self.best, self.climbing = model, list(points), list(points)
-        self.unknown = np.isinf(model.problem.amplitude_std)
-        shape = len(points), model.problem.tests
+        self.model, self.best, self.current = model, list(points), list(points)
+        self.unknown = np.isinf(model.data.amplitude_std)
+        shape = len(points), model.data.tests
         self.least, self.held = np.full(shape, np.inf), np.full(shape, -np.inf)
         self.sticking, self.best_sticks = np.zeros(shape, bool), np.zeros(shape, bool)
 
-    def climb(self, rungs: np.ndarray) -> None:
+    def evaluate_level(self, levels: np.ndarray) -> None:
         """Try the rungs (n, T), each from the response of the one before."""
         at = [
-            replace(each, amplitude=np.where(self.unknown, rung, each.amplitude))
-            for each, rung in zip(self.climbing, rungs, strict=True)
+            replace(each, amplitude=np.where(self.unknown, level, each.amplitude))
+            for each, level in zip(self.current, levels, strict=True)
         ]
-        trials = self.model.trials(at)
-        self.climbing = [trial.point for trial in trials]
-        self.sticking = np.array([self.model.sticks(trial) for trial in trials]) & self.unknown
-        self.held[self.sticking] = rungs[self.sticking]
-        for i, trial in enumerate(trials):
-            misfit = np.where(trial.found_tests, trial.by_test, np.inf)
+        evaluations = self.model.evaluate_all(at)
+        self.current = [evaluation.point for evaluation in evaluations]
+        self.sticking = np.array([self.model.sticks(evaluation) for evaluation in evaluations]) & self.unknown
+        self.held[self.sticking] = levels[self.sticking]
+        for i, evaluation in enumerate(evaluations):
+            misfit = np.where(evaluation.found_tests, evaluation.chi2_by_test, np.inf)
             better = misfit < self.least[i]
             self.least[i, better] = misfit[better]
             self.best_sticks[i, better] = self.sticking[i, better]
-            self.best[i] = _tests_of(self.best[i], trial.point, better)
+            self.best[i] = _tests_of(self.best[i], evaluation.point, better)
 
-    def climb_between(self) -> None:
+    def refine_near_breakaway(self) -> None:
         """Next to breakaway motion grows so fast that a whole rung leads from too little to far too much."""
-        self.climbing = list(self.best)
+        self.current = list(self.best)
         amplitudes = np.array([each.amplitude for each in self.best])
         between, held = self.best_sticks.copy(), self.held.copy()
         for step in range(1, BETWEEN):
-            self.climb(np.where(between, held + step / BETWEEN * log(STEP), amplitudes))
+            self.evaluate_level(np.where(between, held + step / BETWEEN * log(STEP), amplitudes))
 
 
 def _tests_of(one: Point, other: Point, chosen: np.ndarray) -> Point:

@@ -5,67 +5,67 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.model import Model, Trial
-from wedgesweep.diagnose.problem import real
+from wedgesweep.diagnose.steady.fit_data import real
+from wedgesweep.diagnose.steady.model import Evaluation, Model
 
 # Finite differences: share of a coordinate's width, and of an amplitude. The noise of a simulation looks like
 # information: shorter steps make intervals too narrow where amplitude and effect are hard to tell apart.
 STEP, AMPLITUDE_STEP = 2e-3, 2e-3
 # And of the phase of a foreign vibration (rad).
-AHEAD_STEP = 1e-2
+TONE_PHASE_STEP = 1e-2
 
 
-class Tangents(NamedTuple):
+class Jacobian(NamedTuple):
     """Derivatives of the residual by the numbers (T, m, k + u), and by what is local to a test (T, m, L).
 
     Local are start phase and amplitude, and the phase of a foreign vibration where the point has one.
     """
 
-    by_number: np.ndarray
-    by_test: np.ndarray
+    by_parameter: np.ndarray
+    by_local: np.ndarray
 
 
-def tangents_of(model: Model, trial: Trial, side: float = 1.0) -> Tangents:
+def jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
     """Derivatives of the residual, from a simulation of each step.
 
     ``side``: to which side (1 or -1) numbers are changed, where the bounds allow it.
     """
-    x = trial.point.x
-    local = [AMPLITUDE_STEP, AHEAD_STEP][: 1 + model.meets(trial.point)]
-    steps = side * np.r_[STEP * model.width, local]
+    x = evaluation.point.x
+    local = [AMPLITUDE_STEP, TONE_PHASE_STEP][: 1 + model.fits_tone_phase(evaluation.point)]
+    steps = side * np.r_[STEP * model.scale, local]
     free = [np.inf] * len(local)
     low, high = np.r_[model.low - x, np.negative(free)], np.r_[model.high - x, free]
     steps = np.where((low <= steps) & (steps <= high), steps, -steps)
     back = (low <= -steps) & (-steps <= high)
-    columns, _ = derivatives(lambda moved: _changes(model, trial, moved), steps, back)
-    by_test = np.concatenate([_turn(model, trial)[..., None], columns[..., len(x) :]], axis=-1)
-    return Tangents(columns[..., : len(x)], by_test)
+    columns, _ = derivatives(lambda moved: _changes(model, evaluation, moved), steps, back)
+    by_local = np.concatenate([_turn(model, evaluation)[..., None], columns[..., len(x) :]], axis=-1)
+    return Jacobian(columns[..., : len(x)], by_local)
 
 
-def cautious(model: Model, trial: Trial) -> Tangents:
+def conservative_jacobian(model: Model, evaluation: Evaluation) -> Jacobian:
     """Derivatives to the side to which less changes.
 
     Across a jump of the response they would be large, and seem to tell a number ever so precisely.
     """
-    return Tangents(*map(_smaller, tangents_of(model, trial), tangents_of(model, trial, -1.0)))
+    return Jacobian(*map(_smaller, jacobian(model, evaluation), jacobian(model, evaluation, -1.0)))
 
 
-def _turn(model: Model, trial: Trial) -> np.ndarray:
+def _turn(model: Model, evaluation: Evaluation) -> np.ndarray:
     """Derivative of the residual by the start phase (T, m)."""
-    problem = model.problem
-    orders = np.r_[problem.orders, [0] * (problem.columns - problem.orders.size)]
-    return real(-1j * orders * problem.turned(trial.whitened, trial.phase))
+    data = model.data
+    orders = np.r_[data.orders, [0] * (data.columns - data.orders.size)]
+    return real(-1j * orders * data.rotated(evaluation.whitened, evaluation.phase))
 
 
-def _changes(model: Model, trial: Trial, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _changes(model: Model, evaluation: Evaluation, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Changes of the residual (n, T, m) by steps (n, k + u + L - 1) of all but start phases; found or not."""
-    point, problem = trial.point, model.problem
+    point, data = evaluation.point, model.data
     numbers = len(point.x)
     harmonics, found, _ = model.simulate([point.moved(step[:numbers], step[numbers:]) for step in steps])
-    phase = np.repeat(trial.phase[None], len(steps), axis=0)
-    moved = problem.turned(problem.whiten(problem.shown(harmonics)), phase)
-    images = np.where(trial.unfiltered, problem.images(harmonics, phase), 0.0) - trial.images
-    change = problem.turned(trial.whitened, trial.phase) - moved - problem.whiten(images)
+    phase = np.repeat(evaluation.phase[None], len(steps), axis=0)
+    moved = data.rotated(data.whiten(data.compared(harmonics)), phase)
+    aliases = np.where(evaluation.aliased, data.aliases(harmonics, phase), 0.0) - evaluation.aliases
+    change = data.rotated(evaluation.whitened, evaluation.phase) - moved - data.whiten(aliases)
     return real(change), found
 
 

@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.refine import exact, refine
+from wedgesweep.diagnose.least_squares import refine, tight_refit
+from wedgesweep.diagnose.steady.model import Fit
 
 # Half a 95 % interval of one number in standard deviations, and the rise of Q at its ends.
 TWO_SIDED = 1.959964
 RISE = TWO_SIDED**2
 # An end is found if Q has risen by this share of that, or after so many tries.
-CLOSE, TRIES = 0.8, 5
+CLOSE_ENOUGH, TRIES = 0.8, 5
 # The next try is no more than this many times further off.
 FURTHER = 3.0
 # Iterations of a fit with a number held.
@@ -28,14 +28,14 @@ ITERATIONS = 10
 LOWER, ONWARD = 0.5, 6
 
 
-class Way(NamedTuple):
+class ProfileEnd(NamedTuple):
     """End of an interval, in standard deviations by the curvature, and the fit of the least Q on the way."""
 
     end: float
     least: Fit
 
 
-def profiled(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
+def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """A fit or a better one next to it, its covariance no less than where Q says that intervals end.
 
     ``each`` maps a function. An interval is never narrower than by the curvature at the minimum: where Q is
@@ -43,19 +43,19 @@ def profiled(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """
     sides = list(product(range(fit.model.size), (1.0, -1.0)))
     ends = np.full((fit.model.size, 2), TWO_SIDED)
-    for _ in range(ONWARD if fit.trial.found else 0):
-        ways = each(lambda side, fit=fit: _way(fit, *side), sides)
-        ends = np.reshape([way.end for way in ways], ends.shape)
-        least = min((way.least for way in ways), key=lambda found: found.q, default=fit)
-        better = fit if least is fit else exact(replace(least, model=fit.model))
-        if better.q > fit.q - LOWER:
+    for _ in range(ONWARD if fit.evaluation.found else 0):
+        ends_found = each(lambda side, fit=fit: _profile_end(fit, *side), sides)
+        ends = np.reshape([each.end for each in ends_found], ends.shape)
+        least = min((each.least for each in ends_found), key=lambda found: found.chi2, default=fit)
+        better = fit if least is fit else tight_refit(replace(least, model=fit.model))
+        if better.chi2 > fit.chi2 - LOWER:
             break
         fit = better
     wider = np.r_[ends.max(axis=1) / TWO_SIDED, np.ones(len(fit.x) - fit.model.size)]
     return replace(fit, covariance=wider[:, None] * fit.covariance * wider)
 
 
-def _way(fit: Fit, number: int, side: float) -> Way:
+def _profile_end(fit: Fit, number: int, side: float) -> ProfileEnd:
     """Out from a fit along one number until Q has risen enough, or is lower than where it began."""
     std = np.sqrt(fit.covariance[number, number])
     bound = (fit.model.high if side > 0.0 else fit.model.low)[number]
@@ -64,14 +64,14 @@ def _way(fit: Fit, number: int, side: float) -> Way:
     for _ in range(TRIES):
         off = min(end, furthest)
         held = _held(fit, held, number, fit.x[number] + side * off * std)
-        rise = held.q - fit.q
+        rise = held.chi2 - fit.chi2
         if rise < -LOWER:
-            return Way(end, held)
+            return ProfileEnd(end, held)
         share = np.sqrt(RISE / max(rise, RISE / FURTHER**2))
         end = max(off * share, TWO_SIDED)
-        if rise > CLOSE * RISE or off == furthest:
+        if rise > CLOSE_ENOUGH * RISE or off == furthest:
             break
-    return Way(end, fit)
+    return ProfileEnd(end, fit)
 
 
 def _held(fit: Fit, start: Fit, number: int, value: float) -> Fit:
@@ -79,4 +79,4 @@ def _held(fit: Fit, start: Fit, number: int, value: float) -> Fit:
     model = fit.model.holding(number, value)
     along = fit.covariance[:, number] / fit.covariance[number, number]
     x = np.clip(start.x + along * (value - start.x[number]), model.low, model.high)
-    return refine(model, model.trial(replace(start.trial.point, x=x)), ITERATIONS)
+    return refine(model, model.evaluate(replace(start.evaluation.point, x=x)), ITERATIONS)

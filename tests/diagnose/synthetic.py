@@ -8,11 +8,11 @@ from math import pi
 import numpy as np
 
 from wedgesweep import config
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.noise import Smooth
-from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import Spectrum
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
+from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])
@@ -42,7 +42,7 @@ def drawn(
     bench=(FREQUENCIES, AMPLITUDES),
     law="static-dynamic",
     model=MODEL,
-) -> Problem:
+) -> FitData:
     """Problem of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated.
 
     ``bench``: frequencies (Hz) and stated amplitudes (m) of all the tests that may be chosen.
@@ -60,10 +60,10 @@ def drawn(
         variance = np.repeat(4.0 / SAMPLES * (level * rms[:, None]) ** 2, HARMONICS, axis=1)
         noise = rng.normal(size=(2, 2, HARMONICS)) * np.sqrt(variance / 2.0)
         mean = harmonics * turn + noise[0] + 1j * noise[1]
-        flat = tuple(Smooth(np.array([2.0 * np.log(level * each), 0.0, 0.0]), 1.0) for each in rms)
+        flat = tuple(SmoothPSD(np.array([2.0 * np.log(level * each), 0.0, 0.0]), 1.0) for each in rms)
         silent = np.zeros((2, SAMPLES))
         spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
-    return Problem(
+    return FitData(
         model,
         law,
         tuple(f"{f:g} Hz" for f in frequencies),
@@ -74,7 +74,7 @@ def drawn(
     )
 
 
-def next_to_breakaway() -> Problem:
+def next_to_breakaway() -> FitData:
     """Stribeck friction and a damper, with a test (8.155 Hz) that sticks if friction is a bit more."""
     return drawn(
         {"stribeck": {"peak": 1.21402e-3, "velocity": 0.379124e-3}, "viscous_damping": {"coefficient": 2.4}},
@@ -88,8 +88,8 @@ def next_to_breakaway() -> Problem:
     )
 
 
-def searched(problem, *effects):
+def searched(data, *effects):
     """Search, base model and the best fit of each effect."""
-    search = Search(problem, effects)
+    search = Search(data, effects)
     base = search.base()
     return search, base, [search.single(effect, base.fit) for effect in effects]

@@ -5,21 +5,21 @@ from math import pi
 import numpy as np
 from scipy.optimize import root_scalar
 
-from wedgesweep.diagnose.accelerations import accelerations
-from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.problem import Problem
-from wedgesweep.diagnose.simulation import records
+from wedgesweep.diagnose.steady.accelerations import accelerations
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
 
 PHASES = 256
 # A harmonic counts as far as its square is above this many times its noise.
-HEARD = 4.0
+ABOVE_NOISE = 4.0
 # First guess at the mean of a motion, over its peak-to-peak.
 FIRST_PLACE = 0.01
 # Effects after the mechanics.
 SENSOR = tuple(name for name, effect in EFFECTS.items() if effect.family == "sensor")
 # A plateau is where the velocity stays below this share of its peak.
-PLATEAU = 0.05
+DWELL = 0.05
 
 
 def waveform(harmonics: np.ndarray) -> np.ndarray:
@@ -31,19 +31,19 @@ def waveform(harmonics: np.ndarray) -> np.ndarray:
 
 def measured_from_phase_zero(fit: Fit) -> np.ndarray:
     """Measured harmonics (T, C, H), a tone and images left out, turned to phase 0 of the input of a fit."""
-    problem, trial = fit.model.problem, fit.trial
-    return problem.turned(problem.measured - trial.images, -trial.phase)[..., : problem.shape[1]]
+    data, evaluation = fit.model.data, fit.evaluation
+    return data.rotated(data.measured - evaluation.aliases, -evaluation.phase)[..., : data.shape[1]]
 
 
-def velocity(problem: Problem, harmonics: np.ndarray) -> np.ndarray:
+def velocity(data: FitData, harmonics: np.ndarray) -> np.ndarray:
     """Velocity harmonics (T, H), from the displacement where there is no velocity channel."""
-    derived = 1j * problem.omega[:, None] * problem.orders * harmonics[:, 0]
-    return np.where(_has_velocity(problem), harmonics[:, -1], derived)
+    derived = 1j * data.omega[:, None] * data.orders * harmonics[:, 0]
+    return np.where(_has_velocity(data), harmonics[:, -1], derived)
 
 
-def _has_velocity(problem: Problem) -> np.ndarray:
+def _has_velocity(data: FitData) -> np.ndarray:
     """Whether (T, 1) tests have a velocity channel."""
-    return np.array([[s.mean.shape[0] == 2] for s in problem.spectra])
+    return np.array([[s.mean.shape[0] == 2] for s in data.spectra])
 
 
 def peak_to_peak(displacement: np.ndarray) -> np.ndarray:
@@ -51,12 +51,12 @@ def peak_to_peak(displacement: np.ndarray) -> np.ndarray:
     return np.ptp(displacement, axis=-1)
 
 
-def plateau(rate: np.ndarray) -> np.ndarray:
+def dwell(rate: np.ndarray) -> np.ndarray:
     """Share of the period (T,) in which waveforms (T, PHASES) of velocity are nearly zero."""
-    return (np.abs(rate) < PLATEAU * np.abs(rate).max(axis=-1, keepdims=True)).mean(axis=-1)
+    return (np.abs(rate) < DWELL * np.abs(rate).max(axis=-1, keepdims=True)).mean(axis=-1)
 
 
-def supplied(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
+def input_energy(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     """Energy (J, shape (T,)) that the base puts in per period, from the displacement's fundamental (T,).
 
     Amplitudes and the mass that moves are the fit's. So must be the phase of a fundamental that was measured:
@@ -70,7 +70,7 @@ def supplied(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     return pi * moved * one["amplitude"] * one["omega"] ** 2 * fundamental.real
 
 
-def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
+def residual_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     """Force on the bolster (N, shape (T, PHASES)) that the measured motion has and the model lacks.
 
     The measured acceleration less that of the model in the same state, times the mass that moves. Both in
@@ -79,15 +79,15 @@ def leftover_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     with effects that need the extended mechanics, or on the sensors: what those do depends on more than the
     motion, or the channels are not the motion.
     """
-    problem, rows = fit.model.problem, _rows(fit)
-    if rows["extended"].any() or set(acting(problem.model.effects)) & set(SENSOR):
-        return np.full((problem.tests, PHASES), np.nan)
-    heard = _heard(problem)
-    rate = velocity(problem, harmonics)
+    data, rows = fit.model.data, _rows(fit)
+    if rows["extended"].any() or set(acting(data.model.effects)) & set(SENSOR):
+        return np.full((data.tests, PHASES), np.nan)
+    heard = _wiener_weight(data)
+    rate = velocity(data, harmonics)
     x, v = -waveform(heard * harmonics[:, 0]), -waveform(heard * rate)
-    model = np.array([_in_place(rows[t : t + 1], x[t], v[t]) for t in range(problem.tests)])
-    simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : problem.shape[1] + 1]
-    measured = -1j * problem.omega[:, None] * problem.orders * rate
+    model = np.array([_in_place(rows[t : t + 1], x[t], v[t]) for t in range(data.tests)])
+    simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : data.shape[1] + 1]
+    measured = -1j * data.omega[:, None] * data.orders * rate
     moved = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] ** 2
     return moved[:, None] * waveform(heard * (measured - simulated))
 
@@ -107,14 +107,14 @@ def _in_place(one: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     return acceleration
 
 
-def _heard(problem: Problem) -> np.ndarray:
+def _wiener_weight(data: FitData) -> np.ndarray:
     """Share (T, H) of the harmonics of the velocity that is no noise, by Wiener's rule."""
-    above = 0.5 * (np.abs(problem.measured) * problem.weight)[..., : problem.shape[1]] ** 2
-    share = 1.0 - HEARD / np.maximum(above, HEARD)
-    return np.where(_has_velocity(problem), share[:, -1], share[:, 0])
+    above = 0.5 * (np.abs(data.measured) * data.weight)[..., : data.shape[1]] ** 2
+    share = 1.0 - ABOVE_NOISE / np.maximum(above, ABOVE_NOISE)
+    return np.where(_has_velocity(data), share[:, -1], share[:, 0])
 
 
 def _rows(fit: Fit) -> np.ndarray:
-    problem = fit.model.problem
+    data = fit.model.data
     values = fit.model.values(fit.x)
-    return records(problem.model, problem.law, values, problem.omega, fit.amplitudes())
+    return records(data.model, data.law, values, data.omega, fit.amplitudes())

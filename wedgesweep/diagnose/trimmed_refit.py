@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.equations import equations_of
-from wedgesweep.diagnose.model import Fit, Model, Point, least
-from wedgesweep.diagnose.refine import damped, refine, restrict
+from wedgesweep.diagnose.least_squares import lm_step, refine, subset_fit
+from wedgesweep.diagnose.normal_equations import normal_equations
+from wedgesweep.diagnose.steady.model import Fit, Model, Point, best_evaluation_per_test
 from wedgesweep.solvers.periodic import at_rest
 
 # A response is another one if its squared misfit differs by more than this (share, and beside it).
@@ -26,22 +26,22 @@ WITHIN = np.arange(-3.0, 4.0)
 MOST = 1.0 / 3.0
 
 
-def around(fit: Fit) -> Fit:
+def refit_without_influential_tests(fit: Fit) -> Fit:
     """The fit, or a better one that was found without the tests that held it up."""
-    if fit.model.toned or not fit.trial.found:
+    if fit.model.has_tone or not fit.evaluation.found:
         return fit
-    left_out = _elsewhere_from_rest(fit) | _in_the_way(fit) | fit.model.sticks(fit.trial)
+    left_out = _elsewhere_from_rest(fit) | _influential(fit) | fit.model.sticks(fit.evaluation)
     if not 0 < left_out.sum() <= MOST * left_out.size:
         return fit
     rows = np.flatnonzero(~left_out)
-    few = restrict(fit, rows)
-    point = refine(few.model, few.trial).trial.point
+    few = subset_fit(fit, rows)
+    point = refine(few.model, few.evaluation).evaluation.point
     amplitude = np.zeros(left_out.size)
     amplitude[rows] = point.amplitude
-    warm = fit.trial.point.warm.where(left_out, at_rest(left_out.size))
-    start = replace(fit.trial.point, x=point.x, amplitude=amplitude, warm=warm)
-    again = refine(fit.model, fit.model.trial(_at_best_inputs(fit.model, start, left_out)))
-    return min(fit, again, key=lambda each: each.q)
+    warm = fit.evaluation.point.warm.where(left_out, at_rest(left_out.size))
+    start = replace(fit.evaluation.point, x=point.x, amplitude=amplitude, warm=warm)
+    again = refine(fit.model, fit.model.evaluate(_at_best_inputs(fit.model, start, left_out)))
+    return min(fit, again, key=lambda each: each.chi2)
 
 
 def _at_best_inputs(model: Model, start: Point, chosen: np.ndarray) -> Point:
@@ -49,22 +49,24 @@ def _at_best_inputs(model: Model, start: Point, chosen: np.ndarray) -> Point:
 
     From too much input a step down can end where the bolster sticks.
     """
-    std = model.problem.amplitude_std
+    std = model.data.amplitude_std
     off = np.multiply.outer(WITHIN, np.where(np.isfinite(std), std, 0.0))
     tried = np.where(chosen, off, start.amplitude)
-    trials = model.trials([replace(start, amplitude=amplitude) for amplitude in tried])
-    return replace(start, amplitude=tried[least(trials), np.arange(std.size)])
+    evaluations = model.evaluate_all([replace(start, amplitude=amplitude) for amplitude in tried])
+    return replace(start, amplitude=tried[best_evaluation_per_test(evaluations), np.arange(std.size)])
 
 
 def _elsewhere_from_rest(fit: Fit) -> np.ndarray:
     """Whether (T,) a test has another response from rest."""
-    point = replace(fit.trial.point, warm=at_rest(fit.model.problem.tests))
-    rest = fit.model.trial(point)
-    return rest.found_tests & ~np.isclose(rest.by_test, fit.trial.by_test, *OTHERWISE)
+    point = replace(fit.evaluation.point, warm=at_rest(fit.model.data.tests))
+    rest = fit.model.evaluate(point)
+    return rest.found_tests & ~np.isclose(rest.chi2_by_test, fit.evaluation.chi2_by_test, *OTHERWISE)
 
 
-def _in_the_way(fit: Fit) -> np.ndarray:
+def _influential(fit: Fit) -> np.ndarray:
     """Whether (T,) a test gets much worse by the step that is best for all if responses are linear."""
-    step, _, _ = damped(fit.model, fit.trial.point, equations_of(fit.model, fit.trial), LEAST_DAMPING)
-    tried = fit.model.trial(step)
-    return ~tried.found_tests | (tried.by_test > WORSE * fit.trial.by_test)
+    step, _, _ = lm_step(
+        fit.model, fit.evaluation.point, normal_equations(fit.model, fit.evaluation), LEAST_DAMPING
+    )
+    tried = fit.model.evaluate(step)
+    return ~tried.found_tests | (tried.chi2_by_test > WORSE * fit.evaluation.chi2_by_test)

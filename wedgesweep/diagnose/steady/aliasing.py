@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Folding(NamedTuple):
+class AliasMap(NamedTuple):
     """Shares (columns, K), complex, of harmonics D_k in what is read: of D_k itself, and of its conjugate."""
 
     direct: np.ndarray
@@ -22,11 +22,11 @@ class Folding(NamedTuple):
         return harmonics @ self.direct.T + harmonics.conj() @ self.mirrored.T
 
 
-def folding(inverse: np.ndarray, turns: np.ndarray, removed: int) -> Folding:
+def alias_map(inverse: np.ndarray, turns: np.ndarray, removed: int) -> AliasMap:
     """Of a least-squares fit that reads ``inverse @ signal``, shape (columns, n), complex.
 
     ``turns`` (K, n) are exp(i k omega t) at the samples; the first ``removed`` are part of the fit.
     """
     direct, mirrored = 0.5 * inverse @ turns.T, 0.5 * inverse @ turns.conj().T
     direct[:, :removed] = mirrored[:, :removed] = 0.0
-    return Folding(direct, mirrored)
+    return AliasMap(direct, mirrored)

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import AMPLITUDES, LAG, drawn, searched
-from wedgesweep.diagnose.refine import _covariance, exact
+from tests.diagnose.synthetic import AMPLITUDES, LAG, drawn, searched
+from wedgesweep.diagnose.least_squares import _covariance, tight_refit
 
 
 def test_clean_data_leave_chi_squared():
     excess = []
     for seed in range(12):
         _, base, _ = searched(drawn(seed=seed))
-        excess.append((base.fit.q - base.fit.dof) / np.sqrt(2.0 * base.fit.dof))
+        excess.append((base.fit.chi2 - base.fit.dof) / np.sqrt(2.0 * base.fit.dof))
     assert np.mean(excess) == pytest.approx(0.0, abs=3.0 / np.sqrt(12))
     assert max(np.abs(excess)) < 4.0
 
@@ -38,15 +38,15 @@ def test_intervals_cover_the_truth():
 def test_the_error_of_a_simulation_is_no_information():
     """A stiff end stop that two tests touch: amplitude, clearance and stiffness are hard to tell apart."""
     truth = {"end_stop": {"clearance": 3.5e-4, "stiffness": 2e5}}
-    problem = drawn(truth, std=0.015, uncertain={"friction_level": 0.09})
+    data = drawn(truth, std=0.015, uncertain={"friction_level": 0.09})
     spectra = tuple(
-        replace(s, mean=s.mean[:1], variance=s.variance[:1], level=s.level[:1]) for s in problem.spectra
+        replace(s, mean=s.mean[:1], variance=s.variance[:1], level=s.level[:1]) for s in data.spectra
     )
-    _, _, (stop,) = searched(replace(problem, spectra=spectra), "end_stop")
-    fine = exact(stop.fit)
+    _, _, (stop,) = searched(replace(data, spectra=spectra), "end_stop")
+    fine = tight_refit(stop.fit)
     coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
     np.testing.assert_allclose(coarse, std, rtol=0.1)
-    assert fine.q == pytest.approx(stop.fit.q, abs=0.1)
+    assert fine.chi2 == pytest.approx(stop.fit.chi2, abs=0.1)
 
 
 def test_what_the_equations_leave_open_is_wide():

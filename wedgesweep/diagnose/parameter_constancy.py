@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.projector import Projector
+from wedgesweep.diagnose.steady.model import Fit
 
 # Of what a number does in the test that shows it best, less than this share says nothing of it.
 FAINT = 1e-3
@@ -25,15 +25,15 @@ class Constancy(NamedTuple):
     number: str | None
 
 
-def constancy(fit: Fit) -> Constancy:
+def parameter_constancy(fit: Fit) -> Constancy:
     """Constancy of the numbers of a fit's hypothesis, each tried alone; simulates once for each of them."""
     size = fit.model.size
-    if not (size and fit.trial.found):
+    if not (size and fit.evaluation.found):
         return Constancy(1.0, None)
     project = Projector(fit)
-    p = [_constant(project, project.by_number[..., i]) for i in range(size)]
+    p = [_constant(project, project.by_parameter[..., i]) for i in range(size)]
     least = int(np.argmin(p))
-    return Constancy(min(1.0, size * p[least]), fit.model.hypothesis.coordinates[least].name)
+    return Constancy(min(1.0, size * p[least]), fit.model.hypothesis.parameters[least].name)
 
 
 def _constant(project: Projector, tangent: np.ndarray) -> float:

@@ -14,7 +14,7 @@ ORDER = 3
 FOREIGN = 11.5
 
 
-class Smooth:
+class SmoothPSD:
     """A noise spectrum whose logarithm is a polynomial in the logarithm of frequency.
 
     ``covariance`` (n, n): of its coefficients, where they are estimates.
@@ -29,7 +29,7 @@ class Smooth:
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
         return np.exp(self._powers(frequency) @ self.coefficients)
 
-    def fair(self, frequency: np.ndarray) -> np.ndarray:
+    def unbiased(self, frequency: np.ndarray) -> np.ndarray:
         """Level by which squares of the same noise are 1 on average.
 
         One over an estimate is too large on average, by the estimate's relative variance.
@@ -41,7 +41,7 @@ class Smooth:
         return np.log(frequency / self.reference)[..., None] ** np.arange(self.coefficients.size)
 
 
-class Lines(NamedTuple):
+class SpectralLines(NamedTuple):
     """Where the noise is looked at: ``frequency`` (m,) in Hz, and exp(2 pi i f t) there, ``turns`` (m, n).
 
     ``left`` (m,): share of white noise that is still there, as harmonics close by were taken out.
@@ -54,7 +54,7 @@ class Lines(NamedTuple):
     same: float
 
 
-def levels(residual: np.ndarray, lines: Lines) -> tuple[tuple[Smooth, ...], complex]:
+def levels(residual: np.ndarray, lines: SpectralLines) -> tuple[tuple[SmoothPSD, ...], complex]:
     """Smooth noise of each channel of what is left of a record (channels, n), and their coherence."""
     power, product = _periodograms(residual, lines)
     level = tuple(_smooth(lines.frequency, each, lines.same) for each in power)
@@ -66,14 +66,14 @@ def levels(residual: np.ndarray, lines: Lines) -> tuple[tuple[Smooth, ...], comp
     return level, _coherence(product[kept] / np.sqrt(smooth[:, kept].prod(axis=0)))
 
 
-def _periodograms(residual: np.ndarray, lines: Lines) -> tuple[np.ndarray, np.ndarray]:
+def _periodograms(residual: np.ndarray, lines: SpectralLines) -> tuple[np.ndarray, np.ndarray]:
     """Power of each channel (channels, m) and product of the first two (m,), of all the noise."""
     transform = residual @ lines.turns.conj().T
     size = residual.shape[1] * lines.left
     return np.abs(transform) ** 2 / size, transform[-1] * transform[0].conj() / size
 
 
-def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> Smooth:
+def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> SmoothPSD:
     """Maximum likelihood for powers that scatter exponentially around a smooth spectrum.
 
     Lines that stand out are left out and the rest is fitted again. ``same``: lines that say what one does.
@@ -96,7 +96,7 @@ def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> Smooth:
         if (kept == ~stands_out).all():
             break
         kept = ~stands_out
-    return Smooth(coefficients, reference, same * np.linalg.inv(design[kept].T @ design[kept]))
+    return SmoothPSD(coefficients, reference, same * np.linalg.inv(design[kept].T @ design[kept]))
 
 
 def _coherence(products: np.ndarray) -> complex:
