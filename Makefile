@@ -34,8 +34,8 @@ check: install  ## linter, types and tests
 reproduce: install  ## run the paper's 1,800 cases and check its claims
 	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
 
-blind: install  ## hide effects in data and see whether they are found (hours; goes on where it was)
-	$(BIN)/python scripts/blind_campaign.py --output $(OUT)/blind
+validate: install  ## hide effects in data, diagnose them, compare with the truth (hours; rerun to resume)
+	$(BIN)/python -m wedgesweep.validation --output $(OUT)/validation
 
 bench: install  ## benchmarks, as ratios in one run
 	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
@@ -43,4 +43,4 @@ bench: install  ## benchmarks, as ratios in one run
 clean:  ## remove what the other targets made
 	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
-.PHONY: help install run test check reproduce blind bench clean
+.PHONY: help install run test check reproduce validate bench clean

@@ -1,6 +1,6 @@
 """Problems whose truth is known: harmonics of the model itself with noise drawn on top.
 
-For tests of the machinery only; data from another solver are in tests/hidden.
+For tests of the machinery only; data from another solver are in tests/validation.
 """
 
 from math import pi

@@ -1,4 +1,4 @@
-"""Fits that a single test holds up, on systems of the blind campaign."""
+"""Fits that a single test holds up, on systems of the validation campaign."""
 
 import numpy as np
 import pytest

@@ -16,7 +16,7 @@ from wedgesweep.config.keys import show
 PACKAGE = Path(__file__).parents[1]
 SAME_RESULTS = ("numpy", "scipy", "numba")
 # Nothing in these folders changes a number.
-PRESENTATION = ("cli", "figures", "reproduce")
+PRESENTATION = ("cli", "figures", "reproduce", "validation")
 
 
 def fingerprint(config: Config) -> dict[str, str]:

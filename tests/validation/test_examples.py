@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.hidden.laboratory import diagnose
+from tests.validation.laboratory import diagnose
 
 EXAMPLES = Path(__file__).parents[3] / "shared" / "blind-examples"
 TRUTH = json.loads((EXAMPLES / "truth.json").read_text()) if EXAMPLES.is_dir() else {}

@@ -1,12 +1,12 @@
 """Effects hidden in synthetic data are found through the command line; where nothing is, nothing is named.
 
-A quick part of scripts/blind_campaign.py.
+A quick part of the validation campaign (``make validate``).
 """
 
 import pytest
 import xarray as xr
 
-from tests.hidden.laboratory import BENCH, PAPER, Hidden, diagnose, make
+from tests.validation.laboratory import BENCH, PAPER, Hidden, diagnose, make
 from wedgesweep.diagnose.result import DATASET, EXTENDED, JSON
 from wedgesweep.effects import EFFECTS
 

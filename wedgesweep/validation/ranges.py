@@ -1,4 +1,4 @@
-"""How strong a hidden effect is: a path of its numbers from hardly there to very strong."""
+"""The range of strengths of each hidden effect, from hardly noticeable to very strong."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,9 +9,10 @@ Numbers = dict[str, float]
 
 
 class Leading(NamedTuple):
-    """The number that makes an effect strong, in its key's unit: ``neutral`` +- a step from weak to strong.
+    """The parameter that sets the strength of an effect, in the unit of its key.
 
-    ``down``: share of cases in which the step goes down, at most ``lowest`` far.
+    It is ``neutral`` plus a step between ``weak`` and ``strong``. In a share ``down`` of the cases the step
+    is subtracted, and then at most ``lowest``.
     """
 
     key: str
@@ -22,7 +23,7 @@ class Leading(NamedTuple):
     lowest: float = np.inf
 
 
-# One line per effect; what is drawn beside the leading number stands in OTHERS.
+# OTHERS holds what is drawn beside the leading parameter.
 LEADING = {
     "bolster_stiffness": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
     "wedge_stiffness": Leading("scale", 1e-4, 0.7, 1.0, 0.5, 0.4),
@@ -46,18 +47,19 @@ LEADING = {
     "velocity_lag": Leading("time_s", 1e-6, 0.018),
     "displacement_gain": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
 }
-LOGARITHMIC, EVEN, GROWING = "logarithmic", "even", "growing"
+LOGARITHMIC, UNIFORM, GROWING = "logarithmic", "uniform", "growing"
+# A growing parameter starts at this share of the drawn one.
 GROWTH = 1e-3
-# Drawn once per set: (low, high) and scale; what grows goes from a share of GROWTH to what is drawn.
+# Drawn once per set: (low, high) and how. A growing parameter increases with the leading one.
 OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "stribeck": {"peak": (0.0, 0.4, GROWING)},
     "ageing": {"time_s": (2e-4, 0.3, LOGARITHMIC)},
-    "cross_slip": {"phase_deg": (-88.0, 88.0, EVEN)},
+    "cross_slip": {"phase_deg": (-88.0, 88.0, UNIFORM)},
     "end_stop": {"stiffness_N_per_mm": (3.0, 800.0, LOGARITHMIC)},
     "input_distortion": {
-        "second_phase_deg": (-175.0, 175.0, EVEN),
+        "second_phase_deg": (-175.0, 175.0, UNIFORM),
         "third": (0.02, 0.4, GROWING),
-        "third_phase_deg": (-175.0, 175.0, EVEN),
+        "third_phase_deg": (-175.0, 175.0, UNIFORM),
     },
     "stray_vibration": {"frequency_hz": (6.5, 80.0, LOGARITHMIC)},
     "fixture_resonance": {"damping_ratio": (0.01, 0.4, LOGARITHMIC)},
@@ -66,23 +68,23 @@ EFFECTS = tuple(LEADING)
 
 
 def path(effect: str, random: np.random.Generator) -> Callable[[float], Numbers]:
-    """Numbers of an effect over s, from 0 (hardly there) to 1 (very strong)."""
+    """Draw how the parameters of an effect depend on its strength, from 0 to 1."""
     leading = LEADING[effect]
     down = random.random() < leading.down
     strong = min(leading.strong, leading.lowest) if down else leading.strong
     growing = [key for key, (*_, scale) in OTHERS.get(effect, {}).items() if scale == GROWING]
-    others = {key: _drawn(*spread, random) for key, spread in OTHERS.get(effect, {}).items()}
+    others = {key: _draw(*spread, random) for key, spread in OTHERS.get(effect, {}).items()}
 
-    def numbers(s: float) -> Numbers:
-        step = leading.weak * (strong / leading.weak) ** s
+    def numbers(strength: float) -> Numbers:
+        step = leading.weak * (strong / leading.weak) ** strength
         value = float(leading.neutral - step if down else leading.neutral + step)
-        grown = {key: others[key] * GROWTH ** (1.0 - s) for key in growing}
+        grown = {key: others[key] * GROWTH ** (1.0 - strength) for key in growing}
         return {leading.key: value, **others, **grown}
 
     return numbers
 
 
-def _drawn(low: float, high: float, scale: str, random: np.random.Generator) -> float:
+def _draw(low: float, high: float, scale: str, random: np.random.Generator) -> float:
     if scale == LOGARITHMIC:
         return float(np.exp(random.uniform(np.log(low), np.log(high))))
     return float(random.uniform(low, high))
