@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from wedgesweep.effects import EFFECTS
+from wedgesweep.reproduce.claims import CLAIMS, RECORDED
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
 PHYSICS = ROOT / "docs" / "physics.md"
+PAPER = ROOT / "docs" / "paper.md"
 
 
 def anchors(page):
@@ -19,9 +21,9 @@ def anchors(page):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-def rows(heading):
-    """Cells of the first table below a text of the physics page."""
-    _, _, below = PHYSICS.read_text().partition(heading)
+def rows(heading, page=PHYSICS):
+    """Cells of the first table below a text of a page."""
+    _, _, below = page.read_text().partition(heading)
     table = re.search(r"(^\|.*\n)+", below, re.MULTILINE)[0].splitlines()[2:]
     return [[cell.strip() for cell in row.strip("|").split("|")] for row in table]
 
@@ -54,3 +56,11 @@ def test_steady_responses_are_those_of_the_test_data():
         (row["friction_law"], *(row[key] for key in keys), row["minimum_normal_force_N"]) for row in data
     }
     assert {(row[0], *map(float, row[1:])) for row in rows("**Steady responses**")} == expected
+
+
+def test_claims_are_those_that_reproduce_checks():
+    page = {cells[0]: cells[1:] for cells in rows("## Claim by claim", PAPER)}
+    for claim in CLAIMS:
+        statement, paper, _, verdict = page[str(claim.number)]
+        assert (statement, paper, verdict) == (claim.words, claim.paper, f"**{RECORDED[claim.number]}**")
+    assert len(page) == len(CLAIMS)
