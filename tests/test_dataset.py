@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 
 import netCDF4
 import numpy as np
@@ -20,7 +21,8 @@ FEW = small_sweep.CONFIG.replace("0.8, 1.1, 1.6, ", "")
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory):
     sweep = small_sweep.sweep(tmp_path_factory.mktemp("stored"), FEW)
-    sweep.run(n_jobs=1, command="wedgesweep run 'my config.toml'")
+    sweep = replace(sweep, command="wedgesweep run 'my config.toml'")
+    sweep.run(n_jobs=1)
     return sweep
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.options import N_JOBS, jobs, require_place_for
+from wedgesweep.cli.options import N_JOBS, require_place_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -57,11 +57,12 @@ def diagnose(
     from wedgesweep import measured as data
     from wedgesweep import report
     from wedgesweep.diagnose import diagnosis, result
+    from wedgesweep.sweep.backend import count_jobs
 
     measurement = data.read(measured, model)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
-    processors = jobs(n_jobs)
+    processors = count_jobs(n_jobs)
     found = diagnosis.diagnose(measurement, chosen, processors, _said, calibrate)
     _clear(directory)
     result.write(found, directory)

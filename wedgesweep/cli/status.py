@@ -1,4 +1,4 @@
-"""status: what is finished, of a dataset or of a sweep that was interrupted or still runs."""
+"""status: progress of a sweep, whether complete, interrupted or running."""
 
 import json
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
 @DATASET
 @click.pass_context
 def status(ctx: click.Context, path: Path) -> None:
-    """Tell what is finished of the sweep whose dataset is, or will be, OUT."""
+    """Show how far the sweep with dataset OUT is, and which cases failed."""
     partial = path.with_name(path.name + ".partial")
     ctx.exit(_unfinished(partial) if partial.exists() else _finished(path))
 
@@ -42,7 +42,7 @@ def _unfinished(partial: Path) -> int:
     click.echo(f"{partial}: unfinished\ntitle: {settings.title}")
     _print_versions(header)
     for difference in differences(header, fingerprint(settings)):
-        click.echo(f"cannot be continued as things are: {difference}")
+        click.echo(f"cannot be resumed: {difference}")
     return print_outcomes(outcomes.of_journal(partial), total=len(settings.case_list()))
 
 

@@ -20,7 +20,7 @@ from wedgesweep.diagnose.steady.spectra import fitted, spectrum
 from wedgesweep.diagnose.steady.tone_phase import with_tone_phase
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS, SCALES, acting
-from wedgesweep.measured import Measurement, Test
+from wedgesweep.measured import Measurement, TestRecord
 
 # Explanations that a next test should tell apart where the verdict abstains.
 COMPARED = 6
@@ -54,7 +54,7 @@ def fit_data_of(measurement: Measurement) -> FitData:
     """Spectra of all tests at their actual frequencies; a foreign tone is the model's, or it is found."""
     tests = measurement.tests
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
-    records = [(test.time, s, test.actual_frequency) for test, s in zip(tests, signals, strict=True)]
+    records = [(test.time, s, test.refined_frequency) for test, s in zip(tests, signals, strict=True)]
     foreign = tone.of(acting(measurement.model.effects)) or tone.find([fitted(*each) for each in records])
     found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
     known = [test.amplitude is not None for test in tests]
@@ -71,7 +71,7 @@ def fit_data_of(measurement: Measurement) -> FitData:
     )
 
 
-def _channels(test: Test, derived_velocity: bool) -> np.ndarray:
+def _channels(test: TestRecord, derived_velocity: bool) -> np.ndarray:
     """Channels that say something of their own, (C, n)."""
     if test.velocity is None or derived_velocity:
         return test.displacement[None]

@@ -117,7 +117,10 @@ def obtain(
         message = f"{configs}: no such folder; reproduce needs the configs of a wedgesweep checkout"
         raise ConfigError([message])
     directory.mkdir(parents=True, exist_ok=True)
-    sweeps = [Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc") for name in CONFIG_NAMES]
+    sweeps = [
+        Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc", COMMAND)
+        for name in CONFIG_NAMES
+    ]
     return Runs(*(_obtain(sweep, n_jobs, report, progress) for sweep in sweeps))
 
 
@@ -128,10 +131,10 @@ def _obtain(sweep: Sweep, n_jobs: int, report: Callable[[str], None], progress: 
         return Run(stored)
     report(f"{sweep.out}: {sweep.config.title}")
     try:
-        return Run(sweep.run(n_jobs, progress=progress, command=COMMAND))
+        return Run(sweep.run(n_jobs, progress=progress))
     except MismatchError as error:  # an unfinished run of another version
         report(f"{error}; running it again")
-        return Run(sweep.run(n_jobs, progress=progress, command=COMMAND, fresh=True))
+        return Run(sweep.run(n_jobs, progress=progress, fresh=True))
 
 
 def _stored(sweep: Sweep, report: Callable[[str], None]) -> xr.Dataset | None:

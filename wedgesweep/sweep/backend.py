@@ -39,8 +39,13 @@ def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[job
     try:
         yield parallel(n_jobs=n_jobs)
     except BrokenExecutor as error:
-        message = "a job died, killed or out of memory; the same command goes on from what is finished"
+        message = "a job died, killed or out of memory; rerun the same command to resume"
         raise SweepError(message) from error
+
+
+def count_jobs(n_jobs: int | None) -> int:
+    """Number of jobs: as given, or one for each processor that this process may use."""
+    return n_jobs or joblib.cpu_count()
 
 
 def local(method: str) -> Backend:

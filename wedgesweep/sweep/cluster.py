@@ -39,7 +39,7 @@ def dask(
         try:
             yield parallel(backend=_Dask(client=client))
         except (KilledWorker, CancelledError) as error:
-            message = f"the Dask cluster gave up: {error}; the same command goes on from what is finished"
+            message = f"the Dask cluster gave up: {error}; rerun the same command to resume"
             raise SweepError(message) from error
 
 

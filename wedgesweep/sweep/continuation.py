@@ -52,6 +52,6 @@ def compared(records: np.ndarray, steady_tolerance: float) -> np.ndarray:
     Without a periodic answer on both ways there is nothing to compare.
     """
     apart = np.abs(records["amplitude_ratio"] - records["amplitude_ratio_down"])
-    differ = (apart > dataset.APART * steady_tolerance) | (records["period"] != records["period_down"])
+    differ = (apart > dataset.DISTINCT * steady_tolerance) | (records["period"] != records["period_down"])
     told = (records["period"] > 0) & (records["period_down"] > 0)
     return np.where(told, np.where(differ, COEXISTING, ALONE), NOT_TOLD)

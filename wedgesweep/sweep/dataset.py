@@ -83,7 +83,7 @@ WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PH
 
 # A continuation has these, too; all other variables are those of its way up in beta. Two responses are
 # different ones if their amplitude ratios are this many steady_tolerance apart, or their periods differ.
-APART = 1000.0
+DISTINCT = 1000.0
 CONTINUED = (
     Variable("amplitude_ratio_down", "1", "amplitude_ratio on the way down in beta"),
     Variable("period_down", "1", "period on the way down in beta", dtype="i2"),
@@ -91,7 +91,7 @@ CONTINUED = (
         "coexisting",
         "1",
         "whether the ways up and down in beta end in different responses: periods differ, or amplitude "
-        f"ratios by more than {APART:g} steady_tolerance; not told where one did not repeat or failed",
+        f"ratios by more than {DISTINCT:g} steady_tolerance; not told where one did not repeat or failed",
         dtype="i1",
     ),
 )

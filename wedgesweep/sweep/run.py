@@ -42,10 +42,11 @@ class CaseFailedError(SweepError):
 
 @dataclass(frozen=True)
 class Sweep:
-    """All cases of a config and where their dataset goes."""
+    """All cases of a config, where their dataset goes, and the ``command`` that its history names."""
 
     config: Config
     out: Path
+    command: str = ""
 
     @cached_property
     def parameters(self) -> np.ndarray:
@@ -128,7 +129,6 @@ class Sweep:
         case_timeout: float | None = None,
         fail_fast: bool = False,
         progress: Progress = lambda records, total: None,
-        command: str = "",
         backend: Backend | None = None,
         fresh: bool = False,
     ) -> xr.Dataset:
@@ -151,16 +151,16 @@ class Sweep:
                 progress(part, len(records))
                 if fail_fast:
                     self._require_ok(part)
-            result = self.assembled(records, started, command)
+            result = self.assembled(records, started)
             dataset.write(result, self.out)
             self.journal_path.unlink()
         return result
 
-    def run_here(self, case_timeout: float | None = None, command: str = "") -> xr.Dataset:
+    def run_here(self, case_timeout: float | None = None) -> xr.Dataset:
         """Run all cases in this process, one after the other; nothing is stored."""
         started = datetime.now(UTC)
         indices = np.arange(len(self.parameters))
-        return self.assembled(self.solve(indices, case_timeout), started, command)
+        return self.assembled(self.solve(indices, case_timeout), started)
 
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
         """Records of the cases of these indices (in a continuation: whole lines), solved in this process."""
@@ -218,14 +218,14 @@ class Sweep:
             message = f"{describe(*case)}: {failed[0]['message'].decode()}"
             raise CaseFailedError(message)
 
-    def assembled(self, records: np.ndarray, started: datetime, command: str) -> xr.Dataset:
+    def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:
         """Dataset of all cases from their records."""
         shape, coords = self.config.case_coordinates()
         return dataset.assemble(
             records,
             dataset.coordinates(coords, self.sizes),
             shape,
-            {**self._physics(), **provenance.attributes(self.config, started, command)},
+            {**self._physics(), **provenance.attributes(self.config, started, self.command)},
         )
 
     def _physics(self) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""What of a channel repeats from period to period, and what does not."""
+"""The noise of a channel: what does not repeat from period to period."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ HARMONICS = np.arange(1, 41)
 
 
 @dataclass(frozen=True)
-class Noise:
+class NoiseEstimate:
     """The part of a channel that does not repeat.
 
     ``std`` is in the channel's unit, ``share`` is over the rms of what repeats; ``harmonics`` are the orders
@@ -22,8 +22,8 @@ class Noise:
     harmonics: tuple[int, ...]
 
 
-def of_channel(time: np.ndarray, signal: np.ndarray, frequency: float) -> Noise:
-    """Noise of a channel, shape (n,), that vibrates at a frequency (Hz)."""
+def estimate_noise(time: np.ndarray, signal: np.ndarray, frequency: float) -> NoiseEstimate:
+    """Estimate the noise of a channel, shape (n,), that vibrates at a frequency (Hz)."""
     cycles = cut(time, signal, frequency, HARMONICS)
     mean = cycles.harmonics.mean(axis=0)
     repeated = np.zeros(time.size)
@@ -35,4 +35,4 @@ def of_channel(time: np.ndarray, signal: np.ndarray, frequency: float) -> Noise:
     count = cycles.times.size
     variance = np.sum(np.abs(cycles.harmonics - mean) ** 2, axis=0) / (count - 1)
     seen = np.abs(mean) ** 2 * count > SEEN * variance
-    return Noise(std, std / float(repeated.std()), tuple(cycles.orders[seen].tolist()))
+    return NoiseEstimate(std, std / float(repeated.std()), tuple(cycles.orders[seen].tolist()))

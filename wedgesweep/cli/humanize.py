@@ -1,8 +1,8 @@
-"""Numbers as a person reads them."""
+"""Durations and sizes for people."""
 
 
 def duration(seconds: float) -> str:
-    """Seconds, minutes or hours with two digits or so."""
+    """Format a time in seconds, minutes or hours."""
     if seconds < 10.0:
         return f"{seconds:.1f} s"
     if seconds < 120.0:
@@ -12,7 +12,7 @@ def duration(seconds: float) -> str:
 
 
 def size(count: float) -> str:
-    """Bytes in decimal units."""
+    """Format a number of bytes in decimal units."""
     for unit in ("B", "kB", "MB"):
         if count < 999.5:
             return f"{count:.0f} {unit}"

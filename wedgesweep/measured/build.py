@@ -8,7 +8,7 @@ import numpy as np
 
 from wedgesweep.measured import sampling
 from wedgesweep.measured.declarations import UNITS
-from wedgesweep.measured.measurement import Test
+from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
 
@@ -32,9 +32,9 @@ class Channels:
         return self.columns[channel] * UNITS[channel][self.units[channel]]
 
 
-def build(
+def build_record(
     name: str, given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]
-) -> Test | None:
+) -> TestRecord | None:
     """Test of the checked keys ``given``, which stand at the place ``at``; None if something is wrong."""
     before = len(problems)
     grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
@@ -46,7 +46,7 @@ def build(
     displacement = channels.si("displacement")
     assert displacement is not None
     amplitude = given.get("amplitude_mm")
-    test = Test(
+    test = TestRecord(
         name=name,
         file=given.get("file", channels.file),
         frequency=given.get("frequency_hz"),
