@@ -8,7 +8,7 @@ import pytest
 
 from wedgesweep import reproduce as reproduction
 from wedgesweep import response
-from wedgesweep.figures import suspects as picture
+from wedgesweep.figures import hypotheses as picture
 from wedgesweep.reproduce import chandiramani, chandiramani_page, observations, search, separation, trials
 from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
 from wedgesweep.reproduce.search import Effort

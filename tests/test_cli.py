@@ -19,6 +19,7 @@ from wedgesweep.cli import cli
 from wedgesweep.cli.failure import _failure
 from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.progress import ProgressReport
+from wedgesweep.figures import friction_laws, phase_portrait
 
 FEW = CONFIG.replace("0.8, 1.1, 1.6, ", "")
 PNG = b"\x89PNG"
@@ -341,11 +342,11 @@ def test_plot_one_kind(here, drawn_dataset):
 def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
     given = {}
 
-    def draw(ds, beta=None, amplitudes=None, law=None):
+    def draw(target, ds, beta=None, amplitudes=None, law=None):
         given.update(beta=beta, amplitudes=amplitudes, law=law)
-        return figures.FIGURES["friction-laws"].draw(ds)
+        return friction_laws.draw(target, ds)
 
-    monkeypatch.setattr(figures.FIGURES["phase-portrait"], "draw", draw)
+    monkeypatch.setattr(phase_portrait, "draw", draw)
     options = (
         "--beta",
         0.4,

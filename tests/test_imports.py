@@ -15,7 +15,7 @@ NUMERICS = (
     *("friction/", "effects/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
-    *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report", "diagnosed"),
+    *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report", "diagnosis_result"),
 )
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
@@ -36,10 +36,10 @@ FORBIDDEN = {
         "wedgesweep.sweep.run",
     ),
     ("figures/",): tuple(f"wedgesweep.{name}" for name in ("sweep", "report", "diagnose", "cli")),
-    ("report/", "diagnosed.py"): ("wedgesweep.sweep.run", "wedgesweep.diagnose", "wedgesweep.cli"),
+    ("report/", "diagnosis_result.py"): ("wedgesweep.sweep.run", "wedgesweep.diagnose", "wedgesweep.cli"),
     ("validation/",): ("wedgesweep.diagnose", "wedgesweep.solvers", "wedgesweep.cli"),
-    ("validation/simulator.py", "digits.py"): ("wedgesweep",),
-    ("digits.py",): ("numpy",),
+    ("validation/simulator.py", "formatting.py"): ("wedgesweep",),
+    ("formatting.py",): ("numpy",),
 }
 ONLY_IN = {
     "click": ("cli/",),

@@ -8,12 +8,12 @@ from itertools import pairwise
 import pytest
 
 from tests import fixture_diagnosis
-from wedgesweep import diagnosed, digits, report
-from wedgesweep.diagnosed import VERDICTS
+from wedgesweep import diagnosis_result, formatting, report
+from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
 from wedgesweep.report import html
-from wedgesweep.report.pictures import Pictures
+from wedgesweep.report.inline_figures import InlineFigures
 
 VOID = {"meta", "img", "link", "br"}
 
@@ -50,13 +50,15 @@ class Page(HTMLParser):
 
 
 def plain(text):
-    return text.replace(digits.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
+    return text.replace(formatting.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
 
 
 @pytest.fixture
 def no_pictures(monkeypatch):
     """Pages without figures, where they do not matter."""
-    monkeypatch.setattr(Pictures, "__call__", lambda self, kind, words, tests=None: html.paragraph(words))
+    monkeypatch.setattr(
+        InlineFigures, "__call__", lambda self, name, caption, tests=None: html.paragraph(caption)
+    )
 
 
 @pytest.fixture(scope="module", params=VERDICTS)
@@ -64,7 +66,7 @@ def written(request, tmp_path_factory):
     """Verdict, directory and page of a diagnosis of each verdict."""
     directory = tmp_path_factory.mktemp(request.param)
     # Beyond six tests there are figures that are folded away: once is enough.
-    fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 4)
+    fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 3)
     return request.param, directory, Page(report.write(directory).read_text(encoding="utf-8"))
 
 
@@ -104,7 +106,7 @@ def test_accessible(written):
 
 def test_every_candidate_limit_and_number_is_told(written):
     _, directory, page = written
-    document = diagnosed.read(directory).document
+    document = diagnosis_result.read(directory).document
     for each in document["candidates"]:
         assert " + ".join(each["effects"]) in page.text
     for effect in (*document["detectable"], *document["not_testable"]):
@@ -115,17 +117,25 @@ def test_every_candidate_limit_and_number_is_told(written):
 
 NAMED = "guide_friction; force 2.13 N, 95 % interval 1.95 to 2.31 N"
 SAID = {
-    "nothing-missing": ("Nothing is missing", "p = 0."),
+    "nothing-missing": ("Nothing is missing: over 12 tests the error", "noise alone may leave (p = 0."),
     "named": (
         "Two causes together explain",
         "stribeck; peak 0.080, 95 % interval 0.070 to 0.090",
         NAMED,
-        "of the excess is gone",
+        "they reduce the error from",
+        "of the excess over noise is gone",
     ),
     "consistent-with": ("The tests are consistent with", NAMED, "evidence is weak"),
-    "tied": ("Two explanations", "(guide_friction, behind by 3.2)", "24 Hz and 0.1 mm would tell them apart"),
-    "data-insufficient": ("cannot show what", "24 Hz and 0.1 mm", "stribeck from guide_friction"),
-    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, is still off by"),
+    "tied": (
+        "Two explanations",
+        "(guide_friction, behind by 3.2)",
+        "a test at 24 Hz and 0.1 mm would distinguish them",
+    ),
+    "data-insufficient": (
+        "but these 2 tests cannot show what",
+        "24 Hz and 0.1 mm would distinguish stribeck from guide_friction",
+    ),
+    "none-of-mine": ("none of the 9 candidates explains", "best attempt, stribeck, still leaves an error of"),
 }
 
 
@@ -142,7 +152,7 @@ def test_sentence(verdict, tmp_path):
 @pytest.mark.parametrize(
     ("verdict", "change", "words"),
     [
-        ("consistent-with", {"misfit": {"excess_base": 300.0}}, "(excess misfit 300 over noise)"),
+        ("consistent-with", {"misfit": {"excess_base": 300.0}}, "(the misfit exceeds noise by only 300)"),
         (
             "consistent-with",
             {"misfit": {"excess_base": 3000.0, "p_where_it_shows": 0.002}},
@@ -151,12 +161,12 @@ def test_sentence(verdict, tmp_path):
         (
             "consistent-with",
             {"misfit": {"excess_base": 3000.0}, "gain": {"ci95": None, "excess_removed": -0.1}},
-            "(tests left out of the fit do not confirm it)",
+            "(held-out tests do not confirm it)",
         ),
         (
             "consistent-with",
             {"misfit": {"excess_base": 3000.0, "p_constant": 0.002, "least_constant": "stribeck.peak_mm"}},
-            "(stribeck.peak_mm would have to differ from test to test, p = 0.002 for the same in all)",
+            "(stribeck.peak_mm would have to differ from test to test, p = 0.002 for one value)",
         ),
         (
             "none-of-mine",
@@ -168,24 +178,32 @@ def test_sentence(verdict, tmp_path):
                     "least_constant": "friction_level.scale",
                 }
             },
-            "takes a friction_level.scale that differs from test to test (p < 0.001 for the same in all)",
+            "needs a friction_level.scale that differs from test to test (p < 0.001 for one value)",
         ),
-        ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
-        ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
-        ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),
+        ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may increase the error on held-out tests"),
+        (
+            "tied",
+            {"next_test": {"distance": 29.0}},
+            "no test would reliably distinguish them, the best one is at 24 Hz",
+        ),
+        (
+            "data-insufficient",
+            {"next_test": {"distance": 29.0}},
+            "no test would reliably distinguish stribeck from",
+        ),
     ],
 )
 def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     for part, values in change.items():
         document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
 @pytest.mark.parametrize(
     ("candidates", "words"),
-    [(0, "there is no candidate that would show"), (1, "the one candidate does not explain it")],
+    [(0, "there is no candidate that these tests could show"), (1, "the only candidate does not explain it")],
 )
 def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
@@ -193,23 +211,27 @@ def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
         :candidates
     ]
     document["detectable"], document["not_testable"] = {}, []
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
 @pytest.mark.parametrize(
     ("verdict", "rivals", "words"),
     [
-        ("consistent-with", ["preload"], "(preload would leave no more than noise, too)"),
-        ("data-insufficient", ["preload", "stribeck"], "cannot show what: 2 explanations will do; next test"),
-        ("data-insufficient", ["preload"], "what: preload would leave no more than noise, but so few tests"),
+        ("consistent-with", ["preload"], "(preload would also leave only noise)"),
+        (
+            "data-insufficient",
+            ["preload", "stribeck"],
+            "cannot show what: 2 explanations would each leave only noise; a test",
+        ),
+        ("data-insufficient", ["preload"], "what: preload would leave only noise, but so few tests"),
         ("data-insufficient", ["preload+bolster_mass"], "no candidate could look like these two"),
     ],
 )
 def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     document["rivals"] = [{"effects": names.split("+"), "gap": 30.0} for names in rivals]
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
@@ -218,7 +240,7 @@ def test_a_half_that_does_without_the_other_is_told(tmp_path):
     document["rivals"] = [{"effects": ["end_stop", "velocity_lag"], "gap": 0.0}]
     for p, words in ((0.04, "but end_stop alone leaves hardly more"), (1e-9, "but so few tests")):
         next(each for each in document["candidates"] if each["effects"] == ["end_stop"])["p"] = p
-        (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
         assert words in plain(report.sentence(tmp_path))
 
 
@@ -226,8 +248,8 @@ def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=6)
     document["rivals"] = [{"effects": ["ageing"], "gap": 0.0}]
     document["gain"] = {"ci95": [-0.1, 0.2], "excess_removed": 0.1}
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
-    words = "ageing would leave no more than noise, but tests left out of the fit do not confirm it"
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    words = "ageing would leave only noise, but held-out tests do not confirm it"
     assert words in plain(report.sentence(tmp_path))
 
 
@@ -235,14 +257,14 @@ def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
 @pytest.mark.parametrize(
     ("distance", "words"),
     [
-        (31.0, "would tell stribeck from guide_friction"),
-        (29.0, "would not tell stribeck from guide_friction"),
+        (31.0, "would distinguish stribeck from guide_friction"),
+        (29.0, "would not reliably distinguish stribeck from guide_friction"),
     ],
 )
 def test_a_test_that_does_not_tell_for_sure_is_not_said_to(distance, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "tied")
     document["next_test"]["distance"] = distance
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     assert words in text.replace("\u00a0", " ")
 
@@ -261,7 +283,7 @@ def test_text_of_the_user_is_not_markup(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["title"] = 'run <script>alert("1")</script> & $title'
     document["misfit"]["tests"][0]["name"] = "<b>00</b>"
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
     assert not page.of("script")
     assert not page.of("b")
@@ -274,7 +296,7 @@ def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "consistent-with")
     document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None, "p_where_it_shows": 0.002}
     document["rivals"] = []
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert "it leaves more than noise in the tests that show it, p = 0.002" in plain(
         report.sentence(tmp_path)
     )
@@ -290,14 +312,14 @@ def test_numbers_that_are_missing(tmp_path):
     document["causes"][0]["parameters"]["peak"] = {"value": None, "ci95": [None, None]}
     document["causes"][0]["parameters"]["velocity_mm_per_s"]["ci95"] = [None, None]
     document["gain"]["ci95"] = None
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     for words in (
         "peak not determined",
         "velocity 5.10 mm/s, no interval",
         "too few tests for an interval",
-        "No effect can be shown",
-        "No test tells the energy",
+        "These tests would not have shown any effect",
+        "No test gives the energy",
     ):
         assert words in text
 
@@ -306,7 +328,7 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
     with pytest.raises(InputError, match=r"diagnosis\.json: no such file; 'wedgesweep diagnose"):
         report.write(tmp_path)
     document, data = fixture_diagnosis.write(tmp_path)
-    file = tmp_path / diagnosed.JSON
+    file = tmp_path / diagnosis_result.JSON
     for broken, words in (
         ("{", "not JSON"),
         ("[]", "must hold an object"),
@@ -317,13 +339,13 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
         with pytest.raises(InputError, match=re.escape(words)):
             report.write(tmp_path)
     file.write_text(json.dumps(document), encoding="utf-8")
-    data.drop_vars("q").to_netcdf(tmp_path / diagnosed.DATASET, engine="netcdf4")
+    data.drop_vars("q").to_netcdf(tmp_path / diagnosis_result.DATASET, engine="netcdf4")
     with pytest.raises(InputError, match=r"diagnosis\.nc: has no q"):
         report.write(tmp_path)
-    (tmp_path / diagnosed.DATASET).write_bytes(b"half a dataset")
+    (tmp_path / diagnosis_result.DATASET).write_bytes(b"half a dataset")
     with pytest.raises(SweepError, match="damaged"):
         report.write(tmp_path)
-    assert {each.name for each in tmp_path.iterdir()} == {diagnosed.JSON, diagnosed.DATASET}
+    assert {each.name for each in tmp_path.iterdir()} == {diagnosis_result.JSON, diagnosis_result.DATASET}
 
 
 def test_the_page_is_the_same_from_one_process_and_from_two(tmp_path):

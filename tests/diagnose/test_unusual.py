@@ -10,7 +10,7 @@ from wedgesweep import config
 from wedgesweep import measured as measurements
 from wedgesweep.diagnose import diagnosis
 from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnosed import read
+from wedgesweep.diagnosis_result import read
 from wedgesweep.solvers.periodic import at_rest
 
 MODEL = """\

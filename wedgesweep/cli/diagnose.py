@@ -10,9 +10,7 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import N_JOBS, require_place_for
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from wedgesweep.diagnosed import Diagnosed
+    from wedgesweep.diagnosis_result import DiagnosisResult
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
 
@@ -88,23 +86,22 @@ def _clear(directory: Path) -> None:
 
 def _draw(directory: Path, n_jobs: int) -> None:
     """Write the figures beside the data; one that the tests cannot fill is left out."""
-    from wedgesweep import diagnosed
-    from wedgesweep.figures import forked
-    from wedgesweep.figures.diagnosis import FIGURES
+    from wedgesweep import diagnosis_result
+    from wedgesweep.figures import parallel
 
-    wanted = [(FIGURES[kind].draw, directory / file) for kind, file in FIGURE_FILES.items()]
-    save = partial(_save, diagnosed.read(directory))
-    for problem in filter(None, forked.each(save, wanted, n_jobs)):
+    wanted = [(kind, directory / file) for kind, file in FIGURE_FILES.items()]
+    save = partial(_save, diagnosis_result.read(directory))
+    for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
         click.echo(f"skipped {problem}", err=True)
 
 
-def _save(found: "Diagnosed", wanted: "tuple[Callable, Path]") -> str | None:
+def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
     """Write a figure; returns why the tests cannot fill it, if they cannot."""
     from wedgesweep import figures
 
-    draw, file = wanted
+    kind, file = wanted
     try:
-        figures.save(draw(found), file)
+        figures.save(figures.draw(found, kind), file)
     except ValueError as error:
         return str(error)
     return None

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from wedgesweep import figures
-from wedgesweep.figures import suspects as picture
+from wedgesweep.figures import hypotheses as picture
 from wedgesweep.reproduce import chandiramani, chandiramani_page, observations
 from wedgesweep.reproduce import report as files
 from wedgesweep.reproduce.claims import check

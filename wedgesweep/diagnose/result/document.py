@@ -14,7 +14,7 @@ from wedgesweep.diagnose.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.search import PENALTY, POSSIBLE, SLIGHT, Explanation
 from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
-from wedgesweep.diagnosed import FAILED, NO_BETTER
+from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
 

@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: few digits, no exponents in computer notation."""
+"""Numbers as a reader wants them: few digits, and powers of ten in place of 1e-5."""
 
 from math import floor, isfinite, log10
 
@@ -10,7 +10,7 @@ SMALL, LARGE = 1e-3, 1e6
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number with so many significant digits, thousands apart; what is not finite becomes a dash."""
+    """Write a number with significant digits and thousands apart; one that is not finite becomes a dash."""
     if value is None or not isfinite(value):
         return NONE
     if value == 0.0 or SMALL <= abs(value) < LARGE:
@@ -20,13 +20,13 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def short(value: float | None, digits: int = 4) -> str:
-    """A number with at most so many digits, without zeros at its end: 24, 0.1, 14.67."""
+    """Write a number with at most so many digits and no trailing zeros: 24, 0.1, 14.67."""
     text = number(value, digits)
     return text.rstrip("0").rstrip(".") if "." in text and "×" not in text else text
 
 
 def percent(share: float | None) -> str:
-    """A share in per cent; one that is not quite all does not become 100 %."""
+    """Write a share in per cent; only a share of 1 or more becomes 100 %."""
     if share is None or not isfinite(share):
         return NONE
     places = 0 if share < 0.985 or share >= 1.0 else 1 if share < 0.9985 else 2
@@ -34,17 +34,17 @@ def percent(share: float | None) -> str:
 
 
 def power(exponent: int) -> str:
-    """A power of ten: 10³."""
+    """Write a power of ten: 10³."""
     return f"10{str(exponent).translate(SUPERSCRIPT)}"
 
 
 def fixed(value: float, places: int) -> str:
-    """A number with so many decimals, thousands apart."""
+    """Write a number with so many decimals, thousands apart."""
     return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
 
 
 def decimals(value: float, digits: int) -> int:
-    """Decimals with which a number that is not 0 has at least so many significant digits."""
+    """Count the decimals that give a number other than 0 at least so many significant digits."""
     return max(digits - 1 - floor(log10(abs(value))), 0)
 
 

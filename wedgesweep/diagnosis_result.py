@@ -1,4 +1,4 @@
-"""What a diagnosis left behind, read again: diagnosis.json and diagnosis.nc of one directory."""
+"""The result of a diagnosis, read from the diagnosis.json and diagnosis.nc of a directory."""
 
 import json
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from wedgesweep.sweep import dataset
 
 JSON, DATASET = "diagnosis.json", "diagnosis.nc"
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")
-# Candidates whose fit ended without numbers that mean anything.
+# Status of candidates whose fit gave no meaningful parameters.
 FAILED, NO_BETTER = "failed", "no better"
 KEYS = (
     *("verdict", "causes", "rivals", "misfit", "gain", "detectable", "not_testable", "next_test"),
@@ -27,8 +27,16 @@ VARIABLES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosed:
-    """The two files of a diagnosis: ``document`` in key units (mm, Hz), ``data`` in SI units."""
+class DiagnosisResult:
+    """The result of a diagnosis.
+
+    Attributes
+    ----------
+    document : dict
+        Content of diagnosis.json; units are part of its keys (mm, Hz).
+    data : xarray.Dataset
+        Content of diagnosis.nc: what was measured and simulated in each test, in SI units.
+    """
 
     document: dict[str, Any]
     data: xr.Dataset
@@ -39,14 +47,15 @@ class Diagnosed:
 
     @property
     def added(self) -> tuple[str, ...]:
-        """Effects that the extended model has over the base model.
+        """Effects that the extended model adds to the base model.
 
-        Where the verdict names no cause it is the best attempt, which the document shows by its misfit.
+        If the verdict names no cause, the extended model is the best attempt: the candidate that leaves the
+        misfit of the extended model.
         """
         if self.document["causes"]:
             return tuple(cause["effect"] for cause in self.document["causes"])
-        left = self.document["misfit"]["chi2_extended"]
-        attempts = [each["effects"] for each in self.document["candidates"] if each["q"] == left]
+        q = self.document["misfit"]["chi2_extended"]
+        attempts = [each["effects"] for each in self.document["candidates"] if each["q"] == q]
         return tuple(attempts[0]) if attempts else ()
 
     @property
@@ -60,13 +69,30 @@ class Diagnosed:
         """Models to show: base, and extended where something was added."""
         return ("base", "extended") if self.added else ("base",)
 
-    def place(self, test: int | str) -> int:
-        """Index of a test that is given by its index or its name."""
+    def test_index(self, test: int | str) -> int:
+        """Return the index of a test that is given by its index or its name."""
         return test if isinstance(test, int) else self.data["test"].values.tolist().index(test)
 
 
-def read(directory: Path) -> Diagnosed:
-    """Read both files; raises InputError, or SweepError for a damaged dataset."""
+def read(directory: Path) -> DiagnosisResult:
+    """Read the result of a diagnosis.
+
+    Parameters
+    ----------
+    directory : pathlib.Path
+        Directory that ``wedgesweep diagnose`` wrote.
+
+    Returns
+    -------
+    DiagnosisResult
+
+    Raises
+    ------
+    InputError
+        A file is missing or lacks something.
+    SweepError
+        The dataset is damaged.
+    """
     for name in (JSON, DATASET):
         if not (directory / name).is_file():
             message = f"{directory / name}: no such file; 'wedgesweep diagnose ... -o {directory}' makes it"
@@ -76,7 +102,7 @@ def read(directory: Path) -> Diagnosed:
     missing = [name for name in VARIABLES if name not in data]
     if missing:
         raise InputError([f"{directory / DATASET}: has no {', '.join(missing)}"])
-    return Diagnosed(document, data)
+    return DiagnosisResult(document, data)
 
 
 def _document(file: Path) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 import pytest
 
-from wedgesweep import digits
-from wedgesweep.report import words
+from wedgesweep import formatting
+from wedgesweep.report import phrases
 
 
 @pytest.mark.parametrize(
@@ -21,11 +21,11 @@ from wedgesweep.report import words
     ],
 )
 def test_number(value, text):
-    assert digits.number(value) == text
+    assert formatting.number(value) == text
 
 
 def test_short_numbers_have_no_zeros_at_their_end():
-    assert [digits.short(value) for value in (24.0, 0.1, 14.6667, 120.0, 1e-7)] == [
+    assert [formatting.short(value) for value in (24.0, 0.1, 14.6667, 120.0, 1e-7)] == [
         *("24", "0.1", "14.67", "120", "1.000 × 10⁻⁷")
     ]
 
@@ -34,21 +34,21 @@ def test_short_numbers_have_no_zeros_at_their_end():
     ("share", "text"), [(0.5, "50"), (0.991, "99.1"), (0.9999999, "99.99"), (1.0, "100"), (-0.2, "-20")]
 )
 def test_a_share_that_is_not_all_is_not_called_all(share, text):
-    assert digits.percent(share) == f"{text}{digits.NO_BREAK}%"
+    assert formatting.percent(share) == f"{text}{formatting.NO_BREAK}%"
 
 
 def test_an_estimate_has_the_digits_that_its_interval_allows():
     found = {"value": 5.12345, "ci95": [4.81, 5.49]}
-    text = words.estimate("velocity_mm_per_s", found).replace(digits.NO_BREAK, " ")
+    text = phrases.estimate("velocity_mm_per_s", found).replace(formatting.NO_BREAK, " ")
     assert text == "velocity 5.12 mm/s, 95 % interval 4.81 to 5.49 mm/s"
-    wide = words.estimate("force_N", {"value": 212.0, "ci95": [90.0, 400.0]})
+    wide = phrases.estimate("force_N", {"value": 212.0, "ci95": [90.0, 400.0]})
     assert wide.startswith("force 212")
-    assert words.compact("force_N", {"value": -0.0039, "ci95": [-0.0081, 0.00021]}).endswith(
+    assert phrases.compact("force_N", {"value": -0.0039, "ci95": [-0.0081, 0.00021]}).endswith(
         " (-0.0081 to 0.0002)"
     )
-    assert words.spread({"value": 1e-4, "ci95": [1e-5, 0.0013]}) == ("0.0001", "1 × 10⁻⁵", "0.0013")
-    assert "no interval" in words.estimate("scale", {"value": 1.0, "ci95": [None, None]})
-    assert "not determined" in words.estimate("scale", {"value": None, "ci95": [None, None]})
+    assert phrases.rounded({"value": 1e-4, "ci95": [1e-5, 0.0013]}) == ("0.0001", "1 × 10⁻⁵", "0.0013")
+    assert "no interval" in phrases.estimate("scale", {"value": 1.0, "ci95": [None, None]})
+    assert "not determined" in phrases.estimate("scale", {"value": None, "ci95": [None, None]})
 
 
 @pytest.mark.parametrize(
@@ -60,4 +60,4 @@ def test_an_estimate_has_the_digits_that_its_interval_allows():
     ],
 )
 def test_keys_become_a_name_and_a_unit(key, name, unit):
-    assert words.split_key(key) == (name, unit)
+    assert phrases.split_key(key) == (name, unit)
