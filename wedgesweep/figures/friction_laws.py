@@ -61,7 +61,7 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
         ax.plot(velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7)
         ax.set_title(law, fontsize=10)
         _annotate(ax, parameters[law])
-    style.label(axes, "slip velocity [mm/s]", "friction coefficient μ (signed)")
+    style.label(axes, "slip velocity [mm/s]", "friction coefficient $μ$, signed [1]")
     grey = "; grey: the other laws" if len(names) > 1 else ""
     made.title("Friction laws", "a positive coefficient opposes a positive slip velocity" + grey)
     return made

@@ -21,25 +21,25 @@ def section(result: DiagnosisResult) -> Markup:
     return html.section(
         "model",
         "The extended model",
-        html.paragraph(_introduction(result)),
+        *_introduction(result),
         *(_effect(result, effect) for effect in result.added),
         _uncertain(result),
         html.details(f"The base model's friction law: {model['law']}", _law(model["law"])),
     )
 
 
-def _introduction(result: DiagnosisResult) -> Markup:
+def _introduction(result: DiagnosisResult) -> list[Markup]:
     model = result.document["model"]
     base = f"“{model['title']}” with {model['law']} friction"
     if not result.added:
-        return html.text(f"The base model, {base}, stays as it is.")
+        return [html.paragraph(f"The base model, {base}, stays as it is.")]
     added = phrases.combination(result.added)
     what = f"The extended model adds {added} to the base model, {base}."
     if not result.document["causes"]:
         what = f"No extension of the base model, {base}, can be trusted. The best attempt adds {added}."
     link = html.element("a", "extended.toml", href="extended.toml")
-    command = html.element("code", "wedgesweep run extended.toml -o extended.nc")
-    return html.join([what, " It is ready to run in ", link, ": ", command, "."], "")
+    command = html.element("pre", "wedgesweep run extended.toml -o extended.nc")
+    return [html.paragraph(what, " It is in ", link, ", ready to run:"), command]
 
 
 def _effect(result: DiagnosisResult, effect: str) -> Markup:

@@ -14,8 +14,8 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 CAPTIONS = {
-    "waveforms": "Black is measured (the mean of the periods), dashed is the base model. A flat crest means "
-    "sticking. The lowest panels show simulated minus measured; what stays within grey is noise.",
+    "waveforms": "The black line is measured (mean over the periods), the dashed line is the base model. A "
+    "flat crest means sticking. The lowest panels show the difference; within the grey band it is noise.",
     "phase-plane": "A loop that is flat along zero velocity sticks there; a tilted or wider loop has another "
     "stiffness or dissipation.",
     "harmonics": "A mark off the measured dot by more than its bar is misfit. Odd harmonics come from "

@@ -59,7 +59,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
         lower.set_xlabel("$x'-y'$ [mm/s]", fontsize=8.5)
     made.label_sides("residual force [N]", "residual force [N]")
     made.title(
-        "Residual force: force on the bolster (positive upwards) that the base model lacks",
-        "over displacement, below over velocity; violet to green: through the period; grey: may be noise",
+        "Residual force on the bolster (positive upwards), which the base model lacks",
+        "violet to green: through one period; grey: may be noise",
     )
     return made

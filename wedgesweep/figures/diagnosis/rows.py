@@ -33,7 +33,7 @@ def set_rows(ax: Axes, result: DiagnosisResult, order: np.ndarray, named: bool) 
     """Give each test a row, from above, with or without its name."""
     labels = [selection.label(result.data, test) if named else "" for test in order]
     ax.set_yticks(range(order.size), labels)
-    ax.set_ylim(order.size - 0.4, -0.6)
+    ax.set_ylim(order.size - 0.5, -0.5)
 
 
 def draw_values(ax: Axes, result: DiagnosisResult, order: np.ndarray, name: str, factor: float) -> None:

@@ -63,7 +63,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     made.label_sides("$x-y$ [mm]", "$x'-y'$ [mm/s]", "difference [µm]")
     marks.legend(made, result, dots=False)
     made.title(
-        "One period of relative displacement $x-y$ and velocity $x'-y'$, measured and simulated",
-        "below: simulated minus measured $x-y$; grey: 95 % of its noise; at time 0 $u$ rises through 0",
+        "One period of $x-y$ and $x'-y'$, measured and simulated",
+        "below: simulated minus measured; grey: 95 % of the noise; time 0: $u$ = 0, rising",
     )
     return made
