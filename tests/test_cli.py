@@ -416,7 +416,7 @@ def test_plot_of_a_diagnosis(here, drawn_dataset):
     fixture_diagnosis.write(here / "found", "tied", tests=2)
     assert invoke("plot", "candidates", "found") == "wrote found/candidates.png\n"
     assert invoke("plot", "misfit", "found", "--format", "svg", "-o", "m.svg") == "wrote m.svg\n"
-    assert "skipped gain: nothing was held out" in invoke("plot", "all", "found", "-o", "figures")
+    assert "skipped gain: no test was held out" in invoke("plot", "all", "found", "-o", "figures")
     assert (here / "figures" / "waveforms.png").read_bytes().startswith(PNG)
     for arguments, words in (
         (["misfit", drawn_dataset], "not a directory; misfit draws what 'wedgesweep diagnose -o DIR' left"),
@@ -424,7 +424,7 @@ def test_plot_of_a_diagnosis(here, drawn_dataset):
             ["stick-map", "found"],
             "a directory; stick-map draws the dataset of a run, a diagnosis",
         ),
-        (["gain", "found"], "gain: nothing was held out"),
+        (["gain", "found"], "gain: no test was held out"),
         (["misfit", "found", "--beta", 1], "misfit: takes no --beta"),
         (["misfit", "figures"], "figures/diagnosis.json: no such file"),
     ):
