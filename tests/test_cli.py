@@ -449,7 +449,9 @@ def test_a_sweep_without_waveforms(here):
     told = invoke("plot", "all", "few.nc", "-o", "figures")
     for words in ("wrote figures/stick-map", "skipped phase-portrait", "skipped response"):
         assert words in told
-    assert "a dataset of metrics alone" in invoke("plot", "phase-portrait", "few.nc", code=2)
+    assert "run the sweep again with keep_waveforms = true" in invoke(
+        "plot", "phase-portrait", "few.nc", code=2
+    )
     # One case is run for its trajectory.
     invoke("case", "few.toml", "--beta", 0.77, "--amplitude", 0.9, "-o", "one")
     assert (here / "one.png").read_bytes().startswith(PNG)

@@ -15,17 +15,8 @@ NUMERICS = (
     *("friction/", "effects/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
-    *(
-        "sweep",
-        "config",
-        "figures",
-        "reproduce",
-        "measured",
-        "synthesize",
-        "cli",
-        "report",
-        "diagnosis_result",
-    ),
+    *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report"),
+    "diagnosis_result",
 )
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),

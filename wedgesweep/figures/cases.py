@@ -26,7 +26,7 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
     missing = [name for name in needs if name not in ds.variables and name not in ds.attrs]
     if missing:
         waveforms = {"displacement", "velocity", "stuck"} & set(missing)
-        hint = "; run the sweep with waveforms kept to draw them" if waveforms else ""
+        hint = "; run the sweep again with keep_waveforms = true" if waveforms else ""
         message = f"the dataset has no {', '.join(missing)}{hint}"
         raise ValueError(message)
     single = [name for name in ("amplitude", "beta", "friction_law") if ds[name].ndim == 0]

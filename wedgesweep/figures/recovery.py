@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wedgesweep.figures import style
+from wedgesweep.figures.panels import panels
 
 # Lower edge of the first bin, which starts at 0.
 LEAST = 50.0
@@ -24,7 +25,8 @@ def draw(bins: Sequence[Any]) -> Figure:
 
     ``bins`` are those of ``validation.tables.recovery``.
     """
-    figure, (ax,) = style.panels(1, size=(6.2, 3.6))
+    made = panels(None, 1, size=(6.2, 3.6))
+    ax = made.axes[0]
     middles = np.array([_middle(low, high) for low, high, _ in bins])
     names = list(bins[0].shares)
     # Side by side, so that equal shares stay visible.
@@ -42,10 +44,10 @@ def draw(bins: Sequence[Any]) -> Figure:
             ax.plot(x, values, "--", marker=".", label=name)
     ax.set(xscale="log", ylim=(-0.03, 1.03))
     ax.axvline(STRONG, color=style.GREY, linewidth=0.8)
-    style.label([ax], "excess chi-squared of the base model", "share of sets with the truth")
-    style.title(figure, "Recovery of a hidden effect over its strength")
-    figure.legend(fontsize="small", loc="outside lower center", ncols=2, frameon=False)
-    return figure
+    style.label([ax], "excess chi-squared of the base model [1]", "share of sets with the truth [1]")
+    made.title("Recovery of a hidden effect over its strength")
+    made.legend(*ax.get_legend_handles_labels(), columns=2)
+    return made.figure.figure
 
 
 def _middle(low: float, high: float) -> float:
