@@ -22,7 +22,7 @@ distributed = pytest.importorskip("distributed", reason="Dask is not installed")
 LONG = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"').replace(
     "settle_periods = 3", "settle_periods = 2000"
 )
-FEW = CONFIG.replace("0.8, 1.1, 1.6, ", "")
+FEW = CONFIG.replace("1.1, ", "")
 
 
 @pytest.fixture(scope="module")

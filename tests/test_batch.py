@@ -34,7 +34,7 @@ def expected(tmp_path_factory):
     return run(tmp_path_factory.mktemp("expected"))
 
 
-@pytest.mark.parametrize("chunk", [1, 7, 200])
+@pytest.mark.parametrize("chunk", [1, 5, 200])
 def test_chunks_change_no_bit(tmp_path, expected, monkeypatch, chunk):
     monkeypatch.setattr(sweep, "CHUNK", chunk)
     monkeypatch.setattr(sweep, "CHUNKS", 1)
@@ -72,7 +72,7 @@ def test_every_chunk_is_solved_once():
 
 
 def test_agrees_with_radau_in_every_variable(tmp_path):
-    few = EVENT_DRIVEN.replace("0.8, 1.1, 1.6, ", "").replace("[solver]", "[solver]\nrtol = 1e-9")
+    few = EVENT_DRIVEN.replace("1.1, ", "").replace("[solver]", "[solver]\nrtol = 1e-9")
     ours, radaus = run(tmp_path, few), run(tmp_path, few.replace('"event-driven"', '"radau"'))
     assert set(ours) == set(radaus)
     assert (ours["status"] == radaus["status"]).all()

@@ -15,7 +15,7 @@ from wedgesweep.errors import SweepError
 from wedgesweep.sweep import dataset, provenance
 from wedgesweep.sweep.dataset import STATUSES, VARIABLES
 
-FEW = small_sweep.CONFIG.replace("0.8, 1.1, 1.6, ", "")
+FEW = small_sweep.CONFIG.replace("1.1, ", "")
 
 
 @pytest.fixture(scope="module")

@@ -35,9 +35,9 @@ BACKENDS = ("threads", "loky", "dask")
     "--solver", type=click.Choice(SOLVERS), help="Solver to use instead of the config's solver.method."
 )
 @click.option(
-    "--keep-going/--fail-fast",
-    default=True,
-    help="Whether to go on after a failed case; default: keep going.",
+    "--fail-fast/--keep-going",
+    default=False,
+    help="Whether to stop at the first case that fails; default: keep going.",
 )
 @click.option(
     "--case-timeout",
@@ -62,19 +62,16 @@ def run(
     ctx: click.Context,
     config_path: Path,
     output: Path | None,
-    n_jobs: int | None,
     solver: str | None,
-    keep_going: bool,
-    case_timeout: float | None,
     backend: str | None,
     scheduler: str | None,
-    fresh: bool,
+    **options: Any,
 ) -> None:
     """Run all cases of CONFIG and store them as netCDF.
 
     Finished cases are stored at once: after an interruption, rerun the same command to resume.
     """
-    _require_sense(backend, scheduler, n_jobs)
+    _require_consistent(backend, scheduler, options["n_jobs"])
     settings = _settings(config_path, solver)
     from wedgesweep.errors import MismatchError
     from wedgesweep.sweep.backend import count_jobs
@@ -83,13 +80,7 @@ def run(
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"), command_line())
     progress = ProgressReport()
     try:
-        options = {
-            "n_jobs": count_jobs(n_jobs),
-            "case_timeout": case_timeout,
-            "fail_fast": not keep_going,
-            "backend": _backend(backend, scheduler),
-            "fresh": fresh,
-        }
+        options |= {"n_jobs": count_jobs(options["n_jobs"]), "backend": _backend(backend, scheduler)}
         ctx.exit(_run(sweep, progress, options))
     except KeyboardInterrupt:
         _stopped(progress, sweep, "interrupted", "rerun the same command to resume")
@@ -114,7 +105,7 @@ def _settings(config_path: Path, solver: str | None) -> "Config":
         raise config.ConfigError([f"{config_path}: {problem}" for problem in error.problems]) from error
 
 
-def _require_sense(backend: str | None, scheduler: str | None, n_jobs: int | None) -> None:
+def _require_consistent(backend: str | None, scheduler: str | None, n_jobs: int | None) -> None:
     if scheduler is None:
         return
     if backend != "dask":

@@ -1,6 +1,7 @@
 """synthesize: measured data of a known system."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -66,15 +67,9 @@ SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
 def synthesize(
     config_path: Path,
     plan_path: Path,
-    noise: str,
-    level: float,
-    seed: int,
     output: Path | None,
-    periods: float,
-    sampling_hz: float | None,
-    settle_periods: int,
-    amplitude_error: float,
     n_jobs: int | None,
+    **options: Any,
 ) -> None:
     """Make synthetic measured data of the system in CONFIG, with its effects and its one friction law.
 
@@ -89,8 +84,7 @@ def synthesize(
 
     settings, tests = config.load(config_path), plan.load(plan_path)
     directory = output or Path(f"{config_path.stem}-measured")
-    options = Options(noise, level, seed, periods, sampling_hz, settle_periods, amplitude_error)
     announce_compiling("radau")
-    for remark in make(settings, str(config_path), tests, options, directory, count_jobs(n_jobs)):
+    for remark in make(settings, str(config_path), tests, Options(**options), directory, count_jobs(n_jobs)):
         click.echo(remark, err=True)
     click.echo(f"wrote {directory / 'measured.toml'}: {len(tests.tests)} tests")

@@ -1,6 +1,7 @@
 """Every key of the config with its default, range and meaning: the one place that declares them."""
 
 from math import nan, sqrt
+from typing import Any
 
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
 from wedgesweep.config.series import Series, Several
@@ -28,7 +29,7 @@ def _series(quantity: Quantity, example: object) -> Series:
     )
 
 
-def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more) -> Whole:
+def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more: Any) -> Whole:
     quantity = Quantity(key, nan if default is None else default, meaning, minimum, maximum=maximum)
     return Whole.of(quantity, **more)
 
