@@ -1,6 +1,7 @@
-"""The result of a diagnosis, read from the diagnosis.json and diagnosis.nc of a directory."""
+"""The result of a diagnosis, and its files: diagnosis.json, diagnosis.nc and extended.toml."""
 
 import json
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ import xarray as xr
 from wedgesweep.errors import InputError
 from wedgesweep.sweep import dataset
 
-JSON, DATASET = "diagnosis.json", "diagnosis.nc"
+JSON, DATASET, EXTENDED = "diagnosis.json", "diagnosis.nc", "extended.toml"
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")
 # Status of candidates whose fit gave no meaningful parameters.
 FAILED, NO_BETTER = "failed", "no better"
@@ -36,14 +37,38 @@ class DiagnosisResult:
         Content of diagnosis.json; units are part of its keys (mm, Hz).
     data : xarray.Dataset
         Content of diagnosis.nc: what was measured and simulated in each test, in SI units.
+    extended_toml : str
+        The base model with the effects found, as a config that runs the measured tests.
     """
 
     document: dict[str, Any]
     data: xr.Dataset
+    extended_toml: str = ""
 
     @property
     def verdict(self) -> str:
         return self.document["verdict"]
+
+    @property
+    def causes(self) -> list[dict[str, Any]]:
+        """Effects that the verdict names, with their numbers and intervals."""
+        return self.document["causes"]
+
+    def to_json(self) -> str:
+        """Return the content of diagnosis.json."""
+        return json.dumps(self.document, indent=2, allow_nan=False) + "\n"
+
+    def write(self, directory: str | Path) -> None:
+        """Write the three files into a directory, each of them complete or not at all."""
+        directory, text = Path(directory), self.to_json()
+        directory.mkdir(parents=True, exist_ok=True)
+        # First of all, so that an interrupted write leaves no old verdict beside new data.
+        (directory / JSON).unlink(missing_ok=True)
+        partial = directory / f".{DATASET}.partial"
+        self.data.to_netcdf(partial)
+        partial.replace(directory / DATASET)
+        _write_text(directory / EXTENDED, self.extended_toml)
+        _write_text(directory / JSON, text)
 
     @property
     def added(self) -> tuple[str, ...]:
@@ -52,8 +77,8 @@ class DiagnosisResult:
         If the verdict names no cause, the extended model is the best attempt: the candidate that leaves the
         misfit of the extended model.
         """
-        if self.document["causes"]:
-            return tuple(cause["effect"] for cause in self.document["causes"])
+        if self.causes:
+            return tuple(cause["effect"] for cause in self.causes)
         q = self.document["misfit"]["chi2_extended"]
         attempts = [each["effects"] for each in self.document["candidates"] if each["q"] == q]
         return tuple(attempts[0]) if attempts else ()
@@ -102,7 +127,14 @@ def read(directory: Path) -> DiagnosisResult:
     missing = [name for name in VARIABLES if name not in data]
     if missing:
         raise InputError([f"{directory / DATASET}: has no {', '.join(missing)}"])
-    return DiagnosisResult(document, data)
+    extended = directory / EXTENDED
+    return DiagnosisResult(document, data, extended.read_text(encoding="utf-8") if extended.exists() else "")
+
+
+def _write_text(file: Path, text: str) -> None:
+    partial = file.with_name(f".{file.name}.partial")
+    partial.write_text(text, encoding="utf-8")
+    os.replace(partial, file)
 
 
 def _document(file: Path) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from tests.validation.laboratory import BENCH, PAPER, Hidden, diagnose, make
-from wedgesweep.diagnose.result import DATASET, EXTENDED, JSON
+from wedgesweep.diagnosis_result import DATASET, EXTENDED, JSON
 from wedgesweep.effects import EFFECTS
 
 NAMED = ("named", "consistent-with")
