@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -52,17 +51,20 @@ def test_draws_and_says_what_it_shows(kind, dataset):
             assert "[" in text, f"no unit in '{text}'"
 
 
+GRIDS = {
+    "one case": {"laws": ("coulomb",), "betas": (1.0,), "amplitudes": (1e-3,), "failed": None},
+    "fine grid": {"betas": np.linspace(0.1, 3.0, 70), "amplitudes": np.linspace(1e-5, 1e-3, 60)},
+}
+
+
+@pytest.fixture(scope="module", params=GRIDS)
+def grid(request):
+    return fixture_dataset.build(**GRIDS[request.param])
+
+
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(
-    "grid",
-    [
-        {"laws": ("coulomb",), "betas": (1.0,), "amplitudes": (1e-3,), "failed": None},
-        {"betas": np.linspace(0.1, 3.0, 70), "amplitudes": np.linspace(1e-5, 1e-3, 60)},
-    ],
-    ids=["one case", "fine grid"],
-)
 def test_draws_small_and_large_grids(kind, grid):
-    figures.draw(fixture_dataset.build(**grid), kind).draw_without_rendering()
+    figures.draw(grid, kind).draw_without_rendering()
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -135,7 +137,7 @@ def test_descriptions_come_without_matplotlib():
 @pytest.mark.parametrize("kind", KINDS)
 def test_file_is_found_under_its_name(kind):
     declared = figures.FIGURES[kind]
-    module = import_module(declared.module)
+    module = declared.load()
     assert (kind, figures.DESCRIPTIONS[kind]) == (module.NAME, module.DESCRIPTION)
     assert declared.needs == module.NEEDS
 
@@ -161,7 +163,8 @@ def test_a_new_figure_is_one_file(dataset, tmp_path, monkeypatch):
     monkeypatch.setattr(figures, "__path__", [*figures.__path__, str(tmp_path)])
     (toy,) = catalogue.declared(tmp_path, "wedgesweep.figures").values()
     assert (toy.name, toy.needs, toy.picks) == ("histogram", ("stick_fraction",), ("bins",))
-    drawn = toy.draw(dataset, bins=7)
+    monkeypatch.setitem(figures.FIGURES, toy.name, toy)
+    drawn = figures.draw(dataset, "histogram", bins=7)
     assert len(drawn.axes[0].patches) == 7
     assert drawn.get_suptitle() == "Stick fractions"
 

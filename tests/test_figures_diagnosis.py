@@ -1,7 +1,5 @@
 """Every figure of a diagnosis draws every verdict, few and many tests, and says what it cannot draw."""
 
-from importlib import import_module
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -34,7 +32,7 @@ def test_draws_and_says_what_it_shows(kind):
     words = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
     assert words
     assert [text for text in words if "[" not in text] == []
-    assert import_module(diagnosis.FIGURES[kind].module).draw.__doc__.count("To see:") == 1
+    assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
 @pytest.mark.parametrize("verdict", fixture_diagnosis.WAYS)

@@ -113,5 +113,5 @@ def _write(ds: "xr.Dataset", stem: Path) -> None:
 
     file, picture = _with_suffix(stem, ".nc"), _with_suffix(stem, ".png")
     dataset.write(ds, file)
-    figures.save(figures.FIGURES[PICTURE].draw(ds), picture)
+    figures.save(figures.draw(ds, PICTURE), picture)
     click.echo(f"trajectory: {file}\npicture: {picture}")

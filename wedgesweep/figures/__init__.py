@@ -7,6 +7,7 @@ keywords of ``draw`` are the figure's options, in SI units as the dataset is; mm
 
 import io
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,11 +65,30 @@ def draw(
         There is no such figure or option, the data lack what the figure needs, or several panels were to
         be drawn into one Axes. The message says which.
     """
+    import xarray as xr
+
+    from wedgesweep.figures import cases
+
     kinds = of(data)
     if name not in kinds:
         message = f"no figure '{name}' of these data; there are {', '.join(kinds)}"
         raise ValueError(message)
-    return kinds[name].draw(data, ax, figure, **picks)
+    kind = kinds[name]
+    try:
+        _require_known(picks, kind.picks)
+        checked = cases.checked(data, kind.needs, kind.case_lists) if isinstance(data, xr.Dataset) else data
+        panels = kind.load().draw(figure if ax is None else ax, checked, **picks)
+    except ValueError as error:
+        message = f"{name}: {error}"
+        raise ValueError(message) from error
+    return panels.figure.figure  # of a subfigure: the figure that it is part of
+
+
+def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:
+    for name in picks:
+        if name not in known:
+            message = f"unknown option '{name}'; it takes {', '.join(known) or 'no options'}"
+            raise ValueError(message)
 
 
 def of(data: "xr.Dataset | DiagnosisResult") -> dict[str, catalogue.FigureKind]:

@@ -1,24 +1,19 @@
 """Which figures a folder holds. Every file there that defines ``NAME`` is one; no list names it."""
 
 import ast
-from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure, SubFigure
+from typing import Any
 
 CONSTANTS = ("NAME", "DESCRIPTION", "NEEDS", "CASE_LISTS")
 
 
 @dataclass(frozen=True)
 class FigureKind:
-    """A figure as its file declares it; the file, and with it matplotlib, is loaded when it draws.
+    """A figure as its file declares it.
 
     ``needs`` are the variables and attributes that a sweep's dataset must have, and ``case_lists`` tells
     whether the figure also draws a dataset that is a list of cases instead of a grid.
@@ -33,39 +28,11 @@ class FigureKind:
     @property
     def picks(self) -> tuple[str, ...]:
         """Options of the figure, all of which have a default."""
-        return tuple(signature(self._load().draw).parameters)[2:]
+        return tuple(signature(self.load().draw).parameters)[2:]
 
-    def draw(
-        self,
-        data: Any,
-        ax: "Axes | None" = None,
-        figure: "Figure | SubFigure | None" = None,
-        **picks: Any,
-    ) -> "Figure":
-        """Draw the figure; see ``wedgesweep.figures.draw``."""
-        target = figure if ax is None else ax
-        try:
-            self._require_known(picks)
-            panels = self._load().draw(target, self._checked(data), **picks)
-        except ValueError as error:
-            message = f"{self.name}: {error}"
-            raise ValueError(message) from error
-        return panels.figure.figure  # of a subfigure: the figure that it is part of
-
-    def _load(self) -> ModuleType:
+    def load(self) -> ModuleType:
+        """Import the file of the figure, and with it matplotlib."""
         return import_module(self.module)
-
-    def _require_known(self, picks: Mapping[str, Any]) -> None:
-        for name in picks:
-            if name not in self.picks:
-                valid = ", ".join(self.picks) or "no options"
-                message = f"unknown option '{name}'; it takes {valid}"
-                raise ValueError(message)
-
-    def _checked(self, data: Any) -> Any:
-        from wedgesweep.figures import cases
-
-        return cases.checked(data, self.needs, self.case_lists) if self.needs else data
 
 
 def declared(folder: Path, package: str) -> dict[str, FigureKind]:

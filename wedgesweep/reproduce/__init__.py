@@ -89,4 +89,4 @@ def _suspects(directory: Path, n_jobs: int, report: Callable[[str], None]) -> bo
 
 def _draw(run: Run, directory: Path) -> None:
     for kind in PICTURES:
-        figures.save(figures.FIGURES[kind].draw(run.ds), directory / f"paper-{kind}.png")
+        figures.save(figures.draw(run.ds, kind), directory / f"paper-{kind}.png")

@@ -7,9 +7,9 @@ import xarray as xr
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures import style
 
 SHOWN = 6  # tests in a figure by default, those with the largest misfit
-MM = 1e3  # mm per m
 
 
 def by_misfit(data: xr.Dataset) -> np.ndarray:
@@ -33,7 +33,7 @@ def label(data: xr.Dataset, test: int) -> str:
     """Name, frequency and input amplitude of a test; ~ marks an amplitude that was only fitted."""
     stated = data["amplitude"].values[test]
     fitted = data["amplitude_fitted"].sel(model="extended").values[test]
-    size = f"{stated * MM:.3g} mm" if np.isfinite(stated) else f"~{fitted * MM:.2g} mm"
+    size = f"{stated * style.MM:.3g} mm" if np.isfinite(stated) else f"~{fitted * style.MM:.2g} mm"
     return f"{data['test'].values[test]}: {data['frequency'].values[test]:.4g} Hz, {size}"
 
 
