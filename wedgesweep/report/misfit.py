@@ -14,7 +14,7 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 CAPTIONS = {
-    "waveforms": "The black line is measured (mean over the periods), the dashed line is the base model. A "
+    "waveforms": "The thick line is measured (mean over the periods), the dashed line is the base model. A "
     "flat crest means sticking. The lowest panels show the difference; within the grey band it is noise.",
     "phase-plane": "A loop that is flat along zero velocity sticks there; a tilted or wider loop has another "
     "stiffness or dissipation.",
