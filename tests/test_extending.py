@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests import fixture_dataset
+from wedgesweep import figures
 from wedgesweep.figures import catalogue
 
 PAGE = Path(__file__).parents[1] / "docs" / "extending.md"
@@ -31,16 +32,17 @@ def package(tmp_path, monkeypatch):
         del sys.modules[name]
 
 
-def test_figure(package):
+def test_figure(package, monkeypatch):
     name, folder = package
     (folder / "normal_force.py").write_text(example("wedgesweep/figures/normal_force.py"))
     kind = catalogue.declared(folder, name)["normal-force"]
     assert kind.description
-    figure = kind.draw(fixture_dataset.build())
+    monkeypatch.setitem(figures.FIGURES, kind.name, kind)
+    figure = figures.draw(fixture_dataset.build(), kind.name)
     figure.draw_without_rendering()
     assert len(figure.axes) == 3
     assert figure.axes[0].get_ylabel() == "smallest normal force [N]"
     assert kind.picks == ("law",)
-    kind.draw(fixture_dataset.build(), law="coulomb")
+    figures.draw(fixture_dataset.build(), kind.name, law="coulomb")
     with pytest.raises(ValueError, match="minimum_normal_force"):
-        kind.draw(fixture_dataset.build().drop_vars("minimum_normal_force"))
+        figures.draw(fixture_dataset.build().drop_vars("minimum_normal_force"), kind.name)
