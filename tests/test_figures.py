@@ -1,4 +1,4 @@
-"""Every figure draws the fixture, says what it shows and in which units, and fails clearly."""
+"""Every figure draws the fixture, has a title and units, and fails with a clear message."""
 
 import subprocess
 import sys

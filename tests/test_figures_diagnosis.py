@@ -1,4 +1,4 @@
-"""Every figure of a diagnosis draws every verdict, few and many tests, and says what it cannot draw."""
+"""Every figure of a diagnosis draws every verdict with few and many tests, or says what is missing."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
-@pytest.mark.parametrize("verdict", fixture_diagnosis.WAYS)
+@pytest.mark.parametrize("verdict", fixture_diagnosis.CASES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_verdict(kind, verdict):
     result = build(verdict, tests=2 if verdict == "data-insufficient" else 4)
@@ -105,7 +105,7 @@ def test_velocity_is_the_rate_of_displacement_where_there_is_no_channel():
         assert derived == pytest.approx(sensed, abs=1e-9 * np.abs(sensed).max())
 
 
-def test_legends_tell_a_cause_from_an_attempt():
+def test_legends_distinguish_a_cause_from_an_attempt():
     assert marks.names(build("named"))["extended"] == "extended: stribeck + guide_friction"
     assert marks.names(build("none-of-mine"))["extended"] == "best attempt: stribeck"
     assert list(marks.names(build("nothing-missing"))) == ["base"]
@@ -129,7 +129,7 @@ def test_like_amplitudes_are_joined():
     assert [sorted(group.tolist()) for group in groups] == [[0, 2], [1, 3]]
 
 
-def test_leftover_force_that_no_test_gives():
+def test_residual_force_that_no_test_gives():
     result = build()
     result.data["leftover_force"][:] = np.nan
     with pytest.raises(ValueError, match="leftover-force: the tests"):

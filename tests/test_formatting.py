@@ -1,4 +1,4 @@
-"""Numbers in words: what a reader sees is what was computed, to the digits that it has."""
+"""Formatted numbers show what was computed, to the digits that are known."""
 
 import pytest
 

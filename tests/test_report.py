@@ -1,4 +1,4 @@
-"""The page of a diagnosis: the answer first, everything in it, nothing outside of it."""
+"""The report of a diagnosis: the answer first, complete, and in one file."""
 
 import json
 import re
@@ -19,7 +19,7 @@ VOID = {"meta", "img", "link", "br"}
 
 
 class Page(HTMLParser):
-    """Tags with their attributes, headings, texts; complains of tags that are not closed."""
+    """Tags with their attributes, headings and texts; fails on tags that are not closed."""
 
     def __init__(self, text):
         super().__init__()
@@ -54,8 +54,8 @@ def plain(text):
 
 
 @pytest.fixture
-def no_pictures(monkeypatch):
-    """Pages without figures, where they do not matter."""
+def no_figures(monkeypatch):
+    """Pages without figures, for tests of their text."""
     monkeypatch.setattr(
         InlineFigures, "__call__", lambda self, name, caption, tests=None: html.paragraph(caption)
     )
@@ -65,7 +65,7 @@ def no_pictures(monkeypatch):
 def written(request, tmp_path_factory):
     """Verdict, directory and page of a diagnosis of each verdict."""
     directory = tmp_path_factory.mktemp(request.param)
-    # Beyond six tests there are figures that are folded away: once is enough.
+    # With more than six tests some figures are folded away; one page with them is enough.
     fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 3)
     return request.param, directory, Page(report.write(directory).read_text(encoding="utf-8"))
 
@@ -104,7 +104,7 @@ def test_accessible(written):
     assert len(page.of("caption")) == len(page.of("table"))
 
 
-def test_every_candidate_limit_and_number_is_told(written):
+def test_every_candidate_limit_and_test_is_on_the_page(written):
     _, directory, page = written
     document = diagnosis_result.read(directory).document
     for each in document["candidates"]:
@@ -116,7 +116,7 @@ def test_every_candidate_limit_and_number_is_told(written):
 
 
 NAMED = "guide_friction; force 2.13 N, 95 % interval 1.95 to 2.31 N"
-SAID = {
+EXPECTED = {
     "nothing-missing": ("Nothing is missing: over 12 tests the error", "noise alone may leave (p = 0."),
     "named": (
         "Two causes together explain",
@@ -143,7 +143,7 @@ SAID = {
 def test_sentence(verdict, tmp_path):
     fixture_diagnosis.write(tmp_path, verdict)
     sentence = plain(report.sentence(tmp_path))
-    for words in SAID[verdict]:
+    for words in EXPECTED[verdict]:
         assert words in sentence
     # One sentence: a stop only inside numbers and at the end.
     assert not re.search(r"\.\s", sentence)
@@ -193,7 +193,7 @@ def test_sentence(verdict, tmp_path):
         ),
     ],
 )
-def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
+def test_the_reason_for_a_reservation_is_given(verdict, change, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     for part, values in change.items():
         document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
@@ -205,7 +205,7 @@ def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
     ("candidates", "words"),
     [(0, "there is no candidate that these tests could show"), (1, "the only candidate does not explain it")],
 )
-def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
+def test_few_candidates_are_described_in_words(candidates, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
     document["candidates"] = [each for each in document["candidates"] if len(each["effects"]) == 1][
         :candidates
@@ -228,14 +228,14 @@ def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
         ("data-insufficient", ["preload+bolster_mass"], "no candidate could look like these two"),
     ],
 )
-def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
+def test_adequate_explanations_are_named(verdict, rivals, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     document["rivals"] = [{"effects": names.split("+"), "gap": 30.0} for names in rivals]
     (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
-def test_a_half_that_does_without_the_other_is_told(tmp_path):
+def test_an_adequate_half_of_a_pair_is_named(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
     document["rivals"] = [{"effects": ["end_stop", "velocity_lag"], "gap": 0.0}]
     for p, words in ((0.04, "but end_stop alone leaves hardly more"), (1e-9, "but so few tests")):
@@ -244,7 +244,7 @@ def test_a_half_that_does_without_the_other_is_told(tmp_path):
         assert words in plain(report.sentence(tmp_path))
 
 
-def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
+def test_a_missing_confirmation_by_held_out_tests_is_stated(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=6)
     document["rivals"] = [{"effects": ["ageing"], "gap": 0.0}]
     document["gain"] = {"ci95": [-0.1, 0.2], "excess_removed": 0.1}
@@ -253,7 +253,7 @@ def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
     assert words in plain(report.sentence(tmp_path))
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 @pytest.mark.parametrize(
     ("distance", "words"),
     [
@@ -261,7 +261,7 @@ def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
         (29.0, "would not reliably distinguish stribeck from guide_friction"),
     ],
 )
-def test_a_test_that_does_not_tell_for_sure_is_not_said_to(distance, words, tmp_path):
+def test_a_recommended_test_says_whether_it_distinguishes_reliably(distance, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "tied")
     document["next_test"]["distance"] = distance
     (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
@@ -269,7 +269,7 @@ def test_a_test_that_does_not_tell_for_sure_is_not_said_to(distance, words, tmp_
     assert words in text.replace("\u00a0", " ")
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 def test_equations_of_what_was_added(tmp_path):
     fixture_diagnosis.write(tmp_path, "consistent-with")
     page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
@@ -278,7 +278,7 @@ def test_equations_of_what_was_added(tmp_path):
     assert "Family: missing-force" in page.text
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 def test_text_of_the_user_is_not_markup(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["title"] = 'run <script>alert("1")</script> & $title'
@@ -291,7 +291,7 @@ def test_text_of_the_user_is_not_markup(tmp_path):
     assert html.element("p", "a < b", title='"') == '<p title="&quot;">a &lt; b</p>'
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "consistent-with")
     document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None, "p_where_it_shows": 0.002}
@@ -303,7 +303,24 @@ def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
     assert report.write(tmp_path).exists()
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
+def test_one_of_a_kind_is_written_in_the_singular(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=1)
+    document["not_testable"] = ["ageing"]
+    document["candidates"] = [each for each in document["candidates"] if each["effects"] in ([], ["ageing"])]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = plain(Page(report.write(tmp_path).read_text(encoding="utf-8")).text)
+    for words in (
+        "but this test cannot show what",
+        "fitted to 1 test, the base model",
+        "was compared with run-00",
+        "1 single candidate was fitted",
+        "whatever this effect would change in these tests, so the verdict says nothing about it",
+    ):
+        assert words in text
+
+
+@pytest.mark.usefixtures("no_figures")
 def test_numbers_that_are_missing(tmp_path):
     """Few tests, no velocity, no interval, nothing detectable, fits without numbers."""
     document, _ = fixture_diagnosis.write(tmp_path, "named", tests=5, velocity=False, known=False)
