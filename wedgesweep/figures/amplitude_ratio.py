@@ -85,7 +85,7 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     axes[0].set(xlim=_limits(ds["beta"].values), ylim=(LOWEST, top))
     if axes[0].get_legend_handles_labels()[0]:
         axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
-    style.label(axes, style.BETA, "amplitude ratio $|x-y|/a$")
+    style.label(axes, style.BETA, "amplitude ratio $|x-y|/a$ [1]")
     bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), style.AMPLITUDE)
     style.decimal_ticks(bar.ax.yaxis)
     made.title(
