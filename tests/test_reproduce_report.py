@@ -51,7 +51,7 @@ def test_the_report_has_every_claim_and_the_pictures(reproduced):
     for claim in content["claims"]:
         assert f"| {claim['number']} | {claim['claim']} | {claim['paper']} |" in text
         assert f"### {claim['number']}. {claim['claim']}: {claim['verdict']}" in text
-    for kind in page.PICTURES:
+    for kind in page.FIGURES:
         assert (directory / f"paper-{kind}.png").stat().st_size > 10_000
         assert f"](paper-{kind}.png)" in text
 

@@ -39,9 +39,8 @@ def draw(
         ax.plot(hertz, swept, "-o", color=style.BLUE, markersize=2.5, linewidth=1.3)
         recorded = [hypothesis[name]["peak_to_peak"] for name in ("slow", "fast")]
         ax.plot(list(levels), _shown(recorded), "D", color=style.VERMILLION, markersize=5)
-        ax.set_title(
-            f"{hypothesis['words']}: {hypothesis['met']} of {len(hypothesis['distances'])}", fontsize=9
-        )
+        count = f"{hypothesis['satisfied']} of {len(hypothesis['distances'])}"
+        ax.set_title(f"{hypothesis['description']}: {count}", fontsize=9)
         ax.set_yscale("log")
         style.decimal_ticks(ax.yaxis)
     style.label(made.axes, "frequency [Hz]", "peak-to-peak of $x-y$ [mm]", COLUMNS)
