@@ -62,5 +62,5 @@ def test_claims_are_those_that_reproduce_checks():
     page = {cells[0]: cells[1:] for cells in rows("## Claim by claim", PAPER)}
     for claim in CLAIMS:
         statement, paper, _, verdict = page[str(claim.number)]
-        assert (statement, paper, verdict) == (claim.words, claim.paper, f"**{RECORDED[claim.number]}**")
+        assert (statement, paper, verdict) == (claim.statement, claim.paper, f"**{RECORDED[claim.number]}**")
     assert len(page) == len(CLAIMS)
