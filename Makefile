@@ -6,10 +6,10 @@ OUT    ?= out
 
 .DEFAULT_GOAL := help
 
-help:  ## show this list
+help:  ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
 
-install: $(BIN)/.installed  ## make .venv and install wedgesweep with its test tools
+install: $(BIN)/.installed  ## create .venv and install wedgesweep with its test tools
 
 $(BIN)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -17,7 +17,7 @@ $(BIN)/.installed: pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable '.[test]'
 	touch $@
 
-run: install  ## run configs/quick.toml: dataset and figures into out/
+run: install  ## run configs/quick.toml; dataset and figures in out/
 	mkdir -p $(OUT)
 	$(BIN)/wedgesweep run configs/quick.toml --fresh -o $(OUT)/quick.nc
 	$(BIN)/wedgesweep plot all $(OUT)/quick.nc -o $(OUT)/quick-figures
@@ -25,22 +25,23 @@ run: install  ## run configs/quick.toml: dataset and figures into out/
 test: install  ## all tests
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile
 
-check: install  ## linter, types and tests
+lint: install  ## linter and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile
+
+check: lint test  ## linter, types and all tests
 
 reproduce: install  ## run the paper's 1,800 cases and check its claims
 	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
 
-blind: install  ## hide effects in data and see whether they are found (hours; goes on where it was)
-	$(BIN)/python scripts/blind_campaign.py --output $(OUT)/blind
+validate: install  ## hide effects in data, diagnose them, compare with the truth (hours; rerun to resume)
+	$(BIN)/python -m wedgesweep.validation --output $(OUT)/validation
 
-bench: install  ## benchmarks, as ratios in one run
+bench: install  ## benchmarks, as ratios within one run
 	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
-clean:  ## remove what the other targets made
+clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
-.PHONY: help install run test check reproduce blind bench clean
+.PHONY: help install run test check reproduce validate bench clean

@@ -8,10 +8,11 @@ import numpy as np
 import plain
 import workload
 
-from wedgesweep import batch, dataset, tally
+from wedgesweep import tally
 from wedgesweep.simulate import Settings, respond
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.march import workspace
+from wedgesweep.sweep import batch, dataset
 
 LADDER = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
 DECADES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)

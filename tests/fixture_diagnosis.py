@@ -1,4 +1,4 @@
-"""What a diagnosis leaves behind, for every verdict, made without solving anything.
+"""The result of a diagnosis with each verdict, made without solving anything.
 
 The motion is that of a linear oscillator with its crests cut off. The "suspension" cuts deeper than the base
 model does, more so at small inputs, and the extended model cuts nearly as deep: plateaus, harmonics,
@@ -40,7 +40,7 @@ DETECTABLE = {
 }
 NOT_TESTABLE = ["cross_slip", "ageing"]
 # Per verdict: share of the missing cut that the extended model has, its effects, rivals, tests.
-WAYS = {
+CASES = {
     "nothing-missing": (1.0, [], [], 12),
     "named": (1.0, ["stribeck", "guide_friction"], [], 12),
     "consistent-with": (1.0, ["guide_friction"], [], 12),
@@ -61,7 +61,7 @@ def write(directory, verdict="named", **options):
 
 def build(verdict="named", tests=None, velocity=True, known=True):
     """Document and dataset; without velocity channel or known amplitudes where asked for."""
-    share, causes, rivals, usual = WAYS[verdict]
+    share, causes, rivals, usual = CASES[verdict]
     missing = {"nothing-missing": 0.0, "consistent-with": 0.001}.get(verdict, 0.2)
     known = known and verdict != "data-insufficient"
     data = _dataset(tests or usual, missing, share, 2 if velocity else 1, known)

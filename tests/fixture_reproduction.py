@@ -70,7 +70,7 @@ def run_of(betas, amplitudes, **attributes):
 def build(monkeypatch):
     """Three runs, and single cases that are not solved either."""
 
-    def not_solved(*arguments, **changes):
+    def not_solved(*arguments):
         return {"amplitude_ratio": 1.0, "stick_fraction": 0.5}
 
     for module in (suspension, sticking, integration):

@@ -1,4 +1,4 @@
-"""A sweep of 40 fast cases, for tests of everything around the solving."""
+"""A sweep of 24 fast cases, for tests of everything around the solving."""
 
 import os
 import signal
@@ -10,21 +10,21 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import config
-from wedgesweep.sweep import Sweep
+from wedgesweep.sweep.run import Sweep
 
 ROOT = Path(__file__).parent.parent
 CONFIG = """\
 title = "small"
 [sweep]
 friction_law = ["coulomb", "exponential"]
-beta = [0.3, 0.8, 1.1, 1.6, 2.5]
+beta = [0.3, 1.1, 2.5]
 amplitude_mm = [0.02, 0.2, 0.6, 1.2]
 [solver]
 settle_periods = 3
 kept_periods = 2
 samples_per_period = 32
 """
-CASES = 40
+CASES = 24
 # Both cases lock: with this lean and friction the normal forces are not unique.
 LOCKED = """\
 title = "small"

@@ -10,12 +10,14 @@ from hypothesis import settings as hypothesis_settings
 
 from tests import small_sweep
 from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
-from wedgesweep import cases, dataset, parameters, sweep
-from wedgesweep.dataset import STATUSES
+from wedgesweep import parameters
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.response import NUMBERS
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.march import SWITCHES_PER_PERIOD
+from wedgesweep.sweep import cases, dataset
+from wedgesweep.sweep import run as sweep
+from wedgesweep.sweep.dataset import STATUSES
 
 EVENT_DRIVEN = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 STEADY = EVENT_DRIVEN.replace("settle_periods = 3", 'settle = "steady"\nsteady_tolerance = 1e-9\nrtol = 1e-9')
@@ -32,7 +34,7 @@ def expected(tmp_path_factory):
     return run(tmp_path_factory.mktemp("expected"))
 
 
-@pytest.mark.parametrize("chunk", [1, 7, 200])
+@pytest.mark.parametrize("chunk", [1, 5, 200])
 def test_chunks_change_no_bit(tmp_path, expected, monkeypatch, chunk):
     monkeypatch.setattr(sweep, "CHUNK", chunk)
     monkeypatch.setattr(sweep, "CHUNKS", 1)
@@ -70,7 +72,7 @@ def test_every_chunk_is_solved_once():
 
 
 def test_agrees_with_radau_in_every_variable(tmp_path):
-    few = EVENT_DRIVEN.replace("0.8, 1.1, 1.6, ", "").replace("[solver]", "[solver]\nrtol = 1e-9")
+    few = EVENT_DRIVEN.replace("1.1, ", "").replace("[solver]", "[solver]\nrtol = 1e-9")
     ours, radaus = run(tmp_path, few), run(tmp_path, few.replace('"event-driven"', '"radau"'))
     assert set(ours) == set(radaus)
     assert (ours["status"] == radaus["status"]).all()

@@ -1,4 +1,4 @@
-"""Chandiramani's experiment: what counts as seen, what the suspects show, and what the search finds."""
+"""Chandiramani's experiment: criteria of the observations, hypotheses and their search."""
 
 import json
 from dataclasses import replace
@@ -8,18 +8,32 @@ import pytest
 
 from wedgesweep import reproduce as reproduction
 from wedgesweep import response
-from wedgesweep.figures import suspects as picture
-from wedgesweep.reproduce import chandiramani, chandiramani_page, observations, search, separation, trials
+from wedgesweep.figures import hypotheses as picture
+from wedgesweep.reproduce import (
+    chandiramani,
+    chandiramani_page,
+    discrimination,
+    observations,
+    scenarios,
+    search,
+)
+from wedgesweep.reproduce.hypotheses import (
+    COULOMB,
+    HYPOTHESES,
+    INDEPENDENT_INPUTS,
+    INTERPRETATIONS,
+    STATIC_DYNAMIC,
+    Law,
+)
 from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
-from wedgesweep.reproduce.search import Effort
-from wedgesweep.reproduce.suspects import AN_INPUT_EACH, COULOMB, READINGS, STATIC_DYNAMIC, SUSPECTS, Law
-from wedgesweep.reproduce.trials import FINE, Question
+from wedgesweep.reproduce.scenarios import TIGHT, Scenario
+from wedgesweep.reproduce.search import Budget
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 
 HERTZ = np.arange(20.0, 41.0)
-BY_NAME = {suspect.name: suspect for suspect in SUSPECTS}
-ONE_AMPLITUDE, ONE_ACCELERATION, _ = READINGS
+BY_NAME = {hypothesis.name: hypothesis for hypothesis in HYPOTHESES}
+ONE_AMPLITUDE, ONE_ACCELERATION, _ = INTERPRETATIONS
 PHASE = 2.0 * np.pi * np.arange(2048) / 2048
 
 
@@ -66,7 +80,7 @@ def spectra_of(velocity, harmonics=40):
         ({"fast_peak_to_peak": np.nan}, ["level-30", "stick-30", "distorted-30"]),
     ],
 )
-def test_what_counts_as_seen_in_the_recordings(changes, missed):
+def test_criteria_of_the_recordings(changes, missed):
     assert missed_in_tests(**changes) == missed
 
 
@@ -78,7 +92,7 @@ def test_a_bolster_that_does_not_move_shows_no_stick_slip():
     ]
 
 
-def test_what_counts_as_seen_in_the_sweep():
+def test_criteria_of_the_sweep():
     line = 0.03 + 0.01 * (HERTZ - 20.0)
     step = np.where(HERTZ >= 35.0, 0.2, 0.0)
     assert missed_in_sweep(line + step) == []
@@ -112,13 +126,13 @@ def test_a_plateau_over_the_end_of_the_period_is_one():
     assert min(lengths) > 1 / 6
 
 
-def alone(lean=4.0, law=COULOMB, suspect="small-input", own=()):
-    """Parameter record of a suspect with its own numbers as shares of their ranges."""
-    return BY_NAME[suspect].record(law, lean, own)
+def alone(lean=4.0, law=COULOMB, hypothesis="small-input", own=()):
+    """Parameter record of a hypothesis with its own numbers as shares of their ranges."""
+    return BY_NAME[hypothesis].record(law, lean, own)
 
 
 def test_set_valued_friction_at_a_constant_small_input_breaks_away_near_35_hz():
-    levels = trials.sweep(alone(), np.full((1, 21), 0.015e-3), HERTZ, FINE)[0]
+    levels = scenarios.sweep(alone(), np.full((1, 21), 0.015e-3), HERTZ, TIGHT)[0]
     at = dict(zip(HERTZ, levels, strict=True))
     # PHYSICS.md, claim 12; in mm.
     assert [at[hertz] for hertz in (32.0, 35.0, 40.0)] == pytest.approx([0.0002, 0.0034, 0.0141], abs=6e-5)
@@ -131,8 +145,8 @@ def test_set_valued_friction_sticks_at_20_and_30_hz():
     stuck = {}
     for lean in (4.0, -4.0):
         for hertz, amplitude in ((20.0, 0.04e-3), (20.0, 0.05e-3), (30.0, 0.018e-3), (30.0, 0.022e-3)):
-            rows = trials.at(alone(lean), hertz, np.array([amplitude]))
-            stuck[lean, hertz, amplitude] = trials.respond(rows, FINE).stuck[0]
+            rows = scenarios.excited(alone(lean), hertz, np.array([amplitude]))
+            stuck[lean, hertz, amplitude] = scenarios.respond(rows, TIGHT).stuck[0]
     # PHYSICS.md, claim 6; with the other lean the same cases are stuck nearly always.
     expected = [0.58, 0.15, 0.56, 0.24]
     assert [stuck[key] for key in stuck if key[0] > 0] == pytest.approx(expected, abs=6e-3)
@@ -140,7 +154,7 @@ def test_set_valued_friction_sticks_at_20_and_30_hz():
 
 
 def test_set_valued_friction_has_the_measured_level_and_plateaus_of_20_hz_at_one_input():
-    slow, fast = trials.record(alone(), np.array([[0.05e-3, 0.05e-3]]), FINE)
+    slow, fast = scenarios.recordings(alone(), np.array([[0.05e-3, 0.05e-3]]), TIGHT)
     found = observations.of_tests(slow, fast)[0]
     assert (found[:2] <= 1.0).all()
     # At the same input it slips all the time at 30 Hz: what was seen there needs something else.
@@ -150,9 +164,9 @@ def test_set_valued_friction_has_the_measured_level_and_plateaus_of_20_hz_at_one
 def test_friction_alone_scales_motions_and_leaves_their_shape():
     """Den Hartog's oscillator: twice the force and twice the input are twice the motion."""
     dry = Law("wedges without friction", "coulomb", {"dynamic": 0.0, "static": 0.0})
-    once, twice = (alone(law=dry, suspect="guide-friction", own=(share,)) for share in (0.1, 0.2))
-    first = trials.record(once, np.full((1, 2), 0.075e-3), FINE)
-    second = trials.record(twice, np.full((1, 2), 0.15e-3), FINE)
+    once, twice = (alone(law=dry, hypothesis="guide-friction", own=(share,)) for share in (0.1, 0.2))
+    first = scenarios.recordings(once, np.full((1, 2), 0.075e-3), TIGHT)
+    second = scenarios.recordings(twice, np.full((1, 2), 0.15e-3), TIGHT)
     for a, b in zip(first, second, strict=True):
         assert b.peak_to_peak[0] == pytest.approx(2.0 * a.peak_to_peak[0], rel=1e-6)
         assert b.plateau[0] == a.plateau[0]
@@ -160,23 +174,23 @@ def test_friction_alone_scales_motions_and_leaves_their_shape():
     assert first[0].plateau[0] > observations.STICK
 
 
-@pytest.mark.parametrize("suspect", SUSPECTS, ids=lambda suspect: suspect.name)
-def test_suspects_have_the_numbers_that_their_config_says(suspect):
-    shares = np.linspace(0.3, 0.6, len(suspect.free))
-    keys, record = suspect.keys(shares), suspect.record(COULOMB, 4.0, shares)[0]
-    for (effect, quantity), (key, value) in zip(suspect.free, keys.items(), strict=True):
+@pytest.mark.parametrize("hypothesis", HYPOTHESES, ids=lambda hypothesis: hypothesis.name)
+def test_hypotheses_have_the_parameters_that_their_config_says(hypothesis):
+    shares = np.linspace(0.3, 0.6, len(hypothesis.free))
+    keys, record = hypothesis.keys(shares), hypothesis.record(COULOMB, 4.0, shares)[0]
+    for (effect, quantity), (key, value) in zip(hypothesis.free, keys.items(), strict=True):
         low, high = quantity.search
         assert key == f"{effect}.{quantity.key}"
         assert low < value < high
         assert record[f"{effect}_{quantity.name}"] == pytest.approx(value * quantity.factor)
 
 
-def test_an_input_each_holds_the_other_readings():
+def test_independent_inputs_include_the_other_interpretations():
     shares = np.array([[0.4], [0.7]])
-    for reading in READINGS[:2]:
-        wide = reading.as_an_input_each(shares)
+    for interpretation in INTERPRETATIONS[:2]:
+        wide = interpretation.as_independent_inputs(shares)
         for one, other in zip(
-            reading.amplitudes(shares, HERTZ), AN_INPUT_EACH.amplitudes(wide, HERTZ), strict=True
+            interpretation.amplitudes(shares, HERTZ), INDEPENDENT_INPUTS.amplitudes(wide, HERTZ), strict=True
         ):
             np.testing.assert_allclose(one, other, rtol=1e-12)
     tested, swept = ONE_ACCELERATION.amplitudes(shares, HERTZ)
@@ -185,40 +199,47 @@ def test_an_input_each_holds_the_other_readings():
 
 
 def test_the_sweep_is_left_out_where_the_recordings_cannot_win():
-    question = Question(BY_NAME["small-input"], COULOMB, 4.0, ONE_AMPLITUDE)
+    scenario = Scenario(BY_NAME["small-input"], COULOMB, 4.0, ONE_AMPLITUDE)
     points = np.array([[0.45], [0.5]])
-    found = trials.distances(question, points, search.SEARCH_HERTZ, np.array([0.0, np.inf]))
+    found = scenarios.distances(scenario, points, search.SEARCH_HERTZ, np.array([0.0, np.inf]))
     assert np.isinf(found[0, OF_TESTS:]).all()
     assert np.isfinite(found[:, :OF_TESTS]).any(axis=1).all()
 
 
-def test_one_more_observation_met_is_worth_more_than_coming_closer():
+def test_satisfying_one_more_observation_is_worth_more_than_coming_closer():
     near, met_one = np.full(7, 3.0), np.r_[0.5, np.full(6, 4.0)]
-    losses = trials.loss(np.stack([near, met_one, np.full(7, np.inf), np.full(7, 1.0)]))
-    assert losses[1] < losses[0] < losses[2] == pytest.approx(7.0 * (1.0 + trials.EDGE))
+    losses = scenarios.loss(np.stack([near, met_one, np.full(7, np.inf), np.full(7, 1.0)]))
+    assert losses[1] < losses[0] < losses[2] == pytest.approx(7.0 * (1.0 + scenarios.EDGE))
     # Of two that meet the same the one further from the edges is better, but for nothing that is missed.
-    assert trials.loss(np.full((1, 7), 0.5))[0] < losses[3] < trials.loss(np.r_[1.2, np.zeros(6)][None])[0]
+    assert (
+        scenarios.loss(np.full((1, 7), 0.5))[0] < losses[3] < scenarios.loss(np.r_[1.2, np.zeros(6)][None])[0]
+    )
 
 
 def test_the_search_finds_the_input_of_20_hz_and_the_same_each_time():
-    question = Question(BY_NAME["small-input"], COULOMB, 4.0, ONE_ACCELERATION)
-    found, again = (search.search(question, Effort(10, 6)) for _ in range(2))
+    scenario = Scenario(BY_NAME["small-input"], COULOMB, 4.0, ONE_ACCELERATION)
+    found, again = (search.search(scenario, Budget(10, 6)) for _ in range(2))
     assert (found.distances[:2] <= 1.0).all()
-    assert trials.described(question, found.point)["amplitude_20_hz_mm"] == pytest.approx(0.05, rel=0.05)
+    assert scenario.parameters(found.point)["amplitude_20_hz_mm"] == pytest.approx(0.05, rel=0.05)
     np.testing.assert_array_equal(found.point, again.point)
-    assert (trials.met(trials.distances(question, found.alike, search.SEARCH_HERTZ)) <= found.met).all()
+    assert (
+        scenarios.satisfied(scenarios.distances(scenario, found.equally_good, search.SEARCH_HERTZ))
+        <= found.satisfied
+    ).all()
 
 
-@pytest.mark.parametrize("suspect", ["small-input", "guide-friction"])
-def test_a_response_that_would_lift_off_has_no_numbers(suspect):
+@pytest.mark.parametrize("hypothesis", ["small-input", "guide-friction"])
+def test_a_response_that_would_lift_off_has_no_numbers(hypothesis):
     """At 30 Hz an input of 0.1 mm throws the bolster at 0.4 g, one of 2 mm at 7 g."""
-    own = (0.1,) if suspect == "guide-friction" else ()
-    rows = trials.at(np.repeat(alone(suspect=suspect, own=own), 2), 30.0, np.array([0.1e-3, 2e-3]))
-    found = trials.respond(rows, trials.ROUGH)
+    own = (0.1,) if hypothesis == "guide-friction" else ()
+    rows = scenarios.excited(
+        np.repeat(alone(hypothesis=hypothesis, own=own), 2), 30.0, np.array([0.1e-3, 2e-3])
+    )
+    found = scenarios.respond(rows, scenarios.LOOSE)
     assert found.lifted[0] == 0.0 < found.lifted[1] < 1.0
     assert np.isfinite(found.extremes[0]).all()
     assert np.isnan(found.extremes[1]).all()
-    slow, fast = trials.record(rows, np.array([[0.1e-3, 0.1e-3], [0.1e-3, 2e-3]]), trials.ROUGH)
+    slow, fast = scenarios.recordings(rows, np.array([[0.1e-3, 0.1e-3], [0.1e-3, 2e-3]]), scenarios.LOOSE)
     assert np.isinf(observations.of_tests(slow, fast)[1, 2:]).all()
 
 
@@ -226,8 +247,10 @@ def test_a_recording_shows_one_period_like_all_others():
     """On a fixture with hardly any damping this bolster answers with twice the input's period."""
     row = BY_NAME["fixture-resonance"].record(STATIC_DYNAMIC, -4.0, np.array([0.5, 0.0]))
     rows, amplitudes = np.repeat(row, 2), np.array([0.1e-3, 0.06e-3])
-    assert trials.respond(trials.at(rows, 30.0, amplitudes), trials.ROUGH).warm.period.tolist() == [1, 2]
-    _, fast = trials.record(rows, np.stack([amplitudes, amplitudes], axis=1), trials.ROUGH)
+    assert scenarios.respond(
+        scenarios.excited(rows, 30.0, amplitudes), scenarios.LOOSE
+    ).warm.period.tolist() == [1, 2]
+    _, fast = scenarios.recordings(rows, np.stack([amplitudes, amplitudes], axis=1), scenarios.LOOSE)
     assert [np.isfinite(each).tolist() for each in fast] == [[True, False]] * 3
 
 
@@ -242,94 +265,98 @@ def by_radau(row):
     return observations.recording((np.array(spectra) @ [1.0, 1j])[None], extremes)
 
 
-def test_more_preload_brings_all_that_was_seen_by_either_solver():
+def test_more_preload_explains_all_observations_with_either_solver():
     """What the search finds for preload, rounded: next to breakaway, the columns leaning the other way."""
     (_, force) = BY_NAME["preload"].free[0]
     low, high = force.search
     row = BY_NAME["preload"].record(STATIC_DYNAMIC, -4.0, [(13.3 - low) / (high - low)])
-    levels = trials.sweep(row, np.full((1, HERTZ.size), 0.486e-3), HERTZ, FINE)
+    levels = scenarios.sweep(row, np.full((1, HERTZ.size), 0.486e-3), HERTZ, TIGHT)
     tested = ((20.0, 0.554e-3), (30.0, 0.617e-3))
-    slow, fast = (by_radau(trials.at(row, hertz, np.array([a]))) for hertz, a in tested)
+    slow, fast = (by_radau(scenarios.excited(row, hertz, np.array([a]))) for hertz, a in tested)
     assert (observations.of_tests(slow, fast) <= 1.0).all()
     assert (observations.of_sweep(HERTZ, levels) <= 1.0).all()
-    again = trials.record(row, np.array([[a for _, a in tested]]), FINE)
+    again = scenarios.recordings(row, np.array([[a for _, a in tested]]), TIGHT)
     for one, other in zip((slow, fast), again, strict=True):
         np.testing.assert_allclose(one.peak_to_peak, other.peak_to_peak, rtol=1e-5)
         np.testing.assert_allclose(one.plateau, other.plateau, atol=1 / 256)
         np.testing.assert_allclose(one.distortion, other.distortion, rtol=1e-4)
     for hertz in (33.0, 35.0):
-        found = by_radau(trials.at(row, hertz, np.array([0.486e-3])))
+        found = by_radau(scenarios.excited(row, hertz, np.array([0.486e-3])))
         np.testing.assert_allclose(found.peak_to_peak, levels[:, int(hertz - 20.0)], rtol=1e-5)
 
 
 def test_each_input_alone_decides_its_own_observations():
     """What lets the search take the best input of each recording."""
-    question = Question(BY_NAME["guide-friction"], COULOMB, 4.0, AN_INPUT_EACH)
+    scenario = Scenario(BY_NAME["guide-friction"], COULOMB, 4.0, INDEPENDENT_INPUTS)
     one, other = np.array([[0.6, 0.7, 0.6, 0.2, 0.1], [0.7, 0.6, 0.75, 0.8, 0.1]])
     of_one, of_other = (
-        trials.distances(question, point[None], search.SEARCH_HERTZ, np.array([np.inf]))[0]
+        scenarios.distances(scenario, point[None], search.SEARCH_HERTZ, np.array([np.inf]))[0]
         for point in (one, other)
     )
-    for inputs, decided in AN_INPUT_EACH.separate:
+    for inputs, decided in INDEPENDENT_INPUTS.separate:
         mixed, expected = one.copy(), of_one.copy()
         mixed[inputs], expected[decided] = other[inputs], of_other[decided]
-        found = trials.distances(question, mixed[None], search.SEARCH_HERTZ, np.array([np.inf]))[0]
+        found = scenarios.distances(scenario, mixed[None], search.SEARCH_HERTZ, np.array([np.inf]))[0]
         np.testing.assert_array_equal(found, expected)
         assert not np.array_equal(found, of_one)
-    assert sorted(k for _, decided in AN_INPUT_EACH.separate for k in range(7)[decided]) == list(range(7))
+    assert sorted(k for _, decided in INDEPENDENT_INPUTS.separate for k in range(7)[decided]) == list(
+        range(7)
+    )
 
 
-def test_input_by_input_keeps_the_suspect_and_what_was_better():
-    question = Question(BY_NAME["guide-friction"], COULOMB, 4.0, AN_INPUT_EACH)
+def test_selection_by_input_keeps_the_hypothesis_and_what_was_better():
+    scenario = Scenario(BY_NAME["guide-friction"], COULOMB, 4.0, INDEPENDENT_INPUTS)
     random = np.random.default_rng(3)
     points, tries = random.random((2, 6, 5))
     always = np.full(6, np.inf)
-    before = trials.distances(question, points, search.SEARCH_HERTZ, always)
-    after, found = search._input_by_input(question, points, before, tries)
+    before = scenarios.distances(scenario, points, search.SEARCH_HERTZ, always)
+    after, found = search._select_by_input(scenario, points, before, tries)
     np.testing.assert_array_equal(after[:, 4:], points[:, 4:])
-    assert (trials.loss(found) <= trials.loss(before)).all()
-    assert (trials.loss(found) < trials.loss(before)).any()
-    np.testing.assert_array_equal(found, trials.distances(question, after, search.SEARCH_HERTZ, always))
+    assert (scenarios.loss(found) <= scenarios.loss(before)).all()
+    assert (scenarios.loss(found) < scenarios.loss(before)).any()
+    np.testing.assert_array_equal(found, scenarios.distances(scenario, after, search.SEARCH_HERTZ, always))
 
 
-def test_trials_stay_within_the_ranges_and_start_points_are_kept():
+def test_trial_points_stay_within_the_ranges_and_start_points_are_spread():
     random = np.random.default_rng(1)
-    moved = search._trials(random.random((40, 3)), random.random(40), random)
+    moved = search._trial_points(random.random((40, 3)), random.random(40), random)
     assert ((moved >= 0.0) & (moved <= 1.0)).all()
-    spread = search._spread(10, 2, random)
+    spread = search._latin_hypercube(10, 2, random)
     assert sorted(np.floor(10 * spread[:, 0])) == list(range(10))
 
 
 def test_predictions_differ_by_their_harmonics_whatever_the_start_phase():
     one = np.array([[1.0 + 1.0j, 0.2, 0.05j]]) * 1e-4
     later = one * np.exp(1j * np.array([1, 2, 3]) * 0.7)
-    assert separation.distance(one, later)[0] == pytest.approx(0.0, abs=1e-9)
+    assert discrimination.distance(one, later)[0] == pytest.approx(0.0, abs=1e-9)
     # Twice the motion: half of the larger one is 12.5 times 4 %.
-    assert separation.distance(one, 2.0 * later)[0] == pytest.approx(12.5)
-    assert separation.distance(1e-6 * one, 0.0 * one)[0] < 1e-3
+    assert discrimination.distance(one, 2.0 * later)[0] == pytest.approx(12.5)
+    assert discrimination.distance(1e-6 * one, 0.0 * one)[0] < 1e-3
     members = np.stack([one, 2.0 * one])
-    assert separation.closest(members, np.stack([2.0 * later]))[0] == pytest.approx(0.0, abs=1e-9)
+    assert discrimination.smallest_distance(members, np.stack([2.0 * later]))[0] == pytest.approx(
+        0.0, abs=1e-9
+    )
 
 
 @pytest.fixture(scope="module")
 def outcome():
-    """A search too small to find much, of two suspects."""
-    suspects = [replace(BY_NAME[name], laws=(COULOMB,)) for name in ("small-input", "guide-friction")]
+    """A search too small to find much, of two hypotheses."""
+    hypotheses = [replace(BY_NAME[name], laws=(COULOMB,)) for name in ("small-input", "guide-friction")]
     told = []
-    return chandiramani.investigate(1, told.append, suspects, (Effort(2, 1),) * 3), told
+    return chandiramani.investigate(1, told.append, hypotheses, (Budget(2, 1),) * 3), told
 
 
-def test_an_investigation_asks_every_question_and_tells_of_every_suspect(outcome):
+def test_an_investigation_searches_every_scenario_and_reports_every_hypothesis(outcome):
     found, told = outcome
-    assert len(found.questions) == 2 * 2 * len(READINGS)
-    assert [case.found.question.suspect.name for case in found.cases] == ["small-input", "guide-friction"]
+    assert len(found.scenarios) == 2 * 2 * len(INTERPRETATIONS)
+    assert [best.scenario.hypothesis.name for best in found.best] == ["small-input", "guide-friction"]
     assert len(found.rivals) == 2
     assert len(found.pairs) == 1
     assert any(line.endswith("guide friction") for line in told)
     # What is told of the best is computed again, finely; it may lose what was met by a hair.
-    for case in found.cases:
-        assert case.sweep.shape == HERTZ.shape
-        assert abs(case.met - case.found.met) <= 1
+    for best in found.best:
+        assert best.sweep.shape == HERTZ.shape
+        assert abs(best.satisfied - best.result.satisfied) <= 1
 
 
 def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
@@ -338,27 +365,27 @@ def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is False
     content = json.loads((tmp_path / "chandiramani.json").read_text())
     text = (tmp_path / "chandiramani.md").read_text()
-    for suspect in content["suspects"]:
-        assert f"| {suspect['words']} |" in text
+    for hypothesis in content["hypotheses"]:
+        assert f"| {hypothesis['description']} |" in text
     for observation in content["observations"]:
-        assert observation["words"] in text
+        assert observation["description"] in text
     assert (tmp_path / chandiramani_page.PICTURE).stat().st_size > 10_000
     assert not list(tmp_path.glob(".*"))
-    found = {each["suspect"]: each["met"] for each in content["suspects"]}
+    found = {each["hypothesis"]: each["satisfied"] for each in content["hypotheses"]}
     monkeypatch.setattr(chandiramani, "RECORDED", found)
     assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is True
 
 
 def test_the_figure_leaves_out_what_has_no_response():
-    suspect = {
-        "words": "any",
-        "met": 3,
+    hypothesis = {
+        "description": "any",
+        "satisfied": 3,
         "distances": {"one": 1.0},
         "peak_to_peak_mm": [0.1, None, 1e-9],
         "slow": {"peak_to_peak": 0.03},
         "fast": {"peak_to_peak": None},
     }
-    figure = picture.draw([20.0, 30.0, 40.0], [suspect], observations.LEVELS, 1.5, (33.0, 37.0))
+    figure = picture.draw([20.0, 30.0, 40.0], [hypothesis], observations.LEVELS, 1.5, (33.0, 37.0))
     swept, recorded = (line.get_ydata() for line in figure.axes[0].lines[-2:])
     np.testing.assert_array_equal(swept, [0.1, np.nan, picture.LEAST])
     np.testing.assert_array_equal(recorded, [0.03, np.nan])

@@ -17,7 +17,7 @@ SWEEP = '[sweep]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.1\n'
 CASE = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 0.4\namplitude_mm = 0.3\n'
 
 
-def swept(**keys: str) -> config.Sweep:
+def swept(**keys: str) -> config.Cases:
     """Sweep of a config whose [sweep] has the given TOML values."""
     given = {"friction_law": '"coulomb"', "beta": "1", "amplitude_mm": "0.1"} | keys
     if "frequency_hz" in keys:

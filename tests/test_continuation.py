@@ -8,11 +8,13 @@ from click.testing import CliRunner
 
 from tests import small_sweep
 from tests.small_sweep import LOCKED, assert_same_numbers
-from wedgesweep import batch, continuation, dataset, journal, response, sweep
+from wedgesweep import response
 from wedgesweep.cli import cli
-from wedgesweep.dataset import APART, STATUSES
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
+from wedgesweep.sweep import batch, continuation, dataset, journal
+from wedgesweep.sweep import run as sweep
+from wedgesweep.sweep.dataset import DISTINCT, STATUSES
 
 CONTINUED = {variable.name for variable in dataset.CONTINUED}
 # Friction that falls steeply: below 0.05 mm there is a motion over two periods beside one over a single one.
@@ -67,7 +69,7 @@ def test_one_response_is_found_from_both_sides(steep, tmp_path):
         same = ds["coexisting"] == 0
         apart = abs(ds["amplitude_ratio"] - ds["amplitude_ratio_down"]).where(same, 0.0)
         # Far below the limit of the flag, which therefore tells safely.
-        assert float(apart.max()) < 0.1 * APART * 1e-9
+        assert float(apart.max()) < 0.1 * DISTINCT * 1e-9
         assert (ds["period"] == ds["period_down"]).where(same, True).all()
 
 

@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 
 import netCDF4
 import numpy as np
@@ -9,17 +10,19 @@ import pytest
 import xarray as xr
 
 from tests import small_sweep
-from wedgesweep import config, dataset, provenance
-from wedgesweep.dataset import STATUSES, VARIABLES
+from wedgesweep import config
 from wedgesweep.errors import SweepError
+from wedgesweep.sweep import dataset, provenance
+from wedgesweep.sweep.dataset import STATUSES, VARIABLES
 
-FEW = small_sweep.CONFIG.replace("0.8, 1.1, 1.6, ", "")
+FEW = small_sweep.CONFIG.replace("1.1, ", "")
 
 
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory):
     sweep = small_sweep.sweep(tmp_path_factory.mktemp("stored"), FEW)
-    sweep.run(n_jobs=1, command="wedgesweep run 'my config.toml'")
+    sweep = replace(sweep, command="wedgesweep run 'my config.toml'")
+    sweep.run(n_jobs=1)
     return sweep
 
 

@@ -1,22 +1,21 @@
-"""Every figure draws the fixture, says what it shows and in which units, and fails clearly."""
+"""Every figure draws the fixture, has a title and units, and fails with a clear message."""
 
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from tests import fixture_dataset
 from wedgesweep import config, figures
-from wedgesweep.figures import amplitude_ratio, bifurcation, cases, friction_laws, stick_map
+from wedgesweep.figures import amplitude_ratio, bifurcation, cases, catalogue, friction_laws, stick_map
 from wedgesweep.friction import LAWS
-from wedgesweep.sweep import Sweep
+from wedgesweep.sweep.run import Sweep
 
 KINDS = sorted(figures.DESCRIPTIONS)
 FROM_LISTS = ("friction-laws", "phase-portrait")
 FROM_WAVEFORMS = ("bifurcation", "phase-portrait", "response")
-# Words of an axis label that stand for a quantity with a dimension.
-DIMENSIONAL = ("displacement", "velocity", "time", "amplitude $a$", "peak-to-peak", "frequency [")
 
 
 @pytest.fixture(scope="module")
@@ -41,65 +40,66 @@ def everything_failed(ds):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_and_says_what_it_shows(kind, dataset):
-    figure = figures.FIGURES[kind].draw(dataset)
+    figure = figures.draw(dataset, kind)
     figure.draw_without_rendering()
     assert figure.get_suptitle()
     assert len(labels(figure)) >= 2
-    for text in labels(figure):
-        if any(word in text for word in DIMENSIONAL):
-            assert "[" in text, f"no unit in '{text}'"
+    assert [text for text in labels(figure) if "[" not in text] == []  # [1] without a dimension
+
+
+GRIDS = {
+    "one case": {"laws": ("coulomb",), "betas": (1.0,), "amplitudes": (1e-3,), "failed": None},
+    "fine grid": {"betas": np.linspace(0.1, 3.0, 70), "amplitudes": np.linspace(1e-5, 1e-3, 60)},
+}
+
+
+@pytest.fixture(scope="module", params=GRIDS)
+def grid(request):
+    return fixture_dataset.build(**GRIDS[request.param])
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(
-    "grid",
-    [
-        {"laws": ("coulomb",), "betas": (1.0,), "amplitudes": (1e-3,), "failed": None},
-        {"betas": np.linspace(0.1, 3.0, 70), "amplitudes": np.linspace(1e-5, 1e-3, 60)},
-    ],
-    ids=["one case", "fine grid"],
-)
 def test_draws_small_and_large_grids(kind, grid):
-    figures.FIGURES[kind].draw(fixture_dataset.build(**grid)).draw_without_rendering()
+    figures.draw(grid, kind).draw_without_rendering()
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_a_sweep_in_which_every_case_failed(kind, dataset):
-    figures.FIGURES[kind].draw(everything_failed(dataset)).draw_without_rendering()
+    figures.draw(everything_failed(dataset), kind).draw_without_rendering()
 
 
 @pytest.mark.parametrize("kind", ["amplitude-ratio", "stick-map"])
 def test_draws_without_friction(kind, dataset):
     ds = dataset.copy()
     ds.attrs |= {"breakaway_acceleration": np.nan, "frictionless_resonance": np.nan}
-    figures.FIGURES[kind].draw(ds).draw_without_rendering()
+    figures.draw(ds, kind).draw_without_rendering()
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_list_of_cases(kind, dataset):
     ds = fixture_dataset.as_cases(dataset)
     if kind in FROM_LISTS:
-        figures.FIGURES[kind].draw(ds).draw_without_rendering()
+        figures.draw(ds, kind).draw_without_rendering()
         return
     with pytest.raises(ValueError, match=f"^{kind}: needs a grid"):
-        figures.FIGURES[kind].draw(ds)
+        figures.draw(ds, kind)
 
 
 @pytest.mark.parametrize("kind", FROM_WAVEFORMS)
 def test_says_that_waveforms_are_missing(kind, dataset):
     with pytest.raises(ValueError, match=rf"^{kind}: the dataset has no displacement.*waveforms"):
-        figures.FIGURES[kind].draw(fixture_dataset.without_waveforms(dataset))
+        figures.draw(fixture_dataset.without_waveforms(dataset), kind)
 
 
 @pytest.mark.parametrize("kind", sorted(set(KINDS) - set(FROM_WAVEFORMS)))
 def test_metrics_suffice(kind, dataset):
-    figures.FIGURES[kind].draw(fixture_dataset.without_waveforms(dataset))
+    figures.draw(fixture_dataset.without_waveforms(dataset), kind)
 
 
 @pytest.mark.parametrize("suffix", figures.FORMATS)
 def test_saves(suffix, dataset, tmp_path):
     path = tmp_path / f"figure{suffix}"
-    figures.save(figures.FIGURES["peak-to-peak"].draw(dataset), path)
+    figures.save(figures.draw(dataset, "peak-to-peak"), path)
     start = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}[suffix]
     assert path.read_bytes().startswith(start)
     assert list(tmp_path.iterdir()) == [path]
@@ -107,7 +107,7 @@ def test_saves(suffix, dataset, tmp_path):
 
 def test_unknown_suffix_lists_the_valid_ones(dataset, tmp_path):
     with pytest.raises(ValueError, match=r"'\.jpeg'.*\.png, \.pdf, \.svg"):
-        figures.save(figures.FIGURES["peak-to-peak"].draw(dataset), tmp_path / "figure.jpeg")
+        figures.save(figures.draw(dataset, "peak-to-peak"), tmp_path / "figure.jpeg")
 
 
 def test_failed_write_keeps_the_old_picture(tmp_path):
@@ -132,8 +132,78 @@ def test_descriptions_come_without_matplotlib():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_file_is_found_under_its_name(kind):
-    module = figures.FIGURES[kind]
+    declared = figures.FIGURES[kind]
+    module = declared.load()
     assert (kind, figures.DESCRIPTIONS[kind]) == (module.NAME, module.DESCRIPTION)
+    assert declared.needs == module.NEEDS
+
+
+TOY = """
+from wedgesweep.figures.panels import panels
+
+NAME = "histogram"
+DESCRIPTION = "how often each stick fraction occurs"
+NEEDS = ("stick_fraction",)
+
+
+def draw(target, ds, bins=5):
+    made = panels(target, 1)
+    made.axes[0].hist(ds["stick_fraction"].values.ravel(), bins)
+    made.title("Stick fractions")
+    return made
+"""
+
+
+def test_a_new_figure_is_one_file(dataset, tmp_path, monkeypatch):
+    (tmp_path / "toy_figure.py").write_text(TOY)
+    monkeypatch.setattr(figures, "__path__", [*figures.__path__, str(tmp_path)])
+    (toy,) = catalogue.declared(tmp_path, "wedgesweep.figures").values()
+    assert (toy.name, toy.needs, toy.picks) == ("histogram", ("stick_fraction",), ("bins",))
+    monkeypatch.setitem(figures.FIGURES, toy.name, toy)
+    drawn = figures.draw(dataset, "histogram", bins=7)
+    assert len(drawn.axes[0].patches) == 7
+    assert drawn.get_suptitle() == "Stick fractions"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
+    one = dataset.sel(friction_law="coulomb").isel(amplitude=[4])
+    figure = Figure(layout="constrained")
+    left, right = figure.subplots(1, 2)
+    assert figures.draw(one, kind, ax=right) is figure
+    figure.draw_without_rendering()
+    assert right.has_data()
+    assert right.get_xlabel()
+    assert right.get_title()
+    assert not left.has_data()
+    assert not figure.get_suptitle()
+    with pytest.raises(ValueError, match=f"^{kind}: [0-9]+ panels do not fit into one Axes"):
+        figures.draw(dataset, kind, ax=left)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_several_panels_are_drawn_into_a_given_subfigure(kind, dataset):
+    figure = Figure(layout="constrained", figsize=(12.0, 5.0))
+    left, right = figure.subfigures(1, 2)
+    assert figures.draw(dataset, kind, figure=right) is figure
+    figure.draw_without_rendering()
+    assert len(right.axes) > 1
+    assert right.get_suptitle()
+    assert not left.axes
+
+
+def test_a_case_is_selected_by_single_values(dataset):
+    one = dataset.sel(friction_law="coulomb", beta=1.0, amplitude=1e-3)
+    assert len(figures.draw(one, "phase-portrait").axes) == 1
+    (line,) = figures.draw(one, "peak-to-peak").axes[0].lines
+    assert line.get_xdata() == pytest.approx(one["frequency"].item())
+
+
+def test_unknown_figures_and_options_list_the_valid_ones(dataset):
+    with pytest.raises(ValueError, match=r"no figure 'stickmap'.*stick-map"):
+        figures.draw(dataset, "stickmap")
+    with pytest.raises(ValueError, match=r"^response: unknown option 'law'; it takes beta, amplitudes"):
+        figures.draw(dataset, "response", law="coulomb")
 
 
 def test_frictionless_ratio(dataset):
@@ -179,7 +249,7 @@ scale = 2.0
 def test_each_law_is_drawn_with_its_own_numbers(dataset):
     """With slip across coulomb is regularised, and nothing else is."""
     crossing = dataset.sel(friction_law=["coulomb", "static-dynamic"]).assign_attrs(config=CROSSING)
-    coulomb, static_dynamic = friction_laws.draw(crossing).axes
+    coulomb, static_dynamic = figures.draw(crossing, "friction-laws").axes
     assert max(np.max(line.get_ydata()) for line in static_dynamic.lines) == pytest.approx(0.32)
     told = [[text.get_text() for text in ax.texts][-1] for ax in (coulomb, static_dynamic)]
     assert told == ["ramp up to $v_t$ = 0.001 mm/s", "ramp up to $v_t$ = 1 mm/s"]
@@ -191,9 +261,9 @@ def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_thei
     assert np.isnan([physics["frictionless_resonance"], physics["breakaway_acceleration"]]).all()
     unknown = dataset.assign_attrs(physics)
     assert np.isnan(amplitude_ratio.frictionless_ratio(unknown, np.array([1.0, 2.0]))).all()
-    assert not amplitude_ratio.draw(unknown).axes[0].get_legend_handles_labels()[1]
+    assert not figures.draw(unknown, "amplitude-ratio").axes[0].get_legend_handles_labels()[1]
     assert "breakaway" not in str(
-        [text.get_text() for text in stick_map.draw(unknown).legends[0].get_texts()]
+        [text.get_text() for text in figures.draw(unknown, "stick-map").legends[0].get_texts()]
     )
     heavy = dataset.assign_attrs(
         config=CROSSING.replace("[effects.cross_slip]\nvelocity_mm_per_s = 5.0\n", "")
@@ -212,28 +282,28 @@ def test_stick_map_cells_enclose_their_centres():
 
 
 def test_nearest_case_is_chosen_and_named(dataset):
-    figure = figures.FIGURES["response"].draw(dataset, beta=1.7, amplitudes=[0.9e-3, 1.1e-3])
+    figure = figures.draw(dataset, "response", beta=1.7, amplitudes=[0.9e-3, 1.1e-3])
     assert "1.75" in figure.get_suptitle()
     assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["1"]
-    figure = figures.FIGURES["phase-portrait"].draw(dataset, beta=0.9, law="exponential")
+    figure = figures.draw(dataset, "phase-portrait", beta=0.9, law="exponential")
     assert all("exponential" in ax.get_title() for ax in figure.axes)
-    figure = figures.FIGURES["bifurcation"].draw(dataset, amplitude=3e-3)
+    figure = figures.draw(dataset, "bifurcation", amplitude=3e-3)
     assert "4 mm" in figure.get_suptitle()
-    figure = figures.FIGURES["peak-to-peak"].draw(dataset, amplitudes=5e-4)
+    figure = figures.draw(dataset, "peak-to-peak", amplitudes=5e-4)
     assert [ax.get_title() for ax in figure.axes] == ["$a$ = 0.5 mm"]
 
 
 def test_unknown_law_lists_those_of_the_dataset(dataset):
     with pytest.raises(ValueError, match=r"'viscous'.*coulomb, static-dynamic, exponential"):
-        figures.FIGURES["phase-portrait"].draw(dataset, law="viscous")
+        figures.draw(dataset, "phase-portrait", law="viscous")
 
 
 def test_failed_cases_are_marked(dataset):
     for kind in ("amplitude-ratio", "peak-to-peak"):
-        figure = figures.FIGURES[kind].draw(dataset.isel(amplitude=[4]))
+        figure = figures.draw(dataset.isel(amplitude=[4]), kind)
         assert "no result" in figure.get_suptitle()
     clean = fixture_dataset.build(failed=None)
-    assert "no result" not in figures.FIGURES["amplitude-ratio"].draw(clean).get_suptitle()
+    assert "no result" not in figures.draw(clean, "amplitude-ratio").get_suptitle()
 
 
 def test_amplitudes_shown_by_default_slip(dataset):

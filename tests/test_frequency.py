@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from wedgesweep.measured.frequency import actual, drift, estimate_frequency, near, stands_out
+from wedgesweep.measured.frequency import (
+    drift,
+    estimate_frequency,
+    estimate_near,
+    refined_frequency,
+    stands_out,
+)
 
 SAMPLING = 2000.0
 SINE = {1: 1.0}
@@ -53,10 +59,10 @@ def test_standard_errors_are_right_whatever_the_noise(amplitudes, correlation):
     for _ in range(150):
         frequency, periods = random.uniform(4.0, 32.0), random.uniform(6.0, 12.0)
         t, signal = record(random, frequency, periods, amplitudes, 0.07, correlation)
-        tone = near(t, signal, frequency * random.uniform(0.95, 1.05))
-        offs.append((tone.frequency - frequency) / tone.std)
-        drifts.append(tone.drift / tone.drift_std)
-        significant += tone.drifts or tone.differs(frequency)
+        estimate = estimate_near(t, signal, frequency * random.uniform(0.95, 1.05))
+        offs.append((estimate.frequency - frequency) / estimate.std)
+        drifts.append(estimate.drift / estimate.drift_std)
+        significant += estimate.drifts or estimate.differs(frequency)
     assert np.std(offs) == pytest.approx(1.0, abs=0.25)
     assert np.std(drifts) == pytest.approx(1.0, abs=0.25)
     assert significant == 0
@@ -66,9 +72,9 @@ def test_few_cycles_raise_no_false_alarm():
     random = np.random.default_rng(7)
     for _ in range(300):
         t, signal = record(random, 11.0, 4.02, SINE, 0.1, 0.9)
-        tone = near(t, signal, 11.0)
-        assert not tone.drifts
-        assert not tone.differs(11.0)
+        estimate = estimate_near(t, signal, 11.0)
+        assert not estimate.drifts
+        assert not estimate.differs(11.0)
 
 
 @pytest.mark.parametrize("change", [0.01, -0.01])
@@ -78,7 +84,7 @@ def test_drift_is_measured_with_its_sign(change):
     found, std = drift(t, signal, 20.0)
     assert found == pytest.approx(change, abs=4.0 * std)
     assert std < 1e-3
-    assert near(t, signal, 20.0).drifts
+    assert estimate_near(t, signal, 20.0).drifts
 
 
 def test_a_foreign_tone_is_no_drift():
@@ -86,18 +92,18 @@ def test_a_foreign_tone_is_no_drift():
     random = np.random.default_rng(9)
     for phase in np.linspace(0.0, 2.0 * pi, 9):
         t, signal = record(random, 20.0, 8.4, STRONG_HARMONICS, 0.04)
-        tone = near(t, signal + 0.1 * np.sin(2.0 * pi * 21.3 * t + phase), 20.0)
-        assert not tone.drifts
-        assert not tone.differs(20.0)
+        estimate = estimate_near(t, signal + 0.1 * np.sin(2.0 * pi * 21.3 * t + phase), 20.0)
+        assert not estimate.drifts
+        assert not estimate.differs(20.0)
 
 
 def test_many_cycles_correct_a_clock_that_is_off_by_a_little():
     random = np.random.default_rng(12)
     t, signal = record(random, 20.0, 60.3, STRONG_HARMONICS, 0.04)
-    found = actual(t, signal, 20.0 * 1.001)
-    assert found == pytest.approx(20.0, abs=5.0 * near(t, signal, 20.0).std)
-    assert actual(t, signal, 20.0) == 20.0
-    assert actual(t, signal, 20.2) == 20.2  # for the reader to refuse
+    found = refined_frequency(t, signal, 20.0 * 1.001)
+    assert found == pytest.approx(20.0, abs=5.0 * estimate_near(t, signal, 20.0).std)
+    assert refined_frequency(t, signal, 20.0) == 20.0
+    assert refined_frequency(t, signal, 20.2) == 20.2  # for the reader to refuse
 
 
 @pytest.mark.parametrize("cycles", [60.3, 300.3])
@@ -106,7 +112,7 @@ def test_rounding_of_a_stated_frequency_is_no_misfit_of_a_long_record(cycles):
     random = np.random.default_rng(13)
     t, signal = record(random, 20.0, cycles, STRONG_HARMONICS, 0.01)
     stated = 20.0 * (1.0 + 0.019 / cycles)
-    assert abs(actual(t, signal, stated) - 20.0) < 0.2 * abs(stated - 20.0)
+    assert abs(refined_frequency(t, signal, stated) - 20.0) < 0.2 * abs(stated - 20.0)
 
 
 def test_half_the_frequency_is_that_of_a_doubled_period_or_a_foreign_tone():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from wedgesweep import journal
 from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.journal import Journal
+from wedgesweep.sweep import journal
+from wedgesweep.sweep.journal import Journal
 
 DTYPE = np.dtype([("index", "i8"), ("value", "f8", (3,)), ("message", "S5")])
 HEADER = {"config_sha256": "abc", "wedgesweep": "1.0", "numpy": "2.0"}

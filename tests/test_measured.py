@@ -9,9 +9,9 @@ import pytest
 from tests import fixture_measured
 from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, csv_lines, lines, vibration
 from wedgesweep import measured
-from wedgesweep.measured import noise
 from wedgesweep.measured.declarations import PARAMETERS
 from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.measured.noise_estimate import estimate_noise
 from wedgesweep.measured.sampling import even_grid, resolution
 
 
@@ -317,11 +317,11 @@ def test_stamps_of_limited_digits_and_of_a_slow_clock():
 
 def test_noise_is_what_does_not_repeat(bench):
     test = bench.tests[0]
-    found = noise.of_channel(test.time, test.displacement, FREQUENCY)
+    found = estimate_noise(test.time, test.displacement, FREQUENCY)
     assert found.std == pytest.approx(NOISE * 1e-3, rel=0.1)
     assert found.share == pytest.approx(NOISE / np.sqrt(0.5 * (1.0 + 0.3**2)), rel=0.1)
     assert found.harmonics[:2] == (1, 3)
-    velocity = noise.of_channel(test.time, test.velocity, FREQUENCY)
+    velocity = estimate_noise(test.time, test.velocity, FREQUENCY)
     assert velocity.std == pytest.approx(NOISE * 2.0 * pi * FREQUENCY * 1e-3, rel=0.1)
 
 

@@ -1,4 +1,4 @@
-"""The page of a diagnosis: the answer first, everything in it, nothing outside of it."""
+"""The report of a diagnosis: the answer first, complete, and in one file."""
 
 import json
 import re
@@ -8,18 +8,18 @@ from itertools import pairwise
 import pytest
 
 from tests import fixture_diagnosis
-from wedgesweep import diagnosed, digits, report
-from wedgesweep.diagnosed import VERDICTS
+from wedgesweep import diagnosis_result, formatting, report
+from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
 from wedgesweep.report import html
-from wedgesweep.report.pictures import Pictures
+from wedgesweep.report.inline_figures import InlineFigures
 
 VOID = {"meta", "img", "link", "br"}
 
 
 class Page(HTMLParser):
-    """Tags with their attributes, headings, texts; complains of tags that are not closed."""
+    """Tags with their attributes, headings and texts; fails on tags that are not closed."""
 
     def __init__(self, text):
         super().__init__()
@@ -50,21 +50,23 @@ class Page(HTMLParser):
 
 
 def plain(text):
-    return text.replace(digits.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
+    return text.replace(formatting.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
 
 
 @pytest.fixture
-def no_pictures(monkeypatch):
-    """Pages without figures, where they do not matter."""
-    monkeypatch.setattr(Pictures, "__call__", lambda self, kind, words, tests=None: html.paragraph(words))
+def no_figures(monkeypatch):
+    """Pages without figures, for tests of their text."""
+    monkeypatch.setattr(
+        InlineFigures, "__call__", lambda self, name, caption, tests=None: html.paragraph(caption)
+    )
 
 
 @pytest.fixture(scope="module", params=VERDICTS)
 def written(request, tmp_path_factory):
     """Verdict, directory and page of a diagnosis of each verdict."""
     directory = tmp_path_factory.mktemp(request.param)
-    # Beyond six tests there are figures that are folded away: once is enough.
-    fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 4)
+    # With more than six tests some figures are folded away; one page with them is enough.
+    fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 3)
     return request.param, directory, Page(report.write(directory).read_text(encoding="utf-8"))
 
 
@@ -102,9 +104,9 @@ def test_accessible(written):
     assert len(page.of("caption")) == len(page.of("table"))
 
 
-def test_every_candidate_limit_and_number_is_told(written):
+def test_every_candidate_limit_and_test_is_on_the_page(written):
     _, directory, page = written
-    document = diagnosed.read(directory).document
+    document = diagnosis_result.read(directory).document
     for each in document["candidates"]:
         assert " + ".join(each["effects"]) in page.text
     for effect in (*document["detectable"], *document["not_testable"]):
@@ -114,18 +116,26 @@ def test_every_candidate_limit_and_number_is_told(written):
 
 
 NAMED = "guide_friction; force 2.13 N, 95 % interval 1.95 to 2.31 N"
-SAID = {
-    "nothing-missing": ("Nothing is missing", "p = 0."),
+EXPECTED = {
+    "nothing-missing": ("Nothing is missing: over 12 tests the error", "noise alone may leave (p = 0."),
     "named": (
         "Two causes together explain",
         "stribeck; peak 0.080, 95 % interval 0.070 to 0.090",
         NAMED,
-        "of the excess is gone",
+        "they reduce the error from",
+        "of the excess over noise is gone",
     ),
     "consistent-with": ("The tests are consistent with", NAMED, "evidence is weak"),
-    "tied": ("Two explanations", "(guide_friction, behind by 3.2)", "24 Hz and 0.1 mm would tell them apart"),
-    "data-insufficient": ("cannot show what", "24 Hz and 0.1 mm", "stribeck from guide_friction"),
-    "none-of-mine": ("none of the 9 candidates", "best attempt, stribeck, is still off by"),
+    "tied": (
+        "Two explanations",
+        "(guide_friction, behind by 3.2)",
+        "a test at 24 Hz and 0.1 mm would distinguish them",
+    ),
+    "data-insufficient": (
+        "but these 2 tests cannot show what",
+        "24 Hz and 0.1 mm would distinguish stribeck from guide_friction",
+    ),
+    "none-of-mine": ("none of the 9 candidates explains", "best attempt, stribeck, still leaves an error of"),
 }
 
 
@@ -133,7 +143,7 @@ SAID = {
 def test_sentence(verdict, tmp_path):
     fixture_diagnosis.write(tmp_path, verdict)
     sentence = plain(report.sentence(tmp_path))
-    for words in SAID[verdict]:
+    for words in EXPECTED[verdict]:
         assert words in sentence
     # One sentence: a stop only inside numbers and at the end.
     assert not re.search(r"\.\s", sentence)
@@ -142,7 +152,7 @@ def test_sentence(verdict, tmp_path):
 @pytest.mark.parametrize(
     ("verdict", "change", "words"),
     [
-        ("consistent-with", {"misfit": {"excess_base": 300.0}}, "(excess misfit 300 over noise)"),
+        ("consistent-with", {"misfit": {"excess_base": 300.0}}, "(the misfit exceeds noise by only 300)"),
         (
             "consistent-with",
             {"misfit": {"excess_base": 3000.0, "p_where_it_shows": 0.002}},
@@ -151,12 +161,12 @@ def test_sentence(verdict, tmp_path):
         (
             "consistent-with",
             {"misfit": {"excess_base": 3000.0}, "gain": {"ci95": None, "excess_removed": -0.1}},
-            "(tests left out of the fit do not confirm it)",
+            "(held-out tests do not confirm it)",
         ),
         (
             "consistent-with",
             {"misfit": {"excess_base": 3000.0, "p_constant": 0.002, "least_constant": "stribeck.peak_mm"}},
-            "(stribeck.peak_mm would have to differ from test to test, p = 0.002 for the same in all)",
+            "(stribeck.peak_mm would have to differ from test to test, p = 0.002 for one value)",
         ),
         (
             "none-of-mine",
@@ -168,86 +178,98 @@ def test_sentence(verdict, tmp_path):
                     "least_constant": "friction_level.scale",
                 }
             },
-            "takes a friction_level.scale that differs from test to test (p < 0.001 for the same in all)",
+            "needs a friction_level.scale that differs from test to test (p < 0.001 for one value)",
         ),
-        ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may make tests worse that it was not fitted to"),
-        ("tied", {"next_test": {"distance": 29.0}}, "no test would tell for sure, 24 Hz and 0.1 mm still is"),
-        ("data-insufficient", {"next_test": {"distance": 29.0}}, "no test would tell for sure"),
+        ("none-of-mine", {"gain": {"ci95": [-0.5, 0.9]}}, "may increase the error on held-out tests"),
+        (
+            "tied",
+            {"next_test": {"distance": 29.0}},
+            "no test would reliably distinguish them, the best one is at 24 Hz",
+        ),
+        (
+            "data-insufficient",
+            {"next_test": {"distance": 29.0}},
+            "no test would reliably distinguish stribeck from",
+        ),
     ],
 )
-def test_the_reason_for_a_reservation_is_told(verdict, change, words, tmp_path):
+def test_the_reason_for_a_reservation_is_given(verdict, change, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     for part, values in change.items():
         document[part] = {**(document[part] or {"excess_removed": 0.9}), **values}
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
 @pytest.mark.parametrize(
     ("candidates", "words"),
-    [(0, "there is no candidate that would show"), (1, "the one candidate does not explain it")],
+    [(0, "there is no candidate that these tests could show"), (1, "the only candidate does not explain it")],
 )
-def test_few_candidates_are_told_in_words(candidates, words, tmp_path):
+def test_few_candidates_are_described_in_words(candidates, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
     document["candidates"] = [each for each in document["candidates"] if len(each["effects"]) == 1][
         :candidates
     ]
     document["detectable"], document["not_testable"] = {}, []
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
 @pytest.mark.parametrize(
     ("verdict", "rivals", "words"),
     [
-        ("consistent-with", ["preload"], "(preload would leave no more than noise, too)"),
-        ("data-insufficient", ["preload", "stribeck"], "cannot show what: 2 explanations will do; next test"),
-        ("data-insufficient", ["preload"], "what: preload would leave no more than noise, but so few tests"),
+        ("consistent-with", ["preload"], "(preload would also leave only noise)"),
+        (
+            "data-insufficient",
+            ["preload", "stribeck"],
+            "cannot show what: 2 explanations would each leave only noise; a test",
+        ),
+        ("data-insufficient", ["preload"], "what: preload would leave only noise, but so few tests"),
         ("data-insufficient", ["preload+bolster_mass"], "no candidate could look like these two"),
     ],
 )
-def test_what_else_will_do_is_told(verdict, rivals, words, tmp_path):
+def test_adequate_explanations_are_named(verdict, rivals, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, verdict)
     document["rivals"] = [{"effects": names.split("+"), "gap": 30.0} for names in rivals]
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert words in plain(report.sentence(tmp_path))
 
 
-def test_a_half_that_does_without_the_other_is_told(tmp_path):
+def test_an_adequate_half_of_a_pair_is_named(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
     document["rivals"] = [{"effects": ["end_stop", "velocity_lag"], "gap": 0.0}]
     for p, words in ((0.04, "but end_stop alone leaves hardly more"), (1e-9, "but so few tests")):
         next(each for each in document["candidates"] if each["effects"] == ["end_stop"])["p"] = p
-        (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
         assert words in plain(report.sentence(tmp_path))
 
 
-def test_what_tests_left_out_of_the_fit_do_not_confirm_is_told(tmp_path):
+def test_a_missing_confirmation_by_held_out_tests_is_stated(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=6)
     document["rivals"] = [{"effects": ["ageing"], "gap": 0.0}]
     document["gain"] = {"ci95": [-0.1, 0.2], "excess_removed": 0.1}
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
-    words = "ageing would leave no more than noise, but tests left out of the fit do not confirm it"
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    words = "ageing would leave only noise, but held-out tests do not confirm it"
     assert words in plain(report.sentence(tmp_path))
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 @pytest.mark.parametrize(
     ("distance", "words"),
     [
-        (31.0, "would tell stribeck from guide_friction"),
-        (29.0, "would not tell stribeck from guide_friction"),
+        (31.0, "would distinguish stribeck from guide_friction"),
+        (29.0, "would not reliably distinguish stribeck from guide_friction"),
     ],
 )
-def test_a_test_that_does_not_tell_for_sure_is_not_said_to(distance, words, tmp_path):
+def test_a_recommended_test_says_whether_it_distinguishes_reliably(distance, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "tied")
     document["next_test"]["distance"] = distance
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     assert words in text.replace("\u00a0", " ")
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 def test_equations_of_what_was_added(tmp_path):
     fixture_diagnosis.write(tmp_path, "consistent-with")
     page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
@@ -256,12 +278,12 @@ def test_equations_of_what_was_added(tmp_path):
     assert "Family: missing-force" in page.text
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 def test_text_of_the_user_is_not_markup(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["title"] = 'run <script>alert("1")</script> & $title'
     document["misfit"]["tests"][0]["name"] = "<b>00</b>"
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
     assert not page.of("script")
     assert not page.of("b")
@@ -269,19 +291,36 @@ def test_text_of_the_user_is_not_markup(tmp_path):
     assert html.element("p", "a < b", title='"') == '<p title="&quot;">a &lt; b</p>'
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
 def test_a_base_model_without_a_steady_response_has_no_excess(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "consistent-with")
     document["misfit"] |= {"chi2_base": None, "excess_base": None, "p_base": None, "p_where_it_shows": 0.002}
     document["rivals"] = []
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     assert "it leaves more than noise in the tests that show it, p = 0.002" in plain(
         report.sentence(tmp_path)
     )
     assert report.write(tmp_path).exists()
 
 
-@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.usefixtures("no_figures")
+def test_one_of_a_kind_is_written_in_the_singular(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=1)
+    document["not_testable"] = ["ageing"]
+    document["candidates"] = [each for each in document["candidates"] if each["effects"] in ([], ["ageing"])]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = plain(Page(report.write(tmp_path).read_text(encoding="utf-8")).text)
+    for words in (
+        "but this test cannot show what",
+        "fitted to 1 test, the base model",
+        "was compared with run-00",
+        "1 single candidate was fitted",
+        "whatever this effect would change in these tests, so the verdict says nothing about it",
+    ):
+        assert words in text
+
+
+@pytest.mark.usefixtures("no_figures")
 def test_numbers_that_are_missing(tmp_path):
     """Few tests, no velocity, no interval, nothing detectable, fits without numbers."""
     document, _ = fixture_diagnosis.write(tmp_path, "named", tests=5, velocity=False, known=False)
@@ -290,14 +329,14 @@ def test_numbers_that_are_missing(tmp_path):
     document["causes"][0]["parameters"]["peak"] = {"value": None, "ci95": [None, None]}
     document["causes"][0]["parameters"]["velocity_mm_per_s"]["ci95"] = [None, None]
     document["gain"]["ci95"] = None
-    (tmp_path / diagnosed.JSON).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     for words in (
         "peak not determined",
         "velocity 5.10 mm/s, no interval",
         "too few tests for an interval",
-        "No effect can be shown",
-        "No test tells the energy",
+        "These tests would not have shown any effect",
+        "No test gives the energy",
     ):
         assert words in text
 
@@ -306,7 +345,7 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
     with pytest.raises(InputError, match=r"diagnosis\.json: no such file; 'wedgesweep diagnose"):
         report.write(tmp_path)
     document, data = fixture_diagnosis.write(tmp_path)
-    file = tmp_path / diagnosed.JSON
+    file = tmp_path / diagnosis_result.JSON
     for broken, words in (
         ("{", "not JSON"),
         ("[]", "must hold an object"),
@@ -317,13 +356,13 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
         with pytest.raises(InputError, match=re.escape(words)):
             report.write(tmp_path)
     file.write_text(json.dumps(document), encoding="utf-8")
-    data.drop_vars("q").to_netcdf(tmp_path / diagnosed.DATASET, engine="netcdf4")
+    data.drop_vars("q").to_netcdf(tmp_path / diagnosis_result.DATASET, engine="netcdf4")
     with pytest.raises(InputError, match=r"diagnosis\.nc: has no q"):
         report.write(tmp_path)
-    (tmp_path / diagnosed.DATASET).write_bytes(b"half a dataset")
+    (tmp_path / diagnosis_result.DATASET).write_bytes(b"half a dataset")
     with pytest.raises(SweepError, match="damaged"):
         report.write(tmp_path)
-    assert {each.name for each in tmp_path.iterdir()} == {diagnosed.JSON, diagnosed.DATASET}
+    assert {each.name for each in tmp_path.iterdir()} == {diagnosis_result.JSON, diagnosis_result.DATASET}
 
 
 def test_the_page_is_the_same_from_one_process_and_from_two(tmp_path):

@@ -51,8 +51,8 @@ def test_opens_without_error_and_without_network(tab, page):
     assert tab.evaluate("document.querySelector('main p').innerText") == report.sentence(page.parent)
 
 
-def test_the_browser_would_tell_of_an_error(tab, tmp_path):
-    """The listeners above hear: a page that asks for what is not there, and logs, is told of."""
+def test_the_browser_reports_errors(tab, tmp_path):
+    """A page that requests a missing file and logs an error is noticed, so the test above can fail."""
     page = tmp_path / "page.html"
     page.write_text("<img src='http://127.0.0.1:9/none.png'><script>console.error('heard')</script>")
     tab.open(page)

@@ -21,8 +21,9 @@ from wedgesweep.reproduce.findings import (
     untested,
 )
 from wedgesweep.reproduce.runs import Run, Runs
-from wedgesweep.reproduce.singles import single
+from wedgesweep.reproduce.single_case import other_lean, single
 
+SETTLED = {"solver": {"settle_periods": 60}}
 BY_NUMBER = {claim.number: claim for claim in claims.CLAIMS}
 
 
@@ -68,7 +69,7 @@ def test_criteria_hold_up_to_their_limits_and_never_for_nan():
 
 @pytest.mark.parametrize("number", BY_NUMBER)
 def test_every_claim_says_what_it_found(runs, number):
-    outcome = claims.Outcome(BY_NUMBER[number], BY_NUMBER[number].find(runs), HOLDS)
+    outcome = claims.CheckedClaim(BY_NUMBER[number], BY_NUMBER[number].find(runs), HOLDS)
     assert outcome.verdict in VERDICTS
     assert outcome.here
     assert "{" not in outcome.here + outcome.reason
@@ -156,21 +157,17 @@ def test_frictionless_ratios_and_other_lean_are_those_of_table_1(runs):
 
 def test_single_cases_follow_what_is_changed(runs):
     run = runs.paper
-    coulomb = single(run, "coulomb", 1.472, 0.05, settle_periods=60)
+    coulomb = single(run, "coulomb", 1.472, 0.05, SETTLED)
     assert coulomb["amplitude_ratio"] == pytest.approx(0.368, abs=5e-4)
-    static_dynamic = single(run, "static-dynamic", 1.472, 0.05, settle_periods=60)
+    static_dynamic = single(run, "static-dynamic", 1.472, 0.05, SETTLED)
     assert static_dynamic["amplitude_ratio"] == pytest.approx(1.032, abs=1e-3)
-    mirrored = {"column_angle": -run.config.suspension["column_angle"]}
-    stuck = single(run, "coulomb", 1.472, 0.04, settle_periods=60, suspension=mirrored)
+    stuck = single(run, "coulomb", 1.472, 0.04, SETTLED | other_lean(run.config))
     assert 0.92 < stuck["stick_fraction"] < 0.96
 
 
 def test_a_single_case_that_locks_is_nan(runs):
-    locking = {
-        "suspension": {"column_angle": -runs.paper.config.suspension["column_angle"]},
-        "friction": {"dynamic": 0.5},
-    }
-    assert np.isnan(single(runs.paper, "coulomb", 1.1, 2.0, **locking)["amplitude_ratio"])
+    locking = {**other_lean(runs.paper.config), "friction": {"dynamic": 0.5}}
+    assert np.isnan(single(runs.paper, "coulomb", 1.1, 2.0, locking)["amplitude_ratio"])
 
 
 def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):

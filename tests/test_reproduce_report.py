@@ -14,51 +14,56 @@ from wedgesweep.reproduce import runs as running
 from wedgesweep.reproduce.findings import HOLDS
 
 
-@pytest.fixture
-def runs(monkeypatch):
-    return fixture_reproduction.build(monkeypatch)
+@pytest.fixture(scope="module")
+def patch():
+    with pytest.MonkeyPatch.context() as made:
+        yield made
 
 
-@pytest.fixture
-def reproduced(runs, monkeypatch, tmp_path):
-    """Reproduce with these runs; returns the outcome, the lines told and the folder."""
-    monkeypatch.setattr(reproduction, "obtain", lambda *arguments: runs)
-
-    def run():
-        told = []
-        return reproduction.reproduce(tmp_path, 1, told.append, only="claims"), told, tmp_path
-
-    return run
+@pytest.fixture(scope="module")
+def runs(patch):
+    made = fixture_reproduction.build(patch)
+    patch.setattr(reproduction, "obtain", lambda *arguments: made)
+    return made
 
 
-def test_recorded_verdicts_decide_the_outcome(runs, reproduced, monkeypatch):
+@pytest.fixture(scope="module")
+def directory(runs, tmp_path_factory):
+    """Directory with the reports of these runs."""
+    made = tmp_path_factory.mktemp("reproduction")
+    reproduction.reproduce(made, 1, lambda line: None, only="claims")
+    return made
+
+
+def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
+    monkeypatch.setattr(reproduction, "FIGURES", {})
+    told = []
     found = {each.claim.number: each.verdict for each in claims.check(runs)}
     monkeypatch.setattr(claims, "RECORDED", found)
-    assert reproduced()[0] is True
+    assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is True
+    told.clear()
     monkeypatch.setattr(claims, "RECORDED", found | {2: HOLDS})
-    agrees, told, directory = reproduced()
-    assert agrees is False
+    assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is False
     assert "on record: holds" in told[1]
-    text = (directory / "reproduction.md").read_text()
+    text = (tmp_path / "reproduction.md").read_text()
     assert "**Claim 2 is recorded as holds, these runs say contradicted.**" in text
 
 
-def test_the_report_has_every_claim_and_the_pictures(reproduced):
-    _, _, directory = reproduced()
+def test_the_report_has_every_claim_and_the_figures(directory):
     content = json.loads((directory / "reproduction.json").read_text())
     assert sum(content["verdicts"].values()) == 17
     text = (directory / "reproduction.md").read_text()
     for claim in content["claims"]:
         assert f"| {claim['number']} | {claim['claim']} | {claim['paper']} |" in text
         assert f"### {claim['number']}. {claim['claim']}: {claim['verdict']}" in text
-    for kind in page.PICTURES:
+    for kind in page.FIGURES:
         assert (directory / f"paper-{kind}.png").stat().st_size > 10_000
         assert f"](paper-{kind}.png)" in text
 
 
-def test_the_data_keep_to_the_schema(reproduced):
+def test_the_data_keep_to_the_schema(directory):
     jsonschema = pytest.importorskip("jsonschema")
-    text = (reproduced()[2] / "reproduction.json").read_text()
+    text = (directory / "reproduction.json").read_text()
     jsonschema.validate(json.loads(text, parse_constant=pytest.fail), SCHEMA)
 
 

@@ -9,7 +9,7 @@ import pytest
 from tests.command import invoke
 from tests.fixture_measured import MEASURED, lines, write
 from wedgesweep import config, measured, parameters
-from wedgesweep.measured import noise
+from wedgesweep.measured.noise_estimate import estimate_noise
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.synthesize.motion import Clock, steady
@@ -74,7 +74,7 @@ def test_round_trip(here):
     found, hidden = measured.read(here / "made" / "measured.toml"), truth(here)
     assert found.law == hidden["friction_law"] == "static-dynamic"
     assert hidden["effects"] == {"guide_friction": {"force_N": 0.8}}
-    # The model on trial is the true one but for what is hidden.
+    # The base model is the true one but for what is hidden.
     true = config.load(here / "true.toml")
     assert found.model.effects == {}
     assert found.model.suspension == true.suspension
@@ -88,14 +88,14 @@ def test_round_trip(here):
         per_period = test.sampling_rate / test.frequency
         assert abs(per_period - round(per_period)) > 1e-3
         for channel in (test.displacement, test.velocity):
-            assert noise.of_channel(test.time, channel, test.frequency).share == pytest.approx(0.04, rel=0.15)
+            assert estimate_noise(test.time, channel, test.frequency).share == pytest.approx(0.04, rel=0.15)
     errors = [each["amplitude_mm"] / each["nominal_amplitude_mm"] - 1.0 for each in hidden["tests"]]
     assert 0.0 < abs(errors[0]) < 5e-3
     assert 0.0 < abs(errors[1]) < 0.25
     told = invoke("check", "made/measured.toml")
     for words in (
         "made/measured.toml: valid",
-        "model: model on trial, static-dynamic",
+        "model: base model, static-dynamic",
         "tests: 2",
         "unknown",
     ):

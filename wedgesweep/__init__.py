@@ -1,3 +1,37 @@
 """Batch sweeps of a friction wedge suspension, and a diagnosis of what its model misses."""
 
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from wedgesweep.api import (
+        diagnose_measurement,
+        load_config,
+        plot,
+        read_measurement,
+        run_sweep,
+        simulate_case,
+    )
+
 __version__ = "0.1.0"
+__all__ = [
+    "diagnose_measurement",
+    "load_config",
+    "plot",
+    "read_measurement",
+    "run_sweep",
+    "simulate_case",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """The functions of ``wedgesweep.api``; numba and xarray load when the first of them is used."""
+    if name not in __all__:
+        message = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(message)
+    from wedgesweep import api
+
+    return getattr(api, name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

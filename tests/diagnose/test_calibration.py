@@ -5,34 +5,34 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import LAG, drawn, searched
-from tests.diagnose.test_folding import bench
+from tests.diagnose.synthetic import LAG, drawn, searched
+from tests.diagnose.test_aliasing import bench
 from wedgesweep.diagnose import calibration, verdict
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.spectra import FOLDED
+from wedgesweep.diagnose.steady.model import Model
+from wedgesweep.diagnose.steady.spectra import SIMULATED
 
 DRAWS = 40
 
 
 def coherent(share):
-    problem = drawn()
-    return replace(problem, spectra=tuple(replace(s, coherence=share) for s in problem.spectra))
+    data = drawn()
+    return replace(data, spectra=tuple(replace(s, coherence=share) for s in data.spectra))
 
 
-@pytest.mark.parametrize("problem", [drawn(), coherent(0.6 + 0.3j), bench(FOLDED)])
-def test_a_draw_is_noise_about_the_fit(problem):
-    fit = Search(problem, ()).base().fit
+@pytest.mark.parametrize("data", [drawn(), coherent(0.6 + 0.3j), bench(SIMULATED)])
+def test_a_draw_is_noise_about_the_fit(data):
+    fit = Search(data, ()).base().fit
     rng = np.random.default_rng(3)
     squares = []
     for _ in range(DRAWS):
-        again = Model(calibration._drawn(fit, rng), fit.model.hypothesis, fit.model.reference)
-        trial = again.trial(fit.trial.point)
-        squares.append((trial.residual**2).sum())
-        assert (trial.unfiltered == fit.trial.unfiltered).all()
+        again = Model(calibration.bootstrap_sample(fit, rng), fit.model.hypothesis, fit.model.reference)
+        evaluation = again.evaluate(fit.evaluation.point)
+        squares.append((evaluation.residual**2).sum())
+        assert (evaluation.aliased == fit.evaluation.aliased).all()
     # Start phases are fitted again.
-    expected = problem.points.sum() - problem.tests
+    expected = data.observations.sum() - data.tests
     assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / DRAWS))
 
 

@@ -5,33 +5,34 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import LEANING, drawn
+from tests.diagnose.synthetic import LEANING, drawn
 from wedgesweep import config
-from wedgesweep.diagnose import next_test, simulation
-from wedgesweep.diagnose.coordinates import Hypothesis
-from wedgesweep.diagnose.model import Fit, Model
-from wedgesweep.diagnose.next_test import ACCELERATIONS, ENOUGH, FREQUENCIES, _choice
+from wedgesweep.diagnose import next_test
+from wedgesweep.diagnose.fit_parameters import Hypothesis
+from wedgesweep.diagnose.next_test import ACCELERATIONS, FREQUENCIES, SEPARATED, _choice
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.model import Fit, Model
 from wedgesweep.solvers.periodic import at_rest
 
 SHAPE = (ACCELERATIONS.size, FREQUENCIES.size)
-FAR = 10.0 * ENOUGH
+FAR = 10.0 * SEPARATED
 
 
 def explained(effect, values, std):
     """A Coulomb fit of one effect, its numbers known to some standard deviations."""
-    problem = replace(drawn(), law="coulomb", model=config.parse(LEANING))
-    model = Model(problem, Hypothesis((effect,)), problem.amplitude)
+    data = replace(drawn(), law="coulomb", model=config.parse(LEANING))
+    model = Model(data, Hypothesis((effect,)), data.amplitude)
     x = model.hypothesis.at({effect: values})
-    trial = model.trial(model.start(None, x))
-    return Fit(model, trial, np.diag(np.atleast_1d(std)) ** 2.0, True)
+    evaluation = model.evaluate(model.start(None, x))
+    return Fit(model, evaluation, np.diag(np.atleast_1d(std)) ** 2.0, True)
 
 
 def gain(fit, test, factor):
     """Fundamental of the response over the input, at a test whose amplitude is off by a factor."""
     omega, amplitude = (np.array([each]) for each in (2.0 * np.pi * test.frequency, factor * test.amplitude))
-    problem = fit.model.problem
-    rows = simulation.records(problem.model, problem.law, fit.model.values(fit.x), omega, amplitude)
+    data = fit.model.data
+    rows = simulation.records(data.model, data.law, fit.model.values(fit.x), omega, amplitude)
     return abs(simulation.respond(rows, at_rest(1), 1).harmonics[0, 0, 0]) / amplitude[0]
 
 
@@ -46,7 +47,7 @@ def suspects():
 def test_the_next_test_makes_every_suspect_move(suspects):
     """Next to breakaway Coulomb predictions are as far apart as one likes, and as hard to fit."""
     test = next_test.recommend(suspects)
-    assert test.distance >= ENOUGH
+    assert test.distance >= SEPARATED
     assert set(test.separates) == {"friction_level", "bolster_stiffness"}
     for fit in suspects:
         assert gain(fit, test, 0.8) > 0.5 * gain(fit, test, 1.0) > 1e-3
@@ -74,20 +75,20 @@ def test_the_cheapest_test_is_chosen_that_would_do_with_a_neighbour_s_amplitude(
 def test_a_pair_that_nothing_tells_apart_does_not_spoil_the_others():
     distances = np.zeros((2, *SHAPE))
     distances[0, 1:4, 2] = FAR
-    distances[1, 6, 9] = 0.5 * ENOUGH
+    distances[1, 6, 9] = 0.5 * SEPARATED
     assert _choice(distances.reshape(2, -1)) == np.ravel_multi_index((2, 2), SHAPE)
 
 
 def test_where_none_tells_enough_the_farthest_is_chosen():
     distances = np.full((2, *SHAPE), 0.1)
-    distances[:, 5:, 6] = 0.4 * ENOUGH
+    distances[:, 5:, 6] = 0.4 * SEPARATED
     assert _choice(distances.reshape(2, -1)) in np.ravel_multi_index(([6, 7], [6, 6]), SHAPE)
 
 
 def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     """Covariances as large as 1e30 stand for numbers of which the tests say nothing."""
-    problem = drawn({"velocity_lag": {"time": 3e-4}}, known=False)
-    search = Search(problem, ("velocity_lag", "displacement_gain"))
+    data = drawn({"velocity_lag": {"time": 3e-4}}, known=False)
+    search = Search(data, ("velocity_lag", "displacement_gain"))
     base = search.base().fit
     found = [search.single(effect, base).fit for effect in search.effects]
     omega, amplitude = 2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1])
@@ -95,7 +96,7 @@ def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     for factor in (1.0, 1e30):
         fits = [replace(fit, covariance=factor * fit.covariance) for fit in found]
         one, other = (next_test._predict(fit, omega, amplitude) for fit in fits)
-        weight = next_test._weights(problem, [one, other])
+        weight = next_test._weights(data, [one, other])
         distances.append(next_test._distances(one, other, weight))
         np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
     told, open_ = distances

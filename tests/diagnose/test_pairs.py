@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from tests.diagnose.drawn import drawn, next_to_breakaway, searched
+from tests.diagnose.synthetic import drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import pairs
-from wedgesweep.diagnose.refine import refine
+from wedgesweep.diagnose.least_squares import refine
 from wedgesweep.diagnose.search import Search
 
 # More preload and less friction: alone, neither explains as much as another mass.
@@ -19,7 +19,7 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
     search = Search(drawn(TRUTH), CANDIDATES)
     base = search.base().fit
     singles = search.singles(base)
-    assert min(singles, key=lambda each: each.fit.q).effects == ("bolster_mass",)
+    assert min(singles, key=lambda each: each.fit.chi2).effects == ("bolster_mass",)
     best = pairs.pairs(search, base, singles)[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
@@ -27,9 +27,9 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
 
 def test_an_effect_keeps_its_numbers_beside_another_than_that_of_its_pair():
     search, base, singles = searched(drawn(TRUTH), *CANDIDATES)
-    alone = {each.effects[0]: pairs._alone(search, base.fit, each.fit) for each in singles}
+    alone = {each.effects[0]: pairs._single_scan(search, base.fit, each.fit) for each in singles}
     model = search.model("preload", "bolster_mass")
-    wrong = refine(model, model.trial(model.start(base.fit, np.array([0.3, 1.0]))))
+    wrong = refine(model, model.evaluate(model.start(base.fit, np.array([0.3, 1.0]))))
     assert wrong.p < 1e-9
     best = pairs._swapped(search, base.fit, alone, [search.explanation(wrong)])[0]
     assert set(best.effects) == set(TRUTH)
@@ -40,16 +40,16 @@ def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
     search, base, (_, damper) = searched(next_to_breakaway(), "stribeck", "viscous_damping")
     model = search.model("stribeck")
-    stribeck = refine(model, model.trial(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
-    first, other = (pairs._alone(search, base.fit, fit) for fit in (stribeck, damper.fit))
+    stribeck = refine(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
+    first, other = (pairs._single_scan(search, base.fit, fit) for fit in (stribeck, damper.fit))
     (begun,) = pairs._begin(search, first, other, False)
-    assert begun.q < pairs.BEHIND * first.few.q
+    assert begun.chi2 < pairs.BEHIND * first.subset.chi2
 
 
 def fits(*misfits, p):
     """Stand-ins of fits to several pairs; ``p``: probability of the best one's misfit."""
     return [
-        SimpleNamespace(q=q, p=p if q == min(misfits) else 0.0, effects=(str(i), "other"))
+        SimpleNamespace(chi2=q, p=p if q == min(misfits) else 0.0, effects=(str(i), "other"))
         for i, q in enumerate(misfits)
     ]
 
@@ -58,6 +58,6 @@ def test_only_what_is_far_behind_a_pair_that_will_do_is_given_up():
     far = 2.0 * pairs.BEHIND * 100.0
     near = 0.9 * pairs.BEHIND * 100.0
     several = fits(far, 100.0, *[near] * pairs.SEVERAL, far, p=0.5)
-    assert [fit.q for fit in pairs._hopeful(several)] == [100.0, *[near] * pairs.SEVERAL]
+    assert [fit.chi2 for fit in pairs._hopeful(several)] == [100.0, *[near] * pairs.SEVERAL]
     assert len(pairs._hopeful(fits(100.0, *[far] * 9, p=0.5))) == pairs.SEVERAL
     assert len(pairs._hopeful(fits(100.0, *[far] * 9, p=1e-6))) == 10

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import MODEL, drawn, searched
-from wedgesweep.diagnose import detour, diagnosis
-from wedgesweep.diagnose.model import Model
-from wedgesweep.diagnose.refine import refine
+from tests.diagnose.synthetic import MODEL, drawn, searched
+from wedgesweep.diagnose import diagnosis
+from wedgesweep.diagnose.least_squares import refine
 from wedgesweep.diagnose.search import Search, best_of
+from wedgesweep.diagnose.steady.model import Model
 
 CANDIDATES = ("displacement_gain", "velocity_lag")
 
@@ -19,36 +19,38 @@ CANDIDATES = ("displacement_gain", "velocity_lag")
     [({"velocity_lag": {"time": 3e-4}}, False), ({"bolster_mass": {"scale": 1.05}}, True)],
 )
 def test_all_starts_are_followed_only_where_nothing_will_do(truth, looked, monkeypatch):
-    followed = []
-    everywhere = Search.everywhere
+    schedule = []
+    multistart = Search.multistart
 
     def told(self):
-        followed.extend(everywhere(self))
-        return followed
+        schedule.extend(multistart(self))
+        return schedule
 
-    monkeypatch.setattr(Search, "everywhere", told)
+    monkeypatch.setattr(Search, "multistart", told)
     search = Search(drawn(truth), CANDIDATES)
     _, found = diagnosis.explain(search)
-    assert [each.effects for each in followed] == [(name,) for name in CANDIDATES if looked]
-    single = {each.effects: each.fit.q for each in found if len(each.effects) == 1}
-    for each in followed:
-        assert single[each.effects] <= each.fit.q
+    assert [each.effects for each in schedule] == [(name,) for name in CANDIDATES if looked]
+    single = {each.effects: each.fit.chi2 for each in found if len(each.effects) == 1}
+    for each in schedule:
+        assert single[each.effects] <= each.fit.chi2
 
 
 def test_the_right_way_is_found_though_its_start_looks_worst():
     truth = 3e-4
     search, _, _ = searched(drawn({"velocity_lag": {"time": truth}}), "velocity_lag")
-    search.along["velocity_lag"] = sorted(search.along["velocity_lag"], key=lambda trial: trial.q)[-3:]
-    assert search.everywhere()[0].fit.x[0] == pytest.approx(truth, rel=0.05)
+    search.scans["velocity_lag"] = sorted(
+        search.scans["velocity_lag"], key=lambda evaluation: evaluation.chi2
+    )[-3:]
+    assert search.multistart()[0].fit.x[0] == pytest.approx(truth, rel=0.05)
 
 
 def test_what_rough_trials_leave_is_not_taken_for_what_a_fit_leaves():
     search = Search(drawn({"velocity_lag": {"time": 3e-4}}), ())
     model = search.model("displacement_gain")
-    trial = model.trial(model.start(None, np.array([1.02])))
-    flattered = replace(trial, residual=0.1 * trial.residual)
+    evaluation = model.evaluate(model.start(None, np.array([1.02])))
+    flattered = replace(evaluation, residual=0.1 * evaluation.residual)
     fit = best_of(model, [flattered])
-    assert fit.q == pytest.approx(model.trial(fit.trial.point).q, rel=1e-3)
+    assert fit.chi2 == pytest.approx(model.evaluate(fit.evaluation.point).chi2, rel=1e-3)
 
 
 @pytest.mark.parametrize("length", [0.9e-6, 1.03e-6, 1.5e-6])
@@ -58,11 +60,11 @@ def test_what_leads_the_base_model_far_astray_begins_without_it(length):
     Nor does a fit get there whose inputs are free to make up for a length that is wrong by then.
     """
     bench = np.array([20.0, 30.0, 6.0]), 1e-3 * np.array([0.0663, 0.0471, 0.2133])
-    problem = drawn(
+    data = drawn(
         {"presliding": {"length": length}}, bench=bench, std=0.01, uncertain={"friction_level": 0.02}
     )
-    _, base, (found,) = searched(problem, "presliding")
-    assert np.abs(base.fit.trial.point.amplitude).max() > 1.0
+    _, base, (found,) = searched(data, "presliding")
+    assert np.abs(base.fit.evaluation.point.amplitude).max() > 1.0
     assert found.fit.p > 1e-3
     assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
 
@@ -109,7 +111,7 @@ ASIDE = np.array([-1.2, 1.4, 0.0, -2.6, 1.1, 0.7, 2.5, 2.5, 1.2, 0.2, 0.9, -0.7]
 
 @pytest.mark.parametrize("seed", range(3))
 def test_inputs_do_not_make_up_for_uncertain_numbers(seed):
-    problem = drawn(
+    data = drawn(
         {"friction_level": {"scale": 1.155}},
         seed=seed,
         std=0.0152,
@@ -119,7 +121,7 @@ def test_inputs_do_not_make_up_for_uncertain_numbers(seed):
         law="coulomb",
         model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
     )
-    base = Search(problem, ()).base().fit
+    base = Search(data, ()).base().fit
     assert base.x == pytest.approx([1.155], abs=0.003)
     assert base.p > 1e-3
 
@@ -128,12 +130,12 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     search = Search(clean(), ("velocity_lag",))
     with monkeypatch.context() as alone:
         alone.setattr(Model, "uncertain_starts", lambda self: np.ones((1, 1)))
-        alone.setattr(detour, "around", lambda fit: fit)
-        alone.setattr("wedgesweep.diagnose.search._as_stated", lambda model, trial: trial)
+        alone.setattr("wedgesweep.diagnose.search.refit_without_influential_tests", lambda fit: fit)
+        alone.setattr("wedgesweep.diagnose.search._as_stated", lambda model, evaluation: evaluation)
         short = search.base()
     assert short.fit.p < 1e-9
     model = search.model("velocity_lag")
-    there = model.trial(model.start(search.base().fit, model.hypothesis.low))
-    again = search.base_again(short, [search.explanation(refine(model, there))])
+    there = model.evaluate(model.start(search.base().fit, model.hypothesis.low))
+    again = search.refit_base(short, [search.explanation(refine(model, there))])
     assert again.fit.p > 1e-3
-    assert search.base_again(again, [short]) is again
+    assert search.refit_base(again, [short]) is again

@@ -5,10 +5,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from tests.diagnose.drawn import MODEL
+from tests.diagnose.synthetic import MODEL
 from wedgesweep import config
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.spectra import spectrum
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.spectra import spectrum
 from wedgesweep.solvers import periodic
 
 TONE, PERIODS, PER_PERIOD = 47.3, 8.4, 512
@@ -34,15 +34,15 @@ def test_input_and_tone_meet_as_in_the_record(begin):
     signals += (
         1e-4 * signals.std(axis=2, keepdims=True) * np.random.default_rng(begin).normal(size=signals.shape)
     )
-    meetings, measured = [], []
+    timings, measured = [], []
     for i, frequency in enumerate(FREQUENCIES):
         time = np.arange(count) / (frequency * PER_PERIOD)
         found = spectrum(time, signals[i][:, begin : begin + count], frequency, TONE)
         start = 2.0 * pi * begin / PER_PERIOD
-        meetings.append(simulation.Meeting(PERIODS, start, float(np.angle(found.mean[0, -1]))))
+        timings.append(simulation.ToneTiming(PERIODS, start, float(np.angle(found.mean[0, -1]))))
         turned_back = np.exp(-1j * start * np.arange(1, 17))
         measured.append(found.mean * np.r_[turned_back, 1.0])
-    done = simulation.respond_with_tone(rows(0.0), periodic.at_rest(3), 16, TONE, meetings, UNKNOWN)
+    done = simulation.respond_with_tone(rows(0.0), periodic.at_rest(3), 16, TONE, timings, UNKNOWN)
     for simulated, real in zip(done.harmonics, measured, strict=True):
         for one, other in zip(simulated, real, strict=True):
             assert np.abs(one[:-1] - other[:-1]).max() < 2e-3 * np.abs(other).max()

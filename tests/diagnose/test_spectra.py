@@ -7,8 +7,8 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import gamma
 
-from wedgesweep.diagnose import tone
-from wedgesweep.diagnose.spectra import COMPARED, spectrum
+from wedgesweep.diagnose.steady import tone
+from wedgesweep.diagnose.steady.spectra import COMPARED, spectrum
 
 RATE = 2000.0
 
@@ -116,7 +116,7 @@ def test_a_tone_beside_a_harmonic_leaves_the_others_alone():
         time, channels, truth = record(rng, 24.0)
         foreign = 0.1 * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
         found = spectrum(time, channels + foreign, 24.0, 47.3)
-        assert (found.tone, found.covered, found.points) == (None, 2, 4 * (COMPARED - 1))
+        assert (found.tone, found.masked, found.observations) == (None, 2, 4 * (COMPARED - 1))
         squares.append(2.0 * np.abs(found.mean - truth) ** 2 / found.variance)
     others = np.delete(np.array(squares), 1, axis=2)
     assert others.mean() == pytest.approx(2.0, rel=0.1)

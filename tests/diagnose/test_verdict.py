@@ -7,22 +7,22 @@ import pytest
 from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, verdict
-from wedgesweep.diagnose.constancy import Constancy
+from wedgesweep.diagnose.parameter_constancy import Constancy
 from wedgesweep.diagnose.search import POSSIBLE, Explanation
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_unseen_tests, where_it_shows
 
-DOF, PRICE = 700, 12.6
+DOF, PENALTY = 700, 12.6
 
 
 def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None, constant=1.0):
-    problem = SimpleNamespace(tests=tests, uncertain=uncertain or {}, dof=np.full(tests, DOF / tests))
-    model = SimpleNamespace(problem=problem, size=numbers * len(effects))
+    data = SimpleNamespace(tests=tests, uncertain=uncertain or {}, dof=np.full(tests, DOF / tests))
+    model = SimpleNamespace(data=data, size=numbers * len(effects))
     fit = SimpleNamespace(
-        q=q,
+        chi2=q,
         excess=q - DOF,
         p=float(chi2.sf(q, DOF)),
         model=model,
-        trial=SimpleNamespace(by_test=np.full(tests, q / tests) if by_test is None else by_test),
+        evaluation=SimpleNamespace(chi2_by_test=np.full(tests, q / tests) if by_test is None else by_test),
         effects=effects,
         values={effect: {"scale": scale} for effect in effects},
     )
@@ -30,7 +30,7 @@ def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_te
 
 
 def priced(fit, constant=1.0):
-    found = Explanation(fit, PRICE)
+    found = Explanation(fit, PENALTY)
     vars(found)["constancy"] = Constancy(constant, None)
     return found
 
@@ -264,12 +264,12 @@ def test_calibrated_thresholds_replace_the_general_ones():
 def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
     worse = explained(900.0, "stribeck").fit
-    monkeypatch.setattr(diagnosis, "exact", lambda fit: worse if fit is first.fit else fit)
-    monkeypatch.setattr(diagnosis, "met", lambda fit: fit)
-    monkeypatch.setattr(diagnosis, "profiled", lambda fit, each: fit)
+    monkeypatch.setattr(diagnosis, "tight_refit", lambda fit: worse if fit is first.fit else fit)
+    monkeypatch.setattr(diagnosis, "with_tone_phase", lambda fit: fit)
+    monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
     search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
-    found, order = diagnosis._exactly(search, base, tied, [first, second], verdict.DEFAULT)
+    found, order = diagnosis._refit_best(search, base, tied, [first, second], verdict.DEFAULT)
     assert (found.verdict, found.best.effects) == ("named", ("preload",))
-    assert [each.fit.q for each in order] == [709.0, 900.0]
+    assert [each.fit.chi2 for each in order] == [709.0, 900.0]

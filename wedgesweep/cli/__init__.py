@@ -1,4 +1,4 @@
-"""The command line: parse, call, print. Nothing outside this package prints or exits.
+"""The command line; nothing outside this package prints or exits.
 
 Heavy modules are imported inside the commands that need them, so that ``--help`` answers at once.
 """
@@ -17,10 +17,10 @@ from wedgesweep.cli.status import status
 from wedgesweep.cli.synthesize import synthesize
 
 EPILOG = """\
-Exit codes: 0 all cases fine, 1 some failed, 2 bad input, 130 interrupted.
+Exit codes: 0 success, 1 some cases failed, 2 bad input, 130 interrupted.
 
-Completion in bash: eval "$(_WEDGESWEEP_COMPLETE=bash_source wedgesweep)" in ~/.bashrc; there are
-zsh_source and fish_source, too.
+Shell completion: add eval "$(_WEDGESWEEP_COMPLETE=bash_source wedgesweep)" to ~/.bashrc (zsh_source and
+fish_source for the other shells).
 """
 
 
@@ -32,4 +32,4 @@ zsh_source and fish_source, too.
 )
 @click.version_option(__version__, prog_name="wedgesweep")
 def cli() -> None:
-    """Batch sweeps of a friction wedge suspension: from a config to a dataset and figures."""
+    """Simulate sweeps of a friction wedge suspension, and diagnose measured vibration."""

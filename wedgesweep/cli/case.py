@@ -1,4 +1,4 @@
-"""case: one case in numbers, a file and a picture."""
+"""case: solve one case; print its numbers, store its waveforms, draw its phase portrait."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -7,7 +7,7 @@ import click
 
 from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.options import CONFIG, OutputPath, command_line
-from wedgesweep.cli.run import tell_of_compiling
+from wedgesweep.cli.run import announce_compiling
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from wedgesweep.config import Config
 
 # SI unit of a variable -> factor and unit for a reader.
-SHOWN = {
+DISPLAY_UNITS = {
     "m": (1e3, "mm"),
     "m s-1": (1e3, "mm/s"),
     "J": (1e3, "mJ"),
@@ -28,15 +28,15 @@ PICTURE = "phase-portrait"
 @click.command()
 @CONFIG
 @click.option("--law", help="Friction law; default: the config's first.")
-@click.option("--beta", type=float, help="Input frequency over omega_n.")
-@click.option("--frequency", type=float, metavar="HZ", help="Input frequency, instead of --beta.")
-@click.option("--amplitude", type=float, metavar="MM", required=True, help="Input amplitude.")
+@click.option("--beta", type=float, help="Input frequency as a ratio to omega_n.")
+@click.option("--frequency", type=float, metavar="HZ", help="Input frequency in Hz, instead of --beta.")
+@click.option("--amplitude", type=float, metavar="MM", required=True, help="Input amplitude in mm.")
 @click.option(
     "-o",
     "--output",
     type=OutputPath(),
     metavar="STEM",
-    help="Writes STEM.nc and STEM.png; default: named after the case, here.",
+    help="Write STEM.nc and STEM.png; default: a name made from the case, in the current directory.",
 )
 @click.pass_context
 def case(
@@ -48,41 +48,27 @@ def case(
     amplitude: float,
     output: Path | None,
 ) -> None:
-    """Run one case, of any values: its numbers, trajectory (netCDF) and phase portrait."""
+    """Solve one case of any law, frequency and amplitude.
+
+    Prints its numbers and writes its waveforms (netCDF) and its phase portrait (PNG).
+    """
     if (beta is None) == (frequency is None):
         message = "give either --beta or --frequency"
         raise click.UsageError(message)
     from wedgesweep import config
 
-    where = ("beta", beta) if frequency is None else ("frequency_hz", frequency)
-    settings = _one_case(config.load(config_path), law, where, amplitude)
+    settings = config.load(config_path).single_case(amplitude, beta, frequency, law)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
-    tell_of_compiling(settings.solver.method)
-    from wedgesweep.sweep import Sweep
+    announce_compiling(settings.solver.method)
+    from wedgesweep.sweep.run import Sweep
 
-    ds = Sweep(settings, stem).run_here(command=command_line())
+    ds = Sweep(settings, stem, command_line()).run_here()
     _print_numbers(ds)
     if ds["status"].item():
         click.echo(f"failed: {ds['message'].item()}", err=True)
         ctx.exit(SOME_FAILED)
     _write(ds, stem)
-
-
-def _one_case(
-    settings: "Config", law: str | None, where: tuple[str, float | None], amplitude: float
-) -> "Config":
-    """The config with a grid of a single case and its waveforms, so that every figure can draw it."""
-    from wedgesweep.config import parse, toml
-
-    grid = {
-        "friction_law": [law or settings.case_list()[0].law],
-        where[0]: where[1],
-        "amplitude_mm": amplitude,
-        "omega_n_rad_per_s": settings.sweep.omega_n,
-    }
-    solver = settings.document["solver"] | {"keep_waveforms": True, "continuation": False}
-    return parse(toml.dumps(settings.document | {"sweep": grid, "solver": solver}), "case")
 
 
 def _name(config_path: Path, settings: "Config") -> str:
@@ -95,36 +81,37 @@ def _with_suffix(stem: Path, suffix: str) -> Path:
 
 
 def _require_no_sweep(path: Path) -> None:
-    """Do not let one case take the place of a whole sweep."""
-    from wedgesweep import dataset
+    """Refuse to overwrite the dataset of a sweep with a single case."""
+    from wedgesweep.sweep import dataset
 
     if not path.exists():
         return
     found = dataset.read(path)
     if "status" not in found or found["status"].size > 1:
-        message = f"{path}: holds a sweep, or something else; choose another -o"
+        message = f"{path}: holds a sweep or other data; choose another -o"
         raise Failure(message)
 
 
 def _print_numbers(ds: "xr.Dataset") -> None:
-    from wedgesweep.cases import describe
-    from wedgesweep.dataset import VARIABLES
+    from wedgesweep.sweep.cases import describe
+    from wedgesweep.sweep.dataset import VARIABLES
 
     where = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
     click.echo(f"{describe(*where)}, {ds['frequency'].item():.6g} Hz")
     for variable in VARIABLES:
         if variable.dims or variable.name in ("status", "message"):
             continue
-        factor, unit = SHOWN.get(variable.units, (1.0, variable.units))
+        factor, unit = DISPLAY_UNITS.get(variable.units, (1.0, variable.units))
         number = f"{ds[variable.name].item() * factor:.6g}"
         name = variable.name.replace("_", " ")
         click.echo(f"  {name:<21}{number:>12} {unit:<5} {variable.long_name}")
 
 
 def _write(ds: "xr.Dataset", stem: Path) -> None:
-    from wedgesweep import dataset, figures
+    from wedgesweep import figures
+    from wedgesweep.sweep import dataset
 
     file, picture = _with_suffix(stem, ".nc"), _with_suffix(stem, ".png")
     dataset.write(ds, file)
-    figures.save(figures.FIGURES[PICTURE].draw(ds), picture)
+    figures.save(figures.draw(ds, PICTURE), picture)
     click.echo(f"trajectory: {file}\npicture: {picture}")

@@ -1,4 +1,4 @@
-"""init, schema, check: everything about a config but running it."""
+"""init, schema, check: write and check configs."""
 
 import json
 from pathlib import Path
@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import click
 
 from wedgesweep.cli.failure import Failure
+from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.measurement import print_measurement
-from wedgesweep.cli.options import CONFIG, OutputPath, jobs
-from wedgesweep.cli.words import duration, size
+from wedgesweep.cli.options import CONFIG, OutputPath
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
-    from wedgesweep.estimate import Estimate
+    from wedgesweep.sweep.estimate import Estimate
 
 STANDARD_OUTPUT = Path("-")
 
@@ -22,7 +22,7 @@ STANDARD_OUTPUT = Path("-")
 @click.argument("path", default="wedgesweep.toml", type=OutputPath(allow_dash=True))
 @click.option("--force", is_flag=True, help="Overwrite an existing file.")
 def init(path: Path, force: bool) -> None:
-    """Write a config with every key, commented, to PATH (wedgesweep.toml; - prints it)."""
+    """Write a commented config with every key to PATH (default: wedgesweep.toml; - prints it)."""
     from wedgesweep import config
 
     if path.exists() and not force:
@@ -32,9 +32,11 @@ def init(path: Path, force: bool) -> None:
 
 
 @click.command()
-@click.option("-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File; default: print.")
+@click.option(
+    "-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File to write; default: print."
+)
 def schema(output: Path) -> None:
-    """Write the JSON schema of a config, by which editors check and complete it."""
+    """Write the JSON schema of configs, which lets editors check and complete them."""
     from wedgesweep import config
 
     _put(json.dumps(config.schema(), indent=2) + "\n", output)
@@ -45,8 +47,8 @@ def schema(output: Path) -> None:
 def check(config_path: Path) -> None:
     """Check a config, or measured data (measured.toml or .nc).
 
-    Of a config, what its run takes is estimated from a few timed cases; of measured data, the tests are
-    listed with their frequencies and noise.
+    For a config, a few timed cases give an estimate of the time and memory that a run needs. For measured
+    data, the tests are listed with their frequencies and noise.
     """
     from wedgesweep import config, measured
 
@@ -55,20 +57,20 @@ def check(config_path: Path) -> None:
         return
     settings = config.load(config_path)
     click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
-    from wedgesweep import backend
-    from wedgesweep.estimate import estimate
-    from wedgesweep.sweep import Sweep
+    from wedgesweep.sweep import backend
+    from wedgesweep.sweep.estimate import estimate
+    from wedgesweep.sweep.run import Sweep
 
-    sweep, n_jobs = Sweep(settings, Path(f"{config_path.stem}.nc")), jobs(None)
+    sweep, n_jobs = Sweep(settings, Path(f"{config_path.stem}.nc")), backend.count_jobs(None)
     threads = backend.local(sweep.settings.method) is backend.threads
     _print_estimate(estimate(sweep), n_jobs, 1 if threads else n_jobs + 1)
 
 
 def _grid(settings: "Config") -> str:
-    """Number of cases and how it comes about."""
+    """Describe the number of cases as the product of the grid's axes."""
     sweep, count = settings.sweep, len(settings.case_list())
     if sweep.cases is not None:
-        return f"{count}, listed one by one"
+        return f"{count}, listed individually"
     laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
     return f"{count} = {laws} friction laws x {betas} frequencies x {amplitudes} amplitudes"
 

@@ -1,4 +1,4 @@
-"""diagnose: measured data in, a named cause (or an honest refusal) out."""
+"""diagnose: find what the model of measured data misses, or say why that cannot be found."""
 
 from functools import partial
 from pathlib import Path
@@ -6,13 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.options import N_JOBS, jobs, require_place_for
+from wedgesweep.cli.options import N_JOBS, require_place_for
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from wedgesweep.diagnosed import Diagnosed
+    from wedgesweep.diagnosis_result import DiagnosisResult
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
 
@@ -22,24 +19,24 @@ FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")
 @click.option(
     "--model",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Config of the model on trial, instead of the one that MEASURED names.",
+    help="Config of the base model, instead of the one that MEASURED names.",
 )
 @click.option(
     "-o",
     "--output",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Directory of the result; default: MEASURED's name (its directory's, if that is measured.toml) "
-    "with -diagnosis, here.",
+    help="Directory of the result; default: MEASURED's name (for measured.toml that of its directory) with "
+    "-diagnosis, in the current directory.",
 )
 @N_JOBS
-@click.option("--effects", metavar="A,B,...", help="Only these candidates; default: all.")
+@click.option("--effects", metavar="A,B,...", help="Candidate effects; default: all.")
 @click.option(
     "--report/--no-report",
     "reported",
     default=True,
-    help="With report.html and figures (default), or the data alone.",
+    help="Whether to write report.html and the figures (default) besides the data.",
 )
-@click.option("--calibrate", is_flag=True, help="Thresholds by simulation of these very tests (minutes).")
+@click.option("--calibrate", is_flag=True, help="Calibrate the thresholds by simulation (minutes).")
 def diagnose(
     measured: Path,
     model: Path | None,
@@ -49,28 +46,32 @@ def diagnose(
     reported: bool,
     calibrate: bool,
 ) -> None:
-    """Say what the simulation of the data in MEASURED gets wrong, and why.
+    """Find the physical effects that the model of the data in MEASURED misses.
 
     MEASURED is a measured.toml with its CSV files, or the same as one netCDF file.
     """
-    chosen = _chosen(effects)
-    from wedgesweep import measured as data
-    from wedgesweep import report
-    from wedgesweep.diagnose import diagnosis, result
+    from wedgesweep import api, report
+    from wedgesweep.sweep.backend import count_jobs
 
-    measurement = data.read(measured, model)
+    measurement = api.read_measurement(measured, model)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
-    processors = jobs(n_jobs)
-    found = diagnosis.diagnose(measurement, chosen, processors, _said, calibrate)
+    processors = count_jobs(n_jobs)
+    found = api.diagnose_measurement(
+        measurement, effects=_names(effects), n_jobs=processors, progress=_print_step, calibrate=calibrate
+    )
     _clear(directory)
-    result.write(found, directory)
+    found.write(directory)
     written = directory
     if reported:
-        _draw(directory, processors)
+        _draw(found, directory, processors)
         written = report.write(directory, processors)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {written}")
+
+
+def _names(listed: str | None) -> list[str] | None:
+    return None if listed is None else [name.strip() for name in listed.split(",") if name.strip()]
 
 
 def _name(measured: Path) -> str:
@@ -78,53 +79,34 @@ def _name(measured: Path) -> str:
 
 
 def _clear(directory: Path) -> None:
-    """Remove what an older diagnosis drew here: it does not belong to the new one."""
+    """Remove the report and figures of an earlier diagnosis."""
     from wedgesweep import report
 
     for name in (report.PAGE, *FIGURE_FILES.values()):
         (directory / name).unlink(missing_ok=True)
 
 
-def _draw(directory: Path, n_jobs: int) -> None:
-    """Write the figures beside the data; one that the tests cannot fill is left out."""
-    from wedgesweep import diagnosed
-    from wedgesweep.figures import forked
-    from wedgesweep.figures.diagnosis import FIGURES
+def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
+    """Write the figures; skip those that need more than these tests give."""
+    from wedgesweep.figures import parallel
 
-    wanted = [(FIGURES[kind].draw, directory / file) for kind, file in FIGURE_FILES.items()]
-    save = partial(_save, diagnosed.read(directory))
-    for problem in filter(None, forked.each(save, wanted, n_jobs)):
+    wanted = [(kind, directory / file) for kind, file in FIGURE_FILES.items()]
+    save = partial(_save, found)
+    for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
         click.echo(f"skipped {problem}", err=True)
 
 
-def _save(found: "Diagnosed", wanted: "tuple[Callable, Path]") -> str | None:
-    """Write a figure; returns why the tests cannot fill it, if they cannot."""
+def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
+    """Write a figure, or return why it cannot be drawn from these tests."""
     from wedgesweep import figures
 
-    draw, file = wanted
+    kind, file = wanted
     try:
-        figures.save(draw(found), file)
+        figures.save(figures.draw(found, kind), file)
     except ValueError as error:
         return str(error)
     return None
 
 
-def _said(step: str) -> None:
+def _print_step(step: str) -> None:
     click.echo(f"  {step}", err=True)
-
-
-def _chosen(effects: str | None) -> tuple[str, ...]:
-    from wedgesweep.config.keys import hint
-    from wedgesweep.effects import EFFECTS
-
-    if effects is None:
-        return tuple(EFFECTS)
-    names = tuple(name.strip() for name in effects.split(",") if name.strip())
-    unknown = [name for name in names if name not in EFFECTS]
-    if not names:
-        message = f"--effects: nothing is chosen; valid here: {', '.join(EFFECTS)}"
-        raise Failure(message)
-    if unknown:
-        message = "\n".join(f"--effects: unknown effect {name}; {hint(name, EFFECTS)}" for name in unknown)
-        raise Failure(message)
-    return names

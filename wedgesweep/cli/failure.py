@@ -1,4 +1,4 @@
-"""Expected errors become one message on stderr and exit code 2, never a traceback."""
+"""Expected errors print one message on stderr and exit with code 2; no traceback."""
 
 from typing import Any
 
@@ -10,16 +10,16 @@ SOME_FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
 class Failure(click.ClickException):
-    """Something that the user can put right."""
+    """An error that the user can correct."""
 
     exit_code = BAD_INPUT
 
 
 class Commands(click.Group):
-    """Group of commands that reports the package's own errors."""
+    """Command group that turns the package's own errors into messages."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(self.commands)  # in the order of a user's work, not of the alphabet
+        return list(self.commands)  # in the order in which they are used, not alphabetical
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -34,7 +34,7 @@ class Commands(click.Group):
 
 
 def _failure(error: Exception) -> Exception:
-    """The same error for the user; an unexpected one stays as it is."""
+    """Return the error as a message for the user; an unexpected error is returned unchanged."""
     if isinstance(error, (InputError, SweepError)):
         return Failure(str(error))
     if isinstance(error, OSError):

@@ -1,4 +1,4 @@
-"""Measured data as check prints them."""
+"""The table of measured tests that check prints."""
 
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from wedgesweep.measured import Measurement, Test
+    from wedgesweep.measured import Measurement, TestRecord
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
 UNITS = ("", "Hz", "mm", "", "per period", "of displacement, velocity", "")
@@ -27,8 +27,8 @@ def print_measurement(measurement: "Measurement") -> None:
         click.echo("  ".join(cells).rstrip())
 
 
-def _row(test: "Test") -> tuple[str, ...]:
-    frequency = test.actual_frequency
+def _row(test: "TestRecord") -> tuple[str, ...]:
+    frequency = test.refined_frequency
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
@@ -42,33 +42,33 @@ def _row(test: "Test") -> tuple[str, ...]:
 
 
 def _told(stated: float | None, used: float) -> str:
-    """Where a frequency (Hz) comes from that is not simply the stated one."""
+    """Say where a frequency (Hz) comes from if it is not the stated one."""
     if stated is None:
         return " (estimated)"
     return "" if used == stated else f" (stated: {stated:.6g})"
 
 
-def _amplitude(test: "Test") -> str:
+def _amplitude(test: "TestRecord") -> str:
     if test.amplitude is None:
         return "unknown"
     std = f" +- {100.0 * test.amplitude_std:.3g} %" if test.amplitude_std else ""
     return f"{test.amplitude * 1e3:.6g}{std}"
 
 
-def _noise(test: "Test", frequency: float) -> tuple[str, str]:
+def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
     """Noise per channel, and the harmonics of the displacement."""
-    from wedgesweep.measured import noise
+    from wedgesweep.measured.noise_estimate import estimate_noise
 
-    displacement = noise.of_channel(test.time, test.displacement, frequency)
+    displacement = estimate_noise(test.time, test.displacement, frequency)
     told = [f"{displacement.std * 1e3:.3g} mm ({100.0 * displacement.share:.2g} %)"]
     if test.velocity is not None:
-        velocity = noise.of_channel(test.time, test.velocity, frequency)
+        velocity = estimate_noise(test.time, test.velocity, frequency)
         told.append(f"{velocity.std * 1e3:.3g} mm/s ({100.0 * velocity.share:.2g} %)")
     return ", ".join(told), _runs(displacement.harmonics)
 
 
 def _runs(orders: tuple[int, ...]) -> str:
-    """1, 2, 3, 5 as 1-3, 5."""
+    """Format 1, 2, 3, 5 as 1-3, 5."""
     numbered = enumerate(orders)
     runs = [[order for _, order in run] for _, run in groupby(numbered, lambda each: each[1] - each[0])]
     return ", ".join(f"{run[0]}" if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs) or "none"

@@ -1,4 +1,4 @@
-"""Arguments and options that several commands take."""
+"""Arguments and options shared by several commands."""
 
 import os
 import shlex
@@ -17,12 +17,12 @@ N_JOBS = click.option(
     "--n-jobs",
     type=click.IntRange(min=1),
     default=None,
-    help="Processes that solve cases; default: one per processor.",
+    help="Number of parallel jobs; default: one per processor.",
 )
 
 
 class OutputPath(click.Path):
-    """A file to write: what would go wrong is said before any work is done."""
+    """A file to write, checked before any work is done."""
 
     def __init__(self, **options: bool) -> None:
         super().__init__(dir_okay=False, writable=True, path_type=Path, **options)
@@ -39,7 +39,7 @@ class OutputPath(click.Path):
 
 
 def require_place_for(directory: Path) -> None:
-    """Say before any work is done that a directory cannot be made, or not be written to."""
+    """Fail before any work is done if a directory cannot be created or written to."""
     place = directory.absolute()
     while not place.exists():
         place = place.parent
@@ -51,13 +51,6 @@ def require_place_for(directory: Path) -> None:
         raise Failure(message)
 
 
-def jobs(n_jobs: int | None) -> int:
-    """Number of jobs: as given, or one for each processor that this process may use."""
-    import joblib
-
-    return n_jobs or joblib.cpu_count()
-
-
 def command_line() -> str:
-    """The command as it was typed, for the history of a dataset."""
+    """Return the command line as typed, for the history of a dataset."""
     return shlex.join(["wedgesweep", *sys.argv[1:]])

@@ -1,15 +1,13 @@
 """plot: figures of a dataset, or of a diagnosis."""
 
 import os
-from collections.abc import Callable
-from inspect import signature
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
+from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
@@ -17,7 +15,7 @@ from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 if TYPE_CHECKING:
     import xarray as xr
 
-    from wedgesweep.diagnosed import Diagnosed
+    from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
@@ -100,10 +98,11 @@ def _beside(path: Path) -> Path:
     return path if path.is_dir() else path.parent
 
 
-def _read(path: Path) -> "xr.Dataset | Diagnosed":
-    from wedgesweep import dataset, diagnosed
+def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
+    from wedgesweep import diagnosis_result
+    from wedgesweep.sweep import dataset
 
-    return diagnosed.read(path) if path.is_dir() else dataset.read(path)
+    return diagnosis_result.read(path) if path.is_dir() else dataset.read(path)
 
 
 def _require_kind(kind: str, path: Path) -> None:
@@ -127,16 +126,11 @@ def _require_place(file: Path) -> None:
         raise Failure(message)
 
 
-def _modules(found: "xr.Dataset | Diagnosed") -> dict[str, ModuleType]:
-    """Figures that draw this, by kind."""
-    from wedgesweep import diagnosed, figures
-
-    return diagnosis.FIGURES if isinstance(found, diagnosed.Diagnosed) else figures.FIGURES
-
-
-def _draw_all(found: "xr.Dataset | Diagnosed", directory: Path, suffix: str, options: dict[str, Any]) -> None:
+def _draw_all(
+    found: "xr.Dataset | DiagnosisResult", directory: Path, suffix: str, options: dict[str, Any]
+) -> None:
     drawn = 0
-    for kind in _modules(found):
+    for kind in figures.of(found):
         try:
             _draw(kind, found, directory / f"{kind}.{suffix}", options, strict=False)
             drawn += 1
@@ -148,18 +142,15 @@ def _draw_all(found: "xr.Dataset | Diagnosed", directory: Path, suffix: str, opt
 
 
 def _draw(
-    kind: str, found: "xr.Dataset | Diagnosed", file: Path, options: dict[str, Any], strict: bool = True
+    kind: str, found: "xr.Dataset | DiagnosisResult", file: Path, options: dict[str, Any], strict: bool = True
 ) -> None:
-    from wedgesweep import figures
-
-    draw = _modules(found)[kind].draw
-    figures.save(draw(found, **_accepted(kind, draw, options, strict)), file)
+    picks = _accepted(kind, figures.of(found)[kind].picks, options, strict)
+    figures.save(figures.draw(found, kind, **picks), file)
     click.echo(f"wrote {file}")
 
 
-def _accepted(kind: str, draw: Callable[..., Any], options: dict[str, Any], strict: bool) -> dict[str, Any]:
+def _accepted(kind: str, names: tuple[str, ...], options: dict[str, Any], strict: bool) -> dict[str, Any]:
     """Options by the figure's names for them; one that it lacks is an error if strict."""
-    names = signature(draw).parameters
     accepted = {}
     for name, value in options.items():
         if name == "amplitude" and "amplitudes" in names:

@@ -1,4 +1,4 @@
-"""How far a sweep is: a bar on a terminal, log lines elsewhere; both on stderr."""
+"""Progress of a sweep on stderr: a bar on a terminal, log lines elsewhere."""
 
 import sys
 from time import perf_counter
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wedgesweep.cli.words import duration
+from wedgesweep.cli.humanize import duration
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,8 +15,8 @@ LINE_SHARE = 0.1
 LINE_SECONDS = 30.0
 
 
-class Progress:
-    """A sweep.Progress: counts the cases of one sweep, or of several one after the other."""
+class ProgressReport:
+    """A ``sweep.run.Progress`` that counts the cases of one sweep, or of several in turn."""
 
     def __init__(self) -> None:
         self.done = self.failed = self.kept = self.total = 0
@@ -41,7 +41,7 @@ class Progress:
             self.stop()
 
     def stop(self) -> None:
-        """End the line of a bar."""
+        """Close the progress bar."""
         if self._bar is not None:
             self._bar.render_finish()
             self._bar = None
@@ -49,7 +49,7 @@ class Progress:
     def _begin(self) -> None:
         self._started = self._said = perf_counter()
         self._said_done = self.done
-        kept = f", {self.kept} of them kept from an earlier run" if self.kept else ""
+        kept = f", {self.kept} of them from an earlier run" if self.kept else ""
         click.echo(f"{self.total} cases{kept}", err=True)
         if sys.stderr.isatty() and self.done < self.total:
             self._bar = click.progressbar(

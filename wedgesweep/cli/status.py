@@ -1,4 +1,4 @@
-"""status: what is finished, of a dataset or of a sweep that was interrupted or still runs."""
+"""status: progress of a sweep, whether complete, interrupted or running."""
 
 import json
 from collections.abc import Mapping
@@ -16,13 +16,13 @@ VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
 @DATASET
 @click.pass_context
 def status(ctx: click.Context, path: Path) -> None:
-    """Tell what is finished of the sweep whose dataset is, or will be, OUT."""
+    """Show how far the sweep with dataset OUT is, and which cases failed."""
     partial = path.with_name(path.name + ".partial")
     ctx.exit(_unfinished(partial) if partial.exists() else _finished(path))
 
 
 def _finished(path: Path) -> int:
-    from wedgesweep import dataset
+    from wedgesweep.sweep import dataset
 
     ds = dataset.read(path)
     click.echo(f"{path}: complete\ntitle: {ds.attrs.get('title', 'none')}")
@@ -33,15 +33,16 @@ def _finished(path: Path) -> int:
 
 
 def _unfinished(partial: Path) -> int:
-    from wedgesweep import config, journal, outcomes
-    from wedgesweep.fingerprint import differences, fingerprint
+    from wedgesweep import config
+    from wedgesweep.sweep import journal, outcomes
+    from wedgesweep.sweep.fingerprint import differences, fingerprint
 
     header = journal.header(partial)
     settings = config.parse(header["config"], str(partial))
     click.echo(f"{partial}: unfinished\ntitle: {settings.title}")
     _print_versions(header)
     for difference in differences(header, fingerprint(settings)):
-        click.echo(f"cannot be continued as things are: {difference}")
+        click.echo(f"cannot be resumed: {difference}")
     return print_outcomes(outcomes.of_journal(partial), total=len(settings.case_list()))
 
 

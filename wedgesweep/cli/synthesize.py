@@ -1,11 +1,12 @@
-"""synthesize: measured data of a known truth."""
+"""synthesize: measured data of a known system."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
-from wedgesweep.cli.options import CONFIG, N_JOBS, jobs
-from wedgesweep.cli.run import tell_of_compiling
+from wedgesweep.cli.options import CONFIG, N_JOBS
+from wedgesweep.cli.run import announce_compiling
 from wedgesweep.synthesize.names import NOISES
 
 SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
@@ -19,67 +20,71 @@ SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
     type=click.Path(path_type=Path),
     required=True,
     metavar="TESTS",
-    help="TOML file of [[test]] tables with frequency_hz, amplitude_mm, optionally amplitude_std and "
-    "known = false (amplitude not told), and an optional [uncertain] table as in measured.toml.",
+    help="TOML file with a [[test]] table per test (frequency_hz, amplitude_mm, optionally amplitude_std "
+    "and known = false to withhold the amplitude) and an optional [uncertain] table as in measured.toml.",
 )
-@click.option("--noise", type=click.Choice(NOISES), default=NOISES[0], show_default=True)
-@click.option("--level", type=SHARE, default=0.04, show_default=True, help="Noise over a channel's rms.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True)
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Directory; default: CONFIG-measured.")
+@click.option(
+    "--noise", type=click.Choice(NOISES), default=NOISES[0], show_default=True, help="Kind of noise."
+)
+@click.option(
+    "--level",
+    type=SHARE,
+    default=0.04,
+    show_default=True,
+    help="Std of the noise relative to the channel's rms.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Random seed.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Directory to write; default: CONFIG-measured."
+)
 @click.option(
     "--periods",
     type=click.FloatRange(min=4.0),
     default=8.4,
     show_default=True,
-    help="Length of a record.",
+    help="Length of each record in periods.",
 )
 @click.option(
     "--sampling-hz",
     type=click.FloatRange(min=0.0, min_open=True),
-    help="Default: near 2000, another rate in each test, so that none divides the period.",
+    help="Sampling rate; default: about 2000, different in each test, so that none divides the period.",
 )
 @click.option(
     "--settle-periods",
     type=click.IntRange(min=1),
     default=60,
     show_default=True,
-    help="Periods after which the motion counts as steady, if it does not repeat before.",
+    help="Number of periods after which the motion counts as steady, if it has not repeated before.",
 )
 @click.option(
     "--amplitude-error",
     type=SHARE,
     default=1e-3,
     show_default=True,
-    help="Std of the true amplitudes about the nominal ones, relative; a test's amplitude_std goes before.",
+    help="Relative std of the true amplitudes about the nominal ones; a test's amplitude_std overrides it.",
 )
 @N_JOBS
 def synthesize(
     config_path: Path,
     plan_path: Path,
-    noise: str,
-    level: float,
-    seed: int,
     output: Path | None,
-    periods: float,
-    sampling_hz: float | None,
-    settle_periods: int,
-    amplitude_error: float,
     n_jobs: int | None,
+    **options: Any,
 ) -> None:
-    """Make measured data from CONFIG: the true system, with its effects and one friction law.
+    """Make synthetic measured data of the system in CONFIG, with its effects and its one friction law.
 
-    The directory receives measured.toml, a CSV file per test, model.toml (CONFIG without its effects) and
-    truth.json. The same seed gives the same data.
+    Writes measured.toml, a CSV file per test, model.toml (CONFIG without its effects) and truth.json. The
+    same seed gives the same data.
     """
     from wedgesweep import config
+    from wedgesweep.sweep.backend import count_jobs
     from wedgesweep.synthesize import plan
     from wedgesweep.synthesize.campaign import Options
     from wedgesweep.synthesize.campaign import synthesize as make
 
     settings, tests = config.load(config_path), plan.load(plan_path)
     directory = output or Path(f"{config_path.stem}-measured")
-    options = Options(noise, level, seed, periods, sampling_hz, settle_periods, amplitude_error)
-    tell_of_compiling("radau")
-    for remark in make(settings, str(config_path), tests, options, directory, jobs(n_jobs)):
+    announce_compiling("radau")
+    for remark in make(settings, str(config_path), tests, Options(**options), directory, count_jobs(n_jobs)):
         click.echo(remark, err=True)
     click.echo(f"wrote {directory / 'measured.toml'}: {len(tests.tests)} tests")

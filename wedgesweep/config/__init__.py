@@ -37,7 +37,7 @@ class Case(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Cases:
     """The cases: a grid, or where ``cases`` is given a list (the grid is empty then).
 
     ``beta`` and ``amplitude`` (m) have shapes (n,) and (m,); beta refers to ``omega_n`` (rad/s).
@@ -80,14 +80,14 @@ class Config:
         return {name: _si(EFFECTS[name].quantities, values) for name, values in given.items()}
 
     @cached_property
-    def sweep(self) -> Sweep:
+    def sweep(self) -> Cases:
         given = self.document["sweep"]
         omega_n = given["omega_n_rad_per_s"]
         cases = tuple(
             Case(each["friction_law"], *_betas(each, omega_n), *_metres([each["amplitude_mm"]]))
             for each in given.get("case", ())
         )
-        return Sweep(
+        return Cases(
             tuple(given.get("friction_law", ())),
             np.array(_betas(given, omega_n)),
             np.array(_metres(given.get("amplitude_mm", []))),
@@ -121,6 +121,24 @@ class Config:
         if problems := list(contradictions(document)):
             raise ConfigError([f'solver "{method}": {problem}' for problem in problems])
         return Config(document)
+
+    def single_case(
+        self, amplitude_mm: float, beta: float | None, frequency_hz: float | None, law: str | None
+    ) -> "Config":
+        """The same config with a grid of one case, whose waveforms are kept; raises ConfigError.
+
+        Either ``beta`` or ``frequency_hz`` is given; ``law`` is by default the config's first.
+        """
+        given = {
+            "friction_law": law or self.case_list()[0].law,
+            "beta": beta,
+            "frequency_hz": frequency_hz,
+            "amplitude_mm": amplitude_mm,
+            "omega_n_rad_per_s": self.sweep.omega_n,
+        }
+        grid = {key: value for key, value in given.items() if value is not None}
+        solver = self.document["solver"] | {"keep_waveforms": True, "continuation": False}
+        return from_document(self.document | {"sweep": grid, "solver": solver}, "case")
 
     def case_list(self) -> list[Case]:
         """All cases; a grid in the order law, beta, amplitude (the last varies fastest)."""
@@ -226,12 +244,17 @@ def load(path: str | Path) -> Config:
 
 def parse(text: str, source: str = "<config>") -> Config:
     """Read a config from TOML text; raises ConfigError with everything that is wrong with it."""
-    from wedgesweep.config.declarations import ROOT
-
     try:
         given = tomllib.loads(text)
     except ValueError as error:
         raise ConfigError([f"{source}: not valid TOML: {error}"]) from error
+    return from_document(given, source)
+
+
+def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
+    """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
+    from wedgesweep.config.declarations import ROOT
+
     problems: list[str] = []
     document = ROOT.read(given, "", problems)
     problems += contradictions(document)

@@ -4,8 +4,8 @@ from wedgesweep.config.keys import Key
 from wedgesweep.config.tables import GridOrList, Table, TableList
 
 HEAD = """\
-# Config of wedgesweep. The ending of a key names its unit. Only [sweep] must be given: every other
-# key is shown with the value that it has when it is left out.
+# Config of wedgesweep. The ending of a key names its unit. Only [sweep] is required; all other keys are shown
+# with their defaults. To switch an effect on, remove the "# " before its table and keys.
 
 """
 
@@ -32,7 +32,7 @@ def _entry(key: Key, path: str, mark: str) -> str:
     if isinstance(key, TableList):
         return f"{mark}[[{at}]]\n{_body(key.item, f'{at}.', mark)}"
     if not isinstance(key, Table):
-        return f"{mark}{key.written}  # {'; '.join([key.meaning, *key.limits])}\n"
+        return f"{mark}{key.written}  # {'; '.join(filter(None, (key.meaning, key.limits)))}\n"
     body = _body(key, f"{at}.", mark)
     holds_only_tables = all(isinstance(each, Table) for each in key.keys.values())
     header = "" if holds_only_tables else f"{mark}[{at}]\n"

@@ -1,6 +1,7 @@
 """Every key of the config with its default, range and meaning: the one place that declares them."""
 
 from math import nan, sqrt
+from typing import Any
 
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
 from wedgesweep.config.series import Series, Several
@@ -15,20 +16,20 @@ from wedgesweep.solvers.names import SOLVERS
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "input amplitude a of the side frame", above=0.0)
-OMEGA_N = Quantity("omega_n_rad_per_s", nan, "reference of beta; sqrt(k_b/M_b) unless given", above=0.0)
+OMEGA_N = Quantity("omega_n_rad_per_s", nan, "omega_n that beta refers to; default: sqrt(k_b/M_b)", above=0.0)
 LAW = Choice(key="friction_law", meaning="friction law", choices=LAW_NAMES, example=LAW_NAMES[0])
 
 
 def _series(quantity: Quantity, example: object) -> Series:
     return Series(
         key=quantity.key,
-        meaning=f"{quantity.meaning}: a number, an increasing list, or a range",
+        meaning=f"{quantity.meaning}: a number, an increasing list or a range",
         item=Number.of(quantity),
         example=example,
     )
 
 
-def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more) -> Whole:
+def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more: Any) -> Whole:
     quantity = Quantity(key, nan if default is None else default, meaning, minimum, maximum=maximum)
     return Whole.of(quantity, **more)
 
@@ -50,7 +51,7 @@ OMEGA_N_KEY = Number.of(OMEGA_N, optional=True, example=85.3565)
 
 GRID = table(
     "sweep",
-    "every law with every frequency and amplitude",
+    "the cases: every law at every frequency and amplitude",
     Several(key="friction_law", meaning="friction laws", item=LAW, example=list(LAW_NAMES)),
     (
         _series(BETA, {"start": 0.1, "stop": 3.0, "num": 30}),
@@ -79,7 +80,7 @@ LISTED = table(
 
 SOLVER = table(
     "solver",
-    "how a case is solved",
+    "how each case is solved",
     Choice(key="method", meaning="integrator", choices=SOLVERS, default=SOLVERS[0]),
     Number.of(Quantity("rtol", 1e-6, "relative tolerance", minimum=1e-13, maximum=1e-2)),
     (
@@ -87,11 +88,13 @@ SOLVER = table(
             Quantity(
                 "duration_s",
                 1.5,
-                "simulated time, cut to whole periods and at least kept_periods + 1 of them",
+                "simulated time, in whole periods and at least kept_periods + 1 of them",
                 above=0.0,
             )
         ),
-        _whole("settle_periods", None, "periods run before the kept ones", 1, 100_000, example=60),
+        _whole(
+            "settle_periods", None, "periods simulated before those that are kept", 1, 100_000, example=60
+        ),
         Choice(
             key="settle",
             meaning="run until the response repeats (event-driven only)",
@@ -104,25 +107,31 @@ SOLVER = table(
         Quantity(
             "steady_tolerance",
             1e-7,
-            "change per repetition, over input amplitude and velocity, that counts as steady",
+            "largest change per repetition of a steady response, over input amplitude and velocity",
             minimum=1e-13,
             maximum=1e-2,
         )
     ),
     Flag(
         key="continuation",
-        meaning="sweep up and down in beta from state to state, to find responses that coexist (steady only)",
+        meaning="sweep up and down in beta, from one steady state to the next, to find coexisting responses",
         default=False,
     ),
-    _whole("max_periods", 5000, "periods after which a response counts as not periodic", 10, 10**7),
-    _whole("kept_periods", 3, "periods at the end that are evaluated and stored", 2, 1000),
-    _whole("samples_per_period", 256, "samples of the stored waveforms", 32, 65_536, step=2),
-    Flag(key="keep_waveforms", meaning="store the kept periods, not only numbers", default=True),
+    _whole(
+        "max_periods",
+        5000,
+        "periods after which a response that has not repeated counts as not periodic",
+        10,
+        10**7,
+    ),
+    _whole("kept_periods", 3, "periods at the end of a run that are evaluated and stored", 2, 1000),
+    _whole("samples_per_period", 256, "samples per period of the stored waveforms", 32, 65_536, step=2),
+    Flag(key="keep_waveforms", meaning="store waveforms, not only numbers", default=True),
     Number.of(
         Quantity(
             "case_timeout_s",
             60.0,
-            "time limit of a case on the clock (radau; event-driven limits its steps and switches instead)",
+            "wall-clock limit of a case (radau; event-driven limits its steps and events instead)",
             above=0.0,
         )
     ),
@@ -133,11 +142,16 @@ ROOT = table(
     "",
     "Config of wedgesweep",
     Text(key="title", meaning="title of the sweep", default="wedge suspension"),
-    table("suspension", "the paper's Table 1", *map(Number.of, SUSPENSION), default={}),
-    table("friction", "both faces of the wedges", *map(Number.of, FRICTION), default={}),
+    table(
+        "suspension",
+        "the suspension; defaults: Table 1 of the paper",
+        *map(Number.of, SUSPENSION),
+        default={},
+    ),
+    table("friction", "friction on both faces of each wedge", *map(Number.of, FRICTION), default={}),
     table(
         "effects",
-        "physics beyond the paper's model; absent: off",
+        "effects that the base model leaves out; off unless their table is present",
         *map(_effect, EFFECTS.values()),
         default={},
     ),

@@ -55,9 +55,9 @@ class Key(ABC):
         """JSON schema of the value alone."""
 
     @property
-    def limits(self) -> list[str]:
-        """The range of the value in words."""
-        return []
+    def limits(self) -> str:
+        """The range of the value, for the template."""
+        return ""
 
     @property
     def required(self) -> bool:
@@ -121,8 +121,8 @@ class Choice(Key):
         return {"enum": list(self.choices)}
 
     @property
-    def limits(self) -> list[str]:
-        return [f"one of {', '.join(self.choices)}"]
+    def limits(self) -> str:
+        return f"one of {', '.join(self.choices)}" if len(self.choices) > 1 else ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,9 +138,10 @@ class Number(Key):
         return cls(key=quantity.key, meaning=quantity.meaning, default=default, quantity=quantity, **more)
 
     @property
-    def limits(self) -> list[str]:
-        faults = (self.quantity.fault(end) for end in (-LARGEST, LARGEST))
-        return [fault for fault in faults if fault]
+    def limits(self) -> str:
+        own = self.quantity
+        ends = ((">=", own.minimum), (">", own.above), ("<=", own.maximum), ("<", own.below))
+        return ", ".join(f"{sign} {end:g}" for sign, end in ends if isfinite(end))
 
     def read(self, value: Any, path: str, problems: list[str]) -> float | None:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.problem import Problem
 from wedgesweep.diagnose.search import Explanation, Search
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.model import Fit
 
 DRAWS = 20
 # Share of draws in which the search must find the truth again for its name to be given.
@@ -59,7 +59,7 @@ def calibrate(
     def outcomes(truth: Fit, label: str) -> list[tuple[Explanation, list[Explanation]]]:
         results = []
         for number in range(DRAWS):
-            start, found = explain(Search(_drawn(truth, rng), effects, threads))
+            start, found = explain(Search(bootstrap_sample(truth, rng), effects, threads))
             results.append((start, verdict.ranked(found)))
             progress(f"calibration, {label}: {number + 1} of {DRAWS}")
         return results
@@ -74,12 +74,12 @@ def calibrate(
     return Calibration(gains, found)
 
 
-def _drawn(truth: Fit, rng: np.random.Generator) -> Problem:
+def bootstrap_sample(truth: Fit, rng: np.random.Generator) -> FitData:
     """The problem with the fitted harmonics and new noise in place of what was measured."""
-    problem = truth.model.problem
-    exact = problem.turned(truth.trial.harmonics, truth.trial.phase) + truth.trial.images
+    data = truth.model.data
+    exact = data.rotated(truth.evaluation.harmonics, truth.evaluation.phase) + truth.evaluation.aliases
     spectra = []
-    for spectrum, mean in zip(problem.spectra, exact, strict=True):
+    for spectrum, mean in zip(data.spectra, exact, strict=True):
         channels = spectrum.mean.shape[0]
         kept = mean[:channels, : spectrum.harmonics]
         if spectrum.tone is not None:
@@ -91,4 +91,4 @@ def _drawn(truth: Fit, rng: np.random.Generator) -> Problem:
             scale = np.sqrt(spectrum.variance)
             noise[1] = np.sqrt(1.0 - abs(share) ** 2) * noise[1] + share * noise[0] / scale[0] * scale[1]
         spectra.append(replace(spectrum, mean=kept + noise))
-    return replace(problem, spectra=tuple(spectra))
+    return replace(data, spectra=tuple(spectra))

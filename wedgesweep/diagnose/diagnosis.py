@@ -5,21 +5,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wedgesweep.diagnose import gain, next_test, pairs, score, tone, verdict
+from wedgesweep.diagnose import cross_validation, next_test, pairs, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.gain import Gain
-from wedgesweep.diagnose.meeting import met
-from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.cross_validation import Gain
+from wedgesweep.diagnose.least_squares import tight_refit
 from wedgesweep.diagnose.next_test import NextTest
-from wedgesweep.diagnose.problem import Problem
-from wedgesweep.diagnose.profile import profiled
-from wedgesweep.diagnose.refine import exact
-from wedgesweep.diagnose.score import Score
+from wedgesweep.diagnose.profile_likelihood import profile_likelihood
+from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
-from wedgesweep.diagnose.spectra import fitted, spectrum
+from wedgesweep.diagnose.steady import tone
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.steady.spectra import fitted, spectrum
+from wedgesweep.diagnose.steady.tone_phase import with_tone_phase
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS, SCALES, acting
-from wedgesweep.measured import Measurement, Test
+from wedgesweep.measured import Measurement, TestRecord
 
 # Explanations that a next test should tell apart where the verdict abstains.
 COMPARED = 6
@@ -32,7 +33,7 @@ class Diagnosis:
     """Everything that was found; ``explanations`` are sorted, the best first."""
 
     measurement: Measurement
-    problem: Problem
+    data: FitData
     base: Explanation
     explanations: tuple[Explanation, ...]
     scores: tuple[Score, ...]
@@ -49,15 +50,15 @@ class Diagnosis:
         return self.base.fit if best is None else best.fit
 
 
-def problem_of(measurement: Measurement) -> Problem:
+def fit_data_of(measurement: Measurement) -> FitData:
     """Spectra of all tests at their actual frequencies; a foreign tone is the model's, or it is found."""
     tests = measurement.tests
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
-    records = [(test.time, s, test.actual_frequency) for test, s in zip(tests, signals, strict=True)]
+    records = [(test.time, s, test.refined_frequency) for test, s in zip(tests, signals, strict=True)]
     foreign = tone.of(acting(measurement.model.effects)) or tone.find([fitted(*each) for each in records])
     found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
     known = [test.amplitude is not None for test in tests]
-    return Problem(
+    return FitData(
         measurement.model,
         measurement.law,
         tuple(test.name for test in tests),
@@ -70,7 +71,7 @@ def problem_of(measurement: Measurement) -> Problem:
     )
 
 
-def _channels(test: Test, derived_velocity: bool) -> np.ndarray:
+def _channels(test: TestRecord, derived_velocity: bool) -> np.ndarray:
     """Channels that say something of their own, (C, n)."""
     if test.velocity is None or derived_velocity:
         return test.displacement[None]
@@ -84,14 +85,14 @@ def diagnose(
     progress: Callable[[str], None] = lambda step: None,
     calibrated: bool = False,
 ) -> Diagnosis:
-    """Name what the model on trial misses, or say why it cannot be named.
+    """Name what the base model misses, or say why it cannot be named.
 
-    ``effects``: the candidates; what the model on trial has already is none, unless it scales a number.
+    ``effects``: the candidates; what the base model has already is none, unless it scales a number.
     ``calibrated``: with thresholds from simulations of these very tests, not the general ones.
     """
-    problem = problem_of(measurement)
+    data = fit_data_of(measurement)
     effects = _missing(effects, measurement, progress)
-    search = Search(problem, effects, threads, progress)
+    search = Search(data, effects, threads, progress)
     base, explanations = explain(search)
     thresholds, simulated = verdict.DEFAULT, None
     finding = verdict.decide(base, explanations, thresholds)
@@ -99,20 +100,20 @@ def diagnose(
         simulated = calibrate(base, finding.best, explain, effects, threads, progress)
         thresholds = simulated.thresholds
         finding = verdict.decide(base, explanations, thresholds)
-    finding, explanations = _exactly(search, base, finding, explanations, thresholds)
+    finding, explanations = _refit_best(search, base, finding, explanations, thresholds)
     progress("scores")
-    scores = score.scores(search, base.fit)
+    scores = score_test.scores(search, base.fit)
     measured_gain = None
-    if finding.best is not None and problem.tests > 1:
+    if finding.best is not None and data.tests > 1:
         progress("held-out tests")
-        measured_gain = gain.measure(base.fit, finding.best.fit, search.each)
+        measured_gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
         finding = verdict.on_unseen_tests(finding, base, measured_gain.excess_removed, measured_gain.interval)
         measured_gain = measured_gain if finding.best is not None else None
     progress("next test")
     following = next_test.recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement,
-        problem,
+        data,
         base,
         tuple(explanations),
         tuple(scores),
@@ -127,15 +128,15 @@ def diagnose(
 def _missing(
     effects: Sequence[str], measurement: Measurement, progress: Callable[[str], None]
 ) -> tuple[str, ...]:
-    """Effects that the model on trial may lack."""
+    """Effects that the base model may lack."""
     own = acting(measurement.model.effects)
     there = [name for name in effects if name in own and name not in SCALES]
     if there:
-        progress(f"part of the model on trial, so no candidates: {', '.join(there)}")
+        progress(f"part of the base model, so no candidates: {', '.join(there)}")
     return tuple(name for name in effects if name not in there)
 
 
-def _exactly(
+def _refit_best(
     search: Search, base: Explanation, finding: Finding, found: list[Explanation], thresholds: Thresholds
 ) -> tuple[Finding, list[Explanation]]:
     """The finding with its best explanation fitted exactly, and all explanations, best first.
@@ -145,7 +146,11 @@ def _exactly(
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
         search.progress(f"exact fit of {' + '.join(finding.best.effects)}")
-        done.append(search.explanation(profiled(exact(met(finding.best.fit)), search.each)))
+        done.append(
+            search.explanation(
+                profile_likelihood(tight_refit(with_tone_phase(finding.best.fit)), search.each)
+            )
+        )
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
@@ -157,23 +162,23 @@ def explain(search: Search) -> tuple[Explanation, list[Explanation]]:
     search.progress("base model")
     base = search.base()
     found = search.singles(base.fit)
-    better = search.base_again(base, found)
-    if better.fit.q < MUCH * base.fit.q:
+    better = search.refit_base(base, found)
+    if better.fit.chi2 < MUCH * base.fit.chi2:
         found = best_of_each([*found, *search.singles(better.fit)], penalised)
     base = better
     found = _more(search, base, found)
-    return search.base_again(base, found), found
+    return search.refit_base(base, found), found
 
 
 def _more(search: Search, base: Explanation, found: list[Explanation]) -> list[Explanation]:
     """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
-    if verdict.none_will_do([base]):
+    if verdict.none_adequate([base]):
         found = search.around(found)
-    if verdict.none_will_do([base, *found]) and search.problem.tests >= verdict.FEWEST_TESTS:
+    if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
         both = pairs.pairs(search, base.fit, found)
-        found = found + both + pairs.halves(search, both)
-        if verdict.none_will_do(found):
-            found = found + search.everywhere()
+        found = found + both + pairs.component_fits(search, both)
+        if verdict.none_adequate(found):
+            found = found + search.multistart()
     return best_of_each(found, penalised)
 
 

@@ -14,10 +14,10 @@ from itertools import combinations
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
-from wedgesweep.diagnose import simulation
-from wedgesweep.diagnose.model import Fit, Model
-from wedgesweep.diagnose.problem import Problem, real
-from wedgesweep.diagnose.tangents import AMPLITUDE_STEP, STEP, derivatives
+from wedgesweep.diagnose.jacobian import AMPLITUDE_STEP, STEP, derivatives
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData, real
+from wedgesweep.diagnose.steady.model import Fit, Model
 from wedgesweep.solvers.periodic import at_rest
 
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
@@ -28,7 +28,7 @@ PREDICTED = 0.5
 # A fundamental of less than this share of the input is a bolster that sticks: nothing to fit.
 MOVES = 1e-3
 # Squared distance at which two explanations are told apart.
-ENOUGH = 30.0
+SEPARATED = 30.0
 # Largest standard deviation of a number, in widths of its coordinate.
 WIDEST = 10.0
 # How well the amplitude of a new test is taken to be known.
@@ -69,12 +69,12 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     made = [each for each in made if each[1].found.mean() >= PREDICTED]
     if len(made) < 2:
         return None
-    weight = _weights(fits[0].model.problem, [prediction for _, prediction in made])
+    weight = _weights(fits[0].model.data, [prediction for _, prediction in made])
     pairs = list(combinations(made, 2))
     distances = np.array([_distances(one, other, weight) for (_, one), (_, other) in pairs])
     best = _choice(distances)
     here = distances[:, best]
-    told = here >= ENOUGH if (here >= ENOUGH).any() else np.ones(len(pairs), bool)
+    told = here >= SEPARATED if (here >= SEPARATED).any() else np.ones(len(pairs), bool)
     # What it tells from the best one is of most interest.
     from_best = told & [one is fits[0] for (one, _), _ in pairs]
     chosen = np.flatnonzero(from_best if from_best.any() else told)
@@ -91,7 +91,7 @@ def _choice(distances: np.ndarray) -> int:
     """
     grid = distances.reshape(len(distances), ACCELERATIONS.size, FREQUENCIES.size)
     sure = minimum_filter1d(grid, 3, axis=1, mode="nearest")
-    told = (sure >= ENOUGH).sum(axis=0)
+    told = (sure >= SEPARATED).sum(axis=0)
     least = np.where(told == told.max(), sure.min(axis=0), -1.0)
     if not told.any():
         return int(np.argmax(least))
@@ -100,7 +100,7 @@ def _choice(distances: np.ndarray) -> int:
 
 
 def _predict(fit: Fit, omega: np.ndarray, amplitude: np.ndarray) -> _Prediction:
-    steps = np.r_[STEP * fit.model.width, AMPLITUDE_STEP]
+    steps = np.r_[STEP * fit.model.scale, AMPLITUDE_STEP]
     nothing = np.zeros((1, steps.size))
     here, found, warm = _responses(fit, omega, amplitude, nothing, at_rest(omega.size))
 
@@ -122,38 +122,38 @@ def _responses(
 
     The last step is the relative one of the amplitude.
     """
-    model, problem = fit.model, fit.model.problem
+    model, data = fit.model, fit.model.data
     rows = [
         simulation.records(
-            problem.model, problem.law, model.values(fit.x + step[:-1]), omega, amplitude * (1.0 + step[-1])
+            data.model, data.law, model.values(fit.x + step[:-1]), omega, amplitude * (1.0 + step[-1])
         )
         for step in steps
     ]
     done = _simulated(model, np.concatenate(rows), warm)
-    harmonics = done.harmonics[:, : problem.shape[0], : problem.shape[1]]
-    harmonics = harmonics.reshape(len(steps), omega.size, *problem.shape)
+    harmonics = done.harmonics[:, : data.shape[0], : data.shape[1]]
+    harmonics = harmonics.reshape(len(steps), omega.size, *data.shape)
     return harmonics, done.found.reshape(len(steps), -1), done.warm
 
 
 def _simulated(model: Model, rows: np.ndarray, warm: simulation.Warm) -> simulation.Responses:
     """Responses of tests that nobody made, in which a foreign tone would meet the input in any way."""
-    harmonics, tone = model.problem.shape[1], model.problem.tone
-    if not model.toned or tone is None:
+    harmonics, tone = model.data.shape[1], model.data.tone
+    if not model.has_tone or tone is None:
         return simulation.respond(rows, warm, harmonics)
     unknown = np.full(len(rows), np.nan)
-    anyhow = (simulation.Meeting(simulation.LONG, 0.0, np.nan),) * len(rows)
+    anyhow = (simulation.ToneTiming(simulation.LONG, 0.0, np.nan),) * len(rows)
     return simulation.respond_with_tone(rows, warm, harmonics, tone, anyhow, unknown)
 
 
 def _spread(fit: Fit) -> np.ndarray:
     """Root (k, k) of the covariance of a fit's numbers, of which none is wider than its range."""
     std = np.sqrt(np.diag(fit.covariance))
-    share = np.minimum(1.0, WIDEST * fit.model.width / np.maximum(std, 1e-300))
+    share = np.minimum(1.0, WIDEST * fit.model.scale / np.maximum(std, 1e-300))
     values, vectors = np.linalg.eigh(fit.covariance * np.outer(share, share))
     return vectors * np.sqrt(np.maximum(values, 0.0))
 
 
-def _weights(problem: Problem, predictions: Sequence[_Prediction]) -> np.ndarray:
+def _weights(data: FitData, predictions: Sequence[_Prediction]) -> np.ndarray:
     """One over the noise of a real part (n, C, 1), if new tests are as noisy as those made.
 
     The noise goes by the first prediction that there is: a wedge may lock under some of them. Where none is,
@@ -162,7 +162,7 @@ def _weights(problem: Problem, predictions: Sequence[_Prediction]) -> np.ndarray
     level = np.array(
         [
             np.sqrt(s.variance[c].mean() / (np.abs(s.mean[c]) ** 2).sum())
-            for s in problem.spectra
+            for s in data.spectra
             for c in range(s.mean.shape[0])
         ]
     )

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import POSSIBLE, Explanation, penalised
+from wedgesweep.diagnose.steady.model import Fit
 from wedgesweep.effects import alike
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
@@ -25,7 +25,7 @@ ADEQUATE = 0.01
 # And of that which the base model leaves.
 TOLERABLE = 1e-4
 # Share of the base model's excess whose tests a cause must explain for themselves.
-SHOWN = 0.9
+EXCESS_SHARE = 0.9
 # Excess chi-squared of the base model that it takes to name a cause.
 STRONG = 800.0
 # With fewer tests no cause can be checked on a test that it was not fitted to.
@@ -68,25 +68,25 @@ class Finding:
     def alternatives(self) -> tuple[Explanation, ...]:
         """What the tests cannot tell from the cause or, where they cannot show one, from one another."""
         best = self.best
-        if self.verdict == INSUFFICIENT and best is not None and best.adequacy >= POSSIBLE:
+        if self.verdict == INSUFFICIENT and best is not None and best.p_value >= POSSIBLE:
             return (best, *self.rivals)
         return self.rivals
 
 
 def eligible(each: Explanation) -> bool:
     """Whether a fit may be called a cause: an uncertain number must have moved beyond its spread."""
-    problem = each.fit.model.problem
+    data = each.fit.model.data
     return all(
-        abs(numbers["scale"] - 1.0) > UNCERTAIN * problem.uncertain[name]
+        abs(numbers["scale"] - 1.0) > UNCERTAIN * data.uncertain[name]
         for name, numbers in each.fit.values.items()
-        if name in problem.uncertain
+        if name in data.uncertain
     )
 
 
-def none_will_do(found: Sequence[Explanation]) -> bool:
+def none_adequate(found: Sequence[Explanation]) -> bool:
     """Whether even the best of explanations, if there is any, will not do."""
     best = min(found, key=penalised, default=None)
-    return best is not None and best.adequacy < ADEQUATE
+    return best is not None and best.p_value < ADEQUATE
 
 
 def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
@@ -108,41 +108,41 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     if not better:
         if base.fit.p >= TOLERABLE:
             return Finding(NOTHING, None, ())
-        will_do = bool(order) and order[0].adequacy >= ADEQUATE
-        return Finding(INSUFFICIENT if will_do else _nobody(base), order[0] if order else None, ())
-    best = next((each for each in better if each.adequacy >= POSSIBLE), None)
+        will_do = bool(order) and order[0].p_value >= ADEQUATE
+        return Finding(INSUFFICIENT if will_do else _unexplained(base), order[0] if order else None, ())
+    best = next((each for each in better if each.p_value >= POSSIBLE), None)
     if best is None:
-        return Finding(_nobody(base), order[0], ())
+        return Finding(_unexplained(base), order[0], ())
     left = _left(base, best)
     # Where little shows, noise has a part in where: those tests hold more of it than others.
     if left < POSSIBLE and base.fit.excess >= STRONG:
-        return Finding(_nobody(base), best, ())
+        return Finding(_unexplained(base), best, ())
     near = [each for each in order if each.penalised - best.penalised < thresholds.gap and each is not best]
-    rivals = tuple(each for each in near if each.adequacy >= POSSIBLE)
-    others = _others(order, best)
+    rivals = tuple(each for each in near if each.p_value >= POSSIBLE)
+    others = _adequate_alternatives(order, best)
     if len(best.effects) > 1 and len(others) >= MOST_TIED:
         return Finding(INSUFFICIENT, best, others)
-    if len(rivals) >= MOST_TIED or base.fit.model.problem.tests < FEWEST_TESTS:
+    if len(rivals) >= MOST_TIED or base.fit.model.data.tests < FEWEST_TESTS:
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    if alike(best.effects) or _half_does(order, best):
+    if alike(best.effects) or _component_suffices(order, best):
         return Finding(INSUFFICIENT, best, others)
     if base.fit.excess < thresholds.strong or left < ADEQUATE:
         return Finding(CONSISTENT, best, ())
     return Finding(CONSISTENT if others else NAMED, best, others)
 
 
-def _half_does(order: Sequence[Explanation], best: Explanation) -> bool:
+def _component_suffices(order: Sequence[Explanation], best: Explanation) -> bool:
     """Whether one effect of a pair alone leaves noise only, but with numbers that differ from test to test.
 
     What is beside it hardly shows then, and many will do for that.
     """
-    halves = [each for each in order if set(each.effects) < set(best.effects)]
-    return any(each.fit.p >= ADEQUATE > each.adequacy for each in halves)
+    component_fits = [each for each in order if set(each.effects) < set(best.effects)]
+    return any(each.fit.p >= ADEQUATE > each.p_value for each in component_fits)
 
 
-def _others(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
+def _adequate_alternatives(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
     """Explanations that leave noise only, too: what others can imitate may be none of them.
 
     What is part of the best one, or more than it, is no other.
@@ -154,7 +154,7 @@ def _others(order: Sequence[Explanation], best: Explanation) -> tuple[Explanatio
 
 def _left(base: Explanation, best: Explanation) -> float:
     """Probability of what an explanation leaves, over all tests or where there was more: the smaller one."""
-    return min(best.adequacy, where_it_shows(base.fit, best.fit))
+    return min(best.p_value, where_it_shows(base.fit, best.fit))
 
 
 def where_it_shows(base: Fit, fit: Fit) -> float:
@@ -162,12 +162,12 @@ def where_it_shows(base: Fit, fit: Fit) -> float:
 
     Tests in which nothing shows cannot make up for it there with less noise than they should have.
     """
-    dof = fit.model.problem.dof
-    excess = np.maximum(base.trial.by_test - dof, 0.0)
+    dof = fit.model.data.dof
+    excess = np.maximum(base.evaluation.chi2_by_test - dof, 0.0)
     order = np.argsort(-excess)
-    most = int(np.searchsorted(np.cumsum(excess[order]), SHOWN * excess.sum()))
+    most = int(np.searchsorted(np.cumsum(excess[order]), EXCESS_SHARE * excess.sum()))
     rows = order[: most + 1]
-    return float(chdtrc(max(dof[rows].sum() - fit.model.size, 1), fit.trial.by_test[rows].sum()))
+    return float(chdtrc(max(dof[rows].sum() - fit.model.size, 1), fit.evaluation.chi2_by_test[rows].sum()))
 
 
 def on_unseen_tests(
@@ -186,11 +186,11 @@ def on_unseen_tests(
         return Finding(CONSISTENT, finding.best, finding.rivals) if finding.verdict == NAMED else finding
     if base.fit.p >= TOLERABLE:
         return Finding(NOTHING, None, ())
-    rival_will_do = any(each.adequacy >= ADEQUATE for each in finding.rivals)
+    rival_will_do = any(each.p_value >= ADEQUATE for each in finding.rivals)
     if _left(base, finding.cause) < ADEQUATE and not rival_will_do:
-        return Finding(_nobody(base), finding.best, finding.rivals)
+        return Finding(_unexplained(base), finding.best, finding.rivals)
     return Finding(CONSISTENT if finding.verdict == NAMED else INSUFFICIENT, finding.best, finding.rivals)
 
 
-def _nobody(base: Explanation) -> str:
-    return NONE if base.fit.model.problem.tests >= FEWEST_TESTS else INSUFFICIENT
+def _unexplained(base: Explanation) -> str:
+    return NONE if base.fit.model.data.tests >= FEWEST_TESTS else INSUFFICIENT

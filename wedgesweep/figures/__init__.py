@@ -1,31 +1,104 @@
-"""Pictures of a dataset: one figure per file, drawn from the dataset alone.
+"""Figures of a sweep's dataset and of a diagnosis, one figure per file.
 
-A file that defines ``NAME``, ``DESCRIPTION`` and ``draw(ds, **options) -> Figure`` is a figure;
-nothing else has to know of it. Options are in SI units, as the dataset is; mm exist on axes only.
+A file here (or in ``diagnosis/``) that defines ``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)``
+is a figure; no list names it. ``NEEDS`` names the variables and attributes that it needs of a dataset. The
+keywords of ``draw`` are the figure's options, in SI units as the dataset is; mm exist on axes only.
 """
 
 import io
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from wedgesweep.figures import catalogue
+from wedgesweep.figures import catalogue, diagnosis
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+    from wedgesweep.diagnosis_result import DiagnosisResult
 
 FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
 
-_DECLARED = catalogue.declared(Path(__file__).parent)
-DESCRIPTIONS = {kind: description for kind, (_, description) in _DECLARED.items()}
+FIGURES = catalogue.declared(Path(__file__).parent, __name__)
+DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
 
 
-def __getattr__(name: str):
-    """``FIGURES`` (kind -> module) loads matplotlib, so it is made when first asked for."""
-    if name != "FIGURES":
-        message = f"module {__name__!r} has no attribute {name!r}"
-        raise AttributeError(message)
-    return catalogue.load(__name__, _DECLARED)
+def draw(
+    data: "xr.Dataset | DiagnosisResult",
+    name: str,
+    ax: "Axes | None" = None,
+    figure: "Figure | SubFigure | None" = None,
+    **picks: Any,
+) -> "Figure":
+    """Draw one figure of a sweep's dataset or of a diagnosis.
+
+    Parameters
+    ----------
+    data : xarray.Dataset or DiagnosisResult
+        What ``wedgesweep run`` or ``wedgesweep diagnose`` left behind, as read from its files. A friction
+        law, beta or amplitude may have been selected from a dataset, as one value or as several.
+    name : str
+        Name of the figure: a key of ``figures.FIGURES``, or of ``figures.diagnosis.FIGURES``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into, for a figure that has a single panel with these data, such as ``"stick-map"``
+        with one friction law.
+    figure : matplotlib.figure.Figure or SubFigure, optional
+        Empty figure to draw into, best one with ``layout="constrained"``. Without ``ax`` and ``figure`` a
+        new figure is made, in a size that suits its panels.
+    **picks
+        Options of the figure, by the names that ``figures.FIGURES[name].picks`` lists: ``beta`` (frequency
+        ratio), ``amplitude`` or ``amplitudes`` (m) and ``law`` of a dataset, ``tests`` (indices) of a
+        diagnosis. The nearest values that the data hold are drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure drawn into; ``figures.save`` writes it to a file.
+
+    Raises
+    ------
+    ValueError
+        There is no such figure or option, the data lack what the figure needs, or several panels were to
+        be drawn into one Axes. The message says which.
+    """
+    import xarray as xr
+
+    from wedgesweep.figures import cases
+
+    kinds = of(data)
+    if name not in kinds:
+        message = f"no figure '{name}' of these data; there are {', '.join(kinds)}"
+        raise ValueError(message)
+    kind = kinds[name]
+    try:
+        _require_known(picks, kind.picks)
+        checked = cases.checked(data, kind.needs, kind.case_lists) if isinstance(data, xr.Dataset) else data
+        panels = kind.load().draw(figure if ax is None else ax, checked, **picks)
+    except ValueError as error:
+        message = f"{name}: {error}"
+        raise ValueError(message) from error
+    return panels.figure.figure  # of a subfigure: the figure that it is part of
 
 
-def save(figure, path: str | Path) -> None:
+def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:
+    for name in picks:
+        if name not in known:
+            message = f"unknown option '{name}'; it takes {', '.join(known) or 'no options'}"
+            raise ValueError(message)
+
+
+def of(data: "xr.Dataset | DiagnosisResult") -> dict[str, catalogue.FigureKind]:
+    """Return the figures that draw such data, by name."""
+    from wedgesweep.diagnosis_result import DiagnosisResult
+
+    return diagnosis.FIGURES if isinstance(data, DiagnosisResult) else FIGURES
+
+
+def save(figure: "Figure", path: str | Path) -> None:
     """Write a figure as PNG, PDF or SVG, by the suffix; an interrupted write leaves no broken file.
 
     Raises
@@ -46,8 +119,8 @@ def save(figure, path: str | Path) -> None:
         partial.unlink(missing_ok=True)
 
 
-def svg(figure) -> bytes:
-    """Draw a figure as an SVG that needs no font and is the same each time."""
+def svg(figure: "Figure") -> bytes:
+    """Return a figure as an SVG that needs no font and is the same each time."""
     from matplotlib import rc_context
 
     stream = io.BytesIO()

@@ -2,28 +2,31 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "amplitude-ratio"
 DESCRIPTION = "amplitude ratio over frequency, all laws and amplitudes (Fig. 4)"
+NEEDS = ("amplitude_ratio", "omega_n", "frictionless_resonance", "config")
 
-LOWEST = 0.01  # amplitude ratio; below it nothing moves that matters
+LOWEST = 0.01  # of the axis; smaller ratios do not matter
 FEW_BETAS = 40  # up to here every case gets a dot
 
 
 def frictionless_ratio(ds: xr.Dataset, beta: np.ndarray) -> np.ndarray:
-    """Compute the amplitude ratio of the suspension without friction, NaN next to its resonance.
-
-    And everywhere, if there are effects with mechanics of their own.
+    """Compute the amplitude ratio of the suspension without friction.
 
     With the wedge travelling r z along the column, m = M_b + 2 M_w r^2 is the moving mass and
-    M_b + 2 M_w r cos(gamma) the mass that the base acceleration u'' drives.
+    M_b + 2 M_w r cos(gamma) the mass that the base acceleration u'' drives. The ratio is NaN next to the
+    resonance, and everywhere if an effect has mechanics of its own.
     """
     from wedgesweep import config
 
-    # Whatever the law: it takes part in none of these numbers.
+    # Any law will do: none of these numbers depends on it.
     p = config.parse(ds.attrs["config"]).record(config.Case("static-dynamic", 1.0, 1e-3))[0]
     driven = p["bolster_mass"] + 2.0 * p["wedge_mass"] * p["column_ratio"] * p["cos_column"]
     moving = p["bolster_mass"] + 2.0 * p["wedge_mass"] * p["column_ratio"] ** 2
@@ -39,7 +42,7 @@ def _limits(beta: np.ndarray) -> tuple[float, float]:
     return (0.0 if low < 0.3 * high or low == high else 0.98 * low), 1.02 * high
 
 
-def _draw_reference(ax, ds: xr.Dataset) -> None:
+def _draw_reference(ax: Axes, ds: xr.Dataset) -> None:
     beta = np.linspace(0.0, float(ds["beta"].max()), 2000)
     ratio = frictionless_ratio(ds, beta)
     if np.isnan(ratio).all():
@@ -47,7 +50,7 @@ def _draw_reference(ax, ds: xr.Dataset) -> None:
     ax.plot(beta, ratio, color="black", linestyle="--", linewidth=1, label="no friction", zorder=3)
 
 
-def _draw_law(ax, law: xr.Dataset, norm) -> bool:
+def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm) -> bool:
     marker = "." if law.sizes["beta"] <= FEW_BETAS else ""
     missing = False
     for amplitude in law["amplitude"].values:
@@ -58,13 +61,19 @@ def _draw_law(ax, law: xr.Dataset, norm) -> bool:
     return missing
 
 
-def draw(ds: xr.Dataset) -> Figure:
+def _amplitude_norm(amplitudes: np.ndarray) -> LogNorm:
+    """Scale the colours of input amplitudes (m), in mm."""
+    low, high = amplitudes.min() * style.MM, amplitudes.max() * style.MM
+    return LogNorm(low, high) if high > low else LogNorm(0.5 * low, 2.0 * high)
+
+
+def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, the input amplitude as colour, the frictionless response dashed."""
-    cases.require_grid(ds, NAME, "amplitude_ratio", "omega_n", "frictionless_resonance", "config")
     names = cases.laws(ds)
-    norm = style.amplitude_norm(ds["amplitude"].values)
+    norm = _amplitude_norm(ds["amplitude"].values)
     top = 1.5 * float(np.fmax(ds["amplitude_ratio"].max(), 1.5))
-    figure, axes = style.panels(len(names), size=(3.3, 3.8))
+    made = panels(target, len(names), size=(3.3, 3.8))
+    axes = made.axes
     axes[0].set_yscale("log")
     missing = False
     for ax, law in zip(axes, names, strict=True):
@@ -76,12 +85,12 @@ def draw(ds: xr.Dataset) -> Figure:
     axes[0].set(xlim=_limits(ds["beta"].values), ylim=(LOWEST, top))
     if axes[0].get_legend_handles_labels()[0]:
         axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
-    style.label(axes, style.BETA, "amplitude ratio $|x-y|/a$")
-    style.add_amplitude_bar(figure, axes, norm)
-    style.title(
-        figure,
+    style.label(axes, style.BETA, "amplitude ratio $|x-y|/a$ [1]")
+    bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), style.AMPLITUDE)
+    style.decimal_ticks(bar.ax.yaxis)
+    made.title(
         "Half peak-to-peak of $x-y$ (side frame minus bolster) over the input amplitude",
-        f"ratios below {LOWEST} are off the scale"
+        f"ratios below {LOWEST} are not shown"
         + ("; $\\times$ no result (failed or not run)" if missing else ""),
     )
-    return figure
+    return made

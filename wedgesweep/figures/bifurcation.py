@@ -2,12 +2,14 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "bifurcation"
 DESCRIPTION = "Poincare samples of the displacement over frequency at one amplitude"
+NEEDS = ("displacement", "omega_n")
 
 FEW_BETAS = 60
 
@@ -17,12 +19,12 @@ def poincare_samples(ds: xr.Dataset) -> np.ndarray:
     return ds["displacement"].transpose(..., "phase").values[..., :: cases.samples_per_period(ds)]
 
 
-def _draw_law(ax, law: xr.Dataset) -> bool:
+def _draw_law(ax: Axes, law: xr.Dataset) -> bool:
     samples = poincare_samples(law) * style.MM
     periods = samples.shape[-1]
     largest = 7.5 if law.sizes["beta"] <= FEW_BETAS else 3.5
     for period, values in enumerate(samples.T):
-        # Rings that shrink from period to period: coinciding samples stay visible as one target.
+        # Rings that shrink from period to period keep coinciding samples visible.
         size = largest * (1.0 - 0.65 * period / max(periods - 1, 1))
         color = style.SEQUENTIAL(0.95 - 0.95 * period / max(periods - 1, 1))
         name = f"kept period {period + 1}"
@@ -38,26 +40,24 @@ def _draw_law(ax, law: xr.Dataset) -> bool:
     return style.mark_missing(ax, law["beta"].values[np.isnan(samples).all(axis=1)], style.GREY)
 
 
-def draw(ds: xr.Dataset, amplitude: float | None = None) -> Figure:
+def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Panels:
     """Draw a panel per law at the amplitude (m) nearest to the given one (default: the middle)."""
-    cases.require_grid(ds, NAME, "displacement", "omega_n")
     middle = ds["amplitude"].values[ds.sizes["amplitude"] // 2]
     place = cases.nearest(ds["amplitude"], middle if amplitude is None else amplitude)[0]
     ds = ds.isel(amplitude=place)
     names = cases.laws(ds)
-    figure, axes = style.panels(len(names), size=(3.3, 3.5))
+    made = panels(target, len(names), size=(3.3, 3.5))
+    axes = made.axes
     missing = False
     for ax, law in zip(axes, names, strict=True):
         missing |= _draw_law(ax, ds.sel(friction_law=law))
         style.add_hertz_axis(ax, ds)
         ax.set_title(law, fontsize=10)
     style.label(axes, style.BETA, style.DISPLACEMENT)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=6, fontsize=8, frameon=False)
-    style.title(
-        figure,
+    made.legend(*axes[0].get_legend_handles_labels(), columns=6)
+    made.title(
         f"Displacement at forcing phase 0 ($u$ = 0, rising) of each kept period, "
         f"$a$ = {ds['amplitude'].item() * style.MM:.4g} mm",
         style.SIGN + ("; $\\times$ no result" if missing else ""),
     )
-    return figure
+    return made

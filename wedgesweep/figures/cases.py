@@ -1,37 +1,39 @@
-"""Which cases of a dataset a figure draws, and what it says if they are not there."""
+"""Which cases of a dataset a figure draws, and the errors if they are not there."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 # Amplitudes shown by default are those at which enough cases slip instead of creeping.
 SLIPS = 0.99  # stick fraction below which a case counts as slipping
 SLIPPING_SHARE = 0.25  # of the cases at an amplitude
 
 
-def require(ds: xr.Dataset, kind: str, *names: str) -> None:
-    """Raise ValueError if a variable or attribute that the figure needs is missing."""
-    missing = [name for name in names if name not in ds.variables and name not in ds.attrs]
-    if missing:
-        message = (
-            f"{kind}: the dataset has no " + ", ".join(missing) + "; "
-            "a dataset of metrics alone cannot show waveforms, run the sweep with them kept"
-            if {"displacement", "velocity", "stuck"} & set(missing)
-            else f"{kind}: the dataset has no " + ", ".join(missing)
-        )
-        raise ValueError(message)
+def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Dataset:
+    """Return a dataset with the dimensions of a grid; raise ValueError if the figure cannot draw it.
 
-
-def require_grid(ds: xr.Dataset, kind: str, *names: str) -> None:
-    """As ``require``; also refuse a dataset that is a list of cases."""
-    if "case" in ds.dims:
+    A law, beta or amplitude that was selected as a single value gets its dimension back. A list of cases
+    stays one, if the figure draws such lists.
+    """
+    if "case" in ds.dims and not case_lists:
         message = (
-            f"{kind}: needs a grid of friction_law, beta and amplitude, "
+            "needs a grid of friction_law, beta and amplitude, "
             "but this dataset is a list of cases; phase-portrait draws such a list"
         )
         raise ValueError(message)
-    require(ds, kind, *names)
+    missing = [name for name in needs if name not in ds.variables and name not in ds.attrs]
+    if missing:
+        waveforms = {"displacement", "velocity", "stuck"} & set(missing)
+        hint = "; run the sweep again with keep_waveforms = true" if waveforms else ""
+        message = f"the dataset has no {', '.join(missing)}{hint}"
+        raise ValueError(message)
+    single = [name for name in ("amplitude", "beta", "friction_law") if ds[name].ndim == 0]
+    ds = ds.expand_dims(single)
+    if "beta" in single and "frequency" in ds.coords:
+        ds = ds.assign_coords(frequency=("beta", [ds["frequency"].item()]))
+    return ds
 
 
 def laws(ds: xr.Dataset, law: str | None = None) -> list[str]:
@@ -45,7 +47,7 @@ def laws(ds: xr.Dataset, law: str | None = None) -> list[str]:
     return [law]
 
 
-def nearest(values, wanted) -> np.ndarray:
+def nearest(values: ArrayLike, wanted: ArrayLike) -> np.ndarray:
     """Return indices of the values nearest to the wanted ones, each once, in order of index."""
     values = np.atleast_1d(values)
     return np.unique([np.abs(values - value).argmin() for value in np.atleast_1d(wanted)])
@@ -58,7 +60,7 @@ def spread(indices: Sequence[int] | np.ndarray, count: int) -> np.ndarray:
     return indices[places.round().astype(int)]
 
 
-def pick_amplitudes(ds: xr.Dataset, amplitudes, count: int) -> np.ndarray:
+def pick_amplitudes(ds: xr.Dataset, amplitudes: ArrayLike | None, count: int) -> np.ndarray:
     """Return indices of the amplitudes (m) asked for; by default some at which something slips."""
     if amplitudes is not None:
         return nearest(ds["amplitude"], amplitudes)

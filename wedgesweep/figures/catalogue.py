@@ -1,30 +1,57 @@
-"""Which figures a folder holds: every file that names one."""
+"""Which figures a folder holds. Every file there that defines ``NAME`` is one; no list names it."""
 
 import ast
+from dataclasses import dataclass
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from types import ModuleType
+from typing import Any
+
+CONSTANTS = ("NAME", "DESCRIPTION", "NEEDS", "CASE_LISTS")
 
 
-def declared(folder: Path) -> dict[str, tuple[str, str]]:
-    """Module and description of every figure of a folder, by the kind that it draws."""
+@dataclass(frozen=True)
+class FigureKind:
+    """A figure as its file declares it.
+
+    ``needs`` are the variables and attributes that a sweep's dataset must have, and ``case_lists`` tells
+    whether the figure also draws a dataset that is a list of cases instead of a grid.
+    """
+
+    name: str
+    description: str
+    module: str
+    needs: tuple[str, ...] = ()
+    case_lists: bool = False
+
+    @property
+    def picks(self) -> tuple[str, ...]:
+        """Options of the figure, all of which have a default."""
+        return tuple(signature(self.load().draw).parameters)[2:]
+
+    def load(self) -> ModuleType:
+        """Import the file of the figure, and with it matplotlib."""
+        return import_module(self.module)
+
+
+def declared(folder: Path, package: str) -> dict[str, FigureKind]:
+    """Figures of a folder, which is a package of that name, by the name of the figure."""
     found = [(path.stem, _constants(path)) for path in sorted(folder.glob("*.py"))]
-    return {
-        constants["NAME"]: (stem, constants["DESCRIPTION"])
+    kinds = [
+        FigureKind(module=f"{package}.{stem}", **{key.lower(): value for key, value in constants.items()})
         for stem, constants in found
         if "NAME" in constants
-    }
+    ]
+    return {kind.name: kind for kind in kinds}
 
 
-def load(package: str, found: dict[str, tuple[str, str]]) -> dict[str, ModuleType]:
-    """Import the modules of what ``declared`` found, by kind; loads matplotlib."""
-    return {kind: import_module(f"{package}.{stem}") for kind, (stem, _) in found.items()}
-
-
-def _constants(path: Path) -> dict[str, str]:
-    """Literals assigned at the top of a file, read without running it: matplotlib loads slowly."""
-    return {
-        ast.unparse(statement.targets[0]): ast.literal_eval(statement.value)
+def _constants(path: Path) -> dict[str, Any]:
+    """Declarations at the top of a file, read without running it: matplotlib loads slowly."""
+    assignments = [
+        statement
         for statement in ast.parse(path.read_text(encoding="utf-8")).body
-        if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Constant)
-    }
+        if isinstance(statement, ast.Assign)
+    ]
+    named = [(ast.unparse(assignment.targets[0]), assignment.value) for assignment in assignments]
+    return {name: ast.literal_eval(value) for name, value in named if name in CONSTANTS}

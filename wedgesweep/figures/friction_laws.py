@@ -2,19 +2,22 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.friction import LAWS
 
 NAME = "friction-laws"
 DESCRIPTION = "coefficient of friction over slip velocity, a panel per law (Fig. 2)"
+NEEDS = ("config",)
+CASE_LISTS = True
 
 REACH = 4.0  # the slip velocities shown, in threshold velocities
 POINTS = 200
 
 
-def curve(name: str, parameters, reach: float) -> tuple[np.ndarray, np.ndarray]:
+def curve(name: str, parameters: np.void, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Trace slip velocity (m/s) up to ``reach`` and signed coefficient, vertical where the law jumps."""
     law = LAWS[name]
     threshold = float(parameters["threshold_velocity"])
@@ -28,8 +31,8 @@ def curve(name: str, parameters, reach: float) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([pieces[branch] for branch in order]), np.array(coefficients)
 
 
-def _annotate(ax, parameters) -> None:
-    """Levels of the coefficients, and how the law behaves around rest."""
+def _annotate(ax: Axes, parameters: np.void) -> None:
+    """Mark the levels of the coefficients, and say how the law behaves at rest."""
     for name, kind, side in (("s", "static", "bottom"), ("d", "dynamic", "top")):
         level = float(parameters[kind])
         ax.axhline(level, color="0.75", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
@@ -40,17 +43,17 @@ def _annotate(ax, parameters) -> None:
     ax.annotate(note, (0.97, 0.06), xycoords="axes fraction", ha="right", fontsize=8, color=style.GREY)
 
 
-def draw(ds: xr.Dataset) -> Figure:
+def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw every law of the dataset, the others in grey behind it for comparison."""
     from wedgesweep import config
 
-    cases.require(ds, NAME, "config")
     settings = config.parse(ds.attrs["config"])
     names = cases.laws(ds)
     parameters = {law: settings.record(config.Case(law, 1.0, 1e-3))[0] for law in names}
     reach = REACH * settings.friction["threshold_velocity"]
     curves = {law: curve(law, parameters[law], reach) for law in names}
-    figure, axes = style.panels(len(names), size=(3.2, 3.0))
+    made = panels(target, len(names), size=(3.2, 3.0))
+    axes = made.axes
     for ax, law in zip(axes, names, strict=True):
         for velocity, coefficient in curves.values():
             ax.plot(velocity * style.MM, coefficient, color="0.8", linewidth=1)
@@ -58,7 +61,7 @@ def draw(ds: xr.Dataset) -> Figure:
         ax.plot(velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7)
         ax.set_title(law, fontsize=10)
         _annotate(ax, parameters[law])
-    style.label(axes, "slip velocity [mm/s]", "friction coefficient μ (signed)")
+    style.label(axes, "slip velocity [mm/s]", "friction coefficient $μ$, signed [1]")
     grey = "; grey: the other laws" if len(names) > 1 else ""
-    style.title(figure, "Friction laws", "positive: friction opposes a positive slip" + grey)
-    return figure
+    made.title("Friction laws", "a positive coefficient opposes a positive slip velocity" + grey)
+    return made

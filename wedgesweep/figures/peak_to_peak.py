@@ -2,18 +2,21 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "peak-to-peak"
 DESCRIPTION = "peak-to-peak displacement over frequency at fixed amplitudes, laws compared"
+NEEDS = ("peak_to_peak", "stick_fraction", "frequency")
 
 PANELS = 3
 FEW_FREQUENCIES = 45
 
 
-def _draw_amplitude(ax, ds: xr.Dataset) -> bool:
+def _draw_amplitude(ax: Axes, ds: xr.Dataset) -> bool:
     missing = False
     for law in cases.laws(ds):
         look = dict(style.law_style(law))
@@ -28,18 +31,16 @@ def _draw_amplitude(ax, ds: xr.Dataset) -> bool:
     return missing
 
 
-def draw(ds: xr.Dataset, amplitudes=None) -> Figure:
+def draw(target: Target, ds: xr.Dataset, amplitudes: ArrayLike | None = None) -> Panels:
     """Draw a panel per amplitude (m; nearest ones, by default three at which something slips)."""
-    cases.require_grid(ds, NAME, "peak_to_peak", "stick_fraction", "frequency")
     places = cases.pick_amplitudes(ds, amplitudes, PANELS)
-    figure, axes = style.panels(len(places), size=(3.2, 3.2), share=False)
+    made = panels(target, len(places), size=(3.2, 3.2), share=False)
+    axes = made.axes
     missing = [_draw_amplitude(ax, ds.isel(amplitude=at)) for ax, at in zip(axes, places, strict=True)]
     style.label(axes, "frequency [Hz]", "peak-to-peak of $x-y$ [mm]")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
-    style.title(
-        figure,
+    made.legend(*axes[0].get_legend_handles_labels(), columns=4)
+    made.title(
         "Peak-to-peak of $x-y$ (side frame minus bolster) at fixed input amplitude",
         "$\\times$ no result (failed or not run)" if any(missing) else "",
     )
-    return figure
+    return made

@@ -2,19 +2,25 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "phase-portrait"
 DESCRIPTION = "velocity over displacement of several cases, stuck parts marked"
+NEEDS = ("displacement", "velocity", "stuck", "stick_fraction", "omega_n")
+CASE_LISTS = True
 
 AMPLITUDES = 3
 MOST_PANELS = 12
-STILL = 1e-6  # swing over input amplitude below which nothing moves
+STILL = 1e-6  # peak-to-peak over input amplitude, below which nothing moves
 
 
-def _from_grid(ds: xr.Dataset, beta: float | None, amplitudes, law: str | None) -> list[xr.Dataset]:
+def _from_grid(
+    ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None, law: str | None
+) -> list[xr.Dataset]:
     """Take cases row by row: an amplitude per row, a law per column."""
     ds = ds.isel(beta=cases.nearest(ds["beta"], 0.4 if beta is None else beta)[0])
     ds = ds.isel(amplitude=cases.pick_amplitudes(ds, amplitudes, AMPLITUDES))
@@ -25,7 +31,9 @@ def _from_grid(ds: xr.Dataset, beta: float | None, amplitudes, law: str | None) 
     ]
 
 
-def _from_list(ds: xr.Dataset, beta: float | None, amplitudes, law: str | None) -> list[xr.Dataset]:
+def _from_list(
+    ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None, law: str | None
+) -> list[xr.Dataset]:
     """Keep the cases of a list that have the nearest values of what is asked for."""
     keep = np.isin(ds["friction_law"].values, cases.laws(ds, law))
     for name, wanted in (("beta", beta), ("amplitude", amplitudes)):
@@ -35,7 +43,7 @@ def _from_list(ds: xr.Dataset, beta: float | None, amplitudes, law: str | None) 
     return [ds.isel(case=place) for place in np.flatnonzero(keep)]
 
 
-def _draw_still(ax, case: xr.Dataset, omega_n: float) -> None:
+def _draw_still(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
     """Give a case that does not move, or has no result, axes of the size of its input."""
     reach = np.array([-1.0, 1.0]) * case["amplitude"].item() * style.MM
     middle = np.nan_to_num(case["displacement"].values[0] * style.MM)
@@ -44,7 +52,7 @@ def _draw_still(ax, case: xr.Dataset, omega_n: float) -> None:
     ax.text(0.5, 0.6, note, transform=ax.transAxes, ha="center", fontsize=8, color=style.GREY)
 
 
-def _draw_case(ax, case: xr.Dataset, omega_n: float) -> None:
+def _draw_case(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
     law, amplitude = case["friction_law"].item(), case["amplitude"].item() * style.MM
     x, v = case["displacement"].values * style.MM, case["velocity"].values * style.MM
     stuck = case["stuck"].values == 1
@@ -58,24 +66,28 @@ def _draw_case(ax, case: xr.Dataset, omega_n: float) -> None:
     ax.set_title(f"{law}, $a$ = {amplitude:.3g} mm\n{frequency}", fontsize=9)
 
 
-def draw(ds: xr.Dataset, beta: float | None = None, amplitudes=None, law: str | None = None) -> Figure:
+def draw(
+    target: Target,
+    ds: xr.Dataset,
+    beta: float | None = None,
+    amplitudes: ArrayLike | None = None,
+    law: str | None = None,
+) -> Panels:
     """Draw the nearest beta (default 0.4 on a grid) and amplitudes (m), or a list of cases."""
-    cases.require(ds, NAME, "displacement", "velocity", "stuck", "stick_fraction", "omega_n")
     choose = _from_list if "case" in ds.dims else _from_grid
     found = choose(ds, beta, amplitudes, law)
     if not found:
-        message = f"{NAME}: no case of the dataset has this law, beta and amplitude together"
+        message = "no case of the dataset has this law, beta and amplitude together"
         raise ValueError(message)
     shown = found[:MOST_PANELS]
     columns = 3 if "case" in ds.dims else len(cases.laws(ds, law))
-    figure, axes = style.panels(len(shown), columns=columns, size=(2.9, 2.5), share=False)
-    for ax, case in zip(axes, shown, strict=True):
+    made = panels(target, len(shown), columns=columns, size=(2.9, 2.5), share=False)
+    for ax, case in zip(made.axes, shown, strict=True):
         _draw_case(ax, case, ds.attrs["omega_n"])
-    style.label(axes, style.DISPLACEMENT, style.VELOCITY, columns)
+    style.label(made.axes, style.DISPLACEMENT, style.VELOCITY, columns)
     left_out = f"; first {len(shown)} of {len(found)} cases" if len(found) > len(shown) else ""
-    style.title(
-        figure,
+    made.title(
         "Phase portraits; yellow: stuck (coulomb) or slip below $v_t$" + left_out,
         style.SIGN,
     )
-    return figure
+    return made

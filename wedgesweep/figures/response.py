@@ -4,20 +4,23 @@ import math
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "response"
 DESCRIPTION = "relative displacement over time and input amplitude at one beta (Figs. 5-7)"
+NEEDS = ("displacement", "stuck", "omega_n")
 
 ROWS = 12  # waveforms per panel by default: more would overlap
 PERIODS = 3
-HEIGHT = 0.75  # swing of the largest waveform, in distances between rows
+HEIGHT = 0.75  # of the largest waveform about its middle, in distances between rows
 
 
 def _normalised(ds: xr.Dataset) -> xr.DataArray:
-    """Return (x - y) / a about the middle of its swing."""
+    """Return (x - y) / a, centred between its extremes."""
     waves = ds["displacement"] / ds["amplitude"]
     return waves - 0.5 * (waves.max("phase") + waves.min("phase"))
 
@@ -27,7 +30,7 @@ def _even_rows(count: int) -> np.ndarray:
     return np.arange(count)[:: -math.ceil(count / ROWS)][::-1]
 
 
-def _draw_row(ax, time, wave, stuck, row: int, color: str) -> None:
+def _draw_row(ax: Axes, time: np.ndarray, wave: np.ndarray, stuck: np.ndarray, row: int, color: str) -> None:
     if np.isnan(wave).all():
         ax.text(time.mean(), row, "no result", fontsize=7, color=style.GREY, ha="center", va="center")
         return
@@ -41,7 +44,7 @@ def _nice(value: float) -> float:
     return power * max(step for step in (1, 2, 5) if step * power <= value * (1 + 1e-9))
 
 
-def _draw_scale(ax, per_ratio: float, largest: float) -> None:
+def _draw_scale(ax: Axes, per_ratio: float, largest: float) -> None:
     """Draw a bar beside the panel: how high a given x - y is in these rows."""
     ratio = _nice(largest)
     where = {"transform": ax.get_yaxis_transform(), "clip_on": False}
@@ -49,9 +52,8 @@ def _draw_scale(ax, per_ratio: float, largest: float) -> None:
     ax.text(1.07, 0.5 * ratio * per_ratio, f"$x-y$\n= {ratio:g} $a$", fontsize=8, va="center", **where)
 
 
-def draw(ds: xr.Dataset, beta: float = 0.3, amplitudes=None) -> Figure:
+def draw(target: Target, ds: xr.Dataset, beta: float = 0.3, amplitudes: ArrayLike | None = None) -> Panels:
     """Draw a row per amplitude (m), each divided by it; a panel per law; the nearest beta."""
-    cases.require_grid(ds, NAME, "displacement", "stuck", "omega_n")
     place = cases.nearest(ds["beta"], beta)[0]
     if amplitudes is None:
         rows = _even_rows(ds.sizes["amplitude"])
@@ -64,7 +66,8 @@ def draw(ds: xr.Dataset, beta: float = 0.3, amplitudes=None) -> Figure:
     per_ratio = HEIGHT / largest if largest > 0.0 else 1.0
     time = ds["phase"].values / (ds["beta"].item() * ds.attrs["omega_n"])
     names = cases.laws(ds)
-    figure, axes = style.panels(len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
+    made = panels(target, len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
+    axes = made.axes
     for ax, law in zip(axes, names, strict=True):
         for row in range(len(rows)):
             case = {"friction_law": law, "amplitude": ds["amplitude"].values[row]}
@@ -73,14 +76,12 @@ def draw(ds: xr.Dataset, beta: float = 0.3, amplitudes=None) -> Figure:
         ax.set_title(law, fontsize=10)
     axes[0].set_yticks(range(len(rows)), [f"{a * style.MM:.3g}" for a in ds["amplitude"].values])
     axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))
-    style.label(axes, "time [s]", f"{style.AMPLITUDE}, a row each")
+    style.label(axes, "time [s]", f"{style.AMPLITUDE}, one row each")
     if largest > 0.0:
         _draw_scale(axes[-1], per_ratio, largest)
     frequency = style.frequency(ds["beta"].item(), ds.attrs["omega_n"])
-    style.title(
-        figure,
+    made.title(
         f"Relative displacement $x-y$ (side frame minus bolster) at {frequency}",
-        "each row divided by its input amplitude, about the middle of its swing; "
-        "yellow: stuck (coulomb) or below $v_t$",
+        "each row is divided by its input amplitude and centred; yellow: stuck (coulomb) or slip below $v_t$",
     )
-    return figure
+    return made

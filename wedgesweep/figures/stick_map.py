@@ -3,14 +3,18 @@
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
-from matplotlib.figure import Figure
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wedgesweep.figures import cases, style
+from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "stick-map"
 DESCRIPTION = "stick fraction over frequency and amplitude, with lift-off and breakaway"
+NEEDS = ("stick_fraction", "lift_off_fraction", "omega_n", "breakaway_acceleration")
 
 FEW_FAILURES = 50
 COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
@@ -32,7 +36,7 @@ def cell_edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
     return np.exp(edges) if logarithmic else np.maximum(edges, 0.0)
 
 
-def _hatch(ax, beta_edges, amplitude_edges, marked: np.ndarray) -> None:
+def _hatch(ax: Axes, beta_edges: np.ndarray, amplitude_edges: np.ndarray, marked: np.ndarray) -> None:
     """Hatch the marked cells as whole regions, along their edges."""
     if not marked.any():
         return
@@ -44,7 +48,7 @@ def _hatch(ax, beta_edges, amplitude_edges, marked: np.ndarray) -> None:
     ax.contour(x, y, corners, levels=[0.5], colors="white", linewidths=0.9)
 
 
-def _draw_law(ax, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]):
+def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -> QuadMesh:
     law = law.transpose("amplitude", "beta", ...)
     fraction = np.ma.masked_invalid(law["stick_fraction"].values)
     mesh = ax.pcolormesh(*edges, fraction, cmap=COLOURS, vmin=0.0, vmax=1.0, rasterized=True)
@@ -57,7 +61,7 @@ def _draw_law(ax, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]):
     return mesh
 
 
-def _draw_breakaway(ax, ds: xr.Dataset) -> None:
+def _draw_breakaway(ax: Axes, ds: xr.Dataset) -> None:
     lowest, highest = ax.get_xlim()
     beta = np.linspace(lowest, highest, 1001)[1:]
     amplitude = ds.attrs["breakaway_acceleration"] / (beta * ds.attrs["omega_n"]) ** 2 * style.MM
@@ -65,30 +69,29 @@ def _draw_breakaway(ax, ds: xr.Dataset) -> None:
     ax.plot(beta, amplitude, color=style.VERMILLION, linewidth=1.8)
 
 
-def _legend(figure: Figure, ds: xr.Dataset) -> None:
-    """Explain what is there; in one column where the figure is a single panel."""
+def _legend(made: Panels, ds: xr.Dataset) -> None:
+    """Explain the marks that are there, in one column if there is a single panel."""
     line = {"color": style.VERMILLION, "linewidth": 2}
     hatched = {"facecolor": COLOURS(0.3), "edgecolor": "white", "hatch": "////"}
-    handles = []
+    handles: list[Artist] = []
     if np.isfinite(ds.attrs["breakaway_acceleration"]):
         handles.append(Line2D([], [], label="breakaway from rest, $a = A/ω^2$", **line))
     if (ds["lift_off_fraction"] > 0.0).any():
         handles.append(Patch(label="lift-off at some time", **hatched))
     if ds["stick_fraction"].isnull().any():
         handles.append(Patch(facecolor=style.PURPLE, label="no result (failed or not run)"))
-    place = {"loc": "outside lower center", "ncols": 1 if len(cases.laws(ds)) == 1 else 3}
-    figure.legend(handles=handles, fontsize=8, frameon=False, **place)
+    labels = [str(handle.get_label()) for handle in handles]
+    made.legend(handles, labels, columns=1 if len(made.axes) == 1 else 3)
 
 
-def draw(ds: xr.Dataset) -> Figure:
+def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, lift-off hatched, and the line above which coulomb slip begins."""
-    needed = ("stick_fraction", "lift_off_fraction", "omega_n", "breakaway_acceleration")
-    cases.require_grid(ds, NAME, *needed)
     amplitudes = ds["amplitude"].values * style.MM
     logarithmic = is_logarithmic(amplitudes)
     edges = cell_edges(ds["beta"].values, False), cell_edges(amplitudes, logarithmic)
     names = cases.laws(ds)
-    figure, axes = style.panels(len(names), size=(3.3, 3.6))
+    made = panels(target, len(names), size=(3.3, 3.6))
+    axes = made.axes
     for ax, law in zip(axes, names, strict=True):
         ax.grid(visible=False)
         mesh = _draw_law(ax, ds.sel(friction_law=law), edges)
@@ -100,10 +103,8 @@ def draw(ds: xr.Dataset) -> Figure:
     for ax in axes:
         _draw_breakaway(ax, ds)
         style.add_hertz_axis(ax, ds)
-    bar = figure.colorbar(mesh, ax=axes, aspect=30, pad=0.02)
-    bar.set_label("stick fraction of a period", fontsize=9)
-    bar.ax.tick_params(labelsize=8)
+    made.colorbar(mesh, "stick fraction of a period [1]")
     style.label(axes, style.BETA, style.AMPLITUDE)
-    _legend(figure, ds)
-    style.title(figure, "Share of time stuck (coulomb) or with the column slip below $v_t$ (other laws)")
-    return figure
+    _legend(made, ds)
+    made.title("Share of time stuck (coulomb) or with column slip below $v_t$ (other laws)")
+    return made

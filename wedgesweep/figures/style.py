@@ -1,18 +1,16 @@
-"""How every figure looks: colours, panels, and axes with their units."""
+"""The look of every figure: colours, and axes with their units."""
 
 from collections.abc import Sequence
-from textwrap import wrap
 
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, LogNorm
-from matplotlib.figure import Figure
+from matplotlib.axis import Axis
+from matplotlib.colors import ListedColormap
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from wedgesweep import digits
+from wedgesweep import formatting
 from wedgesweep.friction.names import LAW_NAMES
 
 MM = 1e3  # mm per m
@@ -31,11 +29,8 @@ GREY = "0.45"
 # The light end of viridis is left out: yellow lines vanish on white.
 SEQUENTIAL = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
 
-CHARACTERS_PER_INCH = 13  # of a title
-TITLE_MARGIN = 0.08  # inches
-
 SIGN = "$x-y$: side frame minus bolster, from the frictionless rest position"
-BETA = "frequency ratio $β = ω/ω_n$"
+BETA = "frequency ratio $β = ω/ω_n$ [1]"
 AMPLITUDE = "input amplitude $a$ [mm]"
 DISPLACEMENT = "relative displacement $x-y$ [mm]"
 VELOCITY = "relative velocity $x'-y'$ [mm/s]"
@@ -52,22 +47,6 @@ def frequency(beta: float, omega_n: float) -> str:
     return f"$β$ = {beta:.4g} ({beta * omega_n / (2.0 * np.pi):.4g} Hz)"
 
 
-def panels(
-    count: int, *, columns: int = 3, size=(3.4, 3.5), margin=(0.8, 0.6), share: bool = True
-) -> tuple[Figure, list[Axes]]:
-    """Make a figure with ``count`` panels of a size in inches; return it and them row by row."""
-    columns = min(columns, count)
-    rows = -(-count // columns)
-    width = max(columns * size[0] + margin[0], 5.2)
-    figure = Figure(figsize=(width, rows * size[1] + margin[1]), layout="constrained")
-    grid = figure.subplots(rows, columns, sharex=share, sharey=share, squeeze=False).ravel()
-    for spare in grid[count:]:
-        spare.remove()
-    for ax in grid[:count]:
-        dress(ax)
-    return figure, list(grid[:count])
-
-
 def dress(ax: Axes) -> None:
     """Give axes the frame and the grid that all of them have."""
     ax.tick_params(labelsize=8, color=GREY)
@@ -75,16 +54,6 @@ def dress(ax: Axes) -> None:
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(GREY)
-
-
-def title(figure: Figure, what: str, note: str = "") -> None:
-    """Write what the figure shows; below it the sign convention or how to read it."""
-    width = int(CHARACTERS_PER_INCH * figure.get_figwidth())
-    lines = [line for text in (what, note) for line in wrap(text, width)]
-    # Where nothing lays the figure out, the title stays at the same distance from its upper edge.
-    free = figure.get_layout_engine() is None
-    place = {"y": 1.0 - TITLE_MARGIN / figure.get_figheight(), "va": "top"} if free else {}
-    figure.suptitle("\n".join(lines), fontsize=10.5, linespacing=1.4, **place)
 
 
 def label(axes: Sequence[Axes], x: str, y: str, columns: int = 3) -> None:
@@ -107,41 +76,27 @@ def add_hertz_axis(ax: Axes, ds: xr.Dataset) -> None:
     top.spines["top"].set_color(GREY)
 
 
-def decimal_ticks(axis) -> None:
+def decimal_ticks(axis: Axis) -> None:
     """Put 1, 2, 5, 10 ... in plain decimals on a logarithmic axis."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_locator(NullLocator())
 
 
-def log_ticks(axis) -> None:
+def log_ticks(axis: Axis) -> None:
     """Choose the ticks of a logarithmic axis that has its limits: powers of ten, or decimals between them."""
     low, high = axis.get_view_interval()
     (power_ticks if high > 100.0 * low else decimal_ticks)(axis)
 
 
-def power_ticks(axis, count: int = 6) -> None:
+def power_ticks(axis: Axis, count: int = 6) -> None:
     """Put powers of ten, at most ``count`` of them, on a logarithmic axis."""
     axis.set_major_locator(LogLocator(numticks=count))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: digits.power(round(np.log10(value)))))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: formatting.power(round(np.log10(value)))))
     axis.set_minor_locator(NullLocator())
 
 
-def amplitude_norm(amplitudes: np.ndarray) -> LogNorm:
-    """Scale the colours of input amplitudes (m), in mm."""
-    low, high = amplitudes.min() * MM, amplitudes.max() * MM
-    return LogNorm(low, high) if high > low else LogNorm(0.5 * low, 2.0 * high)
-
-
-def add_amplitude_bar(figure: Figure, axes: Sequence[Axes], norm: LogNorm) -> None:
-    """Add the colour bar of input amplitudes."""
-    bar = figure.colorbar(ScalarMappable(norm, SEQUENTIAL), ax=axes, aspect=30, pad=0.02)
-    decimal_ticks(bar.ax.yaxis)
-    bar.ax.tick_params(labelsize=8)
-    bar.set_label(AMPLITUDE, fontsize=9)
-
-
-def mark_missing(ax: Axes, positions, color: str) -> bool:
+def mark_missing(ax: Axes, positions: np.ndarray, color: str) -> bool:
     """Mark cases without a result by crosses on the bottom; return whether there were any."""
     if len(positions) == 0:
         return False

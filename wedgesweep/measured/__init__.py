@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from wedgesweep.measured.measurement import MeasuredError, Measurement, Test
+from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 
-__all__ = ["MeasuredError", "Measurement", "Test", "is_measured", "read"]
+__all__ = ["MeasuredError", "Measurement", "TestRecord", "is_measured", "read"]
 
 
 def is_measured(path: Path) -> bool:

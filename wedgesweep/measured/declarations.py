@@ -45,7 +45,7 @@ class Unit(Choice):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Record(Table):
+class RecordTable(Table):
     """Keys of a test."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
@@ -83,7 +83,7 @@ COLUMNS = table(
 
 UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain, PARAMETERS), default={})
 
-TEST = Record(
+TEST = RecordTable(
     key="test",
     meaning="one record of steady vibration",
     groups=(
@@ -98,7 +98,7 @@ MEASUREMENT = table(
     "measurement",
     "measured data",
     Text(key="title", meaning="title of the measurement", default="measurement"),
-    Text(key="model", meaning="the model on trial: a config, relative to this file", example="model.toml"),
+    Text(key="model", meaning="the base model: a config, relative to this file", example="model.toml"),
     COLUMNS,
     UNCERTAIN,
     TableList(key="test", meaning="the tests", item=TEST, example="measurement.test"),

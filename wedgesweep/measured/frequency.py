@@ -5,7 +5,7 @@ If the frequency is off by delta and changes by beta, the harmonics of the cycle
     D_k(t) = A_k exp(i k (delta t + beta t^2 / 2))
 
 Each harmonic gives delta and beta by a straight and a bent line through its phases, weighted by its noise,
-which shows in the scatter of its cycles, so that coloured noise and foreign tones count as what they are.
+which is estimated from the scatter between cycles, so that coloured noise and spurious tones count too.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from math import inf, pi
 import numpy as np
 
 from wedgesweep.measured.cycles import FIRST_HARMONICS, SEEN, Cycles, cut
-from wedgesweep.measured.noise import of_channel
+from wedgesweep.measured.noise_estimate import estimate_noise
 
 # Fewer cycles leave no scatter to compare with.
 FEWEST_CYCLES = 4
@@ -24,7 +24,7 @@ RANGE, LOBE = 0.15, 1.5
 # Weak fundamentals under a strong harmonic are looked for by dividing its frequency by these.
 DIVISORS = (2, 3, 5, 7)
 # An even harmonic outdoes its fundamental by no more than this: what is weaker at half the frequency of the
-# strongest line is a response that repeats every other period, or a foreign tone.
+# strongest line is a response that repeats every other period, or a spurious tone.
 HALF = 0.3
 # Chance that noise passes for a line.
 CHANCE = 1e-5
@@ -37,7 +37,7 @@ NEGLIGIBLE, SLIP, FEW = 2e-3, 0.02, 20.0
 
 
 @dataclass(frozen=True)
-class Tone:
+class FrequencyEstimate:
     """Frequency (Hz, in the middle of the record), its relative change over the record, standard errors.
 
     ``freedom`` is the number of degrees of freedom that the standard errors rest on.
@@ -65,47 +65,49 @@ def estimate_frequency(time: np.ndarray, displacement: np.ndarray) -> float:
     if _cycle_count(time, frequency) < FEWEST_CYCLES:
         return frequency
     reach = min(RANGE, LOBE / _cycle_count(time, frequency))
-    frequency = near(time, displacement, frequency, reach).frequency
+    frequency = estimate_near(time, displacement, frequency, reach).frequency
     if not stands_out(time, displacement, frequency):
         return float("nan")
     while divisor := _divisor(time, displacement, frequency):
-        frequency = near(time, displacement, frequency / divisor, reach).frequency
+        frequency = estimate_near(time, displacement, frequency / divisor, reach).frequency
     return frequency
 
 
-def actual(time: np.ndarray, displacement: np.ndarray, stated: float | None) -> float:
-    """Frequency (Hz) of a record: as stated, or as estimated if it is not, or if many cycles tell better.
+def refined_frequency(time: np.ndarray, displacement: np.ndarray, stated: float | None) -> float:
+    """Frequency (Hz) of a record: the stated one, unless none is stated or the record excludes it.
 
-    A clock that is off by a little turns the harmonics of a long record by much.
+    A small clock error turns the phases of harmonics far in a long record.
     """
     if stated is None:
         return estimate_frequency(time, displacement)
     cycles = _cycle_count(time, stated)
-    tone = near(time, displacement, stated, LOBE / cycles)
-    off = abs(tone.frequency / stated - 1.0)
+    estimate = estimate_near(time, displacement, stated, LOBE / cycles)
+    off = abs(estimate.frequency / stated - 1.0)
     harmless = SLIP / cycles if cycles < FEW else 0.0
-    return tone.frequency if harmless < off < NEGLIGIBLE and tone.differs(stated) else stated
+    return estimate.frequency if harmless < off < NEGLIGIBLE and estimate.differs(stated) else stated
 
 
 def drift(time: np.ndarray, displacement: np.ndarray, frequency: float) -> tuple[float, float]:
     """Relative change of a frequency (Hz) over the record, and its standard error."""
-    tone = near(time, displacement, frequency)
-    return tone.drift, tone.drift_std
+    estimate = estimate_near(time, displacement, frequency)
+    return estimate.drift, estimate.drift_std
 
 
-def near(time: np.ndarray, displacement: np.ndarray, frequency: float, reach: float = RANGE) -> Tone:
-    """The tone next to a frequency (Hz) that is right within a share ``reach``; at least 4 cycles.
+def estimate_near(
+    time: np.ndarray, displacement: np.ndarray, frequency: float, reach: float = RANGE
+) -> FrequencyEstimate:
+    """Estimate the frequency of at least 4 cycles from a guess (Hz) that is right within a share ``reach``.
 
-    Where there is only noise its frequency is anywhere near, with an infinite error.
+    In noise alone the standard error is infinite.
     """
     frequency += _search(cut(time, displacement, frequency), reach * frequency)
     frequency += _search(cut(time, displacement, frequency), 0.5 / (time[-1] - time[0]))
     for _ in range(3):
-        tone = _fit(cut(time, displacement, frequency))
-        if abs(tone.frequency - frequency) * (time[-1] - time[0]) > 1.0:
-            return Tone(frequency, inf, 0.0, inf, tone.freedom)
-        frequency = tone.frequency
-    return tone
+        estimate = _fit(cut(time, displacement, frequency))
+        if abs(estimate.frequency - frequency) * (time[-1] - time[0]) > 1.0:
+            return FrequencyEstimate(frequency, inf, 0.0, inf, estimate.freedom)
+        frequency = estimate.frequency
+    return estimate
 
 
 def amplitude(time: np.ndarray, signal: np.ndarray, frequency: float) -> float:
@@ -130,7 +132,7 @@ def _search(cycles: Cycles, reach: float) -> float:
     return float(changes[power.argmax()])
 
 
-def _fit(cycles: Cycles) -> Tone:
+def _fit(cycles: Cycles) -> FrequencyEstimate:
     """One step of weighted least squares on the phases of all harmonics that are seen."""
     times, count = cycles.times, cycles.times.size
     mean = cycles.harmonics.mean(axis=0)
@@ -150,7 +152,7 @@ def _fit(cycles: Cycles) -> Tone:
     record = times[-1] - times[0] + (times[1] - times[0])
     over_record = 2.0 * record / cycles.omega
     frequency, std = (cycles.omega + turn) / (2.0 * pi), turn_std / (2.0 * pi)
-    return Tone(
+    return FrequencyEstimate(
         float(frequency), float(std), float(bend * over_record), float(bend_std * over_record), 4 * count - 8
     )
 
@@ -199,7 +201,7 @@ def _divisor(time: np.ndarray, signal: np.ndarray, frequency: float) -> int:
             continue
         cycles = cut(time, signal, slower, orders)
         if _repeats(cycles, between) and not (divisor == 2 and _weak(cycles, between)):
-            left[divisor] = of_channel(time, signal, slower).std
+            left[divisor] = estimate_noise(time, signal, slower).std
     return min(left, key=lambda divisor: left[divisor], default=0)
 
 

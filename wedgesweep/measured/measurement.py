@@ -9,7 +9,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
-from wedgesweep.measured.frequency import actual
+from wedgesweep.measured.frequency import refined_frequency
 
 
 class MeasuredError(InputError):
@@ -17,7 +17,7 @@ class MeasuredError(InputError):
 
 
 @dataclass(frozen=True, eq=False)
-class Test:
+class TestRecord:
     """One record of steady vibration under a sinusoidal input.
 
     ``frequency`` (Hz) and ``amplitude`` (m, of the side frame) are None where they are not known;
@@ -38,9 +38,9 @@ class Test:
     velocity: np.ndarray | None
 
     @cached_property
-    def actual_frequency(self) -> float:
-        """Frequency (Hz) of the vibration: as stated, unless the record tells better or nothing is stated."""
-        return actual(self.time, self.displacement, self.frequency)
+    def refined_frequency(self) -> float:
+        """Frequency (Hz): the stated one, unless none is stated or the record excludes it."""
+        return refined_frequency(self.time, self.displacement, self.frequency)
 
     @property
     def sampling_rate(self) -> float:
@@ -55,7 +55,7 @@ class Test:
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """Tests of one suspension, and the model on trial.
+    """Tests of one suspension, and the base model.
 
     ``law`` is the model's friction law; ``uncertain`` holds the relative std of numbers of the model by
     the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel.
@@ -66,6 +66,6 @@ class Measurement:
     model: Config
     law: str
     uncertain: Mapping[str, float]
-    tests: tuple[Test, ...]
+    tests: tuple[TestRecord, ...]
     derived_velocity: bool
     columns: Mapping[str, Mapping[str, str]]

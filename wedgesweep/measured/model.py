@@ -1,4 +1,4 @@
-"""The model on trial: a config with one friction law."""
+"""The base model: a config with one friction law."""
 
 from pathlib import Path
 
@@ -28,5 +28,5 @@ def with_law(config: Config, source: str, problems: list[str]) -> tuple[Config, 
     laws = list(dict.fromkeys(case.law for case in config.case_list()))
     if len(laws) > 1:
         names = ", ".join(laws)
-        problems.append(f"{source}: sweep.friction_law: {names}; a model on trial names exactly one law")
+        problems.append(f"{source}: sweep.friction_law: {names}; a model must name exactly one law")
     return config, laws[0]

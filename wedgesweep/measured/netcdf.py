@@ -18,10 +18,10 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.config.keys import hint, show
 from wedgesweep.config.tables import Table
+from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import TEST, UNCERTAIN, UNITS
-from wedgesweep.measured.measurement import MeasuredError, Measurement, Test
+from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
-from wedgesweep.measured.record import Channels, build
 
 SUFFIXES = (".nc", ".nc4")
 ROOT_NAMES = ("title", "model")
@@ -46,7 +46,7 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
         partial.unlink(missing_ok=True)
 
 
-def _write_test(group: Any, test: Test, derived: bool) -> None:
+def _write_test(group: Any, test: TestRecord, derived: bool) -> None:
     millimetres = None if test.amplitude is None else float(f"{test.amplitude * 1e3:.15g}")
     given = {
         "file": test.file,
@@ -143,7 +143,7 @@ def _checked(table: Table, given: Mapping[str, Any], at: str, problems: list[str
     return read
 
 
-def _test(group: Any, path: Path, problems: list[str]) -> Test | None:
+def _test(group: Any, path: Path, problems: list[str]) -> TestRecord | None:
     at = f"{path}: {group.path.lstrip('/')}"
     before = len(problems)
     given = _checked(TEST, {"file": group.name, **_attributes(group)}, at, problems)
@@ -155,7 +155,7 @@ def _test(group: Any, path: Path, problems: list[str]) -> Test | None:
     if len(problems) > before:
         return None
     channels = Channels(columns, units, at, lambda sample: f"{at}: sample {sample}")
-    return build(Path(given["file"]).stem, given, channels, at, problems)
+    return build_record(Path(given["file"]).stem, given, channels, at, problems)
 
 
 def _variable_faults(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> list[str]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from wedgesweep.measured.cycles import cut
 from wedgesweep.measured.frequency import stands_out
-from wedgesweep.measured.measurement import Test
+from wedgesweep.measured.measurement import TestRecord
 
 # Sensors may lag, and their gain be off, by less than this.
 FACTOR, ANGLE = 10.0, np.radians(120.0)
@@ -15,11 +15,11 @@ FACTOR, ANGLE = 10.0, np.radians(120.0)
 MOST, LEAST, SEVERAL = 300.0, 0.01, 2
 
 
-def channel_faults(test: Test, file: str) -> list[str]:
+def channel_faults(test: TestRecord, file: str) -> list[str]:
     """What is wrong between the channels of a test whose frequency is in order."""
     if test.velocity is None:
         return []
-    at = test.actual_frequency
+    at = test.refined_frequency
     moved, speed = (_fundamental(test, signal) for signal in (test.displacement, test.velocity))
     if not (moved and speed):
         return []
@@ -34,7 +34,7 @@ def channel_faults(test: Test, file: str) -> list[str]:
     return []
 
 
-def amplitude_faults(tests: Sequence[Test]) -> list[str]:
+def amplitude_faults(tests: Sequence[TestRecord]) -> list[str]:
     """What is wrong with the input amplitudes, as far as they are stated."""
     moved = {
         test.file: abs(_fundamental(test, test.displacement)) / test.amplitude
@@ -53,8 +53,8 @@ def amplitude_faults(tests: Sequence[Test]) -> list[str]:
     return faults
 
 
-def _fundamental(test: Test, signal: np.ndarray) -> complex:
+def _fundamental(test: TestRecord, signal: np.ndarray) -> complex:
     """Complex amplitude of the fundamental of a channel, 0 where it is lost in noise."""
-    if not stands_out(test.time, signal, test.actual_frequency):
+    if not stands_out(test.time, signal, test.refined_frequency):
         return 0.0j
-    return complex(cut(test.time, signal, test.actual_frequency).harmonics[:, 0].mean())
+    return complex(cut(test.time, signal, test.refined_frequency).harmonics[:, 0].mean())

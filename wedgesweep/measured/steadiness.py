@@ -3,9 +3,9 @@
 from math import isnan
 
 from wedgesweep.measured import frequency
-from wedgesweep.measured.frequency import Tone
-from wedgesweep.measured.measurement import Test
-from wedgesweep.measured.noise import Noise, of_channel
+from wedgesweep.measured.frequency import FrequencyEstimate
+from wedgesweep.measured.measurement import TestRecord
+from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
 
 FEWEST_PERIODS = 4
 # A last period that lacks less than this share counts as whole: frequencies are rounded, too.
@@ -21,7 +21,7 @@ LEAKAGE = 0.3
 WORSE = 3.0
 
 
-def frequency_faults(test: Test, file: str, at: str) -> list[str]:
+def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
     """What is wrong with the frequency of a test, as its keys ``at`` a place state it and in the data."""
     if test.time.size > MOST_SAMPLES:
         told = f"has {test.time.size} samples, at most {MOST_SAMPLES} are used"
@@ -38,15 +38,19 @@ def frequency_faults(test: Test, file: str, at: str) -> list[str]:
     if periods < FEWEST_PERIODS - WHOLE:
         told = f"covers {periods:.3g} periods of {found:.6g} Hz"
         return [f"{file}: {told}; at least {FEWEST_PERIODS} are needed"]
-    tone = frequency.near(test.time, test.displacement, found, frequency.LOBE / periods)
-    return _drift(tone, periods, file) or _contradiction(test, tone, file, at)
+    estimate = frequency.estimate_near(test.time, test.displacement, found, frequency.LOBE / periods)
+    return _drift(estimate, periods, file) or _contradiction(test, estimate, file, at)
 
 
-def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:
+def _contradiction(test: TestRecord, estimate: FrequencyEstimate, file: str, at: str) -> list[str]:
     stated = test.frequency
     if stated is None:
         return []
-    actual = tone.frequency if tone.differs(stated) and _worse(test, stated, tone.frequency) else stated
+    actual = (
+        estimate.frequency
+        if estimate.differs(stated) and _worse(test, stated, estimate.frequency)
+        else stated
+    )
     if actual == stated and not frequency.stands_out(test.time, test.displacement, stated):
         actual = _elsewhere(test, stated)
     if abs(actual / stated - 1.0) < frequency.NEGLIGIBLE:
@@ -54,17 +58,17 @@ def _contradiction(test: Test, tone: Tone, file: str, at: str) -> list[str]:
     return [f"{at}.frequency_hz: {stated:.6g}, but {file} vibrates at {actual:.6g} Hz; correct one of them"]
 
 
-def _worse(test: Test, stated: float, other: float) -> bool:
+def _worse(test: TestRecord, stated: float, other: float) -> bool:
     """Whether a record repeats much better at another frequency (Hz) than at the one stated."""
     here, there = (_noise(test, each).std for each in (stated, other))
     return here**2 > WORSE * there**2
 
 
-def _noise(test: Test, at: float) -> Noise:
-    return of_channel(test.time, test.displacement, at)
+def _noise(test: TestRecord, at: float) -> NoiseEstimate:
+    return estimate_noise(test.time, test.displacement, at)
 
 
-def _elsewhere(test: Test, stated: float) -> float:
+def _elsewhere(test: TestRecord, stated: float) -> float:
     """Frequency (Hz) of a vibration beside which the stated one is nothing; else the stated one."""
     found = frequency.estimate_frequency(test.time, test.displacement)
     # The highest line of a record of noise alone is a small part of it.
@@ -74,10 +78,9 @@ def _elsewhere(test: Test, stated: float) -> float:
     return found if here < LEAKAGE * there else stated
 
 
-def _drift(tone: Tone, periods: float, file: str) -> list[str]:
-    if abs(tone.drift) < min(frequency.NEGLIGIBLE, frequency.SLIP / periods) or not tone.drifts:
+def _drift(estimate: FrequencyEstimate, periods: float, file: str) -> list[str]:
+    if abs(estimate.drift) < min(frequency.NEGLIGIBLE, frequency.SLIP / periods) or not estimate.drifts:
         return []
-    change = (
-        f"by {100.0 * tone.drift:+.2g} % ({100.0 * tone.drift_std:.1g} % std) around {tone.frequency:.6g} Hz"
-    )
+    share, std = 100.0 * estimate.drift, 100.0 * estimate.drift_std
+    change = f"by {share:+.2g} % ({std:.1g} % std) around {estimate.frequency:.6g} Hz"
     return [f"{file}: the frequency drifts {change}; measure at a constant one, or cut the record shorter"]

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep.measured import csv_columns
+from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import ROOT
-from wedgesweep.measured.measurement import MeasuredError, Measurement, Test
+from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
-from wedgesweep.measured.record import Channels, build
 
 # Found even in a file that is not valid TOML, so that its error speaks of measured data.
 HEADER = re.compile(r"^\s*\[+\s*measurement\b", re.MULTILINE)
@@ -66,13 +66,13 @@ def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     raise MeasuredError(problems)
 
 
-def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[Test]:
+def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[TestRecord]:
     """The tests whose keys and data are right; the columns must be known to read any."""
     columns = measurement.get("columns", {})
     complete = {"time", "displacement"} <= columns.keys() and all(
         {"column", "unit"} <= each.keys() for each in columns.values()
     )
-    tests: list[Test] = []
+    tests: list[TestRecord] = []
     seen: dict[str, int] = {}
     for i, given in enumerate(measurement.get("test", ())):
         at = f"{path}: measurement.test[{i}]"
@@ -90,12 +90,12 @@ def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list
 
 def _test(
     file: Path, at: str, given: dict[str, Any], columns: dict[str, Any], problems: list[str]
-) -> list[Test]:
+) -> list[TestRecord]:
     wanted = {channel: each["column"] for channel, each in columns.items()}
     numbers, lines = csv_columns.read(file, wanted, problems)
     if not numbers:
         return []
     units = {channel: each["unit"] for channel, each in columns.items()}
     channels = Channels(numbers, units, str(file), lambda sample: f"{file}:{lines[sample]}")
-    test = build(file.stem, given, channels, at, problems)
+    test = build_record(file.stem, given, channels, at, problems)
     return [test] if test else []

@@ -1,25 +1,40 @@
-"""A diagnosis as a page that a person reads, and as one sentence."""
+"""The report of a diagnosis: a page that a person reads, and the answer in one sentence."""
 
 import os
 from pathlib import Path
 
-from wedgesweep import diagnosed
+from wedgesweep import diagnosis_result
 from wedgesweep.report import sentence as sentences
 
 PAGE = "report.html"
 
 
 def write(directory: Path, n_jobs: int = 1) -> Path:
-    """Make report.html from the diagnosis in a directory; raises InputError if there is none.
+    """Write report.html into the directory of a diagnosis.
 
-    ``n_jobs``: processes that draw.
+    Parameters
+    ----------
+    directory : pathlib.Path
+        Directory that ``wedgesweep diagnose`` wrote.
+    n_jobs : int, optional
+        Number of processes that draw figures.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        The directory does not hold a complete diagnosis.
     """
     from wedgesweep.report import page
 
     file = directory / PAGE
     partial = directory / f".{PAGE}.partial"
     try:
-        partial.write_text(page.render(diagnosed.read(directory), n_jobs), encoding="utf-8")
+        partial.write_text(page.render(diagnosis_result.read(directory), n_jobs), encoding="utf-8")
         os.replace(partial, file)
     finally:
         partial.unlink(missing_ok=True)
@@ -27,5 +42,5 @@ def write(directory: Path, n_jobs: int = 1) -> Path:
 
 
 def sentence(directory: Path) -> str:
-    """The answer of the diagnosis in a directory, as plain text."""
-    return sentences.sentence(diagnosed.read(directory))
+    """Return the answer of the diagnosis in a directory as one sentence of plain text."""
+    return sentences.sentence(diagnosis_result.read(directory))

@@ -1,18 +1,19 @@
-"""The candidates: what was tried, and how well each explains the tests."""
+"""The candidates, and how well each explains the tests."""
 
 from typing import Any
 
-from wedgesweep import digits
-from wedgesweep.diagnosed import FAILED, NO_BETTER, Diagnosed
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import FAILED, NO_BETTER, DiagnosisResult
 from wedgesweep.effects import EFFECTS
-from wedgesweep.report import html, words
+from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
-from wedgesweep.report.pictures import Pictures
+from wedgesweep.report.inline_figures import InlineFigures
 
 SHOWN = 12
+TEXT_COLUMNS = 3
 HEAD = (
     "candidate",
-    "numbers (95 % intervals)",
+    "parameters (95 % intervals)",
     "status",
     "Q",
     "dof",
@@ -23,102 +24,102 @@ HEAD = (
 )
 
 
-def section(found: Diagnosed, draw: Pictures) -> Markup:
+def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     """Section with the ranking and a table."""
-    candidates = found.document["candidates"]
+    candidates = result.document["candidates"]
     rows = [_row(each, _best(candidates)) for each in candidates]
-    first = html.table(
-        "The best candidates" if len(rows) > SHOWN else "All candidates", HEAD, rows[:SHOWN], 3
+    caption = "The best candidates" if len(rows) > SHOWN else "All candidates"
+    others = html.details(
+        f"{len(rows) - SHOWN} more", html.table("Other candidates", HEAD, rows[SHOWN:], TEXT_COLUMNS)
     )
-    rest = rows[SHOWN:]
     return html.section(
         "candidates",
         "The candidates",
-        html.paragraph(_summary(found)),
-        draw("candidates", _ranking(found)),
-        first,
-        html.details(f"{len(rest)} more", html.table("Other candidates", HEAD, rest, 3))
-        if rest
-        else Markup(),
+        html.paragraph(_summary(result)),
+        draw("candidates", _ranking(result)),
+        html.table(caption, HEAD, rows[:SHOWN], TEXT_COLUMNS),
+        others if len(rows) > SHOWN else Markup(),
         html.details("How to read the columns", *map(html.paragraph, COLUMNS)),
     )
 
 
 COLUMNS = (
-    "Q is the squared distance of model and measurement over the noise, summed over all harmonics. A right "
-    "model leaves about dof, and p is the probability that noise alone leaves more.",
-    "Behind the best: how much larger Q is with a penalty for each fitted number. Less than the tie width "
-    "cannot be told apart.",
-    "The score says how clearly the misfit of the base model points towards a single candidate before "
-    "anything is fitted; retention is the share of its signal that phases, amplitudes and uncertain "
-    "numbers cannot imitate.",
+    "Q is the squared distance between model and measurement in units of the noise, summed over all "
+    "harmonics. A correct model leaves Q close to dof, the degrees of freedom; p is the probability that "
+    "noise alone leaves more.",
+    "“Behind the best” compares Q plus a penalty for each fitted parameter. A candidate that is behind by "
+    "less than the tie width cannot be distinguished from the best.",
+    "The score says, before anything is fitted, how clearly the misfit of the base model points to this one "
+    "candidate. Retention is the share of its signal that start phases, amplitudes and uncertain parameters "
+    "cannot imitate.",
 )
 
 
 def _best(candidates: list[dict[str, Any]]) -> float | None:
-    found = [each["penalised"] for each in candidates if each["penalised"] is not None]
-    return min(found, default=None)
+    return min((each["penalised"] for each in candidates if each["penalised"] is not None), default=None)
 
 
-def _summary(found: Diagnosed) -> str:
-    effects = [each["effects"] for each in found.document["candidates"]]
-    pairs = sum(len(each) > 1 for each in effects)
-    singles = words.counted(sum(len(each) == 1 for each in effects), "single candidate")
-    best = (
-        f", and {words.counted(pairs, 'pair')}, those that looked best on some of the tests" if pairs else ""
-    )
-    return f"Beside the base model {singles} were fitted{best}.{_without_numbers(found)}{_unheard(found)}"
+def _summary(result: DiagnosisResult) -> str:
+    sizes = [len(each["effects"]) for each in result.document["candidates"]]
+    singles, pairs = sizes.count(1), sum(size > 1 for size in sizes)
+    fitted = f"Besides the base model, {phrases.counted(singles, 'single candidate')} "
+    fitted += "was fitted" if singles == 1 else "were fitted"
+    if pairs:
+        best = "the pair" if pairs == 1 else f"the {pairs} pairs"
+        fitted += f", and {best} that looked best on some of the tests"
+    return f"{fitted}.{_without_parameters(result)}{_not_fitted(result)}"
 
 
-def _without_numbers(found: Diagnosed) -> str:
-    status = [each["status"] for each in found.document["candidates"]]
+def _without_parameters(result: DiagnosisResult) -> str:
+    status = [each["status"] for each in result.document["candidates"]]
     failed, no_better = status.count(FAILED), status.count(NO_BETTER)
-    return (f" {words.counted(failed, 'fit')} failed." if failed else "") + (
-        f" {words.counted(no_better, 'fit')} ended no better than the base model, far from what it does best."
-        if no_better
-        else ""
+    return (f" {phrases.counted(failed, 'fit')} failed." if failed else "") + (
+        f" {phrases.counted(no_better, 'fit')} ended no better than the base model." if no_better else ""
     )
 
 
-def _unheard(found: Diagnosed) -> str:
-    """The effect that was not fitted, as no test has a foreign tone."""
-    document = found.document
+def _not_fitted(result: DiagnosisResult) -> str:
+    """The effect that was not fitted because no test has a spurious tone."""
+    document = result.document
     fitted = {effect for each in document["candidates"] for effect in each["effects"]}
     left = sorted({*document["detectable"], *document["not_testable"]} - fitted)
-    return f" Not fitted, as nothing is heard of it: {words.listing(left)}." if left else ""
+    return f" Not fitted, because no test has a spurious tone: {phrases.listing(left)}." if left else ""
 
 
-def _ranking(found: Diagnosed) -> str:
-    fitted = [each for each in found.document["candidates"] if each["penalised"] is not None]
+def _ranking(result: DiagnosisResult) -> str:
+    fitted = [each for each in result.document["candidates"] if each["penalised"] is not None]
     if len(fitted) < 2:
         return "Only one model could be fitted."
     first, second = fitted[:2]
+    behind = formatting.number(second["penalised"] - first["penalised"])
     return (
-        f"Best: {words.together(first['effects'])}. Next: {words.together(second['effects'])}, behind by "
-        f"{digits.number(second['penalised'] - first['penalised'])}. Filled marks leave noise only."
+        f"The best candidate is {phrases.combination(first['effects'])}, the next one "
+        f"{phrases.combination(second['effects'])}, behind by {behind}. Filled marks leave only noise."
     )
 
 
 def _row(each: dict[str, Any], best: float | None) -> list[object]:
     behind = None if each["penalised"] is None or best is None else each["penalised"] - best
-    numbers = "; ".join(words.compact(_own(key, each), value) for key, value in each["parameters"].items())
-    left = [digits.number(each["q"], 4), each["dof"], words.probability(each["p"]), digits.number(behind)]
-    return [_name(each), numbers or digits.NONE, each["status"], *left, *_score(each)]
+    parameters = [phrases.compact(_own(key, each), value) for key, value in each["parameters"].items()]
+    return [
+        _name(each),
+        "; ".join(parameters) or formatting.NONE,
+        each["status"],
+        formatting.number(each["q"], 4),
+        each["dof"],
+        phrases.probability(each["p"]),
+        formatting.number(behind),
+        formatting.number(each["score"]),
+        formatting.percent(each["retention"]),
+    ]
 
 
 def _own(key: str, each: dict[str, Any]) -> str:
-    """Key of a number without its effect where there is only one effect."""
+    """Key of a parameter, without its effect if there is only one."""
     effect, own = key.split(".", 1)
     return own if len(each["effects"]) == 1 else f"{effect} {own}"
 
 
 def _name(each: dict[str, Any]) -> str:
     families = dict.fromkeys(EFFECTS[name].family for name in each["effects"] if name in EFFECTS)
-    return words.together(each["effects"]) + (f" ({', '.join(families)})" if families else "")
-
-
-def _score(each: dict[str, Any]) -> list[str]:
-    return [
-        digits.number(each["score"]),
-        digits.NONE if each["retention"] is None else digits.percent(each["retention"]),
-    ]
+    return phrases.combination(each["effects"]) + (f" ({', '.join(families)})" if families else "")

@@ -1,55 +1,50 @@
-"""Before and after on tests that were held out of the fit."""
+"""Error before and after the extension, on tests that were held out of the fit."""
 
 from typing import Any
 
-from wedgesweep import digits
-from wedgesweep.diagnosed import Diagnosed
-from wedgesweep.report import html, words
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
-from wedgesweep.report.pictures import Pictures
+from wedgesweep.report.inline_figures import InlineFigures
 
-HEAD = ("test", "left out with", "error before", "error after", "noise floor")
+HEAD = ("test", "left out", "error before", "error after", "noise floor")
+CAPTION = "Each test is predicted by models fitted to the other tests. Errors are in units of the noise."
 
 
-def section(found: Diagnosed, draw: Pictures) -> Markup:
+def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     """Section with the gain and its interval."""
-    gain = found.gain
+    gain = result.gain
     if gain is None:
-        content: tuple[Markup, ...] = (html.paragraph(_why_not(found)),)
+        content: tuple[Markup, ...] = (html.paragraph(_why_not(result)),)
     else:
-        rows = [_row(found, each) for each in gain["held_out"]]
+        rows = [_row(result, each) for each in gain["held_out"]]
         content = (
-            html.paragraph(_summary(found, gain)),
-            draw(
-                "gain",
-                "Each test predicted by models that were fitted to the others. Errors in units of the noise.",
-            ),
+            html.paragraph(_summary(result, gain)),
+            draw("gain", CAPTION),
             html.details("Table of the held-out tests", html.table("Held-out tests", HEAD, rows, 2)),
         )
     return html.section("gain", "Before and after, on held-out tests", *content)
 
 
-def _why_not(found: Diagnosed) -> str:
-    if not found.added:
+def _why_not(result: DiagnosisResult) -> str:
+    if not result.added:
         return "Nothing was added to the model, so there is no gain to measure."
     return "There are too few tests to hold one out."
 
 
-def _summary(found: Diagnosed, gain: dict[str, Any]) -> str:
-    interval = (
-        f"{words.INTERVAL} {digits.percent(gain['ci95'][0])} to {digits.percent(gain['ci95'][1])}"
-        if gain["ci95"]
-        else "too few tests for an interval"
-    )
-    before, after, floor = (digits.number(gain[f"rmse_{kind}"]) for kind in ("base", "extended", "noise"))
-    claim = "" if found.document["causes"] else " This is the best attempt only; the verdict names no cause."
+def _summary(result: DiagnosisResult, gain: dict[str, Any]) -> str:
+    before, after, floor = (formatting.number(gain[f"rmse_{kind}"]) for kind in ("base", "extended", "noise"))
+    gained, removed = (formatting.percent(gain[key]) for key in ("gain", "excess_removed"))
+    claim = "" if result.document["causes"] else " This is the best attempt; the verdict names no cause."
     return (
-        f"Scheme: {gain['scheme']}. The error goes from {before} to {after} times the noise, with {floor} as "
-        f"floor: a gain of {digits.percent(gain['gain'])}, and {digits.percent(gain['excess_removed'])} of "
-        f"the excess over noise is removed ({interval}).{claim}"
+        f"Cross-validation ({gain['scheme']}): the error on held-out tests goes from {before} to {after} "
+        f"times the noise, a gain of {gained}; noise alone leaves {floor}. The extension removes {removed} "
+        f"of the excess over noise ({phrases.interval(gain)}).{claim}"
     )
 
 
-def _row(found: Diagnosed, each: dict[str, Any]) -> list[str]:
-    errors = [digits.number(each[f"rmse_{kind}"]) for kind in ("base", "extended", "noise")]
-    return [str(found.data["test"].values[found.place(each["test"])]), f"its {each['scheme']}", *errors]
+def _row(result: DiagnosisResult, each: dict[str, Any]) -> list[str]:
+    errors = [formatting.number(each[f"rmse_{kind}"]) for kind in ("base", "extended", "noise")]
+    test = result.data["test"].values[result.test_index(each["test"])]
+    return [str(test), f"all at its {each['scheme']}", *errors]

@@ -1,4 +1,4 @@
-"""Elements of the page. Whatever is text comes in as text and is escaped here."""
+"""HTML elements. Text is passed in as text and escaped here."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
@@ -16,7 +16,7 @@ def text(value: object) -> Markup:
 
 
 def join(parts: Iterable[object], between: str = "\n") -> Markup:
-    """Parts one after the other."""
+    """Join parts into markup."""
     return Markup(between.join(text(part) for part in parts))
 
 
@@ -48,10 +48,12 @@ def items(rows: Iterable[object]) -> Markup:
     return element("ul", *(element("li", row) for row in rows))
 
 
-def table(caption: str, head: Sequence[str], rows: Iterable[Sequence[object]], words: int = 1) -> Markup:
-    """Table whose first column heads its rows; the first ``words`` columns are text, the others numbers."""
-    headers = (element("th", name, scope="col", class_=_kind(i, words)) for i, name in enumerate(head))
-    body = (element("tr", *(_cell(i, cell, words) for i, cell in enumerate(row))) for row in rows)
+def table(
+    caption: str, head: Sequence[str], rows: Iterable[Sequence[object]], text_columns: int = 1
+) -> Markup:
+    """Table whose first column heads its rows; the first ``text_columns`` are text, the others numbers."""
+    headers = (element("th", name, scope="col", class_=_kind(i, text_columns)) for i, name in enumerate(head))
+    body = (element("tr", *(_cell(i, cell, text_columns) for i, cell in enumerate(row))) for row in rows)
     whole = element(
         "table",
         element("caption", caption),
@@ -62,18 +64,18 @@ def table(caption: str, head: Sequence[str], rows: Iterable[Sequence[object]], w
     return element("div", whole, class_="scroll", tabindex=0, role="region", aria_label=caption)
 
 
-def _kind(column: int, words: int) -> str | None:
-    return None if column < words else "number"
+def _kind(column: int, text_columns: int) -> str | None:
+    return None if column < text_columns else "number"
 
 
-def _cell(column: int, cell: object, words: int) -> Markup:
+def _cell(column: int, cell: object, text_columns: int) -> Markup:
     if column == 0:
         return element("th", cell, scope="row")
-    return element("td", cell, class_=_kind(column, words))
+    return element("td", cell, class_=_kind(column, text_columns))
 
 
 def details(summary: str, *content: object) -> Markup:
-    """What only some readers want."""
+    """Content that stays folded until a reader opens it."""
     return element("details", element("summary", summary), *content)
 
 

@@ -1,47 +1,47 @@
-"""How it was done: the method in short, versions, degrees of freedom and penalties."""
+"""The method in short, and the settings of this diagnosis."""
 
-from wedgesweep import digits
-from wedgesweep.diagnosed import Diagnosed
-from wedgesweep.report import html, words
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 
 STEPS = (
-    "A forced response repeats each period, noise does not: least squares give the harmonics of each test "
-    "and, from what does not repeat, their noise (Pintelon and Schoukens 2012).",
-    "Q is the squared distance of measured and simulated harmonics over that noise, which is chi-squared "
-    "for a right model. Start phase, amplitude and uncertain numbers are fitted first, for the base model "
-    "too.",
-    "Every candidate is fitted alone, then pairs of them; each fitted number costs a penalty. A cause must "
-    "leave nothing but noise, with numbers that are the same in all tests (a Lagrange multiplier test), and "
-    "lead its rivals by more than the tie width. To be named it must be the only one that leaves noise only; "
-    "a pair that many imitate is not reported.",
-    "The gain counts on held-out tests only: each frequency, then each amplitude, is left out of the fit and "
+    "The forced response repeats in every period and noise does not: least squares gives the harmonics of "
+    "each test, and what does not repeat gives their noise (Pintelon and Schoukens 2012).",
+    "Q is the squared distance between measured and simulated harmonics in units of that noise, which for a "
+    "correct model has a chi-squared distribution. Start phases, amplitudes and uncertain parameters are "
+    "fitted first, for the base model too.",
+    "Every candidate is fitted alone, then in pairs; each fitted parameter costs a penalty. A cause must "
+    "leave only noise, have the same parameters in all tests (Lagrange multiplier test), and lead its rivals "
+    "by more than the tie width. To be named, it must be the only candidate that leaves only noise. A pair "
+    "that many others imitate is not reported.",
+    "The gain is measured on held-out tests: each frequency, then each amplitude, is left out of the fit and "
     "predicted.",
 )
 
 
-def section(found: Diagnosed) -> Markup:
-    """Section for who wants to check or repeat it."""
+def section(result: DiagnosisResult) -> Markup:
+    """Section for readers who want to check or repeat the diagnosis."""
     return html.section(
         "method",
         "How it was done",
         html.items(STEPS),
-        html.table("Settings", ("setting", "value"), _settings(found)),
+        html.table("Settings", ("setting", "value"), _settings(result)),
     )
 
 
-def _settings(found: Diagnosed) -> list[list[str]]:
-    method, misfit = found.document["method"], found.document["misfit"]
+def _settings(result: DiagnosisResult) -> list[list[str]]:
+    method, misfit = result.document["method"], result.document["misfit"]
     rows = [
         ["degrees of freedom, base model", str(misfit["dof"])],
         ["harmonics of each channel", str(method["harmonics"])],
-        ["channels", words.listing([str(name) for name in found.data["channel"].values])],
-        ["penalty per fitted number", digits.number(method["penalty_per_parameter"])],
-        ["tie width", digits.number(method.get("gap"))],
-        ["excess needed to name a cause", digits.number(method.get("strong_excess"))],
-        ["thresholds", "calibrated on these tests" if method.get("calibrated") else "general ones"],
-        ["friction law", found.document["model"]["law"]],
-        ["wedgesweep", found.document["version"]],
-        ["made", found.document["created"]],
+        ["channels", phrases.listing([str(name) for name in result.data["channel"].values])],
+        ["penalty per fitted parameter", formatting.number(method["penalty_per_parameter"])],
+        ["tie width", formatting.number(method.get("gap"))],
+        ["excess needed to name a cause", formatting.number(method.get("strong_excess"))],
+        ["thresholds", "calibrated for these tests" if method.get("calibrated") else "general"],
+        ["friction law", result.document["model"]["law"]],
+        ["wedgesweep version", result.document["version"]],
+        ["created", result.document["created"]],
     ]
-    return [row for row in rows if row[1] != digits.NONE]
+    return [row for row in rows if row[1] != formatting.NONE]

@@ -1,19 +1,29 @@
-"""The page that a person reads: the answer first, then why, and what to do next."""
+"""The page that a person reads: the answer first, then the evidence, and what to do next."""
 
 from importlib.resources import files
 from string import Template
 
-from wedgesweep.diagnosed import Diagnosed
-from wedgesweep.report import candidates, extension, held_out, html, method, outlook, wrong
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.report import (
+    candidates,
+    extension,
+    held_out,
+    html,
+    limits,
+    method,
+    misfit,
+    next_test,
+    rivals,
+)
 from wedgesweep.report.html import Markup
-from wedgesweep.report.pictures import Pictures
+from wedgesweep.report.inline_figures import InlineFigures
 from wedgesweep.report.sentence import sentence
 
 MEANINGS = {
     "nothing-missing": "the misfit is noise",
     "named": "a cause is named",
     "consistent-with": "named, but on weak evidence",
-    "tied": "two or more explanations fit as well",
+    "tied": "two or more explanations fit equally well",
     "data-insufficient": "something is wrong, and these tests cannot show what",
     "none-of-mine": "something is wrong, and no candidate explains it",
 }
@@ -28,44 +38,44 @@ CONTENTS = {
 }
 
 
-def render(found: Diagnosed, n_jobs: int = 1) -> str:
-    """HTML of the whole page, drawn by ``n_jobs`` processes; it needs no other file."""
-    draw = Pictures(found)
+def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
+    """Return the whole page as HTML that needs no other file; ``n_jobs`` processes draw its figures."""
+    draw = InlineFigures(result)
     content = html.join(
         [
-            _answer(found),
-            _contents(found),
-            wrong.section(found, draw),
-            candidates.section(found, draw),
-            extension.section(found),
-            held_out.section(found, draw),
-            outlook.limits(found),
-            outlook.rivals(found),
-            outlook.following(found),
-            method.section(found),
+            _answer(result),
+            _contents(result),
+            misfit.section(result, draw),
+            candidates.section(result, draw),
+            extension.section(result),
+            held_out.section(result, draw),
+            limits.section(result),
+            rivals.section(result),
+            next_test.section(result),
+            method.section(result),
         ]
     )
     return Template(_read("page.html")).substitute(
-        title=html.text(f"Diagnosis of {found.document['title']}"),
+        title=html.text(f"Diagnosis of {result.document['title']}"),
         style=_read("style.css"),
         content=draw.fill(content, n_jobs),
     )
 
 
-def _answer(found: Diagnosed) -> Markup:
+def _answer(result: DiagnosisResult) -> Markup:
     verdict = html.join(
-        ["Verdict: ", html.element("strong", found.verdict), f" ({MEANINGS[found.verdict]})"], ""
+        ["Verdict: ", html.element("strong", result.verdict), f" ({MEANINGS[result.verdict]})"], ""
     )
     return html.element(
         "div",
-        html.paragraph(sentence(found), class_="sentence"),
+        html.paragraph(sentence(result), class_="sentence"),
         html.paragraph(verdict, class_="verdict"),
         class_="answer",
     )
 
 
-def _contents(found: Diagnosed) -> Markup:
-    headings = {"wrong": wrong.heading(found), **CONTENTS}
+def _contents(result: DiagnosisResult) -> Markup:
+    headings = {"misfit": misfit.heading(result), **CONTENTS}
     links = (html.element("a", text, href=f"#{name}") for name, text in headings.items())
     return html.element("nav", html.items(links), aria_label="Contents")
 

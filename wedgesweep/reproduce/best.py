@@ -1,4 +1,4 @@
-"""A suspect at its best point, computed finely: what the search found, as it is told."""
+"""A hypothesis at its best point, computed accurately for the report."""
 
 from dataclasses import dataclass
 
@@ -6,52 +6,42 @@ import numpy as np
 
 from wedgesweep.reproduce import observations
 from wedgesweep.reproduce.observations import Recording
-from wedgesweep.reproduce.search import Found
-from wedgesweep.reproduce.trials import FINE, ROUGH, loss, met, record, sweep
+from wedgesweep.reproduce.scenarios import LOOSE, TIGHT, Accuracy, EvaluatedPoint, Scenario, recordings, sweep
+from wedgesweep.reproduce.scenarios import loss as loss_of
+from wedgesweep.reproduce.scenarios import satisfied as number_satisfied
+from wedgesweep.reproduce.search import SearchResult
 
 HERTZ = np.arange(20.0, 41.0)
-# Points of a search that are looked at again: it had only every other frequency of the sweep.
-FIRST = 50
+# Points of a search that are compared again: the search used every second frequency of the sweep only.
+COMPARED = 50
 
 
 @dataclass(frozen=True)
-class Case:
-    """A suspect at its best point, computed finely: what it shows, and its distances (observations,)."""
+class Best(EvaluatedPoint):
+    """The best point of a search, with recordings and sweep (peak-to-peak in mm over HERTZ)."""
 
-    found: Found
-    point: np.ndarray  # (free,)
+    result: SearchResult
     slow: Recording
     fast: Recording
-    sweep: np.ndarray  # peak-to-peak (mm) over HERTZ
-    distances: np.ndarray
-
-    @property
-    def met(self) -> int:
-        return int(met(self.distances[None])[0])
-
-    @property
-    def loss(self) -> float:
-        return float(loss(self.distances[None])[0])
+    sweep: np.ndarray
 
 
-def computed(found: Found) -> Case:
-    """Compute the outcome of a search finely, at the first frequency of the sweep and all in between."""
-    point = _best(found)[None]
-    records = found.question.records(point)
-    tested, swept = found.question.inputs(point, HERTZ)
-    slow, fast = record(records, tested, FINE)
-    levels = sweep(records, swept, HERTZ, FINE)
-    return Case(found, point[0], slow, fast, levels[0], _distances(slow, fast, levels)[0])
+def computed(result: SearchResult) -> Best:
+    """Compute the best point of a search accurately, at all frequencies of the sweep."""
+    points = result.equally_good[:COMPARED]
+    *_, distances = _simulated(result.scenario, points, LOOSE)
+    best = points[np.lexsort((loss_of(distances), -number_satisfied(distances)))[:1]]
+    slow, fast, levels, distances = _simulated(result.scenario, best, TIGHT)
+    return Best(result.scenario, best[0], distances[0], result, slow, fast, levels[0])
 
 
-def _best(found: Found) -> np.ndarray:
-    """The best of the first points, (free,), by all frequencies of the sweep."""
-    points = found.alike[:FIRST]
-    records = found.question.records(points)
-    tested, swept = found.question.inputs(points, HERTZ)
-    distances = _distances(*record(records, tested, ROUGH), sweep(records, swept, HERTZ, ROUGH))
-    return points[np.lexsort((loss(distances), -met(distances)))[0]]
-
-
-def _distances(slow: Recording, fast: Recording, levels: np.ndarray) -> np.ndarray:
-    return np.concatenate([observations.of_tests(slow, fast), observations.of_sweep(HERTZ, levels)], axis=1)
+def _simulated(
+    scenario: Scenario, points: np.ndarray, accuracy: Accuracy
+) -> tuple[Recording, Recording, np.ndarray, np.ndarray]:
+    """Recordings, sweep (mm) and distances at points (n, free)."""
+    records = scenario.records(points)
+    recorded, swept = scenario.inputs(points, HERTZ)
+    slow, fast = recordings(records, recorded, accuracy)
+    levels = sweep(records, swept, HERTZ, accuracy)
+    parts = [observations.of_tests(slow, fast), observations.of_sweep(HERTZ, levels)]
+    return slow, fast, levels, np.concatenate(parts, axis=1)

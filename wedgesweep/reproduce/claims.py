@@ -1,4 +1,4 @@
-"""All claims, the verdicts that are on record, and how each claim comes out."""
+"""All claims and their verdicts on record."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ CLAIMS = tuple(
     )
 )
 
-# Verdict of each claim by its number. A run that finds another one has found a change.
+# Verdict of each claim by its number. If a run finds another one, something has changed.
 RECORDED = {
     1: HOLDS,
     2: CONTRADICTED,
@@ -38,8 +38,8 @@ RECORDED = {
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """A claim, what was found, and the verdict on record."""
+class CheckedClaim:
+    """A claim, the finding on it, and the verdict on record."""
 
     claim: Claim
     finding: Finding
@@ -62,7 +62,7 @@ class Outcome:
         return self.claim.reason.format(**self.finding.numbers)
 
 
-def check(runs: Runs) -> Iterator[Outcome]:
-    """Check all claims, one after the other."""
+def check(runs: Runs) -> Iterator[CheckedClaim]:
+    """Check all claims in turn."""
     for claim in CLAIMS:
-        yield Outcome(claim, claim.find(runs), RECORDED[claim.number])
+        yield CheckedClaim(claim, claim.find(runs), RECORDED[claim.number])

@@ -1,4 +1,4 @@
-"""The three laws on the same cases, and what the runs themselves leave open."""
+"""The three laws on the same cases, and cases that failed, have not settled or lift off."""
 
 from collections.abc import Iterable
 from itertools import combinations
@@ -7,31 +7,28 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from wedgesweep import outcomes
-from wedgesweep.dataset import STATUSES
 from wedgesweep.reproduce.runs import LAWS, Run, Runs
+from wedgesweep.sweep import outcomes
+from wedgesweep.sweep.dataset import STATUSES
 
-# Inputs over the amplitude at which set-valued slip begins: stuck, near breakaway, beyond it.
+# Ranges of the input over the amplitude at which set-valued friction begins to slip.
 NEAR = 5.0
 ZONES = {"below breakaway": (0.0, 1.0), "near breakaway": (1.0, NEAR), "beyond": (NEAR, np.inf)}
-# A case is far from settled if its last two periods differ by this share of the input amplitude.
+# A case is far from settled if its last two periods differ by more than this share of the input amplitude.
 FAR_FROM_SETTLED = 0.1
 
 
 def spread(run: Run, laws: Iterable[str] = LAWS) -> xr.DataArray:
-    """Largest difference of the amplitude ratios of some laws over the largest of them."""
+    """Range of the amplitude ratios of some laws over the largest of them."""
     ratios = run.ds["amplitude_ratio"].sel(friction_law=list(laws))
     largest = ratios.max("friction_law", skipna=False)
     smallest = ratios.min("friction_law", skipna=False)
-    return (
-        ((largest - smallest) / largest.where(largest != 0.0))
-        .where(largest != 0.0, 0.0)
-        .where(largest.notnull())
-    )
+    moves = largest != 0.0
+    return ((largest - smallest) / largest.where(moves)).where(moves, 0.0).where(largest.notnull())
 
 
 def zone(run: Run, name: str) -> xr.DataArray:
-    """Whether a case lies in a zone of ``ZONES``, over beta and amplitude."""
+    """Whether a case lies in one of ``ZONES``, over beta and amplitude."""
     low, high = ZONES[name]
     level = run.ds["amplitude"] / run.onset
     return (level >= low) & (level < high)
@@ -61,17 +58,16 @@ def laws(run: Run) -> list[dict[str, Any]]:
     return [
         {"laws": list(pair), "inputs": name, **_summary(values)}
         for pair in combinations(LAWS, 2)
-        for name, values in _zones(run, spread(run, pair))
+        for name, values in _by_zone(run, spread(run, pair)).items()
     ]
 
 
-def _zones(run: Run, values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
-    parts = [(name, values.where(zone(run, name))) for name in ZONES]
-    return [("all", values), *parts]
+def _by_zone(run: Run, values: xr.DataArray) -> dict[str, xr.DataArray]:
+    return {"all": values, **{name: values.where(zone(run, name)) for name in ZONES}}
 
 
 def caveats(runs: Runs) -> list[dict[str, Any]]:
-    """Per run and law: cases, failures, cases that had not settled, cases that lift off."""
+    """Per run and law: number of cases, of failures, of cases not settled and of cases with lift-off."""
     return [_caveat(name, run, law) for name, run in runs.named.items() for law in LAWS]
 
 

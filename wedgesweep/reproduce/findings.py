@@ -1,4 +1,4 @@
-"""What a claim comes to: numbers compared by a stated criterion, and the verdict that follows."""
+"""The finding on a claim: numbers compared by stated criteria, and the verdict that follows."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,11 +11,14 @@ HOLDS, PARTLY, CONTRADICTED, NOT_TESTABLE = VERDICTS = (
     "contradicted",
     "not testable",
 )
+# Criteria that several claims share: amplitude ratio above which the bolster moves, higher harmonics over the
+# fundamental of a distorted response, share of time stuck of one that sticks.
+MOVES, DISTORTED, STICKS = 1e-3, 0.1, 0.01
 
 
 @dataclass(frozen=True)
 class Check:
-    """One statement of a claim; ``holds`` is None where the runs cannot tell."""
+    """One statement of a claim; ``holds`` is None where the runs cannot decide it."""
 
     statement: str
     here: float | None
@@ -24,8 +27,8 @@ class Check:
 
 
 def near(statement: str, here: float, expected: float, within: float) -> Check:
-    """Check a number against another, ``within`` as a share of that."""
-    criterion = f"{expected:.6g}, give or take {within:.2%}" if within else f"{expected:.6g}"
+    """Check that a number differs from the expected one by at most the share ``within`` of it."""
+    criterion = f"{expected:.6g} +- {within:.2%}" if within else f"{expected:.6g}"
     return Check(statement, here, criterion, bool(abs(here - expected) <= within * abs(expected)))
 
 
@@ -40,20 +43,20 @@ def above(statement: str, here: float, limit: float) -> Check:
 
 
 def untested(statement: str, why: str) -> Check:
-    """State what the runs cannot tell, and why."""
+    """State what the runs cannot decide, and why."""
     return Check(statement, None, why, None)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """The checks of a claim, and the numbers that its texts quote."""
+    """The checks of a claim and the numbers that its texts quote."""
 
     checks: tuple[Check, ...]
     numbers: Mapping[str, float]
 
     @property
     def verdict(self) -> str:
-        """All tested statements hold, none does, or some do."""
+        """Whether all tested statements hold, some or none."""
         tested = [check.holds for check in self.checks if check.holds is not None]
         if not tested:
             return NOT_TESTABLE
@@ -64,14 +67,14 @@ class Finding:
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and what checks it.
+    """A claim of the paper and the function that checks it.
 
-    ``words`` and ``paper`` are the paper's statement and number in short; ``here`` and
-    ``reason`` are templates that the numbers of the finding fill in.
+    ``statement`` and ``paper`` are the paper's claim and number in short; ``here`` and ``reason`` are
+    templates for the numbers of the finding.
     """
 
     number: int
-    words: str
+    statement: str
     paper: str
     here: str
     reason: str
@@ -79,7 +82,7 @@ class Claim:
 
 
 def claim(
-    number: int, words: str, *, paper: str, here: str, reason: str
+    number: int, statement: str, *, paper: str, here: str, reason: str
 ) -> Callable[[Callable[[Runs], Finding]], Claim]:
-    """Make a claim of the function that checks it."""
-    return lambda find: Claim(number, words, paper, here, reason, find)
+    """Turn the decorated function, which checks it, into a claim."""
+    return lambda find: Claim(number, statement, paper, here, reason, find)

@@ -2,21 +2,19 @@
 
 import numpy as np
 
-from wedgesweep.config import Case
 from wedgesweep.friction import LAWS as MODULES
 from wedgesweep.reproduce.comparison import settled, spread, zone
-from wedgesweep.reproduce.findings import Finding, above, below, claim
+from wedgesweep.reproduce.findings import DISTORTED, MOVES, Finding, above, below, claim
 from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, distortion
+from wedgesweep.reproduce.single_case import record
 
 ALIKE = 0.1  # difference of ratios over the largest of them
-DISTORTED = 0.1  # higher harmonics over the fundamental
-MOVES = 1e-3  # amplitude ratio
 LOWEST_BETA = 0.1
 COULOMB, STATIC_DYNAMIC, EXPONENTIAL = LAWS
 REGULARISED = [STATIC_DYNAMIC, EXPONENTIAL]
 
 
-def _next_to_breakaway(runs: Runs) -> dict[str, float]:
+def _close_to_breakaway(runs: Runs) -> dict[str, float]:
     """Ratios of the three laws at 20 Hz, 0.05 mm."""
     return runs.breakaway.ratios(runs.breakaway.beta_of(20.0), 0.05)
 
@@ -25,25 +23,24 @@ def _next_to_breakaway(runs: Runs) -> dict[str, float]:
     5,
     "The friction laws do not change the amplitude ratio",
     paper="the same tendency line",
-    here="differ by {beyond:.1%} (median) far beyond breakaway, by {near:.0%} near it",
-    reason="Over the cases that have settled after 1.5 s; the others, most of those far beyond "
-    "breakaway, differ more, as what is left of the start dies most slowly under exponential. At "
-    "20 Hz, 0.05 mm the ratio is {coulomb:.3f} under coulomb, {static_dynamic:.3f} under "
-    "static-dynamic and {exponential:.3f} under exponential: set-valued friction holds where the "
-    "regularised laws creep through. Below breakaway coulomb does not move at all. The table of "
-    "the laws below covers all cases.",
+    here="differ by {beyond:.1%} (median) far above breakaway, by {near:.0%} near it",
+    reason="These are the cases that have settled after 1.5 s. The others, which are most of those far "
+    "above breakaway, differ more, because the transient decays most slowly under exponential. At 20 Hz, "
+    "0.05 mm the ratio is {coulomb:.3f} (coulomb), {static_dynamic:.3f} (static-dynamic) and "
+    "{exponential:.3f} (exponential): set-valued friction sticks where the regularised laws creep. Below "
+    "breakaway coulomb does not move at all. The table of the laws below covers all cases.",
 )
 def same_trend(runs: Runs) -> Finding:
-    """Compare the ratios of the three laws near breakaway and far beyond it."""
+    """Compare the ratios of the three laws near breakaway and far above it."""
     values = spread(runs.paper).where(settled(runs.paper))
     near, beyond = (
         float(values.where(zone(runs.paper, name)).median()) for name in ("near breakaway", "beyond")
     )
     checks = (
-        below("median difference of the three ratios, settled, far beyond breakaway", beyond, ALIKE),
+        below("median difference of the three ratios, settled, far above breakaway", beyond, ALIKE),
         below("median difference of the three ratios, settled, near breakaway", near, ALIKE),
     )
-    return Finding(checks, {"near": near, "beyond": beyond, **_next_to_breakaway(runs)})
+    return Finding(checks, {"near": near, "beyond": beyond, **_close_to_breakaway(runs)})
 
 
 @claim(
@@ -51,19 +48,19 @@ def same_trend(runs: Runs) -> Finding:
     "At beta = 0.1 Coulomb is distorted, the other two show no stick-slip",
     paper="Fig. 5",
     here="coulomb ratio {coulomb:.2g} at every input; the others smooth, harmonics up to {smooth:.3f}",
-    reason="Set-valued slip begins at {onset:.2f} mm at this frequency, above the paper's largest "
-    "input of {largest:g} mm: coulomb stays stuck. The other two have no stick-slip because they "
-    "never stick: they creep with a ratio of {creep:.4f}, the column face below the threshold "
-    "velocity for at least {slow:.0%} of the time (the side frame itself is below it up to "
+    reason="At this frequency set-valued friction begins to slip at {onset:.2f} mm, above the paper's "
+    "largest input of {largest:g} mm: coulomb stays stuck. The other two laws show no stick-slip because "
+    "they cannot stick. They creep with a ratio of {creep:.4f}, and the column face stays below the "
+    "threshold velocity for at least {slow:.0%} of the time (the side frame itself does up to "
     "{slow_input:.3f} mm).",
 )
 def lowest_frequency(runs: Runs) -> Finding:
-    """Look at the lowest frequency."""
+    """Examine the cases at the lowest frequency."""
     cases = runs.paper.ds.sel(beta=LOWEST_BETA)
     others = cases.sel(friction_law=REGULARISED)
     coulomb = float(cases["amplitude_ratio"].sel(friction_law=COULOMB).max())
     smooth = float(distortion(others).max())
-    p = runs.paper.config.record(Case(STATIC_DYNAMIC, LOWEST_BETA, 1e-3))[0]
+    p = record(runs.paper.config, STATIC_DYNAMIC, LOWEST_BETA, 1.0)[0]
     checks = (
         above("largest ratio, coulomb (it must move to be distorted)", coulomb, MOVES),
         below("largest harmonics over the fundamental, the other two", smooth, DISTORTED),
@@ -87,10 +84,9 @@ def lowest_frequency(runs: Runs) -> Finding:
     "Static-dynamic and exponential behave very similarly",
     paper="very similar",
     here="ratios differ by {median:.1%} (median), by up to {largest:.0%} where settled",
-    reason="Below breakaway both creep alike. Beyond it the exponential coefficient falls with "
-    "velocity and damps less: the ratios are {static_dynamic:.3f} and {exponential:.3f} at 20 Hz, "
-    "0.05 mm and part most at beta = {beta:g}, {input:g} mm. {share:.0%} of all cases differ by "
-    "less than 10 %.",
+    reason="Below breakaway both creep alike. Above it the exponential coefficient decreases with velocity"
+    " and damps less: the ratios are {static_dynamic:.3f} and {exponential:.3f} at 20 Hz, 0.05 mm, and "
+    "differ most at beta = {beta:g}, {input:g} mm. {share:.0%} of all cases differ by less than 10 %.",
 )
 def regularised_alike(runs: Runs) -> Finding:
     """Compare the two regularised laws over all cases."""
@@ -110,7 +106,7 @@ def regularised_alike(runs: Runs) -> Finding:
         "beta": float(largest["beta"]),
         "input": round(float(largest["amplitude"]) * MM, 6),
     }
-    return Finding(checks, {**numbers, **_next_to_breakaway(runs)})
+    return Finding(checks, {**numbers, **_close_to_breakaway(runs)})
 
 
 @claim(
@@ -119,14 +115,14 @@ def regularised_alike(runs: Runs) -> Finding:
     paper="exponential nearer",
     here="jumps {static_jump:.3f} and {exponential_jump:.3f}; exponential nearer to coulomb in "
     "{share:.0%} of the cases",
-    reason="With v in mm/s and v_t = 1 mm/s both laws drop from mu_s to mu_d at v_t. Of the "
-    "{differ} cases in which the two are not equally far from coulomb, exponential is the nearer "
-    "one in {share:.0%}. The ratios of coulomb, static-dynamic and exponential are "
-    "{low_coulomb:.3f}, {low_static_dynamic:.3f} and {low_exponential:.3f} at beta = 0.4, 1 mm, "
-    "and {coulomb:.3f}, {static_dynamic:.3f} and {exponential:.3f} at 20 Hz, 0.05 mm.",
+    reason="With v in mm/s and v_t = 1 mm/s both laws drop from mu_s to mu_d at v_t. In {share:.0%} of the"
+    " {differ} cases in which the two differ in their distance from coulomb, exponential is nearer. The "
+    "ratios of coulomb, static-dynamic and exponential are {low_coulomb:.3f}, {low_static_dynamic:.3f} and"
+    " {low_exponential:.3f} at beta = 0.4, 1 mm, and {coulomb:.3f}, {static_dynamic:.3f} and "
+    "{exponential:.3f} at 20 Hz, 0.05 mm.",
 )
 def nearer_to_coulomb(runs: Runs) -> Finding:
-    """Compare the jumps, and how far the ratios of both laws are from those of coulomb."""
+    """Compare the jumps of both laws, and the distances of their ratios from those of coulomb."""
     static_jump, exponential_jump = (_jump(runs.paper, law) for law in REGULARISED)
     differ, share = _exponential_nearer(runs.paper)
     checks = (
@@ -142,20 +138,20 @@ def nearer_to_coulomb(runs: Runs) -> Finding:
             "differ": differ,
             "share": share,
             **{f"low_{law}": ratio for law, ratio in low.items()},
-            **_next_to_breakaway(runs),
+            **_close_to_breakaway(runs),
         },
     )
 
 
 def _jump(run: Run, law: str) -> float:
-    """Drop of the coefficient of friction where a regularised law leaves its ramp."""
-    p = run.config.record(Case(law, 1.0, 1e-3))[0]
+    """Drop of the coefficient of friction at the end of the ramp of a regularised law."""
+    p = record(run.config, law, 1.0, 1.0)[0]
     ramp, sliding = (MODULES[law].coefficient(p["threshold_velocity"], side, p) for side in (0, 1))
     return float(ramp - sliding)
 
 
 def _exponential_nearer(run: Run) -> tuple[int, float]:
-    """Count the cases in which the laws differ; share in which exponential is nearer."""
+    """Number of cases in which the laws differ, and the share in which exponential is nearer to coulomb."""
     ratios = run.ds["amplitude_ratio"]
     static_dynamic, exponential = (
         np.abs((ratios.sel(friction_law=law) - ratios.sel(friction_law=COULOMB)).values)

@@ -1,7 +1,7 @@
-"""What Chandiramani's experiment showed, as numbers with tolerances, and how far responses are from it.
+"""The observations of Chandiramani's experiment, and the distances of simulated responses from them.
 
-The paper shows no scales and gives no inputs, so that every tolerance is wide and says why. A distance is in
-tolerances: an observation is met up to 1.
+The paper shows no scales and states no inputs: every tolerance is wide, and its comment says why. Distances
+are in tolerances: an observation is satisfied up to 1.
 """
 
 from dataclasses import dataclass
@@ -10,37 +10,37 @@ from typing import NamedTuple
 import numpy as np
 
 SLOW_HERTZ, FAST_HERTZ = 20.0, 30.0
-# What moves less (mm) is at rest to an instrument with 4 % noise on the smallest motion shown, 0.03 mm.
+# An instrument with 4 % noise on the smallest motion shown, 0.03 mm, cannot resolve a smaller motion (mm).
 RESOLUTION = 1e-3
 
-# Levels (mm): twice the inputs with which the paper's simulation came closest, its ratio there being about 1.
-# Its grid of inputs has steps of at most 1.4 (1,800 cases), and its ratio is a reading of a diagram.
+# Levels (mm): twice the inputs at which the paper's simulation came closest, with a ratio of about 1 there.
+# Its inputs differ by factors of at most 1.4 (1,800 cases), and its ratio is read off a diagram.
 LEVELS = {SLOW_HERTZ: 0.03, FAST_HERTZ: 0.2}
 LEVEL_FACTOR = 1.5
-# "Small plateaus around 1/8 of the response period", by eye and from a small plot: 1/12 to 3/16.
+# "Small plateaus around 1/8 of the response period", estimated from a small plot: 1/12 to 3/16.
 PLATEAU, PLATEAU_FACTOR = 1 / 8, 1.5
-# A plateau is where the velocity stays below this share of its largest value: what a plot shows as a
-# line on the axis. A sine does so for 0.016 of its period.
+# On a plateau the velocity stays below this share of its largest value, which a plot shows as a line on the
+# axis. A sine does so for 0.016 of its period.
 ON_THE_AXIS = 0.05
-# "Sticking zones" at 30 Hz, without a length: half of those at 20 Hz, four times what a sine has.
+# "Sticking zones" at 30 Hz, without a length: half of those at 20 Hz, and four times that of a sine.
 STICK = 1 / 16
-# "A highly distorted velocity profile" at 30 Hz, evident where the plateaus of 20 Hz are not: more harmonics
-# than these have, 0.27 of the fundamental (set-valued friction, stops of an eighth).
+# "A highly distorted velocity profile" at 30 Hz, unlike that at 20 Hz: more harmonics than there, where
+# set-valued friction with stops of an eighth has 0.27 of the fundamental.
 DISTORTION = 0.27
-# "Increases initially slowly": up to 33 Hz no 2 Hz rise by more than a fifth of the sweep's highest
-# peak-to-peak, twice the slope of a straight line from 20 to 40 Hz; a fall of a twentieth would be seen.
+# "Increases initially slowly": up to 33 Hz the rise within 2 Hz is at most a fifth of the sweep's highest
+# peak-to-peak, twice that of a straight line from 20 to 40 Hz. A fall of a twentieth would be visible.
 SLOWLY_UNTIL, STEEPEST, FALL = 33.0, 0.2, 0.05
-# "About 35 Hz, it makes a jump towards a higher value": within 2 Hz between 33 and 37 Hz the
-# peak-to-peak grows by half or more, and does not come back up to 40 Hz.
+# "About 35 Hz, it makes a jump towards a higher value": within 2 Hz between 33 and 37 Hz the peak-to-peak
+# grows by half or more, and does not fall again up to 40 Hz.
 JUMP_HERTZ, STRIDE, JUMP_FACTOR = (33.0, 37.0), 2.0, 1.5
 
 
 @dataclass(frozen=True)
 class Observation:
-    """What was seen (``words``), and what counts as seeing it (``criterion``)."""
+    """What was observed, and the criterion for a response that shows it."""
 
     name: str
-    words: str
+    description: str
     criterion: str
 
 
@@ -48,18 +48,24 @@ OBSERVATIONS = (
     Observation("level-20", "peak-to-peak at 20 Hz about 0.03 mm", "0.02 to 0.045 mm"),
     Observation("plateau-20", "plateaus of 1/8 period at 20 Hz", "1/12 to 3/16 of the period"),
     Observation("level-30", "peak-to-peak at 30 Hz about 0.2 mm", "0.133 to 0.3 mm"),
-    Observation("stick-30", "sticking at 30 Hz", "velocity on its axis for 1/16 of the period or longer"),
+    Observation("stick-30", "sticking at 30 Hz", "velocity at zero for at least 1/16 of the period"),
     Observation(
-        "distorted-30", "velocity highly distorted at 30 Hz", "harmonics from 0.27 of the fundamental"
+        "distorted-30",
+        "velocity highly distorted at 30 Hz",
+        "harmonics of at least 0.27 of the fundamental",
     ),
     Observation(
         "slow-growth",
         "peak-to-peak grows slowly from 20 Hz",
-        "to 33 Hz it grows, no 2 Hz rise above a fifth of the highest value, no fall above a twentieth",
+        "growth up to 33 Hz, within 2 Hz at most a fifth of the highest value, no fall above a twentieth",
     ),
-    Observation("jump", "peak-to-peak jumps near 35 Hz", "x 1.5 within 2 Hz between 33 and 37 Hz, to stay"),
+    Observation(
+        "jump",
+        "peak-to-peak jumps near 35 Hz",
+        "x 1.5 within 2 Hz between 33 and 37 Hz, no later fall",
+    ),
 )
-# Which of these are seen in the recordings at 20 and 30 Hz, and which in the sweep.
+# Those in the recordings at 20 and 30 Hz, and those in the sweep.
 OF_SLOW, OF_FAST, OF_SWEEP = slice(0, 2), slice(2, 5), slice(5, 7)
 OF_TESTS = OF_FAST.stop
 
@@ -73,52 +79,52 @@ class Recording(NamedTuple):
 
 
 def of_tests(slow: Recording, fast: Recording) -> np.ndarray:
-    """Distances from what was recorded at 20 and 30 Hz, shape (n, OF_TESTS)."""
+    """Distances from the recordings at 20 and 30 Hz, shape (n, OF_TESTS)."""
     distances = (
-        _apart(slow.peak_to_peak, LEVELS[SLOW_HERTZ], LEVEL_FACTOR),
-        _apart(slow.plateau, PLATEAU, PLATEAU_FACTOR),
-        _apart(fast.peak_to_peak, LEVELS[FAST_HERTZ], LEVEL_FACTOR),
-        _seen(_short_of(fast.plateau, STICK), fast.peak_to_peak),
-        _seen(_short_of(fast.distortion, DISTORTION), fast.peak_to_peak),
+        _ratio_distance(slow.peak_to_peak, LEVELS[SLOW_HERTZ], LEVEL_FACTOR),
+        _ratio_distance(slow.plateau, PLATEAU, PLATEAU_FACTOR),
+        _ratio_distance(fast.peak_to_peak, LEVELS[FAST_HERTZ], LEVEL_FACTOR),
+        _if_visible(_shortfall(fast.plateau, STICK), fast.peak_to_peak),
+        _if_visible(_shortfall(fast.distortion, DISTORTION), fast.peak_to_peak),
     )
-    return _complete(np.stack(distances, axis=1))
+    return _without_nan(np.stack(distances, axis=1))
 
 
 def of_sweep(hertz: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
-    """Distances of slow growth and jump, shape (n, 2).
+    """Distances from slow growth and jump, shape (n, 2).
 
-    ``peak_to_peak`` has shape (n, f) over ``hertz`` (f,), even steps that divide 2 Hz and meet 33 Hz.
+    ``peak_to_peak`` has shape (n, f) over ``hertz`` (f,), whose even steps divide 2 Hz and include 33 Hz.
     """
-    return _complete(np.stack([_growth(hertz, peak_to_peak), _jump(hertz, peak_to_peak)], axis=1))
+    return _without_nan(np.stack([_growth(hertz, peak_to_peak), _jump(hertz, peak_to_peak)], axis=1))
 
 
-def _complete(distances: np.ndarray) -> np.ndarray:
-    """What has no answer, as where the wedge locks, is infinitely far."""
+def _without_nan(distances: np.ndarray) -> np.ndarray:
+    """Replace NaN, as of a wedge that locks, by infinity."""
     return np.where(np.isnan(distances), np.inf, distances)
 
 
-def _seen(distance: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
-    """The distance, infinite where there is no motion to see."""
+def _if_visible(distance: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
+    """The distance, infinite where the motion is below the resolution."""
     return np.where(peak_to_peak >= RESOLUTION, distance, np.inf)
 
 
-def _apart(value: np.ndarray, wanted: float, factor: float) -> np.ndarray:
-    """Distance on a scale of ratios."""
+def _ratio_distance(value: np.ndarray, wanted: float, factor: float) -> np.ndarray:
+    """Distance of a ratio."""
     return np.abs(np.log(np.maximum(value, 1e-12) / wanted)) / np.log(factor)
 
 
-def _short_of(value: np.ndarray, least: float) -> np.ndarray:
-    """Distance from a value that may be larger."""
+def _shortfall(value: np.ndarray, least: float) -> np.ndarray:
+    """Distance below a smallest value."""
     return least / np.maximum(value, 1e-12)
 
 
-def _rises(hertz: np.ndarray) -> int:
-    """Number of steps in 2 Hz."""
+def _steps_in_stride(hertz: np.ndarray) -> int:
+    """Number of frequency steps in 2 Hz."""
     return round(STRIDE / (hertz[1] - hertz[0]))
 
 
 def _growth(hertz: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
-    stride, highest = _rises(hertz), peak_to_peak.max(axis=1)
+    stride, highest = _steps_in_stride(hertz), peak_to_peak.max(axis=1)
     early = peak_to_peak[:, hertz <= SLOWLY_UNTIL]
     steepest = (early[:, stride:] - early[:, :-stride]).max(axis=1)
     fall = (np.maximum.accumulate(early, axis=1) - early).max(axis=1)
@@ -128,7 +134,7 @@ def _growth(hertz: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
 
 
 def _jump(hertz: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
-    stride = _rises(hertz)
+    stride = _steps_in_stride(hertz)
     starts = np.flatnonzero((hertz >= JUMP_HERTZ[0]) & (hertz + STRIDE <= JUMP_HERTZ[1]))
     after = np.stack([peak_to_peak[:, i + stride :].min(axis=1) for i in starts], axis=1)
     before = np.maximum(peak_to_peak[:, starts], RESOLUTION)
@@ -137,18 +143,18 @@ def _jump(hertz: np.ndarray, peak_to_peak: np.ndarray) -> np.ndarray:
 
 
 def recording(spectra: np.ndarray, extremes: np.ndarray, samples: int = 256) -> Recording:
-    """What a recording shows of responses with ``spectra`` (n, 2, H) and ``extremes`` (n, 2), in m."""
+    """Recordings of responses with ``spectra`` (n, 2, H) and ``extremes`` (n, 2) in m."""
     size = np.abs(spectra[:, 1])
     distortion = np.sqrt((size[:, 1:] ** 2).sum(axis=1)) / np.maximum(size[:, 0], 1e-15)
     orders = np.arange(1, spectra.shape[2] + 1)
     turns = np.exp(2j * np.pi * np.outer(orders, np.arange(samples)) / samples)
     velocity = np.abs((spectra[:, 1] @ turns).real)
     on_axis = velocity <= ON_THE_AXIS * velocity.max(axis=1, keepdims=True)
-    return Recording(1e3 * (extremes[:, 1] - extremes[:, 0]), _longest(on_axis), distortion)
+    return Recording(1e3 * (extremes[:, 1] - extremes[:, 0]), _longest_run(on_axis), distortion)
 
 
-def _longest(flags: np.ndarray) -> np.ndarray:
-    """Longest run of each row, which closes on itself, as a share of the row; shape (n,)."""
+def _longest_run(flags: np.ndarray) -> np.ndarray:
+    """Longest run of each periodic row as a share of the row; shape (n,)."""
     n, samples = flags.shape
     run, longest = np.zeros(n, int), np.zeros(n, int)
     for column in np.concatenate([flags, flags], axis=1).T:

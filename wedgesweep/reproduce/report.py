@@ -1,4 +1,4 @@
-"""The outcome of a reproduction as data (reproduction.json) and as a page (reproduction.md)."""
+"""The result of a reproduction as data (reproduction.json) and as a report (reproduction.md)."""
 
 import json
 import os
@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep.reproduce import comparison, page
-from wedgesweep.reproduce.claims import Outcome
+from wedgesweep.reproduce.claims import CheckedClaim
 from wedgesweep.reproduce.findings import VERDICTS
 from wedgesweep.reproduce.runs import Run, Runs
 
 
-def write(directory: Path, runs: Runs, outcomes: Sequence[Outcome], experiment: str = "") -> None:
-    """Write both files; ``experiment`` is the page's section on the experiment, where it was searched."""
-    content = document(runs, outcomes)
+def write(directory: Path, runs: Runs, claims: Sequence[CheckedClaim], experiment: str = "") -> None:
+    """Write both files; ``experiment`` is the section on the experiment, if it was searched."""
+    content = document(runs, claims)
     write_text(directory / "reproduction.json", json_text(content))
     write_text(directory / "reproduction.md", page.render(content, experiment))
 
@@ -27,7 +27,7 @@ def json_text(content: dict[str, Any]) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all."""
+    """Write a file completely or not at all."""
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         partial.write_text(text, encoding="utf-8")
@@ -36,14 +36,14 @@ def write_text(path: Path, text: str) -> None:
         partial.unlink(missing_ok=True)
 
 
-def document(runs: Runs, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Everything that both files say."""
-    verdicts = Counter(outcome.verdict for outcome in outcomes)
+def document(runs: Runs, claims: Sequence[CheckedClaim]) -> dict[str, Any]:
+    """The content of both files."""
+    verdicts = Counter(claim.verdict for claim in claims)
     return plain(
         {
-            "agrees": all(outcome.agrees for outcome in outcomes),
+            "agrees": all(claim.agrees for claim in claims),
             "verdicts": {verdict: n for verdict in VERDICTS if (n := verdicts[verdict])},
-            "claims": [_claim(outcome) for outcome in outcomes],
+            "claims": [_claim(claim) for claim in claims],
             "laws": comparison.laws(runs.paper),
             "cases": comparison.caveats(runs),
             "failed": comparison.failed_cases(runs),
@@ -52,17 +52,17 @@ def document(runs: Runs, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     )
 
 
-def _claim(outcome: Outcome) -> dict[str, Any]:
+def _claim(checked: CheckedClaim) -> dict[str, Any]:
     return {
-        "number": outcome.claim.number,
-        "claim": outcome.claim.words,
-        "paper": outcome.claim.paper,
-        "here": outcome.here,
-        "verdict": outcome.verdict,
-        "recorded": outcome.recorded,
-        "reason": outcome.reason,
-        "checks": [vars(check) for check in outcome.finding.checks],
-        "numbers": outcome.finding.numbers,
+        "number": checked.claim.number,
+        "claim": checked.claim.statement,
+        "paper": checked.claim.paper,
+        "here": checked.here,
+        "verdict": checked.verdict,
+        "recorded": checked.recorded,
+        "reason": checked.reason,
+        "checks": [vars(check) for check in checked.finding.checks],
+        "numbers": checked.finding.numbers,
     }
 
 
@@ -82,7 +82,7 @@ def _run(run: Run) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Lists, dicts and Python numbers only; what is not finite becomes None."""
+    """Convert to lists, dicts and Python numbers; numbers that are not finite become None."""
     if isinstance(value, dict):
         return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):

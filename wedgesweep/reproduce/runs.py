@@ -1,4 +1,4 @@
-"""The three sweeps that the claims are checked on, and how a case of them is found."""
+"""The three sweeps on which the claims are checked."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,24 +12,24 @@ import xarray as xr
 from wedgesweep import config
 from wedgesweep.config import Config, ConfigError
 from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.sweep import Progress, Sweep
+from wedgesweep.sweep.run import Progress, Sweep
 
 CONFIG_NAMES = ("paper", "paper-y0", "breakaway")
 LAWS = ("coulomb", "static-dynamic", "exponential")
 MM = 1e3
 COMMAND = "wedgesweep reproduce"
-# A case is found by its frequency and amplitude, equal to within this share.
+# Relative difference up to which a frequency or an amplitude is the one that is looked for.
 SAME = 1e-5
 
 
 def identifier(law: str) -> str:
-    """A law's name as templates can use it."""
+    """A law's name as a template can use it."""
     return law.replace("-", "_")
 
 
 @dataclass(frozen=True)
 class Run:
-    """Dataset of one config."""
+    """The dataset of one config."""
 
     ds: xr.Dataset
 
@@ -48,7 +48,7 @@ class Run:
 
     @property
     def onset(self) -> xr.DataArray:
-        """Input amplitude (m) at which set-valued slip begins from rest, over beta."""
+        """Input amplitude (m) at which set-valued friction begins to slip from rest, over beta."""
         return self.ds.attrs["breakaway_acceleration"] / (self.omega_n * self.ds["beta"]) ** 2
 
     def law(self, name: str) -> xr.Dataset:
@@ -56,11 +56,11 @@ class Run:
         return self.ds.sel(friction_law=name)
 
     def beta_of(self, hertz: float) -> float:
-        """Find the frequency factor of a frequency."""
+        """Frequency ratio of a frequency."""
         return 2.0 * pi * hertz / self.omega_n
 
     def cases(self, name: str, beta: float) -> xr.Dataset:
-        """All cases of a law at a frequency factor, over amplitude."""
+        """All cases of a law at a frequency ratio, over amplitude."""
         law = self.law(name)
         return law.isel(beta=_place(law["beta"], beta))
 
@@ -74,7 +74,7 @@ class Run:
         return {identifier(law): self.number("amplitude_ratio", law, beta, millimetres) for law in LAWS}
 
     def number(self, variable: str, name: str, beta: float, millimetres: float) -> float:
-        """One number of one case, SI."""
+        """One variable of one case, in SI units."""
         return float(self.case(name, beta, millimetres)[variable])
 
 
@@ -98,7 +98,7 @@ def _place(coordinate: xr.DataArray, wanted: float) -> int:
 
 @dataclass(frozen=True)
 class Runs:
-    """Table 1 as printed, springs scaled to the paper's y_0, and the range of the experiment."""
+    """Table 1 as printed, with springs scaled to the paper's y_0, and over the range of the experiment."""
 
     paper: Run
     scaled: Run
@@ -112,12 +112,15 @@ class Runs:
 def obtain(
     directory: Path, configs: Path, n_jobs: int, report: Callable[[str], None], progress: Progress
 ) -> Runs:
-    """Run what ``directory`` does not hold yet; raises ConfigError if the configs are not there."""
+    """Run the sweeps that ``directory`` lacks; raises ConfigError if the configs are missing."""
     if not configs.is_dir():
         message = f"{configs}: no such folder; reproduce needs the configs of a wedgesweep checkout"
         raise ConfigError([message])
     directory.mkdir(parents=True, exist_ok=True)
-    sweeps = [Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc") for name in CONFIG_NAMES]
+    sweeps = [
+        Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc", COMMAND)
+        for name in CONFIG_NAMES
+    ]
     return Runs(*(_obtain(sweep, n_jobs, report, progress) for sweep in sweeps))
 
 
@@ -128,14 +131,14 @@ def _obtain(sweep: Sweep, n_jobs: int, report: Callable[[str], None], progress: 
         return Run(stored)
     report(f"{sweep.out}: {sweep.config.title}")
     try:
-        return Run(sweep.run(n_jobs, progress=progress, command=COMMAND))
+        return Run(sweep.run(n_jobs, progress=progress))
     except MismatchError as error:  # an unfinished run of another version
         report(f"{error}; running it again")
-        return Run(sweep.run(n_jobs, progress=progress, command=COMMAND, fresh=True))
+        return Run(sweep.run(n_jobs, progress=progress, fresh=True))
 
 
 def _stored(sweep: Sweep, report: Callable[[str], None]) -> xr.Dataset | None:
-    """Dataset of an earlier run; one of another version or config gives way, as a build product."""
+    """Dataset of an earlier run; one of another version or config is discarded."""
     try:
         return sweep.stored()
     except SweepError as error:

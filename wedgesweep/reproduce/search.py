@@ -1,7 +1,7 @@
-"""Search of a suspect's ranges: differential evolution (Storn and Price, 1997), the same each time.
+"""Search of a scenario by differential evolution (Storn and Price, 1997), with reproducible results.
 
-Distances jump where a motion begins to stick, so that no gradient is asked for. A generation is one batch.
-Where each recording has an input of its own, every other generation looks for these alone, one by one.
+Distances jump where a motion begins to stick, so that gradients are of no use. A generation is one batch.
+Where each recording has an input of its own, every second generation varies only the inputs, one by one.
 """
 
 from dataclasses import dataclass
@@ -9,81 +9,67 @@ from hashlib import sha256
 
 import numpy as np
 
-from wedgesweep.reproduce.trials import Question, distances, loss, met
+from wedgesweep.reproduce.scenarios import EvaluatedPoint, Scenario, distances, loss, satisfied
 
-# Weight of a difference, and share of the numbers that a trial takes over.
+# Weight of the differences, and the share of the parameters that a trial point takes over.
 WEIGHT, CROSSOVER = 0.7, 0.8
 SEARCH_HERTZ = np.arange(21.0, 41.0, 2.0)  # of the sweep; 33, 35 and 37 Hz are among them
 
 
 @dataclass(frozen=True)
-class Effort:
-    """Members per free number, and generations."""
+class Budget:
+    """Points per free parameter, and generations."""
 
-    members: int
+    points: int
     generations: int
 
 
-# All questions are looked through, the most promising of each suspect searched well, and the best one deeply.
-THROUGH, WELL, DEEPLY = Effort(6, 6), Effort(10, 14), Effort(20, 60)
+# Coarse for all scenarios, medium for the most promising of each hypothesis, fine for its best.
+COARSE, MEDIUM, FINE = Budget(6, 6), Budget(10, 14), Budget(20, 60)
 
 
 @dataclass(frozen=True)
-class Found:
-    """Outcome of a search: all points that meet the most observations, the closest first."""
+class SearchResult(EvaluatedPoint):
+    """The best point found, and all points (m, free) that satisfy as many observations, best first."""
 
-    question: Question
-    distances: np.ndarray  # (observations,) of the first one
-    alike: np.ndarray  # (m, free)
-
-    @property
-    def point(self) -> np.ndarray:
-        """The best point, (free,)."""
-        return self.alike[0]
-
-    @property
-    def met(self) -> int:
-        return int(met(self.distances[None])[0])
-
-    @property
-    def loss(self) -> float:
-        return float(loss(self.distances[None])[0])
+    equally_good: np.ndarray
 
 
-def search(question: Question, effort: Effort, start: np.ndarray | None = None) -> Found:
-    """Look for the point that meets the most observations; the closest one of these.
+def search(scenario: Scenario, budget: Budget, start: np.ndarray | None = None) -> SearchResult:
+    """Find the point that satisfies the most observations, and of these the one with the smallest loss.
 
-    ``start`` (m, free) are points that are known to be good.
+    ``start`` (m, free) are good points that are already known.
     """
-    random = np.random.default_rng(_seed(question))
-    points = _spread(effort.members * question.free, question.free, random)
+    random = np.random.default_rng(_seed(scenario))
+    points = _latin_hypercube(budget.points * scenario.free, scenario.free, random)
     if start is not None:
         points[: len(start)] = start[: len(points)]
-    found = distances(question, points, SEARCH_HERTZ)
+    found = distances(scenario, points, SEARCH_HERTZ)
     seen = [(points, found)]
-    for generation in range(effort.generations):
-        select = _input_by_input if generation % 2 and question.reading.separate else _whole
-        chosen, found = select(question, points, found, _trials(points, loss(found), random))
+    for generation in range(budget.generations):
+        by_input = generation % 2 and scenario.interpretation.separate
+        select = _select_by_input if by_input else _select
+        chosen, found = select(scenario, points, found, _trial_points(points, loss(found), random))
         moved = (chosen != points).any(axis=1)
         seen.append((chosen[moved], found[moved]))
         points = chosen
-    return _best(question, *(np.concatenate(each) for each in zip(*seen, strict=True)))
+    return _best(scenario, *(np.concatenate(each) for each in zip(*seen, strict=True)))
 
 
-def _seed(question: Question) -> int:
-    """A seed of the question's own, so that no answer depends on which others were asked."""
-    name = (question.suspect.name, question.law.name, f"{question.lean:g}", question.reading.name)
-    return int.from_bytes(sha256("/".join(name).encode()).digest()[:4], "big")
+def _seed(scenario: Scenario) -> int:
+    """A seed of its own, so that no result depends on which other scenarios are searched."""
+    names = (scenario.hypothesis.name, scenario.law.name, f"{scenario.lean:g}", scenario.interpretation.name)
+    return int.from_bytes(sha256("/".join(names).encode()).digest()[:4], "big")
 
 
-def _spread(size: int, free: int, random: np.random.Generator) -> np.ndarray:
-    """Latin hypercube: every number takes each of ``size`` parts of its range once."""
+def _latin_hypercube(size: int, free: int, random: np.random.Generator) -> np.ndarray:
+    """Points (size, free); every parameter takes each of ``size`` parts of its range once."""
     parts = np.stack([random.permutation(size) for _ in range(free)], axis=1)
     return (parts + random.random((size, free))) / size
 
 
-def _trials(points: np.ndarray, losses: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Half way from each point to the best one, plus the difference of two others; crossed with the point."""
+def _trial_points(points: np.ndarray, losses: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Move each point towards one of the best, add the difference of two others, and cross over."""
     size, free = points.shape
     first, second = (random.integers(size, size=size) for _ in range(2))
     best = points[np.argsort(losses)[random.integers(max(size // 10, 1), size=size)]]
@@ -91,39 +77,40 @@ def _trials(points: np.ndarray, losses: np.ndarray, random: np.random.Generator)
     taken = random.random((size, free)) < CROSSOVER
     taken[np.arange(size), random.integers(free, size=size)] = True
     trials = np.where(taken, moved, points)
-    # What leaves the ranges comes back in, as from a mirror.
+    # Reflected at the ends of the ranges.
     return 1.0 - np.abs(1.0 - np.abs(trials) % 2.0)
 
 
-def _whole(
-    question: Question, points: np.ndarray, found: np.ndarray, trials: np.ndarray
+def _select(
+    scenario: Scenario, points: np.ndarray, found: np.ndarray, trials: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The better one of each point and its trial, and its distances."""
-    tried = distances(question, trials, SEARCH_HERTZ, loss(found))
+    """The better of each point and its trial point, and its distances."""
+    tried = distances(scenario, trials, SEARCH_HERTZ, loss(found))
     better = (loss(tried) <= loss(found))[:, None]
     return np.where(better, trials, points), np.where(better, tried, found)
 
 
-def _input_by_input(
-    question: Question, points: np.ndarray, found: np.ndarray, trials: np.ndarray
+def _select_by_input(
+    scenario: Scenario, points: np.ndarray, found: np.ndarray, trials: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The points with each input of the trial that is better for what it alone decides, and their distances.
+    """Points with each input of the trial point that improves what it alone decides, and their distances.
 
     The sweep is computed for the better half of the points.
     """
-    trials = np.hstack([trials[:, : question.reading.inputs], points[:, question.reading.inputs :]])
+    inputs = scenario.interpretation.inputs
+    trials = np.hstack([trials[:, :inputs], points[:, inputs:]])
     promising = loss(found) <= np.median(loss(found))
-    tried = distances(question, trials, SEARCH_HERTZ, np.where(promising, np.inf, -np.inf))
+    tried = distances(scenario, trials, SEARCH_HERTZ, np.where(promising, np.inf, -np.inf))
     chosen, distance = points.copy(), found.copy()
-    for inputs, decided in question.reading.separate:
+    for own, decided in scenario.interpretation.separate:
         better = loss(tried[:, decided]) <= loss(found[:, decided])
-        chosen[better, inputs] = trials[better, inputs]
+        chosen[better, own] = trials[better, own]
         distance[better, decided] = tried[better, decided]
     return chosen, distance
 
 
-def _best(question: Question, points: np.ndarray, found: np.ndarray) -> Found:
-    count = met(found)
+def _best(scenario: Scenario, points: np.ndarray, found: np.ndarray) -> SearchResult:
+    count = satisfied(found)
     most = np.flatnonzero(count == count.max())
     most = most[np.argsort(loss(found[most]), kind="stable")]
-    return Found(question, found[most[0]], points[most])
+    return SearchResult(scenario, points[most[0]], found[most[0]], points[most])

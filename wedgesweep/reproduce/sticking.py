@@ -1,16 +1,15 @@
-"""Claims on stick-slip, and on the input at which motion begins."""
+"""Claims on stick-slip and on the input at which motion begins."""
 
 from collections.abc import Callable
 
 import numpy as np
 
-from wedgesweep.config import Case
-from wedgesweep.reproduce.findings import Finding, above, below, claim
+from wedgesweep.reproduce.findings import STICKS, Finding, above, below, claim
 from wedgesweep.reproduce.runs import MM, Run, Runs
-from wedgesweep.reproduce.singles import single
+from wedgesweep.reproduce.single_case import other_lean, record, single
 
-# Share of time stuck that makes stick-slip: a case that sticks for longer hardly moves.
-LEAST, MOST = 0.01, 0.9
+# A case that is stuck for a larger share of the time hardly moves.
+MOST = 0.9
 LAST_BETA = 0.4  # up to which the paper saw stick-slip
 ROUNDING = 1e-6
 ONSET_MM = 0.3  # where the paper saw motion begin
@@ -23,58 +22,56 @@ APPRECIABLE = 0.1  # amplitude ratio
     paper="beta <= 0.4",
     here="coulomb sticks {share_20:.0%} of the time at 20 Hz, {input_20:g} mm; {share_30:.0%} at "
     "30 Hz, {input_30:g} mm",
-    reason="Set-valued friction has stick-slip in {high} cases of paper.toml above beta = 0.4, "
-    "next to breakaway, beside {low} up to there. At larger inputs the stops vanish: at 30 Hz "
-    "with 0.1 mm, the input that the paper shows, {shown:.0%} of the time is stuck. The two "
-    "regularised laws cannot stick, they creep: at 20 Hz, {input_20:g} mm the ratios are "
-    "{coulomb_20:.3f}, {static_dynamic_20:.3f} and {exponential_20:.3f} under coulomb, "
-    "static-dynamic and exponential; at 30 Hz, {input_30:g} mm they are {coulomb_30:.3f}, "
-    "{static_dynamic_30:.3f} and {exponential_30:.3f}. The slip on the bolster face is only "
-    "{face:.4f} of the bolster's velocity: this face stays below the threshold velocity up to "
-    "{face_limit:.1f} mm/s, with its friction nearly switched off. With the columns leaning the "
-    "other way the same cases stick {mirrored_20:.0%} and {mirrored_30:.0%} of the time.",
+    reason="With set-valued friction {high} cases of paper.toml above beta = 0.4, close to breakaway, show"
+    " stick-slip, and {low} at lower frequencies. Larger inputs do not stick: at 30 Hz and 0.1 mm, the "
+    "input that the paper shows, the bolster sticks {shown:.0%} of the time. The two regularised laws "
+    "cannot stick; they creep. At 20 Hz, {input_20:g} mm the ratios are {coulomb_20:.3f} (coulomb), "
+    "{static_dynamic_20:.3f} (static-dynamic) and {exponential_20:.3f} (exponential); at 30 Hz, "
+    "{input_30:g} mm they are {coulomb_30:.3f}, {static_dynamic_30:.3f} and {exponential_30:.3f}. The slip"
+    " on the bolster face is only {face:.4f} of the bolster's velocity, so that this face stays below the "
+    "threshold velocity, almost without friction, up to {face_limit:.1f} mm/s. With the columns leaning "
+    "the other way the same cases stick {mirrored_20:.0%} and {mirrored_30:.0%} of the time.",
 )
 def stick_slip(runs: Runs) -> Finding:
-    """Look for stick-slip above the paper's last beta, and at the frequencies of its Figs. 8, 9."""
+    """Look for stick-slip above the paper's highest beta, and at the frequencies of its Figs. 8 and 9."""
     low, high = _stick_slip_cases(runs.paper)
     at_20, at_30 = (_longest(runs.breakaway, hertz) for hertz in (20, 30))
     shown = runs.breakaway.number("stick_fraction", "coulomb", runs.breakaway.beta_of(30.0), 0.1)
     checks = (
         below("coulomb cases with stick-slip above beta = 0.4", high, 0),
-        below("longest share of time stuck in motion, coulomb, 20 Hz", at_20["share_20"], LEAST),
-        below("longest share of time stuck in motion, coulomb, 30 Hz", at_30["share_30"], LEAST),
+        below("longest share of time stuck in motion, coulomb, 20 Hz", at_20["share_20"], STICKS),
+        below("longest share of time stuck in motion, coulomb, 30 Hz", at_30["share_30"], STICKS),
     )
     bolster = _bolster_face(runs.breakaway)
     return Finding(checks, {"low": low, "high": high, "shown": shown, **at_20, **at_30, **bolster})
 
 
 def _stick_slip_cases(run: Run) -> tuple[int, int]:
-    """Count the coulomb cases in stick-slip up to and above the paper's last beta."""
+    """Number of coulomb cases in stick-slip up to and above the paper's highest beta."""
     stuck = run.law("coulomb")["stick_fraction"]
-    sticks = (stuck > LEAST) & (stuck < MOST)
+    sticks = (stuck > STICKS) & (stuck < MOST)
     low = sticks["beta"] <= LAST_BETA + ROUNDING
     return int((sticks & low).sum()), int((sticks & ~low).sum())
 
 
 def _longest(run: Run, hertz: int) -> dict[str, float]:
-    """Numbers of the coulomb case that is stuck for longest among those in stick-slip."""
+    """Numbers of the coulomb case in stick-slip that sticks for the longest time."""
     beta = run.beta_of(hertz)
     stuck = run.cases("coulomb", beta)["stick_fraction"]
     longest = stuck[int(stuck.where(stuck < MOST, 0.0).fillna(0.0).values.argmax())]
     millimetres = round(float(longest["amplitude"]) * MM, 6)
-    mirrored = {"column_angle": -run.config.suspension["column_angle"]}
-    other_lean = single(run, "coulomb", beta, millimetres, suspension=mirrored)
+    mirrored = single(run, "coulomb", beta, millimetres, other_lean(run.config))
     return {
         f"share_{hertz}": float(longest.where(longest < MOST, 0.0)),
         f"input_{hertz}": millimetres,
-        f"mirrored_{hertz}": other_lean["stick_fraction"],
+        f"mirrored_{hertz}": mirrored["stick_fraction"],
         **{f"{law}_{hertz}": ratio for law, ratio in run.ratios(beta, millimetres).items()},
     }
 
 
 def _bolster_face(run: Run) -> dict[str, float]:
-    """Slip of the bolster face per velocity, and the velocity (mm/s) that takes it to v_t."""
-    p = run.config.record(Case("static-dynamic", 1.0, 1e-3))[0]
+    """Slip of the bolster face over the velocity, and the velocity (mm/s) at which this slip is v_t."""
+    p = record(run.config, "static-dynamic", 1.0, 1.0)[0]
     share = abs(float(p["bolster_ratio"]))
     return {"face": share, "face_limit": float(p["threshold_velocity"]) / share * MM}
 
@@ -85,13 +82,13 @@ def _bolster_face(run: Run) -> dict[str, float]:
     paper="about 0.3 mm",
     here="{largest:.2g} mm at beta = {first_beta:g} to {smallest:.2g} mm at beta = {last_beta:g}; "
     "breakaway ~ omega^{slope:.2f}",
-    reason="The input from which coulomb keeps slipping falls with omega^{slope:.2f} (fitted over "
-    "{frequencies} frequencies; that at which the ratio passes 0.1 with "
-    "omega^{moving_slope:.2f}), because what drives the bolster is its mass times a omega^2. A "
-    "base acceleration of {acceleration:.4f} m/s2 is enough for a first slip from rest, which "
-    "moves the bolster to where it holds; slip goes on from about {sustained:.2f} m/s2. 0.3 mm "
-    "gives that at beta = {beta_of_onset:.2f} only. The regularised laws have no onset: at beta = "
-    "1.75 static-dynamic creeps with a ratio of {creep:.2f} at the smallest input.",
+    reason="The input from which coulomb keeps slipping is proportional to omega^{slope:.2f} (fitted over "
+    "{frequencies} frequencies), the input at which the ratio exceeds 0.1 to omega^{moving_slope:.2f}, "
+    "because the bolster is driven by its mass times a omega^2. A base acceleration of {acceleration:.4f} "
+    "m/s2 makes the bolster slip once from rest, to a position where it sticks; slip continues from about "
+    "{sustained:.2f} m/s2. An input of 0.3 mm has this acceleration at beta = {beta_of_onset:.2f} only. "
+    "The regularised laws have no onset: at beta = 1.75 and the smallest input static-dynamic creeps with "
+    "a ratio of {creep:.2f}.",
 )
 def onset_of_motion(runs: Runs) -> Finding:
     """Compare the inputs from which coulomb keeps slipping, and moves appreciably."""
@@ -101,7 +98,7 @@ def onset_of_motion(runs: Runs) -> Finding:
     sustained = float(np.median(slip / MM * (beta * run.omega_n) ** 2))
     agree = float(np.mean(np.abs(np.log2(moving / ONSET_MM)) <= 1.0))
     checks = (
-        above("share of frequencies at which the ratio passes 0.1 between 0.15 and 0.6 mm", agree, 0.9),
+        above("share of frequencies at which the ratio reaches 0.1 between 0.15 and 0.6 mm", agree, 0.9),
         below("largest over smallest input of these", float(moving.max() / moving.min()), 2.0),
     )
     return Finding(
@@ -125,7 +122,7 @@ def onset_of_motion(runs: Runs) -> Finding:
 def _onsets(
     run: Run, variable: str, begun: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Frequency factors at which ``begun`` first holds within the inputs, and where (mm)."""
+    """Frequency ratios at which ``begun`` becomes true within the inputs, and these inputs (mm)."""
     cases = run.law("coulomb").transpose("beta", "amplitude", ...)
     amplitudes = cases["amplitude"].values * MM
     state = begun(cases[variable].values)

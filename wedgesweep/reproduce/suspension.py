@@ -1,18 +1,16 @@
-"""Claims on the suspension as a whole: rest position, resonance, the frictionless limit."""
+"""Claims on the suspension as a whole: rest position, resonance, frictionless limit."""
 
 from math import pi
 
-from wedgesweep import damper, parameters
-from wedgesweep.config import Case
+from wedgesweep import damper
 from wedgesweep.reproduce.findings import Finding, claim, near
 from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, identifier
-from wedgesweep.reproduce.singles import single
+from wedgesweep.reproduce.single_case import changed, other_lean, record, single
 
-DIGITS = 3e-3  # share by which numbers may differ that should agree as printed
-READ_OFF = 0.05  # the same for numbers that the paper reads off a diagram
-REACHED = 0.1  # the same for a ratio that is said to have become 1
+# Relative tolerances: of printed numbers, of numbers read off a diagram, of a ratio that is said to reach 1.
+PRINTED, READ_OFF, REACHED = 3e-3, 0.05, 0.1
 FAR = 100.0  # beta that stands for infinity
-LONG = 300  # periods until large motions have settled: their friction hardly damps them
+LONG = 300  # periods until large motions, which friction hardly damps, have settled
 
 
 @claim(
@@ -20,17 +18,17 @@ LONG = 300  # periods until large motions have settled: their friction hardly da
     "Natural frequency, frequency range, number of cases",
     paper="85.35 rad/s; 1.36 to 40.76 Hz; 1800 cases",
     here="{omega_n:.4f} rad/s; {lowest:.2f} to {highest:.2f} Hz; {cases} cases",
-    reason="The paper gives the ends of its ranges and the values it shows, not the grid between "
-    "them; the grid of these runs is in configs/paper.toml.",
+    reason="The paper gives the ends of its ranges and the values that it shows, but not the grid between "
+    "them. The grid of these runs is in configs/paper.toml.",
 )
 def parameters_and_cases(runs: Runs) -> Finding:
-    """Compare what follows from Table 1 and from the ranges."""
+    """Compare the numbers that follow from Table 1 and from the ranges."""
     hertz, size = runs.paper.ds["frequency"].values, runs.paper.ds["status"].size
     omega_n, lowest, highest = runs.paper.omega_n, float(hertz[0]), float(hertz[-1])
     checks = (
-        near("sqrt(k_b/M_b) (rad/s)", omega_n, 85.35, DIGITS),
-        near("lowest frequency (Hz)", lowest, 1.36, DIGITS),
-        near("highest frequency (Hz)", highest, 40.76, DIGITS),
+        near("sqrt(k_b/M_b) (rad/s)", omega_n, 85.35, PRINTED),
+        near("lowest frequency (Hz)", lowest, 1.36, PRINTED),
+        near("highest frequency (Hz)", highest, 40.76, PRINTED),
         near("number of cases", size, 1800, 0.0),
     )
     return Finding(checks, {"omega_n": omega_n, "lowest": lowest, "highest": highest, "cases": size})
@@ -41,9 +39,9 @@ def parameters_and_cases(runs: Runs) -> Finding:
     "Equilibrium position y_0",
     paper="-2.1941 mm",
     here="{rest:.4f} mm",
-    reason="Table 1 gives {rest:.4f} mm, or {other_lean:.4f} mm if the columns lean the other "
-    "way. The rest position goes with 1/stiffness: springs x {springs:.4f} restore it "
-    "({scaled:.4f} mm, paper-y0.toml), and the paper's resonance with it (claim 3).",
+    reason="Table 1 gives {rest:.4f} mm, or {other_lean:.4f} mm if the columns lean the other way. The "
+    "rest position is proportional to 1/stiffness: all springs scaled by {springs:.4f} (paper-y0.toml) "
+    "give {scaled:.4f} mm, and also the paper's resonance (claim 3).",
 )
 def rest_position(runs: Runs) -> Finding:
     """Compare the frictionless rest position."""
@@ -59,9 +57,8 @@ def rest_position(runs: Runs) -> Finding:
 
 def _other_lean(run: Run) -> float:
     """Rest position (m) with the column angle reversed."""
-    suspension = run.config.suspension
-    mirrored = suspension | {"column_angle": -suspension["column_angle"]}
-    return float(parameters.record("coulomb", 1e-3, 1.0, suspension=mirrored)["rest"][0])
+    config = changed(run.config, other_lean(run.config))
+    return float(record(config, "coulomb", 1.0, 1.0)["rest"][0])
 
 
 def _spring_scale(runs: Runs) -> float:
@@ -75,13 +72,13 @@ def _spring_scale(runs: Runs) -> float:
     paper="0.8 omega_n, about 11 Hz",
     here="{resonance:.3f} omega_n, {hertz:.1f} Hz",
     reason="On the grid the ratio is largest at beta = {coulomb:g} (coulomb), {static_dynamic:g} "
-    "(static-dynamic) and {exponential:g} (exponential). With the springs x {springs:.4f} that "
-    "restore y_0 the resonance is {scaled:.3f} omega_n, {scaled_hertz:.1f} Hz, and the ratio is "
-    "largest at beta = {scaled_coulomb:g}, {scaled_static_dynamic:g} and {scaled_exponential:g}: "
-    "the paper's y_0 and its resonance agree with each other, and both contradict its Table 1.",
+    "(static-dynamic) and {exponential:g} (exponential). With the springs scaled by {springs:.4f}, which "
+    "give the paper's y_0, the resonance is {scaled:.3f} omega_n, {scaled_hertz:.1f} Hz, and the ratio is "
+    "largest at beta = {scaled_coulomb:g}, {scaled_static_dynamic:g} and {scaled_exponential:g}. The "
+    "paper's y_0 and its resonance agree with each other, and both contradict its Table 1.",
 )
 def resonance(runs: Runs) -> Finding:
-    """Compare the frictionless resonance and where the largest ratios lie."""
+    """Compare the frictionless resonance and the frequencies of the largest ratios."""
     here, scaled = runs.paper.resonance, runs.scaled.resonance
     hertz, scaled_hertz = (beta * runs.paper.omega_n / (2.0 * pi) for beta in (here, scaled))
     peaks, scaled_peaks = _peaks(runs.paper), _peaks(runs.scaled)
@@ -100,7 +97,7 @@ def resonance(runs: Runs) -> Finding:
 
 
 def _peaks(run: Run) -> dict[str, float]:
-    """Frequency factor of the largest amplitude ratio of each law."""
+    """Frequency ratio of the largest amplitude ratio of each law."""
     largest = run.ds["amplitude_ratio"].max("amplitude")
     return {identifier(law): float(largest.sel(friction_law=law).idxmax("beta")) for law in LAWS}
 
@@ -110,14 +107,14 @@ def _peaks(run: Run) -> dict[str, float]:
     "At high frequencies the amplitude ratio goes to one; it is there by 20 Hz",
     paper="1 at 20 Hz",
     here="{at_20:.2f} at 20 Hz, {at_end:.2f} at beta = {end:g} (coulomb, 1 mm)",
-    reason="Far above resonance the ratio does tend to about 1 (frictionless {limit:.3f}), but "
-    "slowly: frictionless it is {free_at_20:.2f} at 20 Hz and {free_at_end:.2f} at beta = "
-    "{end:g}, with friction and 1 mm {at_20:.2f} and {at_end:.2f} (settled, after {periods} "
-    "periods). The springs that restore y_0 give {scaled_at_20:.2f} and {scaled_at_end:.2f} "
-    "without friction, nearer to the paper.",
+    reason="Far above resonance the ratio does tend to about 1 (frictionless: {limit:.3f}), but slowly. "
+    "Without friction it is {free_at_20:.2f} at 20 Hz and {free_at_end:.2f} at beta = {end:g}; with "
+    "friction and 1 mm it is {at_20:.2f} and {at_end:.2f} after {periods} periods. The springs that give "
+    "the paper's y_0 yield {scaled_at_20:.2f} and {scaled_at_end:.2f} without friction, which is closer to"
+    " the paper.",
 )
 def unit_ratio(runs: Runs) -> Finding:
-    """Compare the ratio with 1 at 20 Hz, at the end of the range and far beyond."""
+    """Compare the ratio with 1 at 20 Hz, at the end of the range and far above."""
     run = runs.paper
     betas = {"at_20": run.beta_of(20.0), "at_end": float(run.ds["beta"][-1])}
     settled = {name: _settled_ratio(run, beta) for name, beta in betas.items()}
@@ -134,12 +131,12 @@ def unit_ratio(runs: Runs) -> Finding:
 
 
 def _settled_ratio(run: Run, beta: float) -> float:
-    return single(run, "coulomb", beta, 1.0, settle_periods=LONG)["amplitude_ratio"]
+    return single(run, "coulomb", beta, 1.0, {"solver": {"settle_periods": LONG}})["amplitude_ratio"]
 
 
 def frictionless_ratio(run: Run, beta: float) -> float:
-    """Amplitude ratio of the suspension with friction taken away on every face."""
-    p = run.config.record(Case("coulomb", beta, 1e-3))[0]
+    """Amplitude ratio of the suspension without friction on any face."""
+    p = record(run.config, "coulomb", beta, 1.0)[0]
     squared = p["omega"] ** 2
     at_rest, driven = (damper.frictionless(0.0, base, p).acceleration for base in (0.0, 1.0))
     return float(abs((driven - at_rest) * squared / (squared + damper.frictionless_stiffness(p))))

@@ -7,11 +7,11 @@ from typing import Any
 import joblib
 import numpy as np
 
-from wedgesweep.cases import compile_once
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep.cases import compile_once
 from wedgesweep.synthesize import files, noise
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady
@@ -62,7 +62,7 @@ def synthesize(
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
     motions = _motions(truth, options, n_jobs)
     tables = [_table(*each, options) for each in zip(truth.tests, motions, strict=True)]
-    model = Config(config.document | {"effects": {}, "title": "model on trial"})
+    model = Config(config.document | {"effects": {}, "title": "base model"})
     measured = _measured(directory.name, plan, options)
     files.write(directory, measured, model, tables, _told(truth, motions, options))
     return [

@@ -12,7 +12,7 @@ AR1_CORRELATION = 0.9
 ADC_CODES = 2**12
 
 Channels = tuple[np.ndarray, np.ndarray]
-Noise = Callable[[Channels, float, float, np.random.Generator], Channels]
+NoiseKind = Callable[[Channels, float, float, np.random.Generator], Channels]
 
 
 def white(channels: Channels, level: float, step: float, random: np.random.Generator) -> Channels:
@@ -42,7 +42,7 @@ def differentiated(channels: Channels, level: float, step: float, random: np.ran
     return displacement[1:-1], (displacement[2:] - displacement[:-2]) / (2.0 * step)
 
 
-NOISES: dict[str, Noise] = {"white": white, "ar1": ar1, "adc": adc, "differentiated": differentiated}
+NOISES: dict[str, NoiseKind] = {"white": white, "ar1": ar1, "adc": adc, "differentiated": differentiated}
 
 
 def _correlated(count: int, random: np.random.Generator) -> np.ndarray:

@@ -20,7 +20,7 @@ STRAY = "stray_vibration"
 class TrueTest:
     """One test as it is: true amplitude, phase of the input at the first sample, offset over the rms.
 
-    ``stray_phase_deg`` is that of a foreign tone, None without one; ``random`` makes the noise.
+    ``stray_phase_deg`` is the phase of a spurious tone, None without one; ``random`` makes the noise.
     """
 
     plan: PlannedTest

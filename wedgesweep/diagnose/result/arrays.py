@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import __version__
-from wedgesweep.diagnose import waveforms
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.problem import Problem
+from wedgesweep.diagnose.steady import waveforms
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.model import Fit
 
 CHANNELS = ("displacement", "velocity")
 # Dimensions, values, unit and meaning of a variable.
@@ -25,7 +25,7 @@ class Shown(NamedTuple):
     noise of a sample, NaN where a test does not have the channel.
     """
 
-    problem: Problem
+    data: FitData
     fits: tuple[Fit, Fit]
     measured: np.ndarray
     simulated: np.ndarray
@@ -34,7 +34,7 @@ class Shown(NamedTuple):
 
 def dataset(found: Diagnosis) -> xr.Dataset:
     """Everything that a figure or a notebook wants to draw of a diagnosis."""
-    problem = found.problem
+    data = found.data
     shown = _shown(found)
     variables = {
         **_spectra(shown),
@@ -44,34 +44,34 @@ def dataset(found: Diagnosis) -> xr.Dataset:
         **_plateaus(shown),
         **_misfit(shown),
     }
-    data = {
+    variables_with_attributes = {
         name: (dims, values, {"units": unit, "long_name": meaning})
         for name, (dims, values, unit, meaning) in variables.items()
     }
     coordinates = {
-        "test": list(problem.names),
+        "test": list(data.names),
         "model": ["base", "extended"],
-        "channel": list(CHANNELS[: problem.shape[0]]),
-        "harmonic": np.arange(1, problem.shape[1] + 1),
+        "channel": list(CHANNELS[: data.shape[0]]),
+        "harmonic": np.arange(1, data.shape[1] + 1),
         "part": ["real", "imaginary"],
         "phase": np.arange(waveforms.PHASES) / waveforms.PHASES,
     }
     attributes = {
         "title": found.measurement.title,
         "verdict": found.finding.verdict,
-        "law": problem.law,
+        "law": data.law,
         "wedgesweep_version": __version__,
     }
-    return xr.Dataset(data, coordinates, attributes)
+    return xr.Dataset(variables_with_attributes, coordinates, attributes)
 
 
 def _shown(found: Diagnosis) -> Shown:
-    problem, fits = found.problem, (found.base.fit, found.extended)
-    sampled = np.full((problem.tests, problem.shape[0]), np.nan)
-    for row, spectrum in zip(sampled, problem.spectra, strict=True):
+    data, fits = found.data, (found.base.fit, found.extended)
+    sampled = np.full((data.tests, data.shape[0]), np.nan)
+    for row, spectrum in zip(sampled, data.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise
-    simulated = np.array([fit.trial.harmonics for fit in fits])[..., : problem.shape[1]]
-    return Shown(problem, fits, waveforms.measured_from_phase_zero(fits[1]), simulated, sampled)
+    simulated = np.array([fit.evaluation.harmonics for fit in fits])[..., : data.shape[1]]
+    return Shown(data, fits, waveforms.measured_from_phase_zero(fits[1]), simulated, sampled)
 
 
 def _where_measured(shown: Shown, values: np.ndarray) -> np.ndarray:
@@ -80,7 +80,7 @@ def _where_measured(shown: Shown, values: np.ndarray) -> np.ndarray:
 
 
 def _spectra(shown: Shown) -> Variables:
-    weight = shown.problem.weight[..., : shown.problem.shape[1]]
+    weight = shown.data.weight[..., : shown.data.shape[1]]
     noise = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), np.nan)
     measured = _parts(_where_measured(shown, shown.measured))
     simulated = _parts(shown.simulated)
@@ -120,18 +120,20 @@ def _waveforms(shown: Shown) -> Variables:
 
 
 def _inputs(shown: Shown) -> Variables:
-    problem, fitted = shown.problem, np.array([fit.amplitudes() for fit in shown.fits])
+    data, fitted = shown.data, np.array([fit.amplitudes() for fit in shown.fits])
     return {
-        "frequency": (BY_TEST, problem.omega / (2.0 * np.pi), "Hz", "input frequency"),
-        "amplitude": (BY_TEST, problem.amplitude, "m", "input amplitude as stated"),
+        "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),
+        "amplitude": (BY_TEST, data.amplitude, "m", "input amplitude as stated"),
         "amplitude_fitted": (BY_MODEL, fitted, "m", "input amplitude as fitted"),
     }
 
 
 def _energies(shown: Shown) -> Variables:
-    known = ~np.isnan(shown.problem.amplitude)
-    measured = np.where(known, waveforms.supplied(shown.fits[1], shown.measured[:, 0, 0]), np.nan)
-    simulated = np.array([waveforms.supplied(fit, fit.trial.harmonics[:, 0, 0]) for fit in shown.fits])
+    known = ~np.isnan(shown.data.amplitude)
+    measured = np.where(known, waveforms.input_energy(shown.fits[1], shown.measured[:, 0, 0]), np.nan)
+    simulated = np.array(
+        [waveforms.input_energy(fit, fit.evaluation.harmonics[:, 0, 0]) for fit in shown.fits]
+    )
     meaning = "energy that the base puts in per period"
     return {
         "measured_energy": (BY_TEST, measured, "J", f"{meaning}, measured"),
@@ -141,7 +143,7 @@ def _energies(shown: Shown) -> Variables:
 
 def _plateaus(shown: Shown) -> Variables:
     measured, *simulated = (
-        waveforms.plateau(waveforms.waveform(waveforms.velocity(shown.problem, each)))
+        waveforms.dwell(waveforms.waveform(waveforms.velocity(shown.data, each)))
         for each in (shown.measured, *shown.simulated)
     )
     meaning = "share of the period near rest"
@@ -153,16 +155,16 @@ def _plateaus(shown: Shown) -> Variables:
 
 def _misfit(shown: Shown) -> Variables:
     base = shown.fits[0]
-    force = waveforms.leftover_force(base, waveforms.measured_from_phase_zero(base))
+    force = waveforms.residual_force(base, waveforms.measured_from_phase_zero(base))
     return {
         "leftover_force": (("test", "phase"), force, "N", "force on the bolster that the base model lacks"),
         "q": (
             BY_MODEL,
-            np.array([fit.trial.by_test for fit in shown.fits]),
+            np.array([fit.evaluation.chi2_by_test for fit in shown.fits]),
             "1",
             "squared misfit over noise",
         ),
-        "dof": (BY_TEST, shown.problem.dof, "1", "degrees of freedom"),
+        "dof": (BY_TEST, shown.data.dof, "1", "degrees of freedom"),
     }
 
 

@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import __version__
+from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.gain import Gain
-from wedgesweep.diagnose.next_test import ENOUGH, NextTest
+from wedgesweep.diagnose.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.search import PENALTY, POSSIBLE, SLIGHT, Explanation
 from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
-from wedgesweep.diagnosed import FAILED, NO_BETTER
+from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
 
 def document(found: Diagnosis) -> dict[str, Any]:
     """The content of diagnosis.json."""
-    finding, problem = found.finding, found.problem
+    finding, data = found.finding, found.data
     best = finding.best or found.base
     hidden = _not_testable(found)
     return {
@@ -39,7 +39,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "next_test": _following(found.next_test),
         "extended": list(best.effects),
         "title": found.measurement.title,
-        "model": {"law": problem.law, "title": problem.model.title},
+        "model": {"law": data.law, "title": data.model.title},
         "uncertain": uncertain(best.fit),
         "version": __version__,
         "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
@@ -79,8 +79,8 @@ def _causes(each: Explanation | None) -> list[dict[str, Any]]:
 def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
     base = found.base.fit
     return {
-        "chi2_base": finite(base.q),
-        "chi2_extended": finite(best.fit.q),
+        "chi2_base": finite(base.chi2),
+        "chi2_extended": finite(best.fit.chi2),
         "dof": base.dof,
         "dof_extended": best.fit.dof,
         "excess_base": finite(base.excess),
@@ -99,23 +99,23 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
-    problem, base, best = found.problem, found.base.fit, found.extended
+    data, base, best = found.data, found.base.fit, found.extended
     amplitude = best.amplitudes()
     rows = []
-    for t, (name, spectrum) in enumerate(zip(problem.names, problem.spectra, strict=True)):
+    for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
         noise = spectrum.sample_noise
         rows.append(
             {
                 "name": name,
                 "frequency_hz": spectrum.frequency,
-                "amplitude_mm": finite(1e3 * problem.amplitude[t]),
+                "amplitude_mm": finite(1e3 * data.amplitude[t]),
                 "amplitude_fitted_mm": finite(1e3 * amplitude[t]),
                 "periods": spectrum.periods,
                 "noise_displacement_mm": 1e3 * noise[0],
                 "noise_velocity_mm_per_s": 1e3 * noise[1] if noise.size > 1 else None,
-                "q_base": finite(base.trial.by_test[t]),
-                "q_extended": finite(best.trial.by_test[t]),
-                "dof": int(problem.dof[t]),
+                "q_base": finite(base.evaluation.chi2_by_test[t]),
+                "q_extended": finite(best.evaluation.chi2_by_test[t]),
+                "dof": int(data.dof[t]),
             }
         )
     return rows
@@ -162,14 +162,14 @@ def _following(following: NextTest | None) -> dict[str, Any] | None:
 
 def _method(found: Diagnosis) -> dict[str, Any]:
     return {
-        "penalty_per_parameter": PENALTY + log(found.problem.points.sum()),
+        "penalty_per_parameter": PENALTY + log(found.data.observations.sum()),
         "gap": found.thresholds.gap,
-        "enough_distance": ENOUGH,
+        "enough_distance": SEPARATED,
         "strong_excess": finite(found.thresholds.strong),
         "adequate_p": ADEQUATE,
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        "harmonics": found.problem.shape[1],
+        "harmonics": found.data.shape[1],
         "calibrated": found.calibration,
     }
 
@@ -184,7 +184,7 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
         rows.append(
             {
                 "effects": list(each.effects),
-                "q": finite(each.fit.q),
+                "q": finite(each.fit.chi2),
                 "dof": each.fit.dof,
                 "p": finite(each.fit.p),
                 "penalised": finite(each.penalised),
@@ -201,8 +201,8 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
 
 def _status(found: Diagnosis, each: Explanation, hidden: Sequence[str]) -> str:
     """How a fit ended; one that ended above the base model that it contains has not found its minimum."""
-    if not isfinite(each.fit.q):
+    if not isfinite(each.fit.chi2):
         return FAILED
-    if each.fit.q > found.base.fit.q + SLIGHT:
+    if each.fit.chi2 > found.base.fit.chi2 + SLIGHT:
         return NO_BETTER
     return "not testable" if len(each.effects) == 1 and each.effects[0] in hidden else "fitted"

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.profile import TWO_SIDED
+from wedgesweep.diagnose.profile_likelihood import TWO_SIDED
 from wedgesweep.diagnose.search import TONE_FREQUENCY
+from wedgesweep.diagnose.steady.model import Fit
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
@@ -21,7 +21,7 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
     hypothesis, size = fit.model.hypothesis, fit.model.size
     x, covariance = fit.x[:size], fit.covariance[:size, :size]
     here = hypothesis.in_key_units(x)
-    step = 1e-5 * hypothesis.width
+    step = 1e-5 * hypothesis.scale
     moved = [hypothesis.in_key_units(x + step * row) for row in np.eye(size)]
 
     def estimate(name: str, quantity: Quantity) -> dict[str, Any]:
@@ -29,7 +29,7 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
         slope = np.array([change(quantity, value, m[name][quantity.key]) for m in moved]) / step
         std = sqrt(max(float(slope @ covariance @ slope), 0.0))
         if f"{name}.{quantity.key}" == TONE_FREQUENCY:
-            std = change(quantity, value, value + fit.model.problem.tone_std)
+            std = change(quantity, value, value + fit.model.data.tone_std)
         ends = interval(quantity, value, TWO_SIDED * std)
         return {"value": finite(value), "ci95": [finite(end) for end in ends]}
 

@@ -8,20 +8,20 @@ from wedgesweep.diagnose.result.estimates import uncertain
 
 def extended(found: Diagnosis) -> str:
     """The extended model as a config that runs the measured tests."""
-    best, problem = found.extended, found.problem
-    document = {**problem.model.document, "title": f"{found.measurement.title}: extended model"}
+    best, data = found.extended, found.data
+    document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
     document["effects"] = effects.combined(document["effects"], {**nuisance, **best.values})
     # Repeated tests are one case, and single cases do not continue one another.
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))
-        for spectrum, amplitude in zip(problem.spectra, best.amplitudes(), strict=True)
+        for spectrum, amplitude in zip(data.spectra, best.amplitudes(), strict=True)
     )
     document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {
-        "omega_n_rad_per_s": problem.model.sweep.omega_n,
+        "omega_n_rad_per_s": data.model.sweep.omega_n,
         "case": [
-            {"friction_law": problem.law, "frequency_hz": frequency, "amplitude_mm": amplitude}
+            {"friction_law": data.law, "frequency_hz": frequency, "amplitude_mm": amplitude}
             for frequency, amplitude in cases
         ],
     }
@@ -31,4 +31,4 @@ def extended(found: Diagnosis) -> str:
 def _heading(found: Diagnosis) -> str:
     best = found.finding.best
     what = " + ".join(best.effects) if best else "nothing added"
-    return f"# Verdict: {found.finding.verdict}. The model on trial with {what}.\n"
+    return f"# Verdict: {found.finding.verdict}. The base model with {what}.\n"

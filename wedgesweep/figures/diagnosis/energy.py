@@ -1,10 +1,9 @@
-"""Energy that the base puts in per cycle, measured and simulated."""
+"""Energy that the side frame puts in per cycle, measured and simulated."""
 
-from matplotlib.figure import Figure
-
-from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
-from wedgesweep.figures.diagnosis import look, rows
+from wedgesweep.figures.diagnosis import marks, rows
+from wedgesweep.figures.panels import Panels, Target
 
 NAME = "energy"
 DESCRIPTION = "energy per cycle, measured and simulated"
@@ -12,25 +11,24 @@ DESCRIPTION = "energy per cycle, measured and simulated"
 MJ = 1e3  # mJ per J
 
 
-def draw(found: Diagnosed) -> Figure:
-    """Draw the energy per cycle, and what each model has of the measured one, a row per test.
+def draw(target: Target, result: DiagnosisResult) -> Panels:
+    """Draw the energy per cycle and the ratio of simulated to measured energy, a row per test.
 
-    It follows from the fundamental of the displacement, and in steady vibration it is what friction takes.
-    To see: a base model right of 1 dissipates more than the bench does, left of it less.
+    The energy follows from the fundamental of the displacement; in steady vibration friction dissipates it.
+    To see: where the base model is right of 1 it dissipates more than the bench does, left of 1 less.
     """
-    order = rows.shown(found, "energy")
+    order = rows.known(result, "energy")
     if not order.size:
-        message = (
-            f"{NAME}: no test has a known input of the side frame itself, without which there is no energy"
-        )
+        message = "no test has a known motion of the side frame, from which the energy follows"
         raise ValueError(message)
-    figure, (left, right) = rows.panels(found, order, 2)
-    rows.draw_values(left, found, order, "energy", MJ)
+    made = rows.make_panels(target, result, order, 2)
+    left, right = made.axes
+    rows.draw_values(left, result, order, "energy", MJ)
     left.set_xscale("log", nonpositive="mask")
     style.log_ticks(left.xaxis)
     left.set_xlabel("energy per cycle [mJ]", fontsize=9)
-    rows.draw_ratios(right, found, order, "energy")
-    right.set_xlabel("simulated over measured [1]", fontsize=9)
-    look.legend(figure, found, dots=True)
-    style.title(figure, "Energy that the base puts in per cycle")
-    return figure
+    rows.draw_ratios(right, result, order, "energy")
+    right.set_xlabel("simulated over measured energy [1]", fontsize=9)
+    marks.legend(made, result, dots=True)
+    made.title("Energy that the side frame puts in per cycle")
+    return made

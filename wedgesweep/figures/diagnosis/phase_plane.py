@@ -2,41 +2,43 @@
 
 from collections.abc import Sequence
 
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
-from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
-from wedgesweep.figures.diagnosis import look
+from wedgesweep.figures.diagnosis import marks, selection
+from wedgesweep.figures.diagnosis.motion import closed, motion
+from wedgesweep.figures.diagnosis.multiples import multiples
+from wedgesweep.figures.panels import Panels, Target
 
 NAME = "phase-plane"
 DESCRIPTION = "velocity over displacement, measured and simulated"
 
 
-def _draw(ax, found: Diagnosed, test: int) -> None:
-    data = found.data
-    x, v = look.motion(data, data["measured_waveform"], test)
-    ax.plot(look.closed(x) * style.MM, look.closed(v) * style.MM, **look.MEASURED)
-    for model in found.models:
-        x, v = look.motion(data, data["simulated_waveform"].sel(model=model), test)
-        ax.plot(look.closed(x) * style.MM, look.closed(v) * style.MM, **look.line(model))
+def _draw(ax: Axes, result: DiagnosisResult, test: int) -> None:
+    data = result.data
+    x, v = motion(data, data["measured_waveform"], test)
+    ax.plot(closed(x) * style.MM, closed(v) * style.MM, **marks.MEASURED)
+    for model in result.models:
+        x, v = motion(data, data["simulated_waveform"].sel(model=model), test)
+        ax.plot(closed(x) * style.MM, closed(v) * style.MM, **marks.line(model))
     ax.locator_params(nbins=5)
     ax.set_xlabel("$x-y$ [mm]", fontsize=8.5)
 
 
-def draw(found: Diagnosed, tests: Sequence[int] | None = None) -> Figure:
+def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
     """Draw a loop per test (default: the six with the largest misfit).
 
-    To see: a loop pressed flat along velocity 0 sticks there; a jump of velocity at one displacement is a
-    stop or a slip that breaks loose; a tilted or swollen loop has another stiffness or energy loss.
+    To see: a loop that is flat along zero velocity sticks there; a jump of velocity at one displacement is a
+    stop or a breakaway; a tilted or wider loop has another stiffness or dissipation.
     """
-    figure, panels = look.multiples(found, look.choose(found, tests), (2.5, 1.9))
-    for test, (ax,) in panels:
-        _draw(ax, found, test)
-    look.label_sides(panels, "$x'-y'$ [mm/s]")
-    look.legend(figure, found, dots=False)
-    style.title(
-        figure,
-        "Phase plane of one period, measured and simulated",
+    made = multiples(target, result, selection.choose(result, tests), (2.5, 1.9))
+    for test, (ax,) in made:
+        _draw(ax, result, test)
+    made.label_sides("$x'-y'$ [mm/s]")
+    marks.legend(made, result, dots=False)
+    made.title(
+        "Phase plane over one period, measured and simulated",
         "$x-y$: side frame minus bolster, mean removed",
     )
-    return figure
+    return made

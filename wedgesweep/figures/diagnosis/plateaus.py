@@ -1,32 +1,34 @@
 """Share of the period near rest, measured and simulated: the plateaus of stick-slip."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from wedgesweep.diagnosed import Diagnosed
+from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
-from wedgesweep.figures.diagnosis import look, rows
+from wedgesweep.figures.diagnosis import marks, rows
+from wedgesweep.figures.panels import Panels, Target
 
 NAME = "plateaus"
 DESCRIPTION = "share of the period near zero velocity, measured and simulated"
 
-# A sine of velocity stays below 5 % of its peak for this share of its period.
+# A sine stays below 5 % of its peak for this share of its period.
 SINE = 2.0 * np.arcsin(0.05) / np.pi
 
 
-def draw(found: Diagnosed) -> Figure:
+def draw(target: Target, result: DiagnosisResult) -> Panels:
     """Draw the share of the period in which velocity stays below 5 % of its peak, a row per test.
 
-    To see: dots far right of the sine's line stick part of the time. A dot right of the base model's cross:
-    the bench sticks where the simulation slips.
+    To see: tests far right of the dotted line, which is a sine's share, stick for part of the period. Where
+    the measured dot is right of the base model's cross, the bench sticks and the simulation slips.
     """
-    order = rows.shown(found, "plateau")
-    figure, (ax,) = rows.panels(found, order, 1)
+    order = rows.known(result, "plateau")
+    made = rows.make_panels(target, result, order, 1)
+    ax = made.axes[0]
     ax.axvline(100.0 * SINE, color=style.GREY, linewidth=1.0, linestyle=":")
-    ax.annotate("sine", (100.0 * SINE, 1.0), xycoords=("data", "axes fraction"), fontsize=8, ha="center")
-    rows.draw_values(ax, found, order, "plateau", 100.0)
+    place = {"textcoords": "offset points", "va": "bottom", "color": style.GREY}
+    ax.annotate("sine", (100.0 * SINE, 0.0), (3, 2), xycoords=("data", "axes fraction"), fontsize=8, **place)
+    rows.draw_values(ax, result, order, "plateau", 100.0)
     ax.set_xlim(left=0.0)
     ax.set_xlabel("share of the period near zero velocity [%]", fontsize=9)
-    look.legend(figure, found, dots=True)
-    style.title(figure, "Plateaus: share of the period below 5 % of the peak velocity")
-    return figure
+    marks.legend(made, result, dots=True)
+    made.title("Plateaus: share of the period below 5 % of the peak velocity")
+    return made

@@ -1,0 +1,95 @@
+"""Problems whose truth is known: harmonics of the model itself with noise drawn on top.
+
+For tests of the machinery only; data from another solver are in tests/validation.
+"""
+
+from math import pi
+
+import numpy as np
+
+from wedgesweep import config
+from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
+from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.solvers.periodic import at_rest
+
+FREQUENCIES = np.array([5.0, 8.0, 11.0, 20.0, 24.0, 32.0])
+AMPLITUDES = 1e-3 * np.array([1.5, 0.6, 0.16, 0.11, 0.09, 0.06])
+HARMONICS, SAMPLES, INTERVAL = 16, 1600, 5e-4
+MODEL = """
+[sweep]
+friction_law = ["static-dynamic"]
+beta = [1.0]
+amplitude_mm = [0.1]
+"""
+# One effect that shows in all of them.
+LAG = {"velocity_lag": {"time": 3e-4}}
+# With columns leaning this way friction that is much higher one way locks the wedge.
+LEANING = MODEL + "[suspension]\ncolumn_angle_deg = -2.5\n"
+
+
+def drawn(
+    effects=None,
+    seed=0,
+    level=0.04,
+    std=0.02,
+    uncertain=None,
+    known=True,
+    off=0.0,
+    tests=slice(None),
+    bench=(FREQUENCIES, AMPLITUDES),
+    law="static-dynamic",
+    model=MODEL,
+) -> FitData:
+    """Problem of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated.
+
+    ``bench``: frequencies (Hz) and stated amplitudes (m) of all the tests that may be chosen.
+    """
+    rng = np.random.default_rng(seed)
+    model = config.parse(model)
+    frequencies, stated = (each[tests] for each in bench)
+    omega = 2.0 * pi * frequencies
+    rows = simulation.records(model, law, effects or {}, omega, stated * (1.0 + off))
+    exact = simulation.respond(rows, at_rest(omega.size), HARMONICS).harmonics
+    spectra = []
+    for frequency, harmonics in zip(frequencies, exact, strict=True):
+        turn = np.exp(1j * np.arange(1, HARMONICS + 1) * rng.uniform(0.0, 2.0 * pi))
+        rms = np.sqrt(0.5 * (np.abs(harmonics) ** 2).sum(axis=1))
+        variance = np.repeat(4.0 / SAMPLES * (level * rms[:, None]) ** 2, HARMONICS, axis=1)
+        noise = rng.normal(size=(2, 2, HARMONICS)) * np.sqrt(variance / 2.0)
+        mean = harmonics * turn + noise[0] + 1j * noise[1]
+        flat = tuple(SmoothPSD(np.array([2.0 * np.log(level * each), 0.0, 0.0]), 1.0) for each in rms)
+        silent = np.zeros((2, SAMPLES))
+        spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
+    return FitData(
+        model,
+        law,
+        tuple(f"{f:g} Hz" for f in frequencies),
+        tuple(spectra),
+        stated if known else np.full(stated.size, np.nan),
+        np.full(stated.size, std if known else np.inf),
+        uncertain or {},
+    )
+
+
+def next_to_breakaway() -> FitData:
+    """Stribeck friction and a damper, with a test (8.155 Hz) that sticks if friction is a bit more."""
+    return drawn(
+        {"stribeck": {"peak": 1.21402e-3, "velocity": 0.379124e-3}, "viscous_damping": {"coefficient": 2.4}},
+        bench=(
+            np.array([4.879, 4.879, 8.155, 20.899, 23.426, 23.426]),
+            1e-3 * np.array([1.16747, 3.61623, 0.39398, 0.08038, 0.06212, 0.16268]),
+        ),
+        std=0.001,
+        law="exponential",
+        model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
+    )
+
+
+def searched(data, *effects):
+    """Search, base model and the best fit of each effect."""
+    search = Search(data, effects)
+    base = search.base()
+    return search, base, [search.single(effect, base.fit) for effect in effects]

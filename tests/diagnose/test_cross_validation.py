@@ -1,0 +1,71 @@
+"""Gain on tests that a fit has not seen: all of it where the cause is right, none where there is none."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.synthetic import LAG, drawn, searched
+from wedgesweep.diagnose import cross_validation
+from wedgesweep.diagnose.cross_validation import Gain, HeldOut
+
+
+def test_gain_on_held_out_tests_reaches_the_noise():
+    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    measured = cross_validation.cross_validate(
+        base.fit, lag.fit, lambda function, items: list(map(function, items))
+    )
+    assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
+    assert measured.excess_removed > 0.95
+    assert measured.interval is None  # six tests are too few for one
+
+
+def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
+    """Squared misfit of a right model, less what noise should leave."""
+    for std, known, least, most in ((1e-5, True, 1.0, 1.05), (0.5, True, 1.9, 2.0), (0.0, False, 2.0, 2.0)):
+        left = []
+        for seed in range(12):
+            _, base, _ = searched(drawn(seed=seed, std=std, known=known))
+            local = cross_validation._local_numbers(base.fit)
+            assert ((least <= local) & (local <= most)).all()
+            left.append(
+                (base.fit.evaluation.residual**2).sum() - (base.fit.model.data.observations - local).sum()
+            )
+        assert np.mean(left) == pytest.approx(0.0, abs=3.0 * np.sqrt(2.0 * 384 / 12))
+
+
+def test_retuning_alone_gains_nothing():
+    _, base, (lag,) = searched(drawn(), "velocity_lag")
+    measured = cross_validation.cross_validate(
+        base.fit, lag.fit, lambda function, items: list(map(function, items))
+    )
+    base_square, extended, noise = measured.totals()
+    assert extended == pytest.approx(base_square, rel=0.02)
+    assert base_square == pytest.approx(noise, rel=0.2)
+
+
+POINTS = 32
+
+
+def predicted(*squares):
+    """Gain over twelve tests: these (base, extended) and for the rest nothing that could be removed."""
+    noise = np.random.default_rng(2).chisquare(POINTS - 1, 12 - len(squares))
+    both = [*squares, *((q, q + 0.3) for q in noise)]
+    return Gain(tuple(HeldOut(i, "frequency", b, e, POINTS, 1.0) for i, (b, e) in enumerate(both)))
+
+
+def test_tests_in_which_nothing_shows_do_not_make_an_effect_uncertain_that_shows_in_few():
+    low, high = predicted((6000.0, 42.0), (3200.0, 26.0), (210.0, 31.0)).interval
+    assert 0.95 < low < high < 1.05
+
+
+def test_an_effect_that_one_test_denies_is_uncertain():
+    assert predicted((6000.0, 42.0), (3200.0, 6200.0), (210.0, 31.0)).interval[0] < 0.0
+    assert predicted((300.0, 340.0)).interval[0] < 0.0
+
+
+def test_a_fine_sweep_is_no_single_group():
+    """Each frequency lies within 2 % of the next, not of all."""
+    frequencies = np.arange(30.0, 38.1, 0.5)
+    found = cross_validation.groups(frequencies[::-1].copy())
+    assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
+    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= cross_validation.ALIKE
+    assert len(found) > 5

@@ -1,0 +1,76 @@
+"""Fits of problems whose truth is known: chi-squared, intervals, and what each unknown takes up."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.synthetic import AMPLITUDES, LAG, drawn, searched
+from wedgesweep.diagnose.least_squares import _covariance, tight_refit
+
+
+def test_clean_data_leave_chi_squared():
+    excess = []
+    for seed in range(12):
+        _, base, _ = searched(drawn(seed=seed))
+        excess.append((base.fit.chi2 - base.fit.dof) / np.sqrt(2.0 * base.fit.dof))
+    assert np.mean(excess) == pytest.approx(0.0, abs=3.0 / np.sqrt(12))
+    assert max(np.abs(excess)) < 4.0
+
+
+def test_a_right_fit_leaves_chi_squared_and_finds_the_number():
+    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    assert base.fit.excess > 800.0
+    assert lag.fit.p > 1e-3
+    error = lag.fit.x[0] - 3e-4
+    assert abs(error) < 4.0 * np.sqrt(lag.fit.covariance[0, 0])
+
+
+def test_intervals_cover_the_truth():
+    pulls = []
+    for seed in range(15):
+        _, _, (lag,) = searched(drawn(LAG, seed), "velocity_lag")
+        pulls.append((lag.fit.x[0] - 3e-4) / np.sqrt(lag.fit.covariance[0, 0]))
+    assert 0.5 < np.std(pulls) < 1.6
+    assert abs(np.mean(pulls)) < 1.0
+
+
+def test_the_error_of_a_simulation_is_no_information():
+    """A stiff end stop that two tests touch: amplitude, clearance and stiffness are hard to tell apart."""
+    truth = {"end_stop": {"clearance": 3.5e-4, "stiffness": 2e5}}
+    data = drawn(truth, std=0.015, uncertain={"friction_level": 0.09})
+    spectra = tuple(
+        replace(s, mean=s.mean[:1], variance=s.variance[:1], level=s.level[:1]) for s in data.spectra
+    )
+    _, _, (stop,) = searched(replace(data, spectra=spectra), "end_stop")
+    fine = tight_refit(stop.fit)
+    coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
+    np.testing.assert_allclose(coarse, std, rtol=0.1)
+    assert fine.chi2 == pytest.approx(stop.fit.chi2, abs=0.1)
+
+
+def test_what_the_equations_leave_open_is_wide():
+    """A number without any trace, and two that do the same."""
+    covariance = _covariance(np.array([[4.0, 0.0, 0.0], [0.0, 9.0, 9.0], [0.0, 9.0, 9.0]]))
+    assert covariance[0, 0] == pytest.approx(0.25)
+    assert covariance[1, 1] > 1e6
+    assert _covariance(np.diag([4.0, 0.0]))[1, 1] > 1e6
+
+
+def test_amplitudes_within_their_prior_are_taken_up():
+    _, base, _ = searched(drawn(std=0.02, off=0.02))
+    assert base.fit.p > 1e-3
+    np.testing.assert_allclose(base.fit.amplitudes(), 1.02 * AMPLITUDES, rtol=0.01)
+
+
+def test_unknown_amplitudes_are_found():
+    _, base, _ = searched(drawn(known=False))
+    assert base.fit.p > 1e-3
+    np.testing.assert_allclose(base.fit.amplitudes(), AMPLITUDES, rtol=0.02)
+
+
+def test_an_uncertain_number_is_no_cause_within_its_spread():
+    truth = {"friction_level": {"scale": 1.06}}
+    _, base, _ = searched(drawn(truth, uncertain={"friction_level": 0.05}))
+    assert base.fit.p > 1e-3
+    assert base.fit.x[0] == pytest.approx(1.06, abs=0.01)

@@ -1,0 +1,105 @@
+"""Intervals by the rise of Q where its curvature at the end of a fit would make them too narrow."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.synthetic import LAG, drawn, searched
+from wedgesweep.diagnose.least_squares import refine, tight_refit
+from wedgesweep.diagnose.profile_likelihood import RISE, profile_likelihood
+from wedgesweep.diagnose.steady.model import Model
+
+
+def serial(function, items):
+    return [function(item) for item in items]
+
+
+def std(fit):
+    return np.sqrt(np.diag(fit.covariance))
+
+
+@pytest.fixture(scope="module")
+def lag():
+    _, _, (single,) = searched(drawn(LAG), "velocity_lag")
+    return tight_refit(single.fit)
+
+
+def test_where_q_is_a_parabola_its_curvature_tells_the_interval(lag):
+    assert std(profile_likelihood(lag, serial)) == pytest.approx(std(lag), rel=0.05)
+
+
+def test_what_seems_more_certain_than_it_is_becomes_as_wide_as_q_says(lag):
+    """As derivatives across a jump make it."""
+    certain = replace(lag, covariance=lag.covariance / 50.0**2)
+    assert std(profile_likelihood(certain, serial)) == pytest.approx(std(lag), rel=0.2)
+
+
+def test_an_interval_is_no_narrower_than_by_the_curvature(lag):
+    wide = replace(lag, covariance=9.0 * lag.covariance)
+    np.testing.assert_array_equal(std(profile_likelihood(wide, serial)), std(wide))
+
+
+def test_a_fit_that_stopped_short_goes_on_to_the_least_q(lag):
+    """By the least of the rises that are looked at, as where a ridge lies in between."""
+    point = lag.evaluation.point
+    x = point.x.copy()
+    x[0] += 4.0 * std(lag)[0]
+    there = lag.model.evaluate(replace(point, x=x))
+    short = replace(refine(lag.model, there, 0), covariance=lag.covariance)
+    assert short.chi2 > lag.chi2 + 10.0
+    found = profile_likelihood(short, serial)
+    assert found.chi2 == pytest.approx(lag.chi2, abs=0.1)
+    assert found.x[0] == pytest.approx(lag.x[0], abs=0.1 * std(lag)[0])
+
+
+def rises(fit):
+    """What Q rises at both ends of the interval of a fit's only number."""
+    off = np.sqrt(RISE) * std(fit)[0]
+    models = [fit.model.holding(0, fit.x[0] + side * off) for side in (-1.0, 1.0)]
+    points = [replace(fit.evaluation.point, x=np.r_[each.low[0], fit.x[1:]]) for each in models]
+    return [refine(m, m.evaluate(p)).chi2 - fit.chi2 for m, p in zip(models, points, strict=True)]
+
+
+def compliance(level):
+    """Fit of columns so stiff that they hardly show, before and after."""
+    _, _, (single,) = searched(
+        drawn({"column_compliance": {"stiffness": 1e6}}, level=level), "column_compliance"
+    )
+    fit = tight_refit(single.fit)
+    return fit, profile_likelihood(fit, serial)
+
+
+def test_where_q_is_steeper_to_one_side_the_other_side_tells():
+    before, fit = compliance(0.1)
+    assert max(rises(before)) > 1.2 * min(rises(before))
+    assert min(rises(fit)) > 0.9 * RISE
+
+
+def test_where_q_is_rugged_the_interval_is_wider_than_by_its_curvature():
+    before, fit = compliance(0.3)
+    assert max(rises(before)) < RISE / 2.0
+    assert min(rises(fit)) > RISE / 2.0
+
+
+def test_no_number_is_tried_beyond_its_bound(monkeypatch):
+    """Clean data: the lag is zero or next to it, and less than zero it cannot be."""
+    _, _, (single,) = searched(drawn(), "velocity_lag")
+    fit = tight_refit(single.fit)
+    assert fit.x[0] < 1.9 * std(fit)[0]
+    tried, holding = [], Model.holding
+
+    def told(model, number, value):
+        tried.append(value)
+        return holding(model, number, value)
+
+    monkeypatch.setattr(Model, "holding", told)
+    found = profile_likelihood(fit, serial)
+    assert min(tried) == 0.0 < max(tried)
+    assert np.isfinite(std(found)).all()
+    assert (std(found) >= std(fit)).all()
+
+
+def test_what_has_no_steady_response_has_no_profile(lag):
+    lost = replace(lag, evaluation=replace(lag.evaluation, found_tests=np.zeros(lag.model.data.tests, bool)))
+    np.testing.assert_array_equal(std(profile_likelihood(lost, serial)), std(lost))

@@ -1,0 +1,66 @@
+"""The documentation: links lead somewhere, and its tables say what the code and the test data say."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from wedgesweep.effects import EFFECTS
+from wedgesweep.reproduce.claims import CLAIMS, RECORDED
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
+PHYSICS = ROOT / "docs" / "physics.md"
+PAPER = ROOT / "docs" / "paper.md"
+
+
+def anchors(page):
+    """Anchors that GitHub gives to the headings of a page."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def rows(heading, page=PHYSICS):
+    """Cells of the first table below a text of a page."""
+    _, _, below = page.read_text().partition(heading)
+    table = re.search(r"(^\|.*\n)+", below, re.MULTILINE)[0].splitlines()[2:]
+    return [[cell.strip() for cell in row.strip("|").split("|")] for row in table]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
+        if target.startswith("http"):
+            continue
+        path, _, anchor = target.partition("#")
+        file = page.parent / path if path else page
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file), target
+
+
+def test_every_effect_is_defined_in_its_family():
+    families = [cells[0].strip("*") for cells in rows("## The 21 effects") if cells[0].startswith("**")]
+    names = [
+        re.match(r"`(\w+)`", cells[0])[1] for cells in rows("## The 21 effects") if cells[0].startswith("`")
+    ]
+    assert names == list(EFFECTS)
+    expected = dict.fromkeys(effect.family.replace("-", " ") for effect in EFFECTS.values())
+    assert [family.lower().replace("-", " ") for family in families] == list(expected)
+
+
+def test_steady_responses_are_those_of_the_test_data():
+    data = json.loads((ROOT / "tests" / "data" / "steady.json").read_text())
+    keys = ("beta", "amplitude_mm", "amplitude_ratio", "stick_fraction", "peak_velocity_mm_per_s")
+    expected = {
+        (row["friction_law"], *(row[key] for key in keys), row["minimum_normal_force_N"]) for row in data
+    }
+    assert {(row[0], *map(float, row[1:])) for row in rows("**Steady responses**")} == expected
+
+
+def test_claims_are_those_that_reproduce_checks():
+    page = {cells[0]: cells[1:] for cells in rows("## Claim by claim", PAPER)}
+    for claim in CLAIMS:
+        statement, paper, _, verdict = page[str(claim.number)]
+        assert (statement, paper, verdict) == (claim.statement, claim.paper, f"**{RECORDED[claim.number]}**")
+    assert len(page) == len(CLAIMS)

@@ -1,0 +1,130 @@
+"""What a validation campaign draws, how it judges, and the results on record."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wedgesweep.effects import EFFECTS
+from wedgesweep.validation import judge, ranges, sets, strength
+from wedgesweep.validation.__main__ import main
+from wedgesweep.validation.shares import Share
+
+DOCS = Path(__file__).parents[2] / "docs"
+RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
+
+
+def test_every_effect_is_hidden_within_the_range_of_the_fit():
+    assert set(ranges.EFFECTS) == set(EFFECTS)
+    for name, effect in EFFECTS.items():
+        for seed in range(20):
+            path = ranges.path(name, np.random.default_rng(seed))
+            for s in (0.0, 0.5, 1.0):
+                numbers = path(s)
+                for quantity in effect.quantities:
+                    if quantity.search and quantity.key in numbers:
+                        low, high = quantity.search
+                        assert low <= numbers[quantity.key] <= high, f"{name}.{quantity.key}"
+
+
+def test_an_effect_is_nearly_neutral_at_the_weak_end():
+    for name, leading in ranges.LEADING.items():
+        quantity = next(each for each in EFFECTS[name].quantities if each.key == leading.key)
+        weak = ranges.path(name, np.random.default_rng(0))(0.0)[leading.key]
+        if np.isfinite(quantity.default):
+            width = quantity.search[1] - quantity.search[0]
+            assert weak == pytest.approx(quantity.default, abs=2e-3 * width), name
+
+
+def test_a_smaller_campaign_has_sets_of_the_full_one():
+    whole = {one for chain in sets.chains(3, 1.0) for one in chain}
+    part = {one for chain in sets.chains(3, 0.1) for one in chain}
+    assert part < whole
+    assert len(whole) == sum(sets.SIZES.values())
+    other = {one for chain in sets.chains(4, 1.0) for one in chain}
+    assert not whole & other
+
+
+def test_an_added_test_follows_its_poor_set():
+    for chain in sets.chains(1, 0.2, ("added",)):
+        assert [one.kind for one in chain] == ["poor", "added"]
+        assert chain[0].noise_seed == chain[1].noise_seed
+
+
+@pytest.mark.parametrize(
+    ("hits", "n", "low", "high"), [(0, 60, 0.0, 0.0602), (8, 10, 0.4902, 0.9433), (84, 84, 0.9563, 1.0)]
+)
+def test_wilson_intervals(hits, n, low, high):
+    assert Share(hits, n).wilson == pytest.approx((low, high), abs=1e-4)
+
+
+def test_the_strength_wanted_is_found():
+    for target in (200.0, 3000.0):
+        s = strength.reach(target, lambda s: 1e5 * s**4)
+        assert 1e5 * s**4 == pytest.approx(target, rel=0.06)
+    assert strength.reach(200.0, lambda s: 10.0 * s) is None
+    assert strength.reach(200.0, lambda s: 1e4 if s > 0.3 else 1.0) is None
+
+
+def record(verdict, causes, rivals=(), truth=("stribeck",)):
+    return {
+        "verdict": verdict,
+        "causes": [{"effect": name, "parameters": {}} for name in causes],
+        "rivals": [{"effects": list(names), "gap": 1.0} for names in rivals],
+        "truth": sorted(truth),
+    }
+
+
+def test_verdicts_are_judged():
+    right, wrong = record("named", ["stribeck"]), record("named", ["presliding"])
+    tied = record("tied", ["presliding"], [["ageing"], ["stribeck"]])
+    pair = record("named", ["preload", "stribeck"], truth=("stribeck", "preload"))
+    assert [judge.exact(r) for r in (right, wrong, tied, pair)] == [True, False, False, True]
+    assert [judge.exact_or_tied(r) for r in (right, wrong, tied)] == [True, False, True]
+    assert [judge.wrongly_named(r) for r in (right, wrong, tied)] == [False, True, False]
+    assert [judge.right_family(r) for r in (right, wrong, tied)] == [True, True, True]
+    half = record("named", ["stribeck"], truth=("stribeck", "preload"))
+    assert judge.wrongly_named(half)
+    assert not judge.right_family(half)
+    assert not judge.right_family(record("data-insufficient", [], truth=()))
+
+
+def test_coverage_allows_for_full_turns_of_angles():
+    found = record("named", ["cross_slip"], truth=("cross_slip",))
+    found["numbers"] = {"cross_slip": {"velocity_mm_per_s": 5.0, "phase_deg": 179.0}}
+    found["causes"][0]["parameters"] = {
+        "velocity_mm_per_s": {"value": 4.0, "ci95": [3.5, 4.5]},
+        "phase_deg": {"value": -178.0, "ci95": [-182.0, -174.0]},
+    }
+    assert judge.coverage(found) == [
+        ("cross_slip.velocity_mm_per_s", False),
+        ("cross_slip.phase_deg", True),
+    ]
+
+
+def test_the_results_page_is_what_the_records_say(capsys):
+    main(["--seed", "13", "--records", str(RECORDS), "--tables"])
+    printed = capsys.readouterr().out
+    assert f"```text\n{printed}```\n" in RESULTS.read_text()
+
+
+def test_a_campaign_resumes_from_its_records(tmp_path, capsys):
+    only = [
+        "--seed",
+        "13",
+        "--only",
+        "added",
+        "--size",
+        "0.05",
+        "--records",
+        str(RECORDS),
+        "-o",
+        str(tmp_path),
+    ]
+    main([*only, "--jobs", "1"])
+    printed = capsys.readouterr().out
+    assert "2/2 added-000" in printed
+    assert (tmp_path / "validation.txt").read_text() in printed
+    assert len((tmp_path / "validation-records.jsonl").read_text().splitlines()) == 2
+    with pytest.raises(SystemExit, match="has the seed 13, not 14"):
+        main(["--seed", "14", "--records", str(RECORDS), "--tables"])

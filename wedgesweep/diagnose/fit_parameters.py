@@ -1,0 +1,156 @@
+"""Effects as coordinates of a fit: bounded numbers, in which their action is smooth.
+
+A positive number that spans decades is fitted as its logarithm, an amplitude with its phase as cosine and
+sine parts; everything else is fitted as it stands in a config.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from math import atan2, cos, degrees, exp, hypot, inf, log, radians, sin
+
+import numpy as np
+
+from wedgesweep.effects import EFFECTS
+from wedgesweep.quantity import Quantity
+
+PHASE = "_phase_deg"
+# Points along the first coordinate, and along each further one, at which a fit may start.
+ALONG, FURTHER = 12, 4
+# The start closest to a neutral value, as a share of the range.
+CLOSEST = 4e-3
+# Effects by name, and their numbers by name (SI) or key (its unit).
+Values = dict[str, dict[str, float]]
+
+
+@dataclass(frozen=True)
+class FitParameter:
+    """One fitted number; ``width`` is a change of it that matters. An angle has no bounds."""
+
+    name: str
+    low: float
+    high: float
+    logarithmic: bool = False
+    neutral: float = 0.0
+
+    @property
+    def angle(self) -> bool:
+        return self.name.endswith("_deg")
+
+    @property
+    def scale(self) -> float:
+        return 0.5 if self.logarithmic else 0.1 * (self.high - self.low)
+
+    def along(self, points: int) -> np.ndarray:
+        """Points inside the range, shape (points,): even, or ever closer towards a neutral value."""
+        if self.logarithmic or self.angle:
+            return self.low + (self.high - self.low) * (np.arange(points) + 0.5) / points
+        neutral = min(max(self.neutral, self.low), self.high)
+        ways = [end - neutral for end in (self.low, self.high) if abs(end - neutral) > 0.0]
+        shares = np.geomspace(CLOSEST, 0.8, points // len(ways))
+        return np.concatenate([neutral + way * shares for way in ways])
+
+
+def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
+    """Quantities of an effect that are fitted, each with its phase where that is a quantity too."""
+    by_key = {quantity.key: quantity for quantity in EFFECTS[effect].quantities if quantity.search}
+    for key, quantity in by_key.items():
+        if not (key.endswith(PHASE) and key.removesuffix(PHASE) in by_key):
+            yield quantity, by_key.get(key + PHASE)
+
+
+def _coordinates(effect: str) -> Iterator[FitParameter]:
+    for quantity, phase in _split(effect):
+        low, high = quantity.search or (0.0, 0.0)
+        name = f"{effect}.{quantity.key}"
+        if phase:
+            yield from (FitParameter(f"{name}.{part}", -high, high) for part in ("cos", "sin"))
+        elif quantity.logarithmic:
+            yield FitParameter(name, log(low), log(high), True)
+        else:
+            yield FitParameter(name, low, high, neutral=quantity.neutral)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Some effects together, as a vector x (k,) of coordinates; no effects: the base model.
+
+    ``fixed``: numbers, as ("effect.key", value) in key units, that are known from elsewhere and not fitted.
+    """
+
+    effects: tuple[str, ...] = ()
+    fixed: tuple[tuple[str, float], ...] = ()
+
+    @cached_property
+    def parameters(self) -> tuple[FitParameter, ...]:
+        known = {name for name, _ in self.fixed}
+        return tuple(each for name in self.effects for each in _coordinates(name) if each.name not in known)
+
+    @cached_property
+    def low(self) -> np.ndarray:
+        return np.array([-inf if each.angle else each.low for each in self.parameters])
+
+    @cached_property
+    def high(self) -> np.ndarray:
+        return np.array([inf if each.angle else each.high for each in self.parameters])
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        return np.array([each.scale for each in self.parameters])
+
+    def in_key_units(self, x: np.ndarray) -> Values:
+        """Every number of every effect by its key, in the key's unit."""
+        rest, known = iter(x), dict(self.fixed)
+        values: Values = {}
+        for name in self.effects:
+            values[name] = {q.key: q.default for q in EFFECTS[name].quantities}
+            for quantity, phase in _split(name):
+                if f"{name}.{quantity.key}" in known:
+                    values[name][quantity.key] = known[f"{name}.{quantity.key}"]
+                    continue
+                value = float(next(rest))
+                if phase:
+                    other = float(next(rest))
+                    values[name][quantity.key] = hypot(value, other)
+                    values[name][phase.key] = degrees(atan2(other, value))
+                else:
+                    value = exp(value) if quantity.logarithmic else quantity.nearest(value, 0.0)
+                    values[name][quantity.key] = value
+        return values
+
+    def values(self, x: np.ndarray) -> Values:
+        """Every number of every effect in SI, as ``parameters.record`` takes them."""
+        return {
+            name: {q.name: numbers[q.key] * q.factor for q in EFFECTS[name].quantities}
+            for name, numbers in self.in_key_units(x).items()
+        }
+
+    def at(self, values: Values) -> np.ndarray:
+        """Coordinates of numbers in key units, shape (k,)."""
+        x: list[float] = []
+        for name in self.effects:
+            numbers = values[name]
+            for quantity, phase in _split(name):
+                if any(known == f"{name}.{quantity.key}" for known, _ in self.fixed):
+                    continue
+                value = numbers[quantity.key]
+                if phase:
+                    angle = radians(numbers[phase.key])
+                    x += [value * cos(angle), value * sin(angle)]
+                else:
+                    x.append(log(value) if quantity.logarithmic else value)
+        return np.array(x)
+
+    def near_neutral(self, x: np.ndarray) -> np.ndarray:
+        """A point (k,) with neutral numbers, but for logarithms, whose neutral value may be infinite."""
+        neutral = np.clip([each.neutral for each in self.parameters], self.low, self.high)
+        return np.where([each.logarithmic for each in self.parameters], x, neutral)
+
+    def starts(self) -> np.ndarray:
+        """Points from which a fit may start, shape (n, k)."""
+        neutral = np.clip(np.zeros(len(self.parameters)), self.low, self.high)
+        if len(self.parameters) > 3:  # amplitudes with phases: linear enough to start at zero
+            return neutral[None]
+        ways = [each.along(FURTHER if i else ALONG) for i, each in enumerate(self.parameters)]
+        return np.array(list(product(*ways)))

@@ -1,0 +1,1 @@
+"""Records of steady responses, compared with simulations harmonic by harmonic."""

@@ -1,0 +1,43 @@
+"""Which tests a figure of a diagnosis shows, in which order, and how it labels them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures import style
+
+SHOWN = 6  # tests in a figure by default, those with the largest misfit
+
+
+def by_misfit(data: xr.Dataset) -> np.ndarray:
+    """Return indices of the tests, the base model's largest misfit per degree of freedom first."""
+    ratio = (data["q"].sel(model="base") / data["dof"]).values
+    return np.argsort(-np.nan_to_num(ratio, nan=np.inf), kind="stable")
+
+
+def choose(result: DiagnosisResult, tests: Sequence[int] | None) -> np.ndarray:
+    """Return indices of the tests asked for, or of those with the largest misfit."""
+    return by_misfit(result.data)[:SHOWN] if tests is None else np.asarray(tests, int)
+
+
+def by_frequency(data: xr.Dataset) -> np.ndarray:
+    """Return indices of the tests by amplitude and then frequency, as a bench would run them."""
+    amplitude = data["amplitude_fitted"].sel(model="extended").values
+    return np.lexsort((data["frequency"].values, np.round(np.log(amplitude), 1)))
+
+
+def label(data: xr.Dataset, test: int) -> str:
+    """Name, frequency and input amplitude of a test; ~ marks an amplitude that was only fitted."""
+    stated = data["amplitude"].values[test]
+    fitted = data["amplitude_fitted"].sel(model="extended").values[test]
+    size = f"{stated * style.MM:.3g} mm" if np.isfinite(stated) else f"~{fitted * style.MM:.2g} mm"
+    return f"{data['test'].values[test]}: {data['frequency'].values[test]:.4g} Hz, {size}"
+
+
+def misfit_label(result: DiagnosisResult, test: int) -> str:
+    """Misfit per degree of freedom of each model in a test."""
+    ratios = [result.data["q"].sel(model=model) / result.data["dof"] for model in result.models]
+    return "Q/dof " + " → ".join(formatting.number(ratio.values[test]) for ratio in ratios)

@@ -1,0 +1,104 @@
+"""The panels of a figure, in a figure made for them, in one that is given, or in given axes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
+from matplotlib.figure import Figure, SubFigure
+
+from wedgesweep.figures import style
+
+CHARACTERS_PER_INCH = 13  # of a title
+TITLE_MARGIN = 0.08  # inches
+
+# Where to draw; None stands for a new figure.
+Target = Axes | Figure | SubFigure | None
+Size = tuple[float, float]  # inches
+
+
+@dataclass(frozen=True)
+class Panels:
+    """The panels of one figure, row by row; ``embedded`` if the only one was given by the caller."""
+
+    figure: Figure | SubFigure
+    axes: list[Axes]
+    embedded: bool = False
+
+    def title(self, what: str, note: str = "") -> None:
+        """Write what the figure shows, and below it the sign convention or how to read it.
+
+        Given axes keep the title of their panel; if they have none, they are told what they show.
+        """
+        if self.embedded:
+            ax = self.axes[0]
+            ax.set_title(ax.get_title() or self._wrapped(what, ax.bbox.width), fontsize=10)
+            return
+        lines = [self._wrapped(text, self.figure.bbox.width) for text in (what, note) if text]
+        # Where nothing lays the figure out, the title stays at the same distance from its upper edge.
+        free = self.figure.get_layout_engine() is None
+        height = self.figure.bbox.height / self.figure.dpi
+        place: dict[str, Any] = {"y": 1.0 - TITLE_MARGIN / height, "va": "top"} if free else {}
+        self.figure.suptitle("\n".join(lines), fontsize=10.5, linespacing=1.4, **place)
+
+    def _wrapped(self, text: str, pixels: float) -> str:
+        return "\n".join(wrap(text, max(20, int(CHARACTERS_PER_INCH * pixels / self.figure.dpi))))
+
+    def legend(self, handles: Sequence[Any], labels: Sequence[str], columns: int = 3) -> None:
+        """Write a legend below the panels, or into given axes."""
+        if not handles:
+            return
+        if self.embedded:
+            self.axes[0].legend(handles, labels, fontsize=8)
+            return
+        place: dict[str, Any] = {"loc": "outside lower center", "ncols": columns}
+        self.figure.legend(handles, labels, fontsize=8.5, frameon=False, **place)
+
+    def colorbar(self, mappable: ScalarMappable, label: str, axes: Sequence[Axes] | None = None) -> Colorbar:
+        """Add a colour bar to some panels, by default to all."""
+        bar = self.figure.colorbar(mappable, ax=self.axes if axes is None else axes, aspect=30, pad=0.02)
+        bar.ax.tick_params(labelsize=8)
+        bar.set_label(label, fontsize=9)
+        return bar
+
+
+def panels(
+    target: Target,
+    count: int,
+    *,
+    columns: int = 3,
+    size: Size = (3.4, 3.5),
+    margin: Size = (0.8, 0.6),
+    share: bool = True,
+) -> Panels:
+    """Make ``count`` panels; a new figure gives each the size in inches, with a margin around all.
+
+    Raises
+    ------
+    ValueError
+        The target is a single Axes, and there are more panels than one.
+    """
+    if isinstance(target, Axes):
+        return _embedded(target, count)
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    width = max(columns * size[0] + margin[0], 5.2)
+    if target is None:
+        target = Figure(figsize=(width, rows * size[1] + margin[1]), layout="constrained")
+    grid = target.subplots(rows, columns, sharex=share, sharey=share, squeeze=False).ravel()
+    for spare in grid[count:]:
+        spare.remove()
+    for ax in grid[:count]:
+        style.dress(ax)
+    return Panels(target, list(grid[:count]))
+
+
+def _embedded(ax: Axes, count: int) -> Panels:
+    if count > 1:
+        message = f"{count} panels do not fit into one Axes; give a figure, or data for a single panel"
+        raise ValueError(message)
+    style.dress(ax)
+    return Panels(ax.figure, [ax], embedded=True)

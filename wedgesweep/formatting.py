@@ -1,0 +1,52 @@
+"""Numbers as a reader wants them: few digits, and powers of ten in place of 1e-5."""
+
+from math import floor, isfinite, log10
+
+NONE = "–"
+NO_BREAK = "\N{NO-BREAK SPACE}"
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+# Outside of this range a number is written with a power of ten.
+SMALL, LARGE = 1e-3, 1e6
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """Write a number with significant digits and thousands apart; one that is not finite becomes a dash."""
+    if value is None or not isfinite(value):
+        return NONE
+    if value == 0.0 or SMALL <= abs(value) < LARGE:
+        return _decimal(value, digits)
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa} × {power(int(exponent))}"
+
+
+def short(value: float | None, digits: int = 4) -> str:
+    """Write a number with at most so many digits and no trailing zeros: 24, 0.1, 14.67."""
+    text = number(value, digits)
+    return text.rstrip("0").rstrip(".") if "." in text and "×" not in text else text
+
+
+def percent(share: float | None) -> str:
+    """Write a share in per cent; only a share of 1 or more becomes 100 %."""
+    if share is None or not isfinite(share):
+        return NONE
+    places = 0 if share < 0.985 or share >= 1.0 else 1 if share < 0.9985 else 2
+    return f"{100.0 * share if share >= 1.0 else min(100.0 * share, 99.99):.{places}f}{NO_BREAK}%"
+
+
+def power(exponent: int) -> str:
+    """Write a power of ten: 10³."""
+    return f"10{str(exponent).translate(SUPERSCRIPT)}"
+
+
+def fixed(value: float, places: int) -> str:
+    """Write a number with so many decimals, thousands apart."""
+    return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
+
+
+def decimals(value: float, digits: int) -> int:
+    """Count the decimals that give a number other than 0 at least so many significant digits."""
+    return max(digits - 1 - floor(log10(abs(value))), 0)
+
+
+def _decimal(value: float, digits: int) -> str:
+    return fixed(value, 0 if value == 0.0 else decimals(value, digits))

@@ -1,0 +1,60 @@
+"""From numbers in a file to a test in SI units, with what is wrong named by its place."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.measured import sampling
+from wedgesweep.measured.declarations import UNITS
+from wedgesweep.measured.measurement import TestRecord
+from wedgesweep.measured.plausibility import channel_faults
+from wedgesweep.measured.steadiness import frequency_faults
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Columns of a test as they stand in its file, shape (n,) each, with their units.
+
+    ``file`` names the file and ``where`` the place of a sample in it.
+    """
+
+    columns: Mapping[str, np.ndarray]
+    units: Mapping[str, str]
+    file: str
+    where: Callable[[int], str]
+
+    def si(self, channel: str) -> np.ndarray | None:
+        """Samples of a channel in SI units, or None."""
+        if channel not in self.columns:
+            return None
+        return self.columns[channel] * UNITS[channel][self.units[channel]]
+
+
+def build_record(
+    name: str, given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]
+) -> TestRecord | None:
+    """Test of the checked keys ``given``, which stand at the place ``at``; None if something is wrong."""
+    before = len(problems)
+    grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
+    for channel in set(channels.columns) - {"time"}:
+        if np.ptp(channels.columns[channel]) == 0.0:
+            problems.append(f"{channels.file}: {channel} never changes; there is no vibration in it")
+    if len(problems) > before:
+        return None
+    displacement = channels.si("displacement")
+    assert displacement is not None
+    amplitude = given.get("amplitude_mm")
+    test = TestRecord(
+        name=name,
+        file=given.get("file", channels.file),
+        frequency=given.get("frequency_hz"),
+        amplitude=None if amplitude is None else amplitude * 1e-3,
+        amplitude_std=given.get("amplitude_std", 0.0),
+        time=grid * UNITS["time"][channels.units["time"]],
+        displacement=displacement,
+        velocity=channels.si("velocity"),
+    )
+    problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
+    return None if len(problems) > before else test

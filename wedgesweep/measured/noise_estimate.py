@@ -1,0 +1,38 @@
+"""The noise of a channel: what does not repeat from period to period."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wedgesweep.measured.cycles import SEEN, cut
+
+HARMONICS = np.arange(1, 41)
+
+
+@dataclass(frozen=True)
+class NoiseEstimate:
+    """The part of a channel that does not repeat.
+
+    ``std`` is in the channel's unit, ``share`` is over the rms of what repeats; ``harmonics`` are the orders
+    that stand out of the noise.
+    """
+
+    std: float
+    share: float
+    harmonics: tuple[int, ...]
+
+
+def estimate_noise(time: np.ndarray, signal: np.ndarray, frequency: float) -> NoiseEstimate:
+    """Estimate the noise of a channel, shape (n,), that vibrates at a frequency (Hz)."""
+    cycles = cut(time, signal, frequency, HARMONICS)
+    mean = cycles.harmonics.mean(axis=0)
+    repeated = np.zeros(time.size)
+    phase = cycles.omega * (time - cycles.middle)
+    for order, harmonic in zip(cycles.orders.tolist(), mean, strict=True):
+        repeated += (harmonic * np.exp(1j * order * phase)).real
+    left = signal - signal.mean() - (repeated - repeated.mean())
+    std = float(np.sqrt(left @ left / (time.size - 2 * mean.size - 1)))
+    count = cycles.times.size
+    variance = np.sum(np.abs(cycles.harmonics - mean) ** 2, axis=0) / (count - 1)
+    seen = np.abs(mean) ** 2 * count > SEEN * variance
+    return NoiseEstimate(std, std / float(repeated.std()), tuple(cycles.orders[seen].tolist()))

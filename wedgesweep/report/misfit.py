@@ -1,0 +1,133 @@
+"""Measured against simulated, from the total misfit down to the residual force."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures.diagnosis import DESCRIPTIONS
+from wedgesweep.figures.diagnosis.selection import SHOWN, by_misfit
+from wedgesweep.report import html, phrases
+from wedgesweep.report.html import Markup
+from wedgesweep.report.inline_figures import InlineFigures
+
+CAPTIONS = {
+    "waveforms": "The thick line is measured (mean over the periods), the dashed line is the base model. A "
+    "flat crest means sticking. The lowest panels show the difference; within the grey band it is noise.",
+    "phase-plane": "A loop that is flat along zero velocity sticks there; a tilted or wider loop has another "
+    "stiffness or dissipation.",
+    "harmonics": "A mark off the measured dot by more than its bar is misfit. Odd harmonics come from "
+    "physics that acts alike in both directions, even ones from physics that does not.",
+    "leftover-force": "The residual force is what the base model lacks to move as measured. A step at zero "
+    "velocity is dry friction, a slope over velocity a damper, a slope over displacement a spring; a loop "
+    "over both has memory. Grey: the misfit of the test may be noise, and so may the force.",
+}
+PEAK_TO_PEAK = "Peak-to-peak over frequency; lines join tests of about the same input amplitude."
+
+
+def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
+    """Section with all that is measured against simulated."""
+    order = by_misfit(result.data).tolist()
+    return html.section(
+        "misfit",
+        heading(result),
+        html.paragraph(_overall(result)),
+        draw("misfit", _extremes(result)),
+        _table(result),
+        html.element("h3", "Motion and forces, test by test"),
+        html.paragraph(_selected(result)),
+        *(draw(kind, caption, order[:SHOWN]) for kind, caption in CAPTIONS.items()),
+        _rest(draw, order[SHOWN:]),
+        html.element("h3", "Plateaus, energy and peak-to-peak"),
+        draw("plateaus", _plateaus(result)),
+        draw("energy", _energy(result)),
+        draw("swing", PEAK_TO_PEAK),
+    )
+
+
+def heading(result: DiagnosisResult) -> str:
+    """Heading of the section."""
+    return "Measured and simulated" if result.verdict == "nothing-missing" else "What is wrong"
+
+
+def _ratio(test: dict[str, Any], model: str) -> float:
+    q = test[f"q_{model}"]
+    return float("inf") if q is None else q / max(test["dof"], 1)
+
+
+def _overall(result: DiagnosisResult) -> str:
+    misfit = result.document["misfit"]
+    tests = phrases.counted(result.data.sizes["test"], "test")
+    q, dof = formatting.number(misfit["chi2_base"]), misfit["dof"]
+    p = phrases.p_value(misfit["p_base"]).replace(" ", formatting.NO_BREAK)
+    return (
+        f"With start phases, amplitudes and uncertain parameters fitted to {tests}, the base model leaves a "
+        f"misfit of Q = {q} on {dof} degrees of freedom, where noise alone leaves about {dof} ({p}). That is "
+        f"an error of {phrases.times_noise(misfit['chi2_base'], dof)}."
+    )
+
+
+def _extremes(result: DiagnosisResult) -> str:
+    tests = sorted(result.document["misfit"]["tests"], key=lambda test: _ratio(test, "base"))
+    best, worst = _described(tests[0]), _described(tests[-1])
+    fits = f"fits worst in {worst} and best in {best}" if len(tests) > 1 else f"was compared with {best}"
+    return f"The base model {fits}; noise alone leaves Q/dof = 1."
+
+
+def _described(test: dict[str, Any]) -> str:
+    ratio = formatting.number(_ratio(test, "base"))
+    return f"{test['name']} ({formatting.short(test['frequency_hz'])} Hz, Q/dof = {ratio})"
+
+
+def _table(result: DiagnosisResult) -> Markup:
+    head = ["test", "frequency [Hz]", "amplitude [mm]", "fitted amplitude [mm]", "periods"]
+    head += ["noise x − y [mm]", "noise x′ − y′ [mm/s]", *(f"Q/dof {model}" for model in result.models)]
+    rows = [_row(test, result.models) for test in result.document["misfit"]["tests"]]
+    return html.details("Table of all tests", html.table("All tests and their misfit", head, rows))
+
+
+def _row(test: dict[str, Any], models: Sequence[str]) -> list[str]:
+    keys = ("frequency_hz", "amplitude_mm", "amplitude_fitted_mm", "periods", "noise_displacement_mm")
+    numbers = [formatting.short(test[key]) for key in (*keys, "noise_velocity_mm_per_s")]
+    return [test["name"], *numbers, *(formatting.number(_ratio(test, model)) for model in models)]
+
+
+def _selected(result: DiagnosisResult) -> str:
+    count = result.data.sizes["test"]
+    if count <= SHOWN:
+        return "Tests in order of decreasing misfit." if count > 1 else "The only test."
+    return f"The {SHOWN} of {count} tests with the largest misfit; the others are folded below."
+
+
+def _rest(draw: InlineFigures, tests: Sequence[int]) -> Markup:
+    if not tests:
+        return Markup()
+    summary = "The other test" if len(tests) == 1 else f"The other {len(tests)} tests"
+    return html.details(
+        summary, *(draw(kind, f"{DESCRIPTIONS[kind].capitalize()}.", tests) for kind in CAPTIONS)
+    )
+
+
+def _plateaus(result: DiagnosisResult) -> str:
+    measured = result.data["measured_plateau"].values
+    if not np.isfinite(measured).any():
+        return "The share of the period near rest is not known for any test."
+    test = int(np.nanargmax(measured))
+    simulated = result.data["simulated_plateau"].sel(model="base").values[test]
+    return (
+        f"The longest measured plateau takes {formatting.percent(measured[test])} of the period "
+        f"({result.data['test'].values[test]}), that of the base model in the same test "
+        f"{formatting.percent(simulated)}; a sine has 3{formatting.NO_BREAK}%."
+    )
+
+
+def _energy(result: DiagnosisResult) -> str:
+    ratio = (result.data["simulated_energy"].sel(model="base") / result.data["measured_energy"]).values
+    known = ratio[np.isfinite(ratio)]
+    if not known.size:
+        return "No test gives the energy, which requires a known motion of the side frame."
+    low, high = (formatting.number(each) for each in (known.min(), known.max()))
+    times = low if low == high else f"{low} to {high}"
+    return f"The base model dissipates {times} times the measured energy."

@@ -1,0 +1,134 @@
+"""Parts of sentences in plain text: parameters with units and intervals, p-values, effects, counts."""
+
+from collections.abc import Mapping, Sequence
+from math import sqrt
+from typing import Any, NamedTuple
+
+from wedgesweep.effects import EFFECTS
+from wedgesweep.formatting import LARGE, NO_BREAK, NONE, SMALL, decimals, fixed, number, percent, short
+from wedgesweep.quantity import Quantity
+
+INTERVAL = f"95{NO_BREAK}% interval"
+UNITS = {
+    "_N_per_mm3": "N/mm³",
+    "_N_per_mm": "N/mm",
+    "_N_s_per_m": "N s/m",
+    "_m_per_s2": "m/s²",
+    "_rad_per_s": "rad/s",
+    "_mm_per_s": "mm/s",
+    "_deg": "°",
+    "_kg": "kg",
+    "_mm": "mm",
+    "_hz": "Hz",
+    "_N": "N",
+    "_s": "s",
+}
+
+
+class Rounded(NamedTuple):
+    """A fitted value and the ends of its interval, as text."""
+
+    value: str
+    low: str
+    high: str
+
+
+def probability(p: float | None) -> str:
+    """A p-value; a tiny one only as a bound."""
+    return NONE if p is None else "< 0.001" if p < 1e-3 else f"{p:.2g}"
+
+
+def p_value(p: float | None) -> str:
+    """A p-value with its symbol: p = 0.02, p < 0.001."""
+    text = probability(p)
+    return f"p {text}" if text.startswith("<") else f"p = {text}"
+
+
+def listing(words: Sequence[str], last: str = "and") -> str:
+    """Words in a row: a, b and c."""
+    return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def counted(count: int, noun: str) -> str:
+    """A count with its noun: 1 test, 12 tests."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def split_key(key: str) -> tuple[str, str]:
+    """Name and unit of a config key."""
+    quantity = Quantity(key, 0.0, "")
+    return quantity.name.replace("_", " "), UNITS.get(quantity.suffix, "")
+
+
+def with_unit(text: str, unit: str) -> str:
+    """A number with its unit."""
+    return f"{text}{unit}" if unit == "°" or not unit else f"{text}{NO_BREAK}{unit}"
+
+
+def estimate(key: str, fitted: Mapping[str, Any]) -> str:
+    """A fitted parameter with its interval, for a sentence."""
+    name, unit = split_key(key)
+    if fitted["value"] is None:
+        return f"{name} not determined"
+    text = rounded(fitted)
+    if text is None:
+        return f"{name} {with_unit(number(fitted['value']), unit)}, no interval"
+    return f"{name} {with_unit(text.value, unit)}, {INTERVAL} {text.low} to {with_unit(text.high, unit)}"
+
+
+def compact(key: str, fitted: Mapping[str, Any]) -> str:
+    """A fitted parameter with its interval in brackets, for a table whose head says so."""
+    name, unit = split_key(key)
+    value, low, high = rounded(fitted) or (number(fitted["value"]), "", "")
+    return f"{name} {with_unit(value, unit)}" + (f" ({low} to {high})" if low else "")
+
+
+def rounded(fitted: Mapping[str, Any]) -> Rounded | None:
+    """A fitted parameter to two digits of the width of its interval; None if it has no interval."""
+    ends = fitted["ci95"]
+    if fitted["value"] is None or ends is None or None in ends:
+        return None
+    values = (fitted["value"], *ends)
+    width, largest = abs(ends[1] - ends[0]), max(map(abs, values))
+    if width == 0.0 or not SMALL <= largest < LARGE:
+        return Rounded(*map(number, values))
+    return Rounded(*(_to_places(each, decimals(width, 2)) for each in values))
+
+
+def _to_places(value: float, places: int) -> str:
+    """A number with so many decimals; one that they would round to 0 keeps one digit instead."""
+    vanishes = value != 0.0 and round(value, places) == 0.0
+    return number(value, 1) if vanishes else fixed(value, places)
+
+
+def interval(gain: Mapping[str, Any]) -> str:
+    """The interval of the gain on held-out tests."""
+    if not gain["ci95"]:
+        return "too few tests for an interval"
+    low, high = gain["ci95"]
+    return f"{INTERVAL} {percent(low)} to {percent(high)}"
+
+
+def meaning(effect: str) -> str:
+    """What an effect is, in words."""
+    return EFFECTS[effect].meaning if effect in EFFECTS else effect.replace("_", " ")
+
+
+def combination(effects: Sequence[str]) -> str:
+    """The effects of one explanation, by name."""
+    return " + ".join(effects) or "base model"
+
+
+def times_noise(q: float | None, dof: float) -> str:
+    """The error that a misfit stands for, in standard deviations of the noise."""
+    return f"{number(None if q is None or dof <= 0 else sqrt(q / dof))} times the noise"
+
+
+def distinguishes(document: Mapping[str, Any]) -> bool:
+    """Whether the recommended test tells explanations apart, or is only the best that there is."""
+    return document["next_test"]["distance"] >= document["method"]["enough_distance"]
+
+
+def next_test(test: Mapping[str, Any]) -> str:
+    """Frequency and amplitude of the recommended test."""
+    return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {short(test['amplitude_mm'], 3)}{NO_BREAK}mm"

@@ -1,0 +1,28 @@
+"""Explanations that the data cannot distinguish from the best one."""
+
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.report import html, phrases
+from wedgesweep.report.html import Markup
+
+
+def section(result: DiagnosisResult) -> Markup:
+    """Section with a table of the rivals."""
+    rows = [
+        [
+            phrases.combination(each["effects"]),
+            "; ".join(map(phrases.meaning, each["effects"])),
+            formatting.number(each["gap"], 2),
+        ]
+        for each in result.document["rivals"]
+    ]
+    named = bool(result.document["causes"])
+    caption = "Other adequate explanations" if named else "Adequate explanations"
+    table = html.table(caption, ("explanation", "meaning", "behind the best by"), rows, 2)
+    return html.section(
+        "rivals", "Rival explanations", table if rows else html.paragraph(NONE if named else NO_CAUSE)
+    )
+
+
+NONE = "No other explanation comes close enough to the best one to be confused with it."
+NO_CAUSE = "No cause is named, so there are no rivals to it."

@@ -1,0 +1,115 @@
+"""Cases on the workers of a Dask cluster: a ``backend.Backend``, loaded only where it is asked for."""
+
+import importlib.util
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING, Any
+
+import joblib
+from joblib._dask import Batch, DaskDistributedBackend
+
+from wedgesweep.errors import SweepError
+from wedgesweep.sweep.backend import parallel
+from wedgesweep.sweep.fingerprint import differences
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+# How long (s) a scheduler may take to answer, and then to have a worker.
+PATIENCE = 10.0
+
+
+@contextmanager
+def dask(
+    n_jobs: int, fingerprint: Callable[[], dict[str, str]], scheduler: str | None = None
+) -> Iterator[joblib.Parallel]:
+    """Workers of a running cluster, or of one with ``n_jobs`` processes here that ends with this run.
+
+    Raises SweepError if there is no cluster, or if its workers would compute other numbers.
+    """
+    if importlib.util.find_spec("distributed") is None:
+        message = "the dask backend needs Dask: pip install 'wedgesweep[dask]'"
+        raise SweepError(message)
+    from distributed import KilledWorker
+
+    with ExitStack() as opened:
+        client = _connected(opened, scheduler) if scheduler else _local(opened, n_jobs)
+        _require_same(client, fingerprint)
+        try:
+            yield parallel(backend=_Dask(client=client))
+        except (KilledWorker, CancelledError) as error:
+            message = f"the Dask cluster gave up: {error}; rerun the same command to resume"
+            raise SweepError(message) from error
+
+
+def _local(opened: ExitStack, n_jobs: int) -> "Client":
+    from distributed import Client, LocalCluster
+
+    cluster = opened.enter_context(
+        LocalCluster(n_workers=n_jobs, threads_per_worker=1, processes=True, dashboard_address=":0")
+    )
+    return opened.enter_context(Client(cluster, set_as_default=False))
+
+
+def _connected(opened: ExitStack, scheduler: str) -> "Client":
+    from distributed import Client
+
+    class Connected(Client):
+        """Closed at once if nothing answers.
+
+        Left to the garbage collector, it may be closed in the midst of another's start, under whose lock
+        its close waits forever.
+        """
+
+        def start(self, **options: Any) -> None:
+            try:
+                super().start(**options)
+            except BaseException:
+                self.close()
+                raise
+
+    try:
+        client = opened.enter_context(Connected(scheduler, timeout=PATIENCE, set_as_default=False))
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except (
+        OSError,
+        ValueError,
+        AssertionError,
+    ) as error:  # TimeoutError is an OSError; an address is asserted
+        reason = str(error) or f"no answer within {PATIENCE:g} s"
+        message = f"{scheduler}: no Dask scheduler with a worker ({reason})"
+        raise SweepError(message) from error
+    return client
+
+
+def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -> None:
+    """Each worker must have the same wedgesweep and the same libraries, for the same bits."""
+    here = fingerprint()
+    for worker, there in client.run(fingerprint, on_error="return").items():
+        if isinstance(there, BaseException):
+            message = f"Dask worker {worker} cannot run wedgesweep: {there}"
+            raise SweepError(message) from there
+        if differing := differences(there, here):
+            message = f"Dask worker {worker} would compute other numbers ({'; '.join(differing)})"
+            raise SweepError(message)
+
+
+class _Dask(DaskDistributedBackend):
+    """joblib's own waits forever for a chunk that Dask gave up because its workers died each time.
+
+    And for one that it scattered while there was no worker: chunks are small, and go along with their task.
+    """
+
+    async def _to_func_args(self, func: Any) -> tuple[Batch, list]:
+        tasks = [(f, list(args), dict(kwargs)) for f, args, kwargs in func.items]
+        return Batch(tasks), tasks
+
+    def submit(self, func: Any, callback: Callable[[Any], None]) -> Future:
+        def pass_on(done: Future) -> None:
+            if error := done.exception():
+                callback(error)
+
+        submitted = super().submit(func, callback)
+        submitted.add_done_callback(pass_on)
+        return submitted

@@ -1,0 +1,206 @@
+"""The labelled dataset of a sweep: one table of every variable, and its netCDF encoding."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep.errors import SweepError
+from wedgesweep.outcome import Outcome
+
+STATUSES = tuple(map(str, Outcome))
+HARMONICS = 9
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the dataset; ``dims`` come after the dimensions that number the cases."""
+
+    name: str
+    units: str
+    long_name: str
+    dims: tuple[str, ...] = ()
+    dtype: str = "f8"
+
+
+PHASE = ("phase",)
+SPECTRUM = ("harmonic", "part")
+
+VARIABLES = (
+    Variable("amplitude_ratio", "1", "half peak-to-peak of x - y over the input amplitude"),
+    Variable("peak_to_peak", "m", "peak-to-peak of the relative displacement x - y"),
+    Variable("peak_velocity", "m s-1", "largest magnitude of the relative velocity x' - y'"),
+    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
+    Variable(
+        "stick_fraction",
+        "1",
+        "share of time stuck (coulomb) or with the column face below the threshold velocity",
+    ),
+    Variable("stick_phases", "1", "number of sticking phases per forcing period"),
+    Variable("displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM),
+    Variable("velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM),
+    Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
+    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers per forcing period"),
+    Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
+    Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
+    Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
+    Variable(
+        "periodicity",
+        "1",
+        "largest change of x - y from the last period but one to the last, over input amplitude",
+    ),
+    Variable(
+        "period",
+        "1",
+        "period of the response in forcing periods; 0: it did not repeat, -1: not looked for",
+        dtype="i2",
+    ),
+    Variable("settled_periods", "1", "forcing periods run before the kept ones", dtype="i8"),
+    Variable("status", "1", "outcome of the case", dtype="i1"),
+    Variable("message", "", "reason of a failure, empty otherwise", dtype="str"),
+    Variable("rate_evaluations", "1", "calls of the right-hand side", dtype="i8"),
+    Variable("steps", "1", "steps of the integrator", dtype="i8"),
+    Variable("switches", "1", "located switches between slip branches", dtype="i8"),
+    Variable("wall_time", "s", "wall time of the case"),
+    Variable(
+        "displacement",
+        "m",
+        "relative displacement x - y (side frame minus bolster) from frictionless rest",
+        PHASE,
+        "f4",
+    ),
+    Variable("velocity", "m s-1", "relative velocity x' - y'", PHASE, "f4"),
+    Variable("normal_force_column", "N", "normal force on the column face", PHASE, "f4"),
+    Variable("normal_force_bolster", "N", "normal force on the bolster face", PHASE, "f4"),
+    Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", PHASE, "i1"),
+)
+
+WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
+
+# A continuation has these, too; all other variables are those of its way up in beta. Two responses are
+# different ones if their amplitude ratios are this many steady_tolerance apart, or their periods differ.
+DISTINCT = 1000.0
+CONTINUED = (
+    Variable("amplitude_ratio_down", "1", "amplitude_ratio on the way down in beta"),
+    Variable("period_down", "1", "period on the way down in beta", dtype="i2"),
+    Variable(
+        "coexisting",
+        "1",
+        "whether the ways up and down in beta end in different responses: periods differ, or amplitude "
+        f"ratios by more than {DISTINCT:g} steady_tolerance; not told where one did not repeat or failed",
+        dtype="i1",
+    ),
+)
+# Flags of the dataset: the values from the first on, in words.
+FLAGS = {"status": (0, STATUSES), "coexisting": (-1, ("not_told", "no", "yes"))}
+
+GRID = ("friction_law", "beta", "amplitude")
+MESSAGE_BYTES = 200
+
+
+def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
+    """Layout of one finished case: its index and every variable, dimensions from ``sizes``.
+
+    Without samples (``sizes["phase"]`` = 0) there are no waveforms; ``continued`` adds CONTINUED.
+    """
+    fields: list[tuple[Any, ...]] = [("index", "i8")]
+    for variable in VARIABLES + CONTINUED * continued:
+        if variable.dims == PHASE and not sizes["phase"]:
+            continue
+        dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
+        fields.append((variable.name, dtype, tuple(sizes[dim] for dim in variable.dims)))
+    return np.dtype(fields)
+
+
+def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
+    """Records of cases that have no numbers: NaN, zero counts, status not_run."""
+    records = np.zeros(len(indices), dtype)
+    for name in dtype.names or ():
+        if dtype[name].base.kind == "f":
+            records[name] = np.nan
+    records["index"] = indices
+    for name in {"period", "period_down", "coexisting"} & set(dtype.names or ()):
+        records[name] = -1
+    records["status"] = Outcome.NOT_RUN
+    return records
+
+
+def assemble(
+    records: np.ndarray, coords: Mapping[str, Any], shape: tuple[int, ...], attrs: Mapping[str, Any]
+) -> xr.Dataset:
+    """Dataset from the records of all cases, in any order.
+
+    ``shape`` are the sizes of the dimensions that number the cases: three for a grid (friction_law,
+    beta, amplitude), one for a list (case).
+    """
+    case_dims = GRID if len(shape) == 3 else ("case",)
+    in_order = (records["index"][:-1] <= records["index"][1:]).all()
+    ordered = records if in_order else records[np.argsort(records["index"])]
+    variables = {}
+    for variable in VARIABLES + CONTINUED:
+        if variable.name not in (records.dtype.names or ()):
+            continue
+        values = ordered[variable.name]
+        if variable.dtype == "str":
+            values = np.array([text.decode("utf-8", "replace") for text in values.tolist()], object)
+        values = values.reshape(shape + values.shape[1:])
+        variables[variable.name] = (case_dims + variable.dims, values, _attributes(variable))
+    return xr.Dataset(variables, coords, {"Conventions": "CF-1.13", **attrs})
+
+
+def coordinates(case_coords: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Any]:
+    """All coordinates: those that number the cases (see ``assemble``) and those within one."""
+    coords = {
+        **case_coords,
+        "harmonic": ("harmonic", np.arange(1, sizes["harmonic"] + 1), {"long_name": "harmonic h"}),
+        "part": ("part", ["real", "imaginary"], {"long_name": "part of the complex coefficient"}),
+    }
+    if sizes["phase"]:
+        periods = sizes["phase"] / sizes["samples_per_period"]
+        phase = 2.0 * np.pi * np.arange(sizes["phase"]) / sizes["samples_per_period"]
+        about = f"phase omega t of the input over {periods:g} kept periods"
+        coords["phase"] = ("phase", phase, {"units": "rad", "long_name": about})
+    return coords
+
+
+def _attributes(variable: Variable) -> dict[str, Any]:
+    attributes: dict[str, Any] = {"long_name": variable.long_name}
+    if variable.units:
+        attributes["units"] = variable.units
+    if variable.name in FLAGS:
+        first, meanings = FLAGS[variable.name]
+        attributes["flag_values"] = np.arange(first, first + len(meanings), dtype=np.int8)
+        attributes["flag_meanings"] = " ".join(meanings)
+    return attributes
+
+
+def write(dataset: xr.Dataset, path: Path) -> None:
+    """Write netCDF to a temporary file beside ``path`` and move it there when it is whole."""
+    compressed = {"zlib": True, "complevel": 1, "shuffle": True}
+    encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
+    for name, variable in dataset.data_vars.items():
+        # Doubles shrink by a fifth, and would take longer over it than their cases took to solve.
+        if variable.dtype.kind in "fi" and variable.dtype != np.float64:
+            encoding[str(name)] = compressed
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read(path: Path) -> xr.Dataset:
+    """Whole dataset from a netCDF file; raises SweepError if there is none."""
+    if not path.is_file():
+        message = f"{path}: no such file"
+        raise SweepError(message)
+    try:
+        return xr.load_dataset(path, engine="netcdf4")
+    except (OSError, RuntimeError, ValueError) as error:  # netCDF4 raises any of them
+        message = f"{path}: not a netCDF dataset, or damaged ({error})"
+        raise SweepError(message) from error

@@ -1,0 +1,80 @@
+"""What the numbers of a sweep depend on: runs that differ in it are not mixed."""
+
+import platform
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from wedgesweep import __version__
+from wedgesweep.config import Config
+from wedgesweep.config.keys import show
+
+PACKAGE = Path(__file__).parents[1]
+SAME_RESULTS = ("numpy", "scipy", "numba")
+# Nothing in these folders changes a number.
+PRESENTATION = ("cli", "figures", "reproduce", "validation")
+
+
+def fingerprint(config: Config) -> dict[str, str]:
+    """Config and versions of a sweep as it would run now."""
+    return {
+        "config_sha256": config.sha256,
+        "wedgesweep": __version__,
+        "source_sha256": _source_digest(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in SAME_RESULTS},
+    }
+
+
+def differences(found: Mapping[str, str], expected: Mapping[str, str]) -> list[str]:
+    """In words, what sets two fingerprints apart.
+
+    Both may also hold the ``config`` as TOML text, so that the keys that changed can be named.
+    """
+    keys = [key for key in expected if found.get(key) != expected[key] and key != "config"]
+    return [words for key in keys for words in _in_words(key, found, expected)]
+
+
+def _in_words(key: str, found: Mapping[str, str], expected: Mapping[str, str]) -> list[str]:
+    if key == "source_sha256":
+        return ["the code of wedgesweep has changed"]
+    if key == "config_sha256":
+        changed = _changed_keys(found.get("config", ""), expected.get("config", ""))
+        return changed or ["the config has changed"]
+    return [f"{key}: {found.get(key)} there, {expected[key]} now"]
+
+
+def _changed_keys(there: str, now: str) -> list[str]:
+    there_flat, now_flat = dict(_flat(tomllib.loads(there))), dict(_flat(tomllib.loads(now)))
+    return [
+        f"{key}: {_shown(there_flat, key)} there, {_shown(now_flat, key)} now"
+        for key in there_flat | now_flat
+        if there_flat.get(key) != now_flat.get(key)
+    ]
+
+
+def _shown(flat: dict[str, Any], key: str) -> str:
+    return show(flat[key]) if key in flat else "absent"
+
+
+def _flat(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{path}{key}.")
+        else:
+            yield path + key, value
+
+
+@cache
+def _source_digest() -> str:
+    # Read once: what was loaded stays loaded, whatever is edited while a sweep runs.
+    digest = sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        place = path.relative_to(PACKAGE)
+        if place.parts[0] not in PRESENTATION:
+            digest.update(place.as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()

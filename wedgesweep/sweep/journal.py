@@ -1,0 +1,144 @@
+"""Finished cases on disk while a sweep runs: an append-only file that survives a kill.
+
+The first line tells what is computed. Then come records of fixed size, each followed by its
+checksum, so that a record torn by a kill is recognised and dropped.
+"""
+
+import json
+import os
+from pathlib import Path
+from types import TracebackType
+from zlib import crc32
+
+import numpy as np
+
+from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.sweep.fingerprint import differences
+
+try:
+    import fcntl
+except ImportError:  # not on Windows; there two runs at once are not told apart
+    fcntl = None  # type: ignore[assignment]
+
+
+class Journal:
+    """Open journal of one sweep; ``records`` holds what earlier runs finished.
+
+    ``header`` is the fingerprint and whatever else a reader of the journal needs. Raises
+    MismatchError, or SweepError if another run has it open or it is no journal.
+    """
+
+    def __init__(self, path: Path, dtype: np.dtype, header: dict[str, str]) -> None:
+        self._file = _locked(path)
+        try:
+            whole, self.records = _kept(path, dtype, header)
+            os.ftruncate(self._file, whole)
+            os.lseek(self._file, 0, os.SEEK_END)
+            if not whole:
+                self._write(json.dumps(header, sort_keys=True).encode() + b"\n")
+        except BaseException:
+            self.close()
+            raise
+
+    def append(self, records: np.ndarray) -> None:
+        """Add finished cases, a structured array of the journal's dtype."""
+        framed = np.empty(len(records), _framed(records.dtype))
+        framed["record"] = records
+        framed["checksum"] = _checksums(framed)
+        self._write(framed.tobytes())
+
+    def _write(self, content: bytes) -> None:
+        while content:
+            content = content[os.write(self._file, content) :]
+
+    def close(self) -> None:
+        os.close(self._file)
+
+    def __enter__(self) -> "Journal":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def discard(path: Path) -> None:
+    """Delete a journal, if there is one and no run has it open."""
+    if path.exists():
+        file = _locked(path)
+        path.unlink()
+        os.close(file)
+
+
+def header(path: Path) -> dict[str, str]:
+    """First line of a journal that may be in use."""
+    return _header(path, path.read_bytes())
+
+
+def read(path: Path, dtype: np.dtype) -> np.ndarray:
+    """Whole records of a journal that may be in use, the last one of each case."""
+    content = path.read_bytes()
+    return _latest(_whole_records(content, content.index(b"\n") + 1, dtype)[1])
+
+
+def _locked(path: Path) -> int:
+    """Open file, held by this process alone until it is closed or the process ends."""
+    file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    try:
+        if fcntl:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        os.close(file)
+        message = f"{path}: another run is writing it; wait for its end or stop it"
+        raise SweepError(message) from error
+    return file
+
+
+def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:
+    """Length of what is whole in the file, and its records; 0 if even the first line is torn."""
+    content = path.read_bytes()
+    if b"\n" not in content:
+        return 0, np.zeros(0, dtype)
+    differing = differences(_header(path, content), expected)
+    if differing:
+        message = f"{path}: an unfinished sweep of another set-up ({'; '.join(differing)})"
+        raise MismatchError(message)
+    whole, records = _whole_records(content, content.index(b"\n") + 1, dtype)
+    return whole, _latest(records)
+
+
+def _header(path: Path, content: bytes) -> dict[str, str]:
+    try:
+        return dict(json.loads(content[: content.index(b"\n")]))
+    except (ValueError, TypeError) as error:
+        message = f"{path}: not the journal of a sweep, or broken in its first line"
+        raise SweepError(message) from error
+
+
+def _latest(records: np.ndarray) -> np.ndarray:
+    """Drop records of cases that were run again."""
+    _, last = np.unique(records["index"][::-1], return_index=True)
+    return records[np.sort(len(records) - 1 - last)]
+
+
+def _framed(dtype: np.dtype) -> np.dtype:
+    return np.dtype([("record", dtype), ("checksum", "<u4")])
+
+
+def _checksums(framed: np.ndarray) -> list[int]:
+    """Checksum of each record."""
+    content = framed.view(np.uint8).data
+    size, stride = framed.dtype["record"].itemsize, framed.itemsize
+    return [crc32(content[place : place + size]) for place in range(0, len(content), stride)]
+
+
+def _whole_records(content: bytes, start: int, dtype: np.dtype) -> tuple[int, np.ndarray]:
+    """Length of the journal up to its first torn record, and the records before that."""
+    framed = np.frombuffer(content, _framed(dtype), (len(content) - start) // _framed(dtype).itemsize, start)
+    torn = np.flatnonzero(framed["checksum"] != _checksums(framed))
+    whole = framed[: torn[0]] if torn.size else framed
+    return start + whole.nbytes, whole["record"]

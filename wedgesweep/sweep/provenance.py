@@ -1,0 +1,58 @@
+"""Where a dataset comes from: its global attributes."""
+
+import json
+import subprocess
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from wedgesweep import __version__
+from wedgesweep.config import Config
+from wedgesweep.sweep.fingerprint import fingerprint
+
+PACKAGE = Path(__file__).parents[1]
+PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "joblib")
+SOURCE = "wedgesweep: friction wedge suspension of a three-piece bogie, half model"
+REFERENCES = (
+    "Numerical investigation on the friction wedge damper dynamics - a comparative study; "
+    "Den Hartog (1930), Forced vibrations with combined Coulomb and viscous friction"
+)
+
+
+def attributes(config: Config, started: datetime, command: str) -> dict[str, str]:
+    """Title, config, versions and time of a run, as netCDF takes them (text only)."""
+    stamp = started.strftime("%Y-%m-%dT%H:%M:%SZ")
+    commit = git_commit()
+    return {
+        "title": config.title,
+        "source": f"{SOURCE}, version {__version__}",
+        "references": REFERENCES,
+        "history": f"{stamp}: {command}",
+        "start_time": stamp,
+        "config": config.to_toml(),
+        "config_sha256": config.sha256,
+        "fingerprint": json.dumps(fingerprint(config)),
+        "wedgesweep_version": __version__,
+        "package_versions": json.dumps({name: version(name) for name in PACKAGES}),
+        **({"comment": config.remark} if config.remark else {}),
+        **({"git_commit": commit} if commit else {}),
+    }
+
+
+def git_commit(package: Path = PACKAGE) -> str | None:
+    """Commit of the checkout that holds the package, "-dirty" appended if files have changed.
+
+    None for an installed package, even if its environment lies within some checkout.
+    """
+    if _git(package, "ls-files", "__init__.py") is None:
+        return None
+    return _git(package, "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*")
+
+
+def _git(directory: Path, *arguments: str) -> str | None:
+    command = ["git", "-C", str(directory), *arguments]
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=5)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return result.stdout.strip() or None

@@ -1,0 +1,90 @@
+"""The range of strengths of each hidden effect, from hardly noticeable to very strong."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+Numbers = dict[str, float]
+
+
+class Leading(NamedTuple):
+    """The parameter that sets the strength of an effect, in the unit of its key.
+
+    It is ``neutral`` plus a step between ``weak`` and ``strong``. In a share ``down`` of the cases the step
+    is subtracted, and then at most ``lowest``.
+    """
+
+    key: str
+    weak: float
+    strong: float
+    neutral: float = 0.0
+    down: float = 0.0
+    lowest: float = np.inf
+
+
+# OTHERS holds what is drawn beside the leading parameter.
+LEADING = {
+    "bolster_stiffness": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
+    "wedge_stiffness": Leading("scale", 1e-4, 0.7, 1.0, 0.5, 0.4),
+    "bolster_mass": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
+    "preload": Leading("force_N", 1e-3, 15.0, 0.0, 0.3, 4.0),
+    "friction_level": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
+    "stribeck": Leading("velocity_mm_per_s", 0.1, 60.0),
+    "presliding": Leading("length_mm", 1e-4, 0.4),
+    "ageing": Leading("rate", 1e-4, 0.28),
+    "directional_friction": Leading("asymmetry", 1e-4, 0.45, 0.0, 0.5),
+    "load_dependent_friction": Leading("exponent", 1e-4, 0.55, 0.0, 0.3, 0.45),
+    "cross_slip": Leading("velocity_mm_per_s", 0.1, 150.0),
+    "column_compliance": Leading("stiffness_N_per_mm", 5000.0, 4.0),
+    "viscous_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
+    "cubic_stiffness": Leading("coefficient_N_per_mm3", 1e-4, 15.0),
+    "guide_friction": Leading("force_N", 1e-3, 5.0),
+    "end_stop": Leading("clearance_mm", 4.0, 0.006),
+    "input_distortion": Leading("second", 1e-4, 0.4),
+    "stray_vibration": Leading("acceleration_m_per_s2", 1e-3, 4.0),
+    "fixture_resonance": Leading("frequency_hz", 390.0, 25.0),
+    "velocity_lag": Leading("time_s", 1e-6, 0.018),
+    "displacement_gain": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
+}
+LOGARITHMIC, UNIFORM, GROWING = "logarithmic", "uniform", "growing"
+# A growing parameter starts at this share of the drawn one.
+GROWTH = 1e-3
+# Drawn once per set: (low, high) and how. A growing parameter increases with the leading one.
+OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
+    "stribeck": {"peak": (0.0, 0.4, GROWING)},
+    "ageing": {"time_s": (2e-4, 0.3, LOGARITHMIC)},
+    "cross_slip": {"phase_deg": (-88.0, 88.0, UNIFORM)},
+    "end_stop": {"stiffness_N_per_mm": (3.0, 800.0, LOGARITHMIC)},
+    "input_distortion": {
+        "second_phase_deg": (-175.0, 175.0, UNIFORM),
+        "third": (0.02, 0.4, GROWING),
+        "third_phase_deg": (-175.0, 175.0, UNIFORM),
+    },
+    "stray_vibration": {"frequency_hz": (6.5, 80.0, LOGARITHMIC)},
+    "fixture_resonance": {"damping_ratio": (0.01, 0.4, LOGARITHMIC)},
+}
+EFFECTS = tuple(LEADING)
+
+
+def path(effect: str, random: np.random.Generator) -> Callable[[float], Numbers]:
+    """Draw how the parameters of an effect depend on its strength, from 0 to 1."""
+    leading = LEADING[effect]
+    down = random.random() < leading.down
+    strong = min(leading.strong, leading.lowest) if down else leading.strong
+    growing = [key for key, (*_, scale) in OTHERS.get(effect, {}).items() if scale == GROWING]
+    others = {key: _draw(*spread, random) for key, spread in OTHERS.get(effect, {}).items()}
+
+    def numbers(strength: float) -> Numbers:
+        step = leading.weak * (strong / leading.weak) ** strength
+        value = float(leading.neutral - step if down else leading.neutral + step)
+        grown = {key: others[key] * GROWTH ** (1.0 - strength) for key in growing}
+        return {leading.key: value, **others, **grown}
+
+    return numbers
+
+
+def _draw(low: float, high: float, scale: str, random: np.random.Generator) -> float:
+    if scale == LOGARITHMIC:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+    return float(random.uniform(low, high))

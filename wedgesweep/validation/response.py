@@ -1,0 +1,71 @@
+"""Steady responses of a system to tests, from a sweep over them."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep.config import parse, toml
+from wedgesweep.sweep.run import Sweep
+
+Effects = Mapping[str, Mapping[str, float]]
+TONE = "stray_vibration"
+HARMONICS, SAMPLES = 16, 128
+STEADY = {"settle": "steady", "kept_periods": 2, "max_periods": 300}
+# A response under a stray tone does not repeat. It is observed for about as long as a record is.
+UNDER_TONE = {"settle_periods": 40, "kept_periods": 8}
+
+
+class Test(NamedTuple):
+    """Frequency and input amplitude of one test."""
+
+    frequency_hz: float
+    amplitude_mm: float
+
+
+class System(NamedTuple):
+    """A suspension with effects, whose parameters are in the units of their keys."""
+
+    law: str
+    lean_deg: float
+    effects: Effects = {}  # noqa: RUF012 - never changed
+
+    def document(self) -> dict[str, Any]:
+        """Its config, but for the tests."""
+        return {
+            "title": "system under test",
+            "suspension": {"column_angle_deg": self.lean_deg},
+            "effects": self.effects,
+            "sweep": {"friction_law": self.law, "beta": 1.0, "amplitude_mm": 0.1},
+        }
+
+
+def run(system: System, tests: Sequence[Test]) -> xr.Dataset:
+    """Dataset of the tests along the dimension ``case``; NaN where there is no steady response."""
+    window = UNDER_TONE if TONE in system.effects else STEADY
+    document = system.document() | {
+        "sweep": {"case": [{"friction_law": system.law, **test._asdict()} for test in tests]},
+        "solver": {"method": "event-driven", "samples_per_period": SAMPLES, **window},
+    }
+    return Sweep(parse(toml.dumps(document)), Path()).run_here()
+
+
+def spectra(system: System, tests: Sequence[Test]) -> np.ndarray:
+    """Complex harmonics of displacement (m) and velocity (m/s), shape (tests, 2, HARMONICS + 1).
+
+    The last column is the amplitude of what does not repeat from period to period: the stray tone.
+    NaN where there is no steady response.
+    """
+    ds = run(system, tests)
+    signals = np.stack([ds["displacement"], ds["velocity"]], axis=1).astype(float)
+    periods = signals.reshape(*signals.shape[:2], -1, SAMPLES)
+    mean = periods.mean(axis=-2)
+    tone = np.sqrt(2.0 * ((periods - mean[..., None, :]) ** 2).mean(axis=(-2, -1)))
+    return np.concatenate([harmonics(mean), tone[..., None]], axis=-1)
+
+
+def harmonics(period: np.ndarray) -> np.ndarray:
+    """Complex harmonics of signals over one period, shape (..., samples) to (..., HARMONICS)."""
+    return 2.0 / period.shape[-1] * np.fft.rfft(period)[..., 1 : HARMONICS + 1]

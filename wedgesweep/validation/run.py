@@ -1,0 +1,180 @@
+"""Runs one data set: the command line makes and diagnoses it, and its record is kept on disk."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from shutil import rmtree
+from time import perf_counter
+from typing import Any
+
+from wedgesweep import __version__
+from wedgesweep.config import toml
+from wedgesweep.effects import EFFECTS
+from wedgesweep.sweep.provenance import git_commit
+from wedgesweep.validation import unmodelled
+from wedgesweep.validation.baselines import BASELINES
+from wedgesweep.validation.draft import Draft, draw
+from wedgesweep.validation.judge import Record
+from wedgesweep.validation.response import TONE, Test
+from wedgesweep.validation.sets import DataSet
+from wedgesweep.validation.strength import LEVEL
+
+RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
+DATA, RESULT = "data", "diagnosis"
+# Relative std with which the amplitude of a recommended test is known.
+ADDED_SPREAD = 0.01
+# Periods after which a response counts as steady; close to breakaway it takes long.
+SETTLE_PERIODS = 400
+# Where the bolster sticks, the input is raised by this factor, at most so many times.
+RAISE, RAISES = 1.1, 8
+STICKS = re.compile(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)")
+
+
+class CommandError(Exception):
+    """A command that failed."""
+
+
+def run_chain(chain: list[DataSet], out: Path) -> list[Record]:
+    """Records of sets that depend on each other; finished ones are read. A failure is a record, too."""
+    return [_record_or_failure(one, out) for one in chain]
+
+
+def _record_or_failure(one: DataSet, out: Path) -> Record:
+    try:
+        return record_of(one, out)
+    except Exception as error:  # whatever it is, the other sets continue
+        # No record file: the next run tries again.
+        failure = f"{type(error).__name__}: {error}"
+        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": failure}
+
+
+def record_of(one: DataSet, out: Path) -> Record:
+    """Record of a set in its directory below ``out``: read if it is finished, else made anew."""
+    directory = out / one.name
+    if (directory / RECORD).exists():
+        return json.loads((directory / RECORD).read_text())
+    rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    record = _run(one, out)
+    write(directory / RECORD, record)
+    return record
+
+
+def write(file: Path, document: Any) -> None:
+    """Write a JSON file completely or not at all."""
+    partial = file.with_suffix(".partial")
+    partial.write_text(json.dumps(document, indent=1) + "\n")
+    os.replace(partial, file)
+
+
+class _Clock:
+    """Seconds that each step took."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self.began = perf_counter()
+
+    def lap(self, step: str) -> None:
+        now = perf_counter()
+        self.seconds[step], self.began = round(now - self.began, 1), now
+
+
+def _run(one: DataSet, out: Path) -> Record:
+    directory, clock = out / one.name, _Clock()
+    draft = draw(one.original)
+    spreads = [draft.spread] * len(draft.tests)
+    if one.kind == "added":
+        original = record_of(one.original, out)
+        if original["next_test"] is None:  # nothing to add: the verdict stands
+            return {**original, "name": one.name, "kind": one.kind}
+        draft.tests.append(Test(*(original["next_test"][key] for key in Test._fields)))
+        spreads.append(ADDED_SPREAD)
+    write(directory / DRAFT, asdict(draft))
+    clock.lap("draw")
+    if draft.unmodelled:
+        unmodelled.make(draft, one.noise_seed, directory / DATA)
+    else:
+        _synthesize(draft, spreads, one.noise_seed, directory)
+    write(directory / DRAFT, asdict(draft))
+    # Out of the reach of the diagnosis.
+    (directory / DATA / TRUTH).rename(directory / TRUTH)
+    clock.lap("synthesize")
+    limit = ["--effects", ",".join(draft.candidates)] if one.kind == "unknown" else []
+    files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
+    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *limit)
+    clock.lap("diagnose")
+    named_by = {name: method(directory / RESULT) for name, method in BASELINES.items()}
+    clock.lap("baselines")
+    found = json.loads((directory / RESULT / "diagnosis.json").read_text())
+    return {**_record(one, draft, found), "baselines": named_by, "seconds": clock.seconds}
+
+
+def _record(one: DataSet, draft: Draft, found: dict[str, Any]) -> Record:
+    """What is kept of a set, from the document of its diagnosis."""
+    if found["gain"]:
+        del found["gain"]["held_out"]  # test by test: too long for a record
+    return {
+        **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
+        "code": git_commit() or __version__,
+        "truth": draft.truth,
+        "numbers": draft.hidden,
+        **{key: getattr(draft, key) for key in ("law", "lean", "noise", "spread", "uncertain", "expected")},
+        **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
+        "excess": found["misfit"]["excess_base"],
+        **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
+        "gain_in_truth": gain_in_truth(draft, found["causes"]),
+    }
+
+
+def gain_in_truth(draft: Draft, causes: list[dict[str, Any]]) -> float | None:
+    """Share of the excess that the causes explain in responses without noise."""
+    if not causes:
+        return None
+    known = {
+        cause["effect"]: {
+            quantity.key: cause["parameters"].get(quantity.key, {}).get("value", quantity.default)
+            for quantity in EFFECTS[cause["effect"]].quantities
+        }
+        for cause in causes
+    }
+    base, extended = draft.true_excesses({}, known)
+    return 1.0 - extended / base if base > 0.0 else None
+
+
+def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory: Path) -> None:
+    """Make the data. As on a test bench, a test in which the bolster sticks gets more input."""
+    true = draft.system(draft.hidden).document()
+    (directory / "true.toml").write_text(toml.dumps(true))
+    options = ["--noise", draft.noise, "--level", LEVEL, "--seed", seed, "--n-jobs", 1]
+    if TONE not in draft.hidden:  # with a tone nothing is ever steady, and all these periods would be run
+        options += ["--settle-periods", SETTLE_PERIODS]
+    files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
+    for attempt in range(RAISES):
+        tests = [
+            {**test._asdict(), **({"known": False} if spread is None else {"amplitude_std": spread})}
+            for test, spread in zip(draft.tests, spreads, strict=True)
+        ]
+        (directory / "tests.toml").write_text(toml.dumps({"uncertain": draft.uncertain, "test": tests}))
+        try:
+            return wedgesweep("synthesize", *files, *options)
+        except CommandError as error:
+            sticking = [int(number) for number in STICKS.findall(str(error))]
+            if not sticking or attempt == RAISES - 1:
+                raise
+        for i in sticking:
+            amplitude = round(RAISE * draft.tests[i].amplitude_mm, 6)
+            draft.tests[i] = draft.tests[i]._replace(amplitude_mm=amplitude)
+    return None
+
+
+def wedgesweep(*arguments: Any) -> None:
+    """Run the command line as a user would; raises CommandError."""
+    command = [sys.executable, "-m", "wedgesweep", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        said = f"{' '.join(map(str, arguments))}: exit code {done.returncode}\n{done.stderr[-2000:]}"
+        raise CommandError(said)
