@@ -125,8 +125,8 @@ def _named(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
 def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
     """A function for compiled code, made anew for every type of its parameter record ``p``.
 
-    ``choose`` gets the fields of the record's type and returns the plain function that is compiled then: what a
-    record has no fields for costs nothing. Python calls ``function`` itself.
+    ``choose`` gets the fields of the record's type and returns the plain function that is compiled then:
+    what a record has no fields for costs nothing. Python calls ``function`` itself.
     """
     arguments = list(inspect.signature(function).parameters)
     place = arguments.index("p")

@@ -1,7 +1,7 @@
 """Where effects act: each hook is all the functions of its name in the effects of a record, as one.
 
-An effect takes part by a compiled function of the hook's name and arguments in its own file; records without the
-effect are compiled without it. Units are SI.
+An effect takes part by a compiled function of the hook's name and arguments in its own file; records
+without the effect are compiled without it. Units are SI.
 """
 
 from collections.abc import Callable, Mapping

@@ -36,8 +36,8 @@ EFFECT = Effect(
 
 
 STATES = (SHARE,)
-# The few long implicit steps are done sooner than many short explicit ones where bristles answer this many times
-# faster than the input.
+# The few long implicit steps are done sooner than many short explicit ones where bristles answer this many
+# times faster than the input.
 STIFF = 300.0
 
 

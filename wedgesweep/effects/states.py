@@ -1,7 +1,7 @@
 """States that effects bring with them, behind the displacement and velocity of the mass.
 
-An effect lists the kinds of its own as ``STATES``. Where they stand in a state vector depends on which effects a
-record has; the accessors made here find their place when they are compiled.
+An effect lists the kinds of its own as ``STATES``. Where they stand in a state vector depends on which
+effects a record has; the accessors made here find their place when they are compiled.
 """
 
 from collections.abc import Callable, Mapping
@@ -62,7 +62,9 @@ def set_state(owner: str, number: int) -> Callable:
     def choose(fields: Mapping[str, Any]) -> Callable:
         if owner not in fields:
             return _plain("y, value, p", "y")
-        return _plain("y, value, p", f"replaced(y, {_place(owner, number, fields)}, value)", replaced=replaced)
+        return _plain(
+            "y, value, p", f"replaced(y, {_place(owner, number, fields)}, value)", replaced=replaced
+        )
 
     return by_record(put, choose)
 

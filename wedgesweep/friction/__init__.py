@@ -1,9 +1,10 @@
 """Friction laws: the signed coefficient of a face as a function of its slip velocity.
 
-A law is a file of its own with two smooth functions, ``static`` (the coefficient at the end of the sticking branch,
-or at which set-valued friction lets go) and ``sliding`` (beyond it), and the ``bound`` of both. It has three
-branches, -1, 0 and 1: sliding backward, the branch around v = 0, and sliding forward. Which branch holds is decided
-outside, so that no integrator ever steps across a corner. Under a set-valued law branch 0 means stuck.
+A law is a file of its own with two smooth functions, ``static`` (the coefficient at the end of the
+sticking branch, or at which set-valued friction lets go) and ``sliding`` (beyond it), and the ``bound`` of
+both. It has three branches, -1, 0 and 1: sliding backward, the branch around v = 0, and sliding forward.
+Which branch holds is decided outside, so that no integrator ever steps across a corner. Under a set-valued
+law branch 0 means stuck.
 """
 
 from collections.abc import Callable, Mapping

@@ -1,11 +1,13 @@
 """What a solver knows of a mechanical system: a hybrid system of smooth modes and events between them.
 
-State y: a vector (hybrid.vectors) of as many numbers as the system's record ``p`` has room for. Mode: which smooth
-piece of the equations holds, a tuple of integers whose meaning is the system's own. While a mode holds, all its
-event functions are positive; where one reaches zero the system names the mode that follows (``transition``).
+State y: a vector (hybrid.vectors) of as many numbers as the system's record ``p`` has room for. Mode:
+which smooth piece of the equations holds, a tuple of integers whose meaning is the system's own. While a
+mode holds, all its event functions are positive; where one reaches zero the system names the mode that
+follows (``transition``).
 
-Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a system,
-which are known by the name of one of their fields. Times in s, all else in the units of ``scales``.
+Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a
+system, which are known by the name of one of their fields. Times in s, all else in the units of
+``scales``.
 """
 
 import inspect
@@ -47,10 +49,13 @@ def implement(what: Callable, owner: str) -> Callable[[Function], Function]:
 
 def provided(what: Callable, fields: Mapping[str, Any]) -> bool:
     """Whether the system with these records writes one of the functions that it may leave out."""
-    return next((written for owner, written in _IMPLEMENTED[what].items() if owner in fields), None) is not None
+    return (
+        next((written for owner, written in _IMPLEMENTED[what].items() if owner in fields), None) is not None
+    )
 
 
-# What every system writes ---------------------------------------------------------------------------------------
+# What every system writes
+# ---------------------------------------------------------------------------------------
 
 
 @declared
@@ -153,7 +158,8 @@ def powers(t, y, mode, p):
     """Power that friction and damping take, power of the input (W), and the normal forces (N; NaN as above)."""
 
 
-# What a system may leave out ------------------------------------------------------------------------------------
+# What a system may leave out
+# ------------------------------------------------------------------------------------
 
 
 @declared

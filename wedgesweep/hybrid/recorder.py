@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid import accumulators
 from wedgesweep.hybrid.interface import contact_forces, observed, sticks
 
@@ -16,9 +16,10 @@ WEIGHTS = tuple(float(0.5 * weight) for weight in np.polynomial.legendre.leggaus
 class Recorder(NamedTuple):
     """Where a run is kept: sums of shape (1,) and samples at ``start + i step`` (s); nothing before ``start``.
 
-    ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks. ``normal`` (2, n)
-    holds the normal forces (N; NaN while they are not determined), or has shape (2, 0): then none are kept.
-    Without ``energies`` the sums do not tell of forces and energies either, which saves half of the time.
+    ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks.
+    ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), or has shape (2, 0):
+    then none are kept. Without ``energies`` the sums do not tell of forces and energies either, which
+    saves half of the time.
     """
 
     start: float

@@ -1,8 +1,8 @@
 """Where a function of one variable is zero, or smallest: the one way to locate an event.
 
-A function is a compiled one of the arguments (place, context), known by the type of its context (a NamedTuple):
-numba could not cache code that passes functions along. So one search serves event functions on the dense output of
-a step, of a closed form, and of a system at rest.
+A function is a compiled one of the arguments (place, context), known by the type of its context (a
+NamedTuple): numba could not cache code that passes functions along. So one search serves event functions
+on the dense output of a step, of a closed form, and of a system at rest.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 from numba.core import types
 from numba.extending import overload
 
-from wedgesweep.compiled import INNER, inner, forward
+from wedgesweep.compiled import INNER, forward, inner
 
 GOLDEN = 0.6180339887498949
 MOST_ITERATIONS = 100

@@ -2,7 +2,8 @@
 
 from typing import Any, NamedTuple
 
-# How a run may end; an event has a number from 0 up, and in its place a mode may end in one of the last three.
+# How a run may end; an event has a number from 0 up, and in its place a mode may end in one of the last
+# three.
 OK, NO_EVENT, LOCKED, FAILED, CHATTERING = 0, -1, -2, -3, -4
 
 

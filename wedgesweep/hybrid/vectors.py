@@ -9,7 +9,7 @@ from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import overload
 
-from wedgesweep.compiled import INNER, inner, inlined
+from wedgesweep.compiled import INNER, inlined, inner
 
 INLINE: dict[str, Any] = INNER | {"forceinline": True}
 

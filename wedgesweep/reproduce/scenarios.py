@@ -90,7 +90,7 @@ class EvaluatedPoint:
 def excited(records: np.ndarray, hertz: float, amplitude: np.ndarray) -> np.ndarray:
     """The records at a frequency and with amplitudes (m), shape (n,)."""
     rows = records.copy()
-    rows["omega"], rows["amplitude"] = 2.0 * np.pi * hertz, amplitude
+    rows["input"]["omega"], rows["input"]["amplitude"] = 2.0 * np.pi * hertz, amplitude
     return rows
 
 

@@ -1,7 +1,7 @@
 """Compiled solver that goes from event to event, for one case or for many.
 
-The same modes, rates and event functions as the Radau solver; only the way from one event to the next is another.
-Many cases run in one compiled loop.
+The same modes, rates and event functions as the Radau solver; only the way from one event to the next is
+another. Many cases run in one compiled loop.
 """
 
 from typing import Any, NamedTuple
@@ -87,9 +87,10 @@ class BatchSettings(NamedTuple):
 class Batch(NamedTuple):
     """What a batch comes to, a row a case; ``waveforms`` may have no rows, and then none are kept.
 
-    ``numbers`` (n,) is of ``response.NUMBERS``; ``spectra`` (n, 2, harmonics, 2), ``waveforms`` (n, 5, samples):
-    displacement from rest, velocity, both normal forces, sticks; ``outcome``, ``time`` (s) reached, ``period``,
-    ``settled`` (periods) (n,); ``statistics`` (n, 3); ``state`` (n, states) at the end.
+    ``numbers`` (n,) is of ``response.NUMBERS``; ``spectra`` (n, 2, harmonics, 2), ``waveforms`` (n, 5,
+    samples): displacement from rest, velocity, both normal forces, sticks; ``outcome``, ``time`` (s)
+    reached, ``period``, ``settled`` (periods) (n,); ``statistics`` (n, 3); ``state`` (n, states) at the
+    end.
     """
 
     numbers: Any

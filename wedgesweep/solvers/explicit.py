@@ -1,13 +1,13 @@
 """Explicit Runge-Kutta steps with dense output: Dormand and Prince's 5(4) pair (1980).
 
-The continuous extension of order 4 is Hairer's (Hairer, Norsett and Wanner, Solving ODEs I, 1993). Zeros of the
-tableau are left out: each weight belongs to the stage that stands in its place below.
+The continuous extension of order 4 is Hairer's (Hairer, Norsett and Wanner, Solving ODEs I, 1993). Zeros
+of the tableau are left out: each weight belongs to the stage that stands in its place below.
 """
 
 from wedgesweep.compiled import inner
 from wedgesweep.hybrid.interface import rate
 from wedgesweep.hybrid.vectors import combination, weighted
-from wedgesweep.solvers.step import Step, connected, over_tolerance
+from wedgesweep.solvers.step import connected, over_tolerance
 
 STAGES = 7
 ORDER = 5

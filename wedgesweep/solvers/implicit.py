@@ -42,8 +42,8 @@ COUPLING = np.array(
 )
 # Share of the radian by which time is moved for a derivative.
 MOVED = 1e-7
-# Share of the tolerance that a steady response wants of these long steps, and the error of a stiff slip velocity
-# that it allows, over the width in which it is stiff.
+# Share of the tolerance that a steady response wants of these long steps, and the error of a stiff slip
+# velocity that it allows, over the width in which it is stiff.
 TIGHTER, ON_RAMP = 0.1, 3000.0
 # Growth over a step that is still followed.
 LARGEST_GROWTH = 0.5
@@ -145,6 +145,9 @@ def step(t, h, y, k1, mode, p, rtol):
     last = combination(1.0, (1.0, 1.0), (vector(end, y), error))
     k_end, forces = rate(t + h, last, mode, p)
     tolerance = TIGHTER * rtol
-    over = max(over_tolerance(error, y, last, tolerance, p), stiff_error(error, mode, p) / (ON_RAMP * tolerance))
-    # RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9: a cubic serves.
+    over = max(
+        over_tolerance(error, y, last, tolerance, p), stiff_error(error, mode, p) / (ON_RAMP * tolerance)
+    )
+    # RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9: a cubic
+    # serves.
     return connected(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,))), forces, over

@@ -1,7 +1,7 @@
 """A run from one event to the next: closed form where the system has one, Runge-Kutta steps elsewhere.
 
-After each step the event functions are known at its start, middle and end; one that may have dipped below zero
-between them is looked for. Each event is located on the step's dense output.
+After each step the event functions are known at its start, middle and end; one that may have dipped below
+zero between them is looked for. Each event is located on the step's dense output.
 """
 
 from collections.abc import Callable, Mapping
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import by_record, inner, inlined
+from wedgesweep.compiled import by_record, inlined, inner
 from wedgesweep.hybrid.interface import (
     closed_form,
     event,
@@ -37,8 +37,8 @@ from wedgesweep.solvers.step import inside, slope
 EVENTS_PER_PERIOD = 1000
 # The first step of a run is cautious: this share of a period.
 FIRST_STEP = 1e-3
-# Steps per period of the fastest input at the least; a longer one could step over a whole motion. While contacts
-# hold the mass nothing else limits them.
+# Steps per period of the fastest input at the least; a longer one could step over a whole motion. While
+# contacts hold the mass nothing else limits them.
 LEAST, LEAST_HELD = 12, 64
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 SHORTEST = 1e-13
@@ -46,7 +46,8 @@ SHORTEST = 1e-13
 MOST_STEPS = 100_000
 # A minimum is looked for where the parabola through three values falls below this share of the least.
 SUSPECT = 0.3
-# Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; phase (rad) in which nothing is seen.
+# Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; phase (rad) in which
+# nothing is seen.
 CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
 
 
@@ -119,7 +120,14 @@ def first_event(step, mode, last_event, forces, p, work):
     """Share and place of the first event of a step, ``forces`` at its end; (1, NO_EVENT) if there is none."""
     events(forces, step.t + step.h, step.end, mode, p, work.at_end)
     middle = inside(0.5, step)
-    events(rate(step.t + 0.5 * step.h, middle, mode, p)[1], step.t + 0.5 * step.h, middle, mode, p, work.at_middle)
+    events(
+        rate(step.t + 0.5 * step.h, middle, mode, p)[1],
+        step.t + 0.5 * step.h,
+        middle,
+        mode,
+        p,
+        work.at_middle,
+    )
     earliest, first = 1.0, NO_EVENT
     for number in range(event_count(p)):
         start, middle_value, end = work.at_start[number], work.at_middle[number], work.at_end[number]
@@ -169,7 +177,10 @@ def _keep_extremes(share, step, mode, recorder, p):
         turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
         there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
         put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
-    first, last = _acceleration(0.0, _Acceleration(1.0, step, p)), _acceleration(share, _Acceleration(1.0, step, p))
+    first, last = (
+        _acceleration(0.0, _Acceleration(1.0, step, p)),
+        _acceleration(share, _Acceleration(1.0, step, p)),
+    )
     if first * last < 0.0:
         fastest = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
         there = zero(fastest, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)

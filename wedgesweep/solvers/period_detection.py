@@ -15,9 +15,9 @@ SEEMS = 10.0
 def detected_period(distances, tolerance):
     """Number of periods after which a state came back within the tolerance, 0 if it did not.
 
-    ``distances`` (LONGEST_PERIOD,): from where it was one period before, two, and so on. A spiral into a fixed point
-    comes close to itself every few turns, but ever closer to its last state, too: a longer period counts only
-    where the state goes far away in between.
+    ``distances`` (LONGEST_PERIOD,): from where it was one period before, two, and so on. A spiral into a
+    fixed point comes close to itself every few turns, but ever closer to its last state, too: a longer
+    period counts only where the state goes far away in between.
     """
     if distances[0] <= tolerance:
         return 1

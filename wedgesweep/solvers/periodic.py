@@ -124,7 +124,9 @@ def respond(
     room = memory(rtol, samples_per_period, energies=forces, forces=False)
     motion = np.full((n, 2, samples_per_period), np.nan)
     for rows, cases in grouped(parameters):
-        _respond_all(cases, rows, Search(tolerance, most_periods), room, found, motion, period_map(cases.dtype))
+        _respond_all(
+            cases, rows, Search(tolerance, most_periods), room, found, motion, period_map(cases.dtype)
+        )
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
     _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found

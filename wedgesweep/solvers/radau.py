@@ -1,7 +1,7 @@
 """scipy's Radau, mode by mode: it never steps across a corner of the friction law.
 
-Each piece runs on one mode until one of its event functions reaches zero. What modes there are is the business of
-the system; right-hand side and event functions are compiled, what remains is scipy's.
+Each piece runs on one mode until one of its event functions reaches zero. What modes there are is the
+business of the system; right-hand side and event functions are compiled, what remains is scipy's.
 """
 
 from collections import Counter
@@ -151,9 +151,7 @@ class _Run:
                 y, mode = self._after(t, y, mode, event)
         return y, mode
 
-    def _follow_mode(
-        self, t: float, stop: float, y: np.ndarray, mode: Mode
-    ) -> tuple[float, np.ndarray, int]:
+    def _follow_mode(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, np.ndarray, int]:
         """Follow one mode; the time and state where it ends, and the event (-1 at ``stop``)."""
         moment = LOOK_AHEAD / self.window.omega
         ahead = system.moment_later(t, y, moment, mode, self.case)

@@ -1,11 +1,11 @@
 """The way to a steady state: march, and Newton's method on the map from one phase 0 to another (shooting).
 
-The map goes over as many forcing periods as the response seems to take, or a neighbour's does: one case may
-have several responses that all are stable, and a state belongs to the one to which it goes by itself. The
-map's derivative J (monodromy matrix) comes from differences, or from a neighbour; Broyden's update (1965) keeps it
-right from one step to the next. Steps of Newton's method must bring the state ever closer to its own
-image, or the run goes back to where marching had come. A response that J calls unstable, or whose mean
-position is free, is left to marching.
+The map goes over as many forcing periods as the response seems to take, or a neighbour's does: one case
+may have several responses that all are stable, and a state belongs to the one to which it goes by itself.
+The map's derivative J (monodromy matrix) comes from differences, or from a neighbour; Broyden's update
+(1965) keeps it right from one step to the next. Steps of Newton's method must bring the state ever closer
+to its own image, or the run goes back to where marching had come. A response that J calls unstable, or
+whose mean position is free, is left to marching.
 """
 
 from typing import Any, NamedTuple
@@ -28,8 +28,8 @@ SINGULAR, UNSTABLE = 1e-3, 0.9999
 NEWTON_INTERVAL = 8
 # Above STALE times the last distance J is made anew; with a fresh one more than GAIN is a failure.
 STALE, GAIN = 0.2, 0.5
-# Share of a period by which a clock grows if nothing resets it, less rounding; and what it reads, in periods, in a
-# response in which nothing does. It would grow for ever.
+# Share of a period by which a clock grows if nothing resets it, less rounding; and what it reads, in
+# periods, in a response in which nothing does. It would grow for ever.
 GROWN, CONTACT_TIME_LIMIT = 1.0 - 1e-9, 100.0
 # Below this distance the next period may be the last one, and is kept.
 KEPT_BELOW = 1e-3

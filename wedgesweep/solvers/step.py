@@ -3,7 +3,7 @@
 from math import sqrt
 from typing import Any, NamedTuple
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.interface import error_scales
 from wedgesweep.hybrid.vectors import combination, weighted
 

@@ -7,11 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep import effects, parameters
+from wedgesweep import effects
 from wedgesweep.config import Config
 from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
+from wedgesweep.systems.suspension import parameters
 
 # Errors (shares of the input amplitude, and of a step) that add nothing to the noise of 4 % data, those that
 # add nothing to derivatives either; rough ones do where it is only asked from where a fit should begin.
@@ -36,10 +37,10 @@ class Responses(NamedTuple):
 
 def records(model: Config, law: str, values: dict, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Parameter records of some tests, shape (n,): ``omega`` (rad/s) and ``amplitude`` (m) of shape (n,)."""
-    numbers = effects.combined(model.effects, values)
+    numbers = effects.merge(model.effects, values)
     one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, numbers)
     rows = np.repeat(one, omega.size)
-    rows["omega"], rows["amplitude"] = omega, amplitude
+    rows["input"]["omega"], rows["input"]["amplitude"] = omega, amplitude
     return rows
 
 
@@ -77,7 +78,7 @@ def respond_with_tone(
     with that at which both met; if no tone shows either, a span of ``LONG`` periods stands for all ways.
     """
     rows = rows.copy()
-    rows["stray_vibration_phase"] += np.nan_to_num(tone_phase)
+    rows["stray_vibration"]["phase"] += np.nan_to_num(tone_phase)
     shown = np.array([timing.tone for timing in timings])
     anyhow = np.isnan(tone_phase) & np.isnan(shown)
     timings = tuple(
@@ -90,7 +91,7 @@ def respond_with_tone(
     late = np.where(np.isnan(tone_phase), shown, np.nan) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(late))
     if again.size:
-        rows["stray_vibration_phase"][again] += late[again]
+        rows["stray_vibration"]["phase"][again] += late[again]
         chosen = tuple(timings[i] for i in again)
         spectra[again], state[again] = _recorded(
             rows[again], state[again], harmonics, tone, chosen, tolerance
@@ -119,7 +120,7 @@ def _recorded(
         start = timing.start % (2.0 * pi)
         first = round(start / turn)
         count = round(timing.periods * SAMPLES_PER_PERIOD)
-        ratio = 2.0 * pi * tone / float(rows["omega"][i])
+        ratio = 2.0 * pi * tone / float(rows["input"]["omega"][i])
         signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
         found = signals @ _projection(ratio, harmonics, count).T
         found[:, :-1] *= np.exp(-1j * np.arange(1, harmonics + 1) * first * turn)

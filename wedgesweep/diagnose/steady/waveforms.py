@@ -10,6 +10,7 @@ from wedgesweep.diagnose.steady.fit_data import FitData
 from wedgesweep.diagnose.steady.model import Fit
 from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
+from wedgesweep.systems.suspension.parameters import compact, driven_mass, has_own_mechanics, moving_mass
 
 PHASES = 256
 # A harmonic counts as far as its square is above this many times its noise.
@@ -64,10 +65,10 @@ def input_energy(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     pi m a omega^2 Re D_1. NaN where the base is not what the data are relative to.
     """
     one = _rows(fit)
-    fundamental = fundamental / one["displacement_gain_scale"]
-    fundamental = np.where(one["fixture_resonance_frequency"] > 0.0, np.nan, fundamental)
-    moved = one["bolster_mass"] + 2.0 * one["wedge_mass"] * one["column_ratio"] * one["cos_column"]
-    return pi * moved * one["amplitude"] * one["omega"] ** 2 * fundamental.real
+    fundamental = fundamental / one["displacement_gain"]["scale"]
+    fundamental = np.where(one["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
+    given = one["input"]
+    return pi * driven_mass(one) * given["amplitude"] * given["omega"] ** 2 * fundamental.real
 
 
 def residual_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
@@ -80,7 +81,7 @@ def residual_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     motion, or the channels are not the motion.
     """
     data, rows = fit.model.data, _rows(fit)
-    if rows["extended"].any() or set(acting(data.model.effects)) & set(SENSOR):
+    if has_own_mechanics(rows).any() or set(acting(data.model.effects)) & set(SENSOR):
         return np.full((data.tests, PHASES), np.nan)
     heard = _wiener_weight(data)
     rate = velocity(data, harmonics)
@@ -88,18 +89,17 @@ def residual_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     model = np.array([_in_place(rows[t : t + 1], x[t], v[t]) for t in range(data.tests)])
     simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : data.shape[1] + 1]
     measured = -1j * data.omega[:, None] * data.orders * rate
-    moved = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] ** 2
-    return moved[:, None] * waveform(heard * (measured - simulated))
+    return moving_mass(rows)[:, None] * waveform(heard * (measured - simulated))
 
 
 def _in_place(one: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """The model's acceleration about the mean place at which it averages to zero."""
-    acceleration = np.zeros_like(x)
+    acceleration, small = np.zeros_like(x), compact(one)
     if not x.any():  # nothing was heard of the motion: no force is left either
         return acceleration
 
     def mean(place: float) -> float:
-        accelerations(one, x + place, v, acceleration)
+        accelerations(small, x + place, v, acceleration)
         return float(acceleration.mean())
 
     place = root_scalar(mean, x0=0.0, x1=FIRST_PLACE * np.ptp(x), method="secant", maxiter=20).root

@@ -5,8 +5,8 @@ With constant coefficients of friction the suspension is a linear oscillator:
     x'' = c0 + cx x + cu u''      N = n0 + nx x + nu u''  on either face
     x(t) = centre + forced sin(omega t) + A cos(Omega s) + B sin(Omega s),   s = t - start
 
-A scan with rotation matrices (no trigonometry) finds the interval of the first event, a safeguarded Newton iteration
-the event itself, to rounding error. The release from rest is in ``release.py``.
+A scan with rotation matrices (no trigonometry) finds the interval of the first event, a safeguarded Newton
+iteration the event itself, to rounding error. The release from rest is in ``release.py``.
 """
 
 from math import cos, inf, pi, sin, sqrt

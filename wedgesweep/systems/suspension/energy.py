@@ -1,6 +1,6 @@
 """Power in the frame of the table: what friction and damping take, what the base supplies."""
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import (
     column_compliance,
     fixture_resonance,

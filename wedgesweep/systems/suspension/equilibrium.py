@@ -23,8 +23,8 @@ def determinant(column_mu, bolster_mu, p):
 def _response(wedge, vertical, lateral, mu, p):
     """Accelerations z'' and Q'' under forces on wedge (up), bolster and column (outward).
 
-    At rest the side frame does not accelerate, whatever carries it: with a fixture its acceleration is part of
-    what must vanish, and both statements have the same root.
+    At rest the side frame does not accelerate, whatever carries it: with a fixture its acceleration is
+    part of what must vanish, and both statements have the same root.
     """
     g = p.geometry
     load = Loads(wedge * g.cos_column, wedge * g.sin_column, vertical, lateral, 0.0, 0.0)
@@ -72,7 +72,7 @@ def resonance(p: np.void) -> float:
 
 @compiled
 def _weight_and_inertia(direction, mu_d, p):
-    """z'' at rest as friction lets go in a direction, and what each m/s^2 of the base adds to it."""
+    """Z'' at rest as friction lets go in a direction, and what each m/s^2 of the base adds to it."""
     s, g = p.suspension, p.geometry
     bolster = direction if g.bolster_ratio > 0.0 else -direction if g.bolster_ratio < 0.0 else 0.0
     mu = Coefficients(direction * mu_d, bolster * mu_d, 0.0, 0.0)

@@ -4,7 +4,7 @@ from math import inf
 
 import numpy as np
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import ageing, end_stop, guide_friction, presliding
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
 from wedgesweep.systems.suspension.filippov import WIDTH, both_sides
@@ -103,8 +103,8 @@ def _kinematic_events(t, y, mode, p, out):
 def events(now, t, y, mode, p, out):
     """Write the event functions, shape (EVENTS,), under the forces ``now`` (unused if held or stuck).
 
-    Units are m/s for slip velocities, m for the end stops, N for normal forces, m/s^2 for what is held or stuck; an
-    event that the mode does not have is inf.
+    Units are m/s for slip velocities, m for the end stops, N for normal forces, m/s^2 for what is held or
+    stuck; an event that the mode does not have is inf.
     """
     out[:] = inf
     if stuck(mode, p):

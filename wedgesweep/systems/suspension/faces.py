@@ -1,11 +1,11 @@
 """Slip and friction coefficients of both wedge faces, with every effect on them.
 
-A face's own measure of slip is its velocity v in the plane, or with ``cross_slip`` the magnitude of the whole: that
-measure decides on its branch.
+A face's own measure of slip is its velocity v in the plane, or with ``cross_slip`` the magnitude of the
+whole: that measure decides on its branch.
 """
 
 from wedgesweep import friction
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import column_compliance, cross_slip, directional_friction, presliding
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE, VELOCITY
 

@@ -1,13 +1,13 @@
 """Jumps of friction that hold a velocity: Filippov's (1988) convex combination of both sides.
 
-A jump holds the slip of a face at its threshold, or the bolster at rest where friction depends on the sign of z'.
-Several may hold at once: then each vertex of the combination is a mode of its own, and the jumps are resolved one
-after the other, so that all their velocities stay.
+A jump holds the slip of a face at its threshold, or the bolster at rest where friction depends on the sign
+of z'. Several may hold at once: then each vertex of the combination is a mode of its own, and the jumps
+are resolved one after the other, so that all their velocities stay.
 """
 
 import numpy as np
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.systems.suspension.energy import friction_power
 from wedgesweep.systems.suspension.faces import slip_rate
 from wedgesweep.systems.suspension.modes import AXES, HELD, branch, held, side, with_branch

@@ -2,13 +2,13 @@
 
 from typing import NamedTuple
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import directional_friction, presliding
 
 # Displacement x from the frictionless equilibrium (m) and its rate: the first two states.
 X, VELOCITY = 0, 1
-# Friction axes: what a jump of friction can hold. Two event functions each: leave the branch toward lower, toward
-# higher slip velocity.
+# Friction axes: what a jump of friction can hold. Two event functions each: leave the branch toward lower,
+# toward higher slip velocity.
 COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 3
 AXES = 4
 # Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
@@ -18,10 +18,11 @@ HELD = 2
 class ContactMode(NamedTuple):
     """Which smooth piece of the equations holds.
 
-    ``column``, ``bolster``, ``guide``: slip branch (-1, 0, 1, or +-HELD) of each face; 0 is stuck under a set-valued
-    law. ``column_sign``, ``bolster_sign``: signs of the normal forces; the joints are bilateral and friction
-    acts with |N|. ``direction``: sign of z' where friction depends on it, HELD where its jump holds the bolster,
-    else 0. ``stop``: -1, 0, 1, the end stop in contact. ``clock``: 1 while the time at rest runs.
+    ``column``, ``bolster``, ``guide``: slip branch (-1, 0, 1, or +-HELD) of each face; 0 is stuck under a
+    set-valued law. ``column_sign``, ``bolster_sign``: signs of the normal forces; the joints are bilateral
+    and friction acts with |N|. ``direction``: sign of z' where friction depends on it, HELD where its jump
+    holds the bolster, else 0. ``stop``: -1, 0, 1, the end stop in contact. ``clock``: 1 while the time at
+    rest runs.
     """
 
     column: int

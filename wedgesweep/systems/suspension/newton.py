@@ -1,16 +1,16 @@
 """Newton's equations of the wedge suspension: accelerations and normal forces on a smooth piece.
 
-Half model of one bolster, two mirror-image wedges and a driven side frame, derived in docs/physics.md. State:
-displacement x = z - z_rest of the bolster against the side frame (z = y - u, up positive, z_rest its frictionless
-equilibrium) and its rate. With w the wedge's displacement against the side frame, w = A_t t_c + Q cos g n_c, and both
-contacts closed (Q: displacement of a column that yields, else 0):
+Half model of one bolster, two mirror-image wedges and a driven side frame, derived in docs/physics.md.
+State: displacement x = z - z_rest of the bolster against the side frame (z = y - u, up positive, z_rest
+its frictionless equilibrium) and its rate. With w the wedge's displacement against the side frame, w = A_t
+t_c + Q cos g n_c, and both contacts closed (Q: displacement of a column that yields, else 0):
 
     A_t = r z + Q cos g cot(a+g)         w_z = r cos g z + Q cos g cos a/sin(a+g)
     v_c = r z' + Q' cos a/sin(a+g)       v_b = q z' + Q' cos g/sin(a+g)
 
-Unknown are z'', Q'', the side frame's own acceleration A and both normal forces; the accelerations are linear in the
-forces, which leaves two equations. Friction T = mu |N| is written as T = tau + m N: m alone where the coefficient
-does not depend on the load, a tangent where it does.
+Unknown are z'', Q'', the side frame's own acceleration A and both normal forces; the accelerations are
+linear in the forces, which leaves two equations. Friction T = mu |N| is written as T = tau + m N: m alone
+where the coefficient does not depend on the load, a tangent where it does.
 """
 
 from math import nan
@@ -61,8 +61,8 @@ class Accelerations(NamedTuple):
 class Loads(NamedTuple):
     """Loads (N) without contact forces, and without the inertia of the side frame's acceleration.
 
-    On a wedge tangential and normal to the column, on the bolster, on a column (lateral, outward), on the side
-    frame from its table; ``base`` is the table's acceleration (m/s^2).
+    On a wedge tangential and normal to the column, on the bolster, on a column (lateral, outward), on the
+    side frame from its table; ``base`` is the table's acceleration (m/s^2).
     """
 
     tangential: float
@@ -101,7 +101,9 @@ def loads(t, y, mode, p):
     s, g = p.suspension, p.geometry
     z, velocity = g.rest + y[X], y[VELOCITY]
     wedge = s.wedge_preload - s.wedge_spring * _rise(z, y, p) - s.wedge_mass * s.gravity
-    bolster = guide_friction.force(velocity, mode.guide, p) - s.bolster_spring * z - s.bolster_mass * s.gravity
+    bolster = (
+        guide_friction.force(velocity, mode.guide, p) - s.bolster_spring * z - s.bolster_mass * s.gravity
+    )
     bolster += hooks.force_on_mass(z, velocity, y, p) + end_stop.force(y[X], mode.stop, p)
     return Loads(
         wedge * g.cos_column,
@@ -161,7 +163,9 @@ def reactions(load, mu, p):
     if fixture_resonance.acts(p):
         frame += base_per_column * column + base_per_bolster * bolster
     rising = (vertical + 2.0 * bolster * lift) / s.bolster_mass - frame
-    return Forces(rising, outward + outward_per_force * column, frame - load.base, column, bolster), determinant
+    return Forces(
+        rising, outward + outward_per_force * column, frame - load.base, column, bolster
+    ), determinant
 
 
 @inner
@@ -212,9 +216,9 @@ def forces(t, y, mode, p):
 def solve_for_signs(t, y, mode, p):
     """The mode with the signs of its normal forces, these forces, and whether they are unique.
 
-    Friction acts with |N|, so each combination of signs is its own linear problem; one that returns the signs it
-    assumed is a solution. None, or more than one, means that the wedge locks; and a solution whose determinant has
-    another sign than without friction is never the only one.
+    Friction acts with |N|, so each combination of signs is its own linear problem; one that returns the
+    signs it assumed is a solution. None, or more than one, means that the wedge locks; and a solution
+    whose determinant has another sign than without friction is never the only one.
     """
     column_mu, bolster_mu = coefficients(t, y, mode, p)
     load = loads(t, y, mode, p)

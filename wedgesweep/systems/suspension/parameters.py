@@ -1,8 +1,9 @@
 """Everything that one case of the suspension depends on, as one value: a record in SI units.
 
-The record is a one-element structured array with a part for each subject (``suspension``, ``friction``, ``input``, one
-for each effect, and ``geometry`` for what follows from them). Python always holds the full record; compiled code
-gets the smallest kit of parts that serves (``compact``), so that effects which are off cost nothing.
+The record is a one-element structured array with a part for each subject (``suspension``, ``friction``,
+``input``, one for each effect, and ``geometry`` for what follows from them). Python always holds the full
+record; compiled code gets the smallest kit of parts that serves (``compact``), so that effects which are
+off cost nothing.
 """
 
 from collections.abc import Iterable, Mapping
@@ -84,7 +85,11 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
             ("suspension", [(quantity.name, np.float64) for quantity in SUSPENSION]),
             (
                 "geometry",
-                [("kit", np.int64), ("always_well_posed", np.int64), *((name, np.float64) for name in GEOMETRY)],
+                [
+                    ("kit", np.int64),
+                    ("always_well_posed", np.int64),
+                    *((name, np.float64) for name in GEOMETRY),
+                ],
             ),
         ]
     )
@@ -129,7 +134,9 @@ def record(
     p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
     p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
     for name, effect in known.EFFECTS.items():
-        numbers = {each.name: each.neutral * each.factor for each in effect.quantities} | effects.get(name, {})
+        numbers = {each.name: each.neutral * each.factor for each in effect.quantities} | effects.get(
+            name, {}
+        )
         _set(p, name, numbers)
     p["geometry"]["kit"] = _kit_of(p)
     if is_regularised(p):
@@ -204,9 +211,10 @@ def prepare(case: np.ndarray) -> None:
 def _always_well_posed(p: np.void, small: np.void) -> bool:
     """Whether every load has exactly one pair of normal forces, at any slip velocity.
 
-    Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one if and only
-    if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They are linear in each
-    coefficient of friction, so that the extreme coefficients decide. Without a bound of these it is not proved.
+    Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one if
+    and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They are
+    linear in each coefficient of friction, so that the extreme coefficients decide. Without a bound of
+    these it is not proved.
     """
     most = list(laws.LAWS.values())[p["friction"]["law"]].bound(p)
     for name in _acting(p):
@@ -228,3 +236,20 @@ def compact(rows: np.ndarray) -> np.ndarray:
     for name in set(kind.names or ()) & set(rows.dtype.names or ()):
         small[name] = rows[name]
     return small
+
+
+def has_own_mechanics(rows: np.ndarray) -> np.ndarray:
+    """Whether effects of records, shape (n,), need more than the base model's mechanics."""
+    return rows["geometry"]["kit"] != BASE
+
+
+def driven_mass(rows: np.ndarray) -> np.ndarray:
+    """Mass (kg) that the base acceleration drives, M_b + 2 M_w r cos(gamma), of records of any shape."""
+    s, g = rows["suspension"], rows["geometry"]
+    return s["bolster_mass"] + 2.0 * s["wedge_mass"] * g["column_ratio"] * g["cos_column"]
+
+
+def moving_mass(rows: np.ndarray) -> np.ndarray:
+    """Mass (kg) that moves with z', M_b + 2 M_w r^2, of records of any shape."""
+    s, g = rows["suspension"], rows["geometry"]
+    return s["bolster_mass"] + 2.0 * s["wedge_mass"] * g["column_ratio"] ** 2

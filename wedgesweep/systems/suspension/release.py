@@ -1,8 +1,8 @@
 """How long set-valued friction holds the bolster of the base model: the release needs no integration.
 
-While it sticks only the base moves, so that the event functions are known functions of time: in closed form while
-both faces stay closed, else sampled over short intervals, with a look for a minimum between samples where the
-samples turn.
+While it sticks only the base moves, so that the event functions are known functions of time: in closed
+form while both faces stay closed, else sampled over short intervals, with a look for a minimum between
+samples where the samples turn.
 """
 
 from math import asin, ceil, inf, nan, pi, sin

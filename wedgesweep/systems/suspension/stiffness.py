@@ -1,11 +1,12 @@
 """Where the suspension with effects is stiff: on a steep ramp of friction, and under short bristles.
 
-A face that a steep ramp all but holds answers within nanoseconds; an explicit step could not be longer than that.
+A face that a steep ramp all but holds answers within nanoseconds; an explicit step could not be longer
+than that.
 """
 
 from math import sqrt
 
-from wedgesweep.compiled import inner, inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import column_compliance, guide_friction, presliding, states
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
@@ -53,8 +54,8 @@ def settling_step(p):
 def perturbation(place, y, p):
     """Step of a state for a derivative of the rate, and whether it goes to both sides.
 
-    A ramp bends within its own width, as normal forces depend on friction and friction on them. A smaller step
-    there is lost in velocities that are large: then the order of the method is, too.
+    A ramp bends within its own width, as normal forces depend on friction and friction on them. A smaller
+    step there is lost in velocities that are large: then the order of the method is, too.
     """
     if states.velocities(p)[place]:
         return ON_BOTH_SIDES * p.friction.v_t, True

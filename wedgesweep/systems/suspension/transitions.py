@@ -86,7 +86,7 @@ def _stop_at(x, p):
     if not end_stop.acts(p):
         return 0
     clearance = end_stop.clearance(p)
-    if x > clearance or clearance == 0.0 and x >= 0.0:
+    if x > clearance or (clearance == 0.0 and x >= 0.0):
         return 1
     return -1 if x < -clearance else 0
 
@@ -124,8 +124,8 @@ def well_posed(t, y, mode, p):
 def _after_zero_force(t, y, mode, p):
     """Mode after a normal force has become zero, and whether it is unique.
 
-    Both forces may vanish at once, a force may only touch zero, and signs at zero are noise: look a moment ahead,
-    and further where the force is still too small to have a sign.
+    Both forces may vanish at once, a force may only touch zero, and signs at zero are noise: look a moment
+    ahead, and further where the force is still too small to have a sign.
     """
     ahead = LOOK_AHEAD / p.input.omega
     slope = rate(t, y, mode, p)[0]
@@ -202,7 +202,8 @@ def _transition(t, y, mode, place, p):
 def transition(t, y, mode, place, p):
     """State and mode after an event, and whether they are unique (if not: locked).
 
-    The state changes where the event changes it: set-valued friction stops the bolster, slip ends the time at rest.
+    The state changes where the event changes it: set-valued friction stops the bolster, slip ends the time
+    at rest.
     """
     y, found, certain = _transition(t, y, mode, place, p)
     return _without_age(y, found, p), found, certain
