@@ -21,7 +21,10 @@ _FUNCTIONS: dict[type, Callable] = {}
 
 
 def searched(context: type) -> Callable[[Function], Function]:
-    """Make a compiled function of (place, context) the one of a type of context."""
+    """Make a compiled function of (place, context) the one of a type of context.
+
+    It returns its value and its slope, NaN where that is not known.
+    """
 
     def decorate(function: Function) -> Function:
         _FUNCTIONS[context] = function
@@ -52,15 +55,24 @@ class Bracket(NamedTuple):
 
 @inner
 def zero(context, bracket, close):
-    """Place in a bracket at which a function is zero, to within ``close`` (Illinois method)."""
+    """Place in a bracket at which a function is zero, to within ``close``.
+
+    Newton's method, or the secant method where a function does not know its slope; where these leave the bracket
+    the Illinois method.
+    """
     low, at_low, high, at_high = bracket
+    place = high - at_high * (high - low) / (at_high - at_low)
+    before, at_before = (low, at_low) if at_low < -at_high else (high, at_high)
     for _ in range(MOST_ITERATIONS):
-        place = high - at_high * (high - low) / (at_high - at_low)
         if not low < place < high:
             place = 0.5 * (low + high)
-        value = _value(place, context)
+        value, slope = _value(place, context)
         if value == 0.0 or high - low < close:
             return place
+        if slope != slope:  # NaN: not known
+            slope = (value - at_before) / (place - before)
+        before, at_before = place, value
+        newton = place - value / slope
         if value > 0.0:
             if place - low < close:
                 return place
@@ -71,19 +83,25 @@ def zero(context, bracket, close):
                 return place
             high, at_high = place, value
             at_low *= 0.5
+        if low <= newton <= high:
+            if abs(newton - place) < close:
+                return newton
+            place = newton
+        else:
+            place = high - at_high * (high - low) / (at_high - at_low)
     return high
 
 
 @inner
 def zero_after_start(context, bracket, nearest, close):
-    """``zero`` of a function that begins at its zero, before a positive part; the low end if that cannot be seen.
+    """``zero`` of a function that begins at its zero, before a positive part; the low end if none is seen.
 
     ``nearest``: distance from the low end below which nothing is looked for.
     """
     start, _, high, at_high = bracket
     place = 0.5 * (start + high)
     while place - start > nearest:
-        value = _value(place, context)
+        value = _value(place, context)[0]
         if value > 0.0:
             return zero(context, Bracket(place, value, high, at_high), close)
         high, at_high = place, value
@@ -95,7 +113,7 @@ def zero_after_start(context, bracket, nearest, close):
 def minimum(context, low, high, close):
     """Place between two others at which a function is smallest, or at least not positive (golden section)."""
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_left, at_right = _value(left, context), _value(right, context)
+    at_left, at_right = _value(left, context)[0], _value(right, context)[0]
     while high - low > close:
         if at_left <= 0.0:
             return left
@@ -104,9 +122,9 @@ def minimum(context, low, high, close):
         if at_left < at_right:
             high, right, at_right = right, left, at_left
             left = high - GOLDEN * (high - low)
-            at_left = _value(left, context)
+            at_left = _value(left, context)[0]
         else:
             low, left, at_left = left, right, at_right
             right = low + GOLDEN * (high - low)
-            at_right = _value(right, context)
+            at_right = _value(right, context)[0]
     return 0.5 * (low + high)

@@ -11,7 +11,7 @@ from wedgesweep.solvers.step import connected, over_tolerance
 
 STAGES = 7
 ORDER = 5
-TIMES = (0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0)
+TIMES = (0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9)
 A2 = (1 / 5,)
 A3 = (3 / 40, 9 / 40)
 A4 = (44 / 45, -56 / 15, 32 / 9)
@@ -31,14 +31,17 @@ DENSE = (
 
 @inner
 def step(t, h, y, k1, mode, p, rtol):
-    """One step from y, whose rate is k1: the step, the forces at its end, and its error over the tolerance."""
+    """One step from y, whose rate is k1.
+
+    The step, forces near its middle (of a stage) and at its end, and its error over the tolerance.
+    """
     k2 = rate(t + TIMES[1] * h, weighted(y, h, A2, (k1,)), mode, p)[0]
-    k3 = rate(t + TIMES[2] * h, weighted(y, h, A3, (k1, k2)), mode, p)[0]
+    k3, within = rate(t + TIMES[2] * h, weighted(y, h, A3, (k1, k2)), mode, p)
     k4 = rate(t + TIMES[3] * h, weighted(y, h, A4, (k1, k2, k3)), mode, p)[0]
     k5 = rate(t + TIMES[4] * h, weighted(y, h, A5, (k1, k2, k3, k4)), mode, p)[0]
-    k6 = rate(t + TIMES[5] * h, weighted(y, h, A6, (k1, k2, k3, k4, k5)), mode, p)[0]
+    k6 = rate(t + h, weighted(y, h, A6, (k1, k2, k3, k4, k5)), mode, p)[0]
     end = weighted(y, h, WEIGHTS, (k1, k3, k4, k5, k6))
     k7, forces = rate(t + h, end, mode, p)
     stages = (k1, k3, k4, k5, k6, k7)
     error = over_tolerance(combination(h, ERROR, stages), y, end, rtol, p)
-    return connected(t, h, y, end, k1, k7, combination(h, DENSE, stages)), forces, error
+    return connected(t, h, y, end, k1, k7, combination(h, DENSE, stages)), within, forces, error

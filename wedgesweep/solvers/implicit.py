@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep.compiled import inner
 from wedgesweep.hybrid.interface import active, cycle, growth, perturbation, rate, stiff_error
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
-from wedgesweep.solvers.step import connected, over_tolerance
+from wedgesweep.solvers.step import connected, inside, over_tolerance
 
 STAGES = 6
 ORDER = 4
@@ -119,7 +119,7 @@ def step(t, h, y, k1, mode, p, rtol):
     now, forces = rate(t, y, mode, p)
     failed = connected(t, h, y, y, k1, k1, combination(0.0, (1.0,), (y,)))
     if h * growth(by_state, p) > LARGEST_GROWTH:
-        return failed, forces, inf
+        return failed, forces, forces, inf
     inverse = _inverse(by_state, places, h)
     increments, slope, end = np.zeros((STAGES, n)), np.empty(n), np.empty(n)
     right = np.empty(places.size)
@@ -140,7 +140,7 @@ def step(t, h, y, k1, mode, p, rtol):
             for j in range(places.size):
                 increments[stage, places[i]] += inverse[i, j] * right[j]
             if not isfinite(increments[stage, places[i]]):
-                return failed, forces, inf
+                return failed, forces, forces, inf
     error = vector(increments[STAGES - 1], y)
     last = combination(1.0, (1.0, 1.0), (vector(end, y), error))
     k_end, forces = rate(t + h, last, mode, p)
@@ -150,4 +150,5 @@ def step(t, h, y, k1, mode, p, rtol):
     )
     # RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9: a cubic
     # serves.
-    return connected(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,))), forces, over
+    made = connected(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,)))
+    return made, rate(t + 0.5 * h, inside(0.5, made), mode, p)[1], forces, over

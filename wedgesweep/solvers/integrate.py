@@ -5,7 +5,7 @@ zero between them is looked for. Each event is located on the step's dense outpu
 """
 
 from collections.abc import Callable, Mapping
-from math import inf, pi
+from math import inf, nan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -85,7 +85,7 @@ class _Place(NamedTuple):
 def _value(share, place):
     step = place.step
     y = inside(share, step)
-    return event(place.number, step.t + share * step.h, y, place.mode, place.p, place.out)
+    return event(place.number, step.t + share * step.h, y, place.mode, place.p, place.out), nan
 
 
 @inlined
@@ -98,44 +98,39 @@ def _may_graze(before, now, following):
 
 
 @inner
-def _first_zero(place, start, middle, end, from_zero):
-    """Share of a step at which an event function is first zero, from three values of it; 2 if nowhere."""
+def _first_zero(place, start, end, from_zero):
+    """Share of a step at which an event function is first zero, from its values at both ends; 2 if nowhere."""
     nearest = UNSEEN / (place.step.h * fastest(place.p))
-    low, high, at_high = 0.0, 0.5, middle
-    if middle > 0.0 and start > 0.0 and _may_graze(start, middle, end):
+    high, at_high = 0.5, _value(0.5, place)[0]
+    if at_high > 0.0 and start > 0.0 and _may_graze(start, at_high, end):
         high = minimum(place, 0.0, 1.0, CLOSE_TO_MINIMUM)
-        at_high = _value(high, place)
+        at_high = _value(high, place)[0]
     if at_high <= 0.0:
-        bracket = Bracket(low, start, high, at_high)
+        bracket = Bracket(0.0, start, high, at_high)
         if start > 0.0 and not from_zero:
             return zero(place, bracket, CLOSE)
         return zero_after_start(place, bracket, nearest, CLOSE)
     if end <= 0.0:
-        return zero(place, Bracket(0.5, middle, 1.0, end), CLOSE)
+        return zero(place, Bracket(high, at_high, 1.0, end), CLOSE)
     return 2.0
 
 
 @inner
 def first_event(step, mode, last_event, forces, p, work):
-    """Share and place of the first event of a step, ``forces`` at its end; (1, NO_EVENT) if there is none."""
-    events(forces, step.t + step.h, step.end, mode, p, work.at_end)
-    middle = inside(0.5, step)
-    events(
-        rate(step.t + 0.5 * step.h, middle, mode, p)[1],
-        step.t + 0.5 * step.h,
-        middle,
-        mode,
-        p,
-        work.at_middle,
-    )
+    """Share and place of the first event of a step; (1, NO_EVENT) if there is none.
+
+    ``forces``: near the middle of the step, where they tell which event functions are worth a closer look, and
+    at its end.
+    """
+    events(forces[0], step.t + 0.5 * step.h, inside(0.5, step), mode, p, work.at_middle)
+    events(forces[1], step.t + step.h, step.end, mode, p, work.at_end)
     earliest, first = 1.0, NO_EVENT
     for number in range(event_count(p)):
-        start, middle_value, end = work.at_start[number], work.at_middle[number], work.at_end[number]
-        if end == inf or (min(middle_value, end) > 0.0 and not _may_graze(start, middle_value, end)):
+        start, middle, end = work.at_start[number], work.at_middle[number], work.at_end[number]
+        if end == inf or (min(middle, end) > 0.0 and not _may_graze(start, middle, end)):
             continue
         from_zero = last_event >= 0 and number // 2 == last_event // 2
-        place = _Place(number, step, mode, p, work.at_point)
-        share = _first_zero(place, start, middle_value, end, from_zero)
+        share = _first_zero(_Place(number, step, mode, p, work.at_point), start, end, from_zero)
         if share <= 1.0 and (first < 0 or share < earliest):
             earliest, first = share, number
     return earliest, first
@@ -160,26 +155,27 @@ class _Acceleration(NamedTuple):
 @searched(_Velocity)
 @inner
 def _velocity(share, context):
-    return context.sign * observed(inside(share, context.step), context.p)[1]
+    step, p = context.step, context.p
+    return context.sign * observed(inside(share, step), p)[1], context.sign * observed(slope(share, step), p)[1]
 
 
 @searched(_Acceleration)
 @inner
 def _acceleration(share, context):
-    return context.sign * observed(slope(share, context.step), context.p)[1]
+    return context.sign * observed(slope(share, context.step), context.p)[1], nan
 
 
 @inner
 def _keep_extremes(share, step, mode, recorder, p):
     """Keep where displacement and velocity are extreme below a share of a step, if they are."""
-    first, last = _velocity(0.0, _Velocity(1.0, step, p)), _velocity(share, _Velocity(1.0, step, p))
+    first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
     if first * last < 0.0:
         turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
         there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
         put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
     first, last = (
-        _acceleration(0.0, _Acceleration(1.0, step, p)),
-        _acceleration(share, _Acceleration(1.0, step, p)),
+        _acceleration(0.0, _Acceleration(1.0, step, p))[0],
+        _acceleration(share, _Acceleration(1.0, step, p))[0],
     )
     if first * last < 0.0:
         fastest = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
@@ -271,7 +267,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     while t < stop:
         h = min(h, period / per_period)
         taken = min(h, stop - t)
-        step, forces, error = _take_step(t, taken, y, k1, mode, implicitly, p, work.rtol)
+        step, within, forces, error = _take_step(t, taken, y, k1, mode, implicitly, p, work.rtol)
         exponent = -1.0 / implicit.ORDER if implicitly else -1.0 / explicit.ORDER
         work.counts[0] += implicit.STAGES if implicitly else explicit.STAGES - 1
         if not error <= 1.0:
@@ -282,7 +278,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         work.counts[1] += 1
         if work.counts[1] > most:
             return State(t, y, mode, last_event, h), FAILED
-        share, number = first_event(step, mode, last_event, forces, p, work)
+        share, number = first_event(step, mode, last_event, (within, forces), p, work)
         if keeping:
             keep(step, share, mode, recorder, p)
         if number >= 0:
@@ -292,7 +288,8 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             return State(t, y, mode, last_event, h), LOCKED
         t = stop if taken == stop - t else t + taken
         y, k1, last_event = step.end, step.end_rate, NO_EVENT
-        work.at_start[:] = work.at_end
+        for i in range(event_count(p)):
+            work.at_start[i] = work.at_end[i]
         implicitly = implicitly or _becomes_stiff(taken, y, p)
         grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
         h = max(h, grown) if taken < h else grown

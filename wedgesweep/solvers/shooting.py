@@ -17,7 +17,7 @@ from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.interface import clocks, cycle, free, repeats, scales
 from wedgesweep.hybrid.state import OK
 from wedgesweep.hybrid.vectors import vector
-from wedgesweep.solvers.period_detection import LONGEST_PERIOD, detected_period, guessed_period
+from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
 
 # Perturbation of the scaled state for J, at least NOISE times an integrator's tolerance, and the least step
 # that teaches J anything.
@@ -233,15 +233,25 @@ def newton_shooting(y, periods, jacobian, most, shooting):
 
 @inner
 def _shoot(y, periods, jacobian, most, shooting):
-    """The response of so many periods that Newton's method finds from y."""
+    """The response that Newton's method finds from y when it looks for one of so many periods.
+
+    Where it has a shorter period, the state hardly goes away in between: then that is looked for.
+    """
     found, outcome, run = newton_shooting(y, periods, jacobian, most, shooting)
-    if not found or periods == 1:
-        return Found(outcome, int(found), run, periods)
-    image, size = y.copy(), _sizes(shooting.case[0])
-    if _run(image, 1, False, shooting) == OK and _distance(image, y, size) <= shooting.tolerance:
-        jacobian[:] = np.nan
-        return Found(OK, 1, run + 1, periods)
-    return Found(OK, periods, run + 1, periods)
+    if not found:
+        return Found(outcome, 0, run, periods)
+    size = _sizes(shooting.case[0])
+    for shorter in range(1, periods):
+        if periods % shorter:
+            continue
+        image = y.copy()
+        outcome = _run(image, shorter, False, shooting)
+        run += shorter
+        if outcome == OK and _distance(image, y, size) <= CLOSER * shooting.tolerance:
+            jacobian[:] = np.nan
+            found, outcome, more = newton_shooting(y, shorter, jacobian, most, shooting)
+            return Found(outcome, shorter * found, run + more, shorter)
+    return Found(OK, periods, run, periods)
 
 
 @inner
@@ -319,6 +329,6 @@ def settle(y, periods, jacobian, shooting):
             run += found.run
             if found.period:
                 y[:] = trial
-                return Found(OK, found.period, run, periods)
+                return Found(OK, found.period, run, found.kept)
             run += _creep(y, past, count, shooting)
     return Found(OK, 0, run, 0)

@@ -213,7 +213,8 @@ class _Piece(NamedTuple):
 def _value(time, piece):
     """An event function some time (s) after the phase of a piece."""
     which, phase, o, mode, p = piece
-    return event_values(advanced(phase, time, o, p), o, mode, p)[which]
+    there = advanced(phase, time, o, p)
+    return event_values(there, o, mode, p)[which], event_slopes(there, o, mode, p)[which]
 
 
 @inlined
@@ -240,7 +241,7 @@ def _first_event(phase, o, mode, span, samples, at_zero, p):
         piece, high, value = _Piece(which, phase, o, mode, p), span, after.values[which]
         if value > 0.0 and which != at_zero and _may_graze(which, before, after, span):
             high = minimum(piece, 0.0, span, GRAZING * span)
-            value = _value(high, piece)
+            value = _value(high, piece)[0]
         if value > 0.0:
             continue
         bracket = Bracket(0.0, before.values[which], high, value)

@@ -24,9 +24,11 @@ from wedgesweep.systems.suspension.modes import (
 from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
 from wedgesweep.systems.suspension.set_valued import breakaway
 
-# Places of the event functions behind those of the axes, two each: end stops, normal forces, time at rest.
-STOP, COLUMN_NORMAL, BOLSTER_NORMAL, CLOCK = 2 * AXES, 10, 11, 12
-EVENTS = 13
+# Places of the event functions beside those of the axes: normal forces, end stops (two), time at rest. The base
+# model has none behind the normal forces.
+COLUMN_NORMAL, BOLSTER_NORMAL, BASE_EVENTS = 6, 7, 8
+STOP, CLOCK = 2 * AXES, 2 * AXES + 2
+EVENTS = CLOCK + 1
 # A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
 # end cannot go back and forth between both at one instant.
 OVERLAP = 1e-9
@@ -106,10 +108,11 @@ def events(now, t, y, mode, p, out):
     Units are m/s for slip velocities, m for the end stops, N for normal forces, m/s^2 for what is held or
     stuck; an event that the mode does not have is inf.
     """
-    out[:] = inf
+    for i in range(EVENTS):
+        out[i] = inf
     if stuck(mode, p):
-        out[2 * COLUMN] = breakaway(t, y, -1, mode.stop, p)[0]
-        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.stop, p)[0]
+        out[2 * COLUMN] = breakaway(t, y, -1, mode.stop, p)
+        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.stop, p)
         return
     _kinematic_events(t, y, mode, p, out)
     if held(mode):

@@ -38,6 +38,13 @@ for _declared, _written in (
     implement(_declared, SUSPENSION)(_written)
 
 
+@implement(interface.event_count, "base")
+@inlined
+def base_event_count(p):
+    """Number of event functions of the base model."""
+    return events.BASE_EVENTS
+
+
 @implement(interface.event_count, SUSPENSION)
 @inlined
 def event_count(p):

@@ -9,8 +9,8 @@ from wedgesweep.effects import directional_friction, presliding
 X, VELOCITY = 0, 1
 # Friction axes: what a jump of friction can hold. Two event functions each: leave the branch toward lower,
 # toward higher slip velocity.
-COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 3
-AXES = 4
+COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 4  # the event functions of the normal forces stand between
+AXES = 5
 # Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
 HELD = 2
 
@@ -59,7 +59,9 @@ def branch(mode, axis):
         return mode.column
     if axis == BOLSTER:
         return mode.bolster
-    return mode.guide if axis == GUIDE else mode.direction
+    if axis == GUIDE:
+        return mode.guide
+    return mode.direction if axis == DIRECTION else 0
 
 
 @inner

@@ -157,8 +157,9 @@ def reactions(load, mu, p):
     normal -= into_base * base
 
     determinant = a11 * a22 - a12 * a21
-    bolster = (a11 * normal - a21 * tangential) / determinant
-    column = (tangential * a22 - a12 * normal) / determinant
+    inverse = 1.0 / determinant
+    bolster = (a11 * normal - a21 * tangential) * inverse
+    column = (tangential * a22 - a12 * normal) * inverse
     frame = base
     if fixture_resonance.acts(p):
         frame += base_per_column * column + base_per_bolster * bolster
@@ -205,7 +206,7 @@ def _reactions_for_signs(load, column_mu, bolster_mu, mode, p):
     return reactions(load, Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)
 
 
-@inner
+@inlined
 def forces(t, y, mode, p):
     """Forces on the given mode."""
     column_mu, bolster_mu = coefficients(t, y, mode, p)

@@ -39,7 +39,7 @@ class _Held(NamedTuple):
 def _lowest(t, held):
     """Smallest event function at time t."""
     events(UNDETERMINED, t, held.y, held.mode, held.p, held.out)
-    return held.out.min()
+    return held.out.min(), nan
 
 
 @inner
@@ -96,15 +96,15 @@ def scanned_release(state, stop, p):
     context = _Held(state.y, state.mode, p, out)
     step = 2.0 * np.pi / p.input.omega / SAMPLES_PER_PERIOD
     earlier, held = state.t, state.t
-    before, now = inf, _lowest(held, context)
+    before, now = inf, _lowest(held, context)[0]
     while held < stop:
         if not well_posed(held, state.y, state.mode, p):
             return held, LOCKED
         following = min(held + step, stop)
-        after = _lowest(following, context)
+        after = _lowest(following, context)[0]
         if after > 0.0 and before > now and now < after:
             lowest = minimum(context, earlier, following, CLOSE * step)
-            value = _lowest(lowest, context)
+            value = _lowest(lowest, context)[0]
             if value < 0.0:
                 held, now, following, after = earlier, before, lowest, value
         if after < 0.0:

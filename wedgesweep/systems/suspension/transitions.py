@@ -36,7 +36,7 @@ from wedgesweep.systems.suspension.set_valued import (
 OUTSET = 4
 
 
-@inner
+@inlined
 def rate(t, y, mode, p):
     """dy/dt, and the forces."""
     now = at_rest(t, y, mode, p) if stuck(mode, p) else contact_forces(t, y, mode, p)
@@ -178,7 +178,7 @@ def _transition(t, y, mode, place, p):
     if place == COLUMN_NORMAL or place == BOLSTER_NORMAL:
         found, certain = _after_zero_force(t, y, mode, p)
         return y, found, certain
-    if place == CLOCK or STOP <= place < COLUMN_NORMAL:
+    if place >= STOP:
         if place == CLOCK:
             mode = with_clock(mode, 1 - mode.clock)
         else:
