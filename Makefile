@@ -36,6 +36,7 @@ reproduce: install  ## run the paper's 1,800 cases and check its claims
 	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
 
 validate: install  ## hide effects in data, diagnose them, compare with the truth (hours; rerun to resume)
+	$(BIN)/python -m pytest -q tests/validation/diagnoses.py
 	$(BIN)/python -m wedgesweep.validation --output $(OUT)/validation
 
 bench: install  ## benchmarks, as ratios within one run
