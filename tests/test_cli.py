@@ -378,7 +378,7 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         (["all", "absent/x.nc"], "absent/x.nc: no such file"),
         (
             ["stick-map", "OUT", "--format", "pdf", "-o", "x.png"],
-            "--format pdf and -o x.png are not the same",
+            "--format pdf and -o x.png contradict each other",
         ),
     ],
 )

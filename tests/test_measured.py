@@ -127,7 +127,7 @@ TOML_FAULTS = {
         ("0.01", "-0.01"),
         "test[0].amplitude_std: -0.01 is out of range; it must be at least 0",
     ),
-    "std of nothing": (("amplitude_mm = 0.3\n", ""), "test[0].amplitude_std: there is no amplitude_mm"),
+    "std of nothing": (("amplitude_mm = 0.3\n", ""), "test[0].amplitude_std: given without amplitude_mm"),
     "negative frequency": (("20.0", "-20.0"), "test[0].frequency_hz: -20.0 is out of range"),
     "text as frequency": (("20.0", '"20"'), 'test[0].frequency_hz: "20" is not a finite number'),
     "above Nyquist": (("20.0", "600.0"), "one.csv: has 1.67 samples per period of 600 Hz; at least 5 are"),
