@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import drawn
+from tests.diagnose.synthetic import base_of, drawn
 from wedgesweep import contact, parameters
-from wedgesweep.diagnose.search import Search
 
 FREQUENCIES = np.array([20.0, 30.0, 8.0, 20.0])
 
@@ -18,6 +17,6 @@ def test_inputs_are_found_next_to_breakaway(beyond):
     data = drawn(law="coulomb", known=False, bench=(FREQUENCIES, true))
     if beyond < 2.0:
         assert (true > 30.0 * np.abs(data.measured[:, 0, 0])).sum() == 2
-    base = Search(data, ()).base().fit
+    base = base_of(data)
     assert base.p > 1e-3
-    assert base.amplitudes() == pytest.approx(true, rel=1e-3)
+    assert base.model.data.amplitudes(base.point) == pytest.approx(true, rel=1e-3)

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, drawn, searched
+from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from tests.diagnose.test_aliasing import bench
 from wedgesweep.diagnose import calibration, verdict
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.steady.model import Model
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.search import base_fit, single_fit
 from wedgesweep.diagnose.steady.spectra import SIMULATED
 
-DRAWS = 40
+SAMPLES = 40
 
 
 def coherent(share):
@@ -23,34 +23,35 @@ def coherent(share):
 
 @pytest.mark.parametrize("data", [drawn(), coherent(0.6 + 0.3j), bench(SIMULATED)])
 def test_a_draw_is_noise_about_the_fit(data):
-    fit = Search(data, ()).base().fit
+    fit = base_of(data)
     rng = np.random.default_rng(3)
     squares = []
-    for _ in range(DRAWS):
-        again = Model(calibration.bootstrap_sample(fit, rng), fit.model.hypothesis, fit.model.reference)
+    for _ in range(SAMPLES):
+        again = Model(data.bootstrap_sample(fit.evaluation, rng), fit.model.hypothesis)
         evaluation = again.evaluate(fit.evaluation.point)
         squares.append((evaluation.residual**2).sum())
-        assert (evaluation.aliased == fit.evaluation.aliased).all()
+        assert (evaluation.response.aliased == fit.evaluation.response.aliased).all()
     # Start phases are fitted again.
     expected = data.observations.sum() - data.tests
-    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / DRAWS))
+    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / SAMPLES))
 
 
 def alone(effect):
     """A search that tries one effect."""
 
     def explain(search):
-        base = search.base()
-        return base, [search.single(effect, base.fit)]
+        search, base = base_fit(search)
+        return base, [single_fit(search, effect, base.fit).explanation]
 
     return explain
 
 
 def test_a_cause_that_is_found_again_is_strong_however_small(monkeypatch):
-    monkeypatch.setattr(calibration, "DRAWS", 3)
-    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    monkeypatch.setattr(calibration, "SAMPLES", 3)
     told = []
-    found = calibrate(base, lag, alone("velocity_lag"), ("velocity_lag",), 1, told.append)
+    search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    search = replace(search, progress=told.append)
+    found = calibrate(search, base, lag, alone("velocity_lag"), ("velocity_lag",))
     assert found.found == 1.0
     assert found.thresholds.strong == 0.0
     # A number costs more than noise gives.
@@ -59,9 +60,9 @@ def test_a_cause_that_is_found_again_is_strong_however_small(monkeypatch):
 
 
 def test_a_cause_that_is_not_found_again_stays_weak(monkeypatch):
-    monkeypatch.setattr(calibration, "DRAWS", 3)
-    _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    found = calibrate(base, lag, alone("cubic_stiffness"), ("cubic_stiffness",), 1, lambda step: None)
+    monkeypatch.setattr(calibration, "SAMPLES", 3)
+    search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
+    found = calibrate(search, base, lag, alone("cubic_stiffness"), ("cubic_stiffness",))
     assert found.found == 0.0
     assert found.thresholds.strong == np.inf
 

@@ -42,12 +42,12 @@ def test_a_number_that_changes_in_the_session_is_found_long_before_noise_is_exce
     _, _, (single,) = searched(worn(1.10, 1.114), "friction_level")
     assert single.fit.p > verdict.ADEQUATE
     assert single.constancy.p < 1e-6
-    assert single.constancy.number == "friction_level.scale"
+    assert single.constancy.parameter == "friction_level.scale"
 
 
 def test_what_changes_in_the_session_is_not_named():
     data = worn(1.10, 1.114)
-    base, found = diagnosis.explain(Search(data, ("friction_level",)))
+    _, base, found, _ = diagnosis.explain(Search.of(data, ("friction_level",)))
     assert base.fit.excess > verdict.STRONG
     assert verdict.decide(base, found, verdict.DEFAULT).verdict == "none-of-mine"
 

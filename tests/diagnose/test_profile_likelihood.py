@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import LAG, drawn, searched
-from wedgesweep.diagnose.least_squares import refine, tight_refit
+from wedgesweep.diagnose.least_squares import minimise, tight_refit
+from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.profile_likelihood import RISE, profile_likelihood
-from wedgesweep.diagnose.steady.model import Model
 
 
 def serial(function, items):
@@ -46,7 +46,7 @@ def test_a_fit_that_stopped_short_goes_on_to_the_least_q(lag):
     x = point.x.copy()
     x[0] += 4.0 * std(lag)[0]
     there = lag.model.evaluate(replace(point, x=x))
-    short = replace(refine(lag.model, there, 0), covariance=lag.covariance)
+    short = replace(minimise(lag.model, there, 0), covariance=lag.covariance)
     assert short.chi2 > lag.chi2 + 10.0
     found = profile_likelihood(short, serial)
     assert found.chi2 == pytest.approx(lag.chi2, abs=0.1)
@@ -58,7 +58,7 @@ def rises(fit):
     off = np.sqrt(RISE) * std(fit)[0]
     models = [fit.model.holding(0, fit.x[0] + side * off) for side in (-1.0, 1.0)]
     points = [replace(fit.evaluation.point, x=np.r_[each.low[0], fit.x[1:]]) for each in models]
-    return [refine(m, m.evaluate(p)).chi2 - fit.chi2 for m, p in zip(models, points, strict=True)]
+    return [minimise(m, m.evaluate(p)).chi2 - fit.chi2 for m, p in zip(models, points, strict=True)]
 
 
 def compliance(level):

@@ -104,9 +104,9 @@ def test_the_frequency_of_a_tone_is_as_uncertain_as_it_says():
 def test_the_chance_of_a_tone_is_exact_and_never_ends():
     power, count = np.array([0.5, 30.0, 40.0, 5000.0]), np.array([1, 24, 6, 24])
     np.testing.assert_allclose(
-        tone.log_chance(power[:3], count[:3]), gamma.logsf(power[:3], count[:3]), rtol=1e-10
+        tone.log_p_value(power[:3], count[:3]), gamma.logsf(power[:3], count[:3]), rtol=1e-10
     )
-    assert -5000.0 < tone.log_chance(power, count)[3] < -4700.0
+    assert -5000.0 < tone.log_p_value(power, count)[3] < -4700.0
 
 
 def test_a_tone_beside_a_harmonic_leaves_the_others_alone():
@@ -116,7 +116,7 @@ def test_a_tone_beside_a_harmonic_leaves_the_others_alone():
         time, channels, truth = record(rng, 24.0)
         foreign = 0.1 * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
         found = spectrum(time, channels + foreign, 24.0, 47.3)
-        assert (found.tone, found.masked, found.observations) == (None, 2, 4 * (COMPARED - 1))
+        assert (found.tone, found.masked_harmonic, found.observations) == (None, 2, 4 * (COMPARED - 1))
         squares.append(2.0 * np.abs(found.mean - truth) ** 2 / found.variance)
     others = np.delete(np.array(squares), 1, axis=2)
     assert others.mean() == pytest.approx(2.0, rel=0.1)
