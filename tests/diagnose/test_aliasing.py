@@ -1,4 +1,4 @@
-"""Harmonics above half the sampling rate, which a record shows among those below."""
+"""Aliases: harmonics above half the sampling rate, which a record shows among those below."""
 
 from math import pi
 
@@ -36,7 +36,7 @@ def sampled(harmonics, ratio, periods=8.4, phase=0.0):
 
 
 @pytest.mark.parametrize("ratio", [20.3, 40.3, 49.5, 63.05, 130.0])
-def test_images_are_what_is_read_beside_the_harmonics(ratio):
+def test_aliases_are_what_is_read_beside_the_harmonics(ratio):
     rng = np.random.default_rng(0)
     harmonics = rng.normal(size=(2, SIMULATED, 2)) @ [1.0, 1j] / np.arange(1, SIMULATED + 1)
     time, channels = sampled(harmonics, ratio)
@@ -65,25 +65,25 @@ def test_the_right_model_leaves_noise_whether_or_not_the_record_was_low_passed(h
     assert fit.evaluation.response.aliased.all() == aliased
 
 
-def test_pulses_sampled_often_enough_have_no_images():
+def test_pulses_sampled_often_enough_have_no_aliases():
     fit = base_of(bench(SIMULATED, ratio=400.0))
     assert fit.p > 0.01
     assert not fit.evaluation.response.aliased.any()
 
 
-def test_without_their_images_the_pulses_are_not_explained():
+def test_without_their_aliases_the_pulses_are_not_explained():
     data = bench(SIMULATED)
     fit = base_of(data)
     left = data.whitened - data.rotated(fit.evaluation.response.whitened, fit.evaluation.response.phase)
     assert (np.abs(left) ** 2).sum() > 2.0 * fit.chi2
 
 
-def test_images_are_part_of_the_derivatives():
+def test_aliases_are_part_of_the_derivatives():
     fit = base_of(bench(SIMULATED))
     here, point = fit.evaluation, fit.evaluation.point
     there = fit.model.evaluate(point.moved(np.zeros(0), np.array([LOG_AMPLITUDE.step])))
     by_nuisance = jacobian(fit.model, here).by_nuisance[0]
     expected = by_nuisance @ [there.response.phase[0] - here.response.phase[0], LOG_AMPLITUDE.step]
     change = there.residual[0] - here.residual[0]
-    # Without the images' part 2.4 % would be left.
+    # Without the aliases 2.4 % would be left.
     assert np.linalg.norm(change - expected) < 0.012 * np.linalg.norm(change)

@@ -1,4 +1,4 @@
-"""Inputs that nobody knows, from what was measured alone."""
+"""Unknown input amplitudes, from the measured response alone."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ FREQUENCIES = np.array([20.0, 30.0, 8.0, 20.0])
 
 
 @pytest.mark.parametrize("beyond", [1.6, 2.0])
-def test_inputs_are_found_next_to_breakaway(beyond):
+def test_inputs_are_found_near_breakaway(beyond):
     """There the bolster moves by a small part of its input, and a bit less input holds it."""
     held = contact.breakaway_acceleration(parameters.record("coulomb", 1e-4, 100.0)[0])
     true = beyond * held / (2.0 * np.pi * FREQUENCIES) ** 2 * np.array([1.0, 1.0, 1.0, 3.0])

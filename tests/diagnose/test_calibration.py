@@ -1,4 +1,4 @@
-"""Draws from a fitted model are data of that model, and thresholds come from what a search finds in them."""
+"""Bootstrap samples are data of the fitted model, and thresholds come from what a search finds in them."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ def coherent(share):
 
 
 @pytest.mark.parametrize("data", [drawn(), coherent(0.6 + 0.3j), bench(SIMULATED)])
-def test_a_draw_is_noise_about_the_fit(data):
+def test_a_sample_is_noise_about_the_fit(data):
     fit = base_of(data)
     rng = np.random.default_rng(3)
     squares = []
@@ -48,15 +48,15 @@ def alone(effect):
 
 def test_a_cause_that_is_found_again_is_strong_however_small(monkeypatch):
     monkeypatch.setattr(calibration, "SAMPLES", 3)
-    told = []
+    messages = []
     search, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    search = replace(search, progress=told.append)
+    search = replace(search, progress=messages.append)
     found = calibrate(search, base, lag, alone("velocity_lag"), ("velocity_lag",))
     assert found.found == 1.0
     assert found.thresholds.strong == 0.0
     # A number costs more than noise gives.
     assert found.least_gain < verdict.GAP
-    assert told[-1] == "calibration, velocity_lag: 3 of 3"
+    assert messages[-1] == "calibration, velocity_lag: 3 of 3"
 
 
 def test_a_cause_that_is_not_found_again_stays_weak(monkeypatch):
@@ -67,7 +67,7 @@ def test_a_cause_that_is_not_found_again_stays_weak(monkeypatch):
     assert found.thresholds.strong == np.inf
 
 
-def test_draws_whose_base_model_has_no_response_say_nothing_of_a_gain():
+def test_samples_without_a_response_of_the_base_model_do_not_count():
     gains = np.array([np.inf, 3.0, -np.inf, np.nan])
     assert calibration.Calibration(gains, None).least_gain == 3.0
     assert calibration.Calibration(gains[:1], None).least_gain == 0.0

@@ -26,7 +26,7 @@ def test_both_sides_tell_the_same_of_a_smooth_response():
 
 
 def test_next_to_where_a_wedge_locks_the_near_side_tells():
-    """Without a derivative a number would look as if the tests told nothing of it, or everything."""
+    """Without a derivative a parameter would look undetermined, or exactly known."""
     data = replace(drawn(), law="coulomb", model=config.parse(LEANING))
     model = Model(data, Hypothesis(("directional_friction",)))
 

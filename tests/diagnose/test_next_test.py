@@ -1,4 +1,4 @@
-"""Recommended tests are worth making: they tell explanations apart, and their data can be fitted."""
+"""Recommended tests are worth making: they separate explanations, and their data can be fitted."""
 
 from dataclasses import replace
 
@@ -96,6 +96,6 @@ def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
         weight = next_test._weights(data, [one, other])
         distances.append(next_test._distances(one, other, weight))
         np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
-    told, open_ = distances
-    assert (open_ > 0.0).all()
-    assert (open_ < told).all()
+    usual, undetermined = distances
+    assert (undetermined > 0.0).all()
+    assert (undetermined < usual).all()

@@ -59,7 +59,7 @@ def test_the_base_model_and_a_single_test_have_nothing_that_could_differ():
 
 
 def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
-    """At the least Q the misfit with the pulls on the priors has nothing in it that could be taken up."""
+    """At the minimum the misfit with the pulls on the priors contains nothing that could be taken up."""
     off = 0.03 * np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
     data = drawn({"friction_level": {"scale": 1.1}}, uncertain={"wedge_stiffness": 0.05}, off=off)
     _, _, (single,) = searched(data, "friction_level")

@@ -46,7 +46,7 @@ def test_the_weakest_value_is_what_the_tests_would_have_shown():
         assert scored(stronger)[effect].t2 > score_test.DETECTABLE > scored(weaker)[effect].t2
 
 
-def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():
+def test_an_undetected_tone_has_a_detectable_strength():
     tone_undetected = scored()["stray_vibration"]
     assert tone_undetected.t2 is None
     assert tone_undetected.testable

@@ -1,4 +1,4 @@
-"""Where the search for an explanation goes on, and where it ends."""
+"""Where the search for an explanation continues, and where it ends."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ CANDIDATES = ("displacement_gain", "velocity_lag")
     ("truth", "looked"),
     [({"velocity_lag": {"time": 3e-4}}, False), ({"bolster_mass": {"scale": 1.05}}, True)],
 )
-def test_all_starts_are_followed_only_where_nothing_will_do(truth, looked, monkeypatch):
+def test_all_starts_are_followed_only_if_nothing_is_adequate(truth, looked, monkeypatch):
     again = []
 
     def told(search, scans):
@@ -41,7 +41,7 @@ def test_the_right_way_is_found_though_its_start_looks_worst():
     assert multistart(search, worst)[0].fit.x[0] == pytest.approx(truth, rel=0.05)
 
 
-def test_what_rough_trials_leave_is_not_taken_for_what_a_fit_leaves():
+def test_a_rough_misfit_is_not_taken_for_that_of_a_fit():
     search = Search.of(drawn({"velocity_lag": {"time": 3e-4}}), ())
     model = search.model("displacement_gain")
     evaluation = model.evaluate(model.start(None, np.array([1.02])))
@@ -51,7 +51,7 @@ def test_what_rough_trials_leave_is_not_taken_for_what_a_fit_leaves():
 
 
 @pytest.mark.parametrize("length", [0.9e-6, 1.03e-6, 1.5e-6])
-def test_what_leads_the_base_model_far_astray_begins_without_it(length):
+def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(length):
     """Faces that creep where the base model's stick: it moves only with far less friction or input.
 
     Nor does a fit get there whose inputs are free to make up for a length that is wrong by then.
@@ -66,7 +66,7 @@ def test_what_leads_the_base_model_far_astray_begins_without_it(length):
     assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
 
 
-def test_a_tone_that_nobody_hears_leaves_nothing_to_fit():
+def test_an_undetected_tone_leaves_nothing_to_fit():
     search = Search.of(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
     _, base, found, _ = diagnosis.explain(search)
     assert base.fit.p < 1e-9

@@ -1,4 +1,4 @@
-"""At which phase a foreign vibration met the input matters where the record is short of a beat."""
+"""The phase of a tone relative to the input matters if the record is shorter than a beat."""
 
 from dataclasses import replace
 from math import pi
@@ -23,7 +23,7 @@ PERIODS, PER_PERIOD = 8.4, 256
 
 
 def recorded(phases, seed):
-    """Problem of three tests that met the vibration at some phases (rad); starts are those of the input."""
+    """Data of three tests with some phases (rad) of the vibration; records start at phase 0 of the input."""
     rng = np.random.default_rng(seed)
     model = config.parse(MODEL)
     stray = {"stray_vibration": {"acceleration": ACCELERATION, "frequency": TONE}}
@@ -42,7 +42,7 @@ def recorded(phases, seed):
     return HarmonicData(model, "static-dynamic", names, spectra, AMPLITUDES, exact, {}, TONE, 0.01)
 
 
-def test_what_a_vibration_leaves_is_explained_by_the_phase_at_which_it_met_the_input():
+def test_the_phase_of_a_vibration_explains_what_an_unknown_phase_leaves():
     before = []
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):
         data = recorded(np.full(3, phase), seed)
@@ -54,11 +54,11 @@ def test_what_a_vibration_leaves_is_explained_by_the_phase_at_which_it_met_the_i
         found = fit.values["stray_vibration"]["acceleration_m_per_s2"]
         assert found == pytest.approx(ACCELERATION, rel=0.05)
         before.append(anyhow.p)
-    # In most phases it is no matter; in others nothing but the right one will do.
+    # Most phases do not matter; with others only the fitted phase is adequate.
     assert min(before) < 1e-6
 
 
-def test_a_model_on_trial_may_have_the_vibration_itself():
+def test_the_base_model_may_contain_the_vibration():
     """Its phases are as unknown as those of one that is a cause."""
     table = f"[effects.stray_vibration]\nacceleration_m_per_s2 = {ACCELERATION}\nfrequency_hz = {TONE}\n"
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):

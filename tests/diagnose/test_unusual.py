@@ -89,7 +89,7 @@ def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
 
 
 def test_a_tone_that_the_model_has_is_not_looked_for(measured):
-    """Nobody hears it in these data: they have none."""
+    """These data have none."""
     table = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.01\nfrequency_hz = 17.3\n"
     assert harmonic_data(measurements.read(measured)).tone is None
     (measured.parent / "model.toml").write_text(MODEL + table)

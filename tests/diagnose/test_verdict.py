@@ -1,4 +1,4 @@
-"""The six answers, from fits that are set by hand."""
+"""The six verdicts, from fits that are set by hand."""
 
 from types import SimpleNamespace
 
@@ -87,8 +87,8 @@ def test_what_has_not_is_no_rival_but_shows_that_others_imitate():
         assert (found.verdict, found.rivals) == (expected, (best if expected == "tied" else rival,))
 
 
-def test_what_hardly_shows_beside_an_effect_is_not_named():
-    """Many will do for a number that differs a little from test to test."""
+def test_a_second_effect_that_hardly_shows_is_not_named():
+    """Many effects fit a parameter that differs a little from test to test."""
     half = explained(760.0, "friction_level", constant=1e-4)
     pair = explained(690.0, "friction_level", "ageing")
     found = verdict_of(explained(5000.0), half, pair)
@@ -119,7 +119,7 @@ def test_tests_that_show_nothing_cannot_make_up_for_a_misfit():
     assert chi2.sf(doubtful.sum(), DOF) > chi2.sf(wrong.sum(), DOF) > verdict.ADEQUATE
 
 
-def test_what_leaves_too_much_p_where_it_shows_and_fails_on_held_out_tests_is_none():
+def test_a_misfit_where_it_shows_and_a_failure_on_held_out_tests_leave_no_cause():
     base, doubtful = shared(2000.0, DOF / 12), shared(82.0, 54.0)
     start, best = explained(base.sum(), by_test=base), explained(doubtful.sum(), "stribeck", by_test=doubtful)
     assert best.fit.p > verdict.ADEQUATE > p_where_it_shows(start.fit, best.fit)
@@ -146,14 +146,14 @@ def test_where_nothing_shows_all_that_is_left_counts():
         (810.0, 0.5, [-0.3, 1.0], "none-of-mine"),
     ],
 )
-def test_a_cause_that_may_make_unseen_tests_worse_is_none(q, removed, interval, expected):
+def test_a_cause_that_may_predict_held_out_tests_worse_is_none(q, removed, interval, expected):
     base, best = explained(5000.0), explained(q, "stribeck")
     found = on_held_out_tests(verdict_of(base, best), base, removed, interval)
     assert (found.verdict, found.best) == (expected, best)
     assert (found.cause is None) == (expected == "none-of-mine")
 
 
-def test_a_rival_that_will_do_is_not_called_none():
+def test_an_adequate_rival_is_not_called_none():
     """The best one leaves a bit more than noise, a rival does not; other tests confirm neither."""
     best, rival = explained(793.0, "stribeck"), explained(787.0, "preload", "end_stop")
     base = explained(5000.0)
@@ -179,7 +179,7 @@ def test_unconfirmed_weak_evidence_names_nothing():
         assert found.alternatives[0] is best
 
 
-def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confirm():
+def test_a_tolerable_base_model_needs_no_cause_that_held_out_tests_do_not_confirm():
     base = explained(830.0)
     assert verdict.TOLERABLE < base.fit.p < POSSIBLE
     found = verdict_of(base, explained(780.0, "stribeck"))
