@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -16,6 +17,16 @@ from wedgesweep.diagnose.search import Search
 MASS, STIFFNESS, DAMPING, STD = 5.0, 5000.0, 5.0, 0.02
 TIME = np.arange(200) / 100.0
 TRUE = 3.0
+
+
+PACKAGE = Path(diagnosis.__file__).parent
+GENERAL = sorted(set(PACKAGE.glob("*.py")) - {Path(diagnosis.__file__)})
+
+
+@pytest.mark.parametrize("file", GENERAL, ids=lambda file: file.stem)
+def test_only_the_workflow_knows_a_kind_of_record(file):
+    """Fits, search and verdict see the tests through the interface."""
+    assert "wedgesweep.diagnose.steady" not in file.read_text()
 
 
 class NoWarmStart:

@@ -18,13 +18,14 @@ from wedgesweep.diagnose.search import (
     Search,
     base_fit,
     multistart,
+    quiet,
     refit_base,
     refit_best,
     single_fits,
 )
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.steady.next_test import NextTest
+from wedgesweep.diagnose.steady.next_test import NextTest, recommend
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS, SCALES, acting
 from wedgesweep.measured import Measurement
@@ -66,15 +67,11 @@ class Explained(NamedTuple):
     scans: Scans
 
 
-def _quiet(step: str) -> None:
-    """Report no progress."""
-
-
 def diagnose(
     measurement: Measurement,
     effects: Sequence[str] = tuple(EFFECTS),
     threads: int = 1,
-    progress: Callable[[str], None] = _quiet,
+    progress: Callable[[str], None] = quiet,
     calibrated: bool = False,
 ) -> Diagnosis:
     """Name what the base model misses, or say why it cannot be named.
@@ -116,7 +113,7 @@ def diagnose(
         finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
         gain = gain if finding.best is not None else None
     progress("next test")
-    next_test = data.next_test(_undecided(finding, explanations, thresholds))
+    next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement=measurement,
         data=data,

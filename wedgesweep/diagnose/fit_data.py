@@ -18,8 +18,7 @@ import numpy as np
 from wedgesweep.diagnose.fit_parameters import Values
 
 if TYPE_CHECKING:
-    from wedgesweep.diagnose.model import Fit, Model
-    from wedgesweep.diagnose.steady.next_test import NextTest
+    from wedgesweep.diagnose.model import Model
 
 
 class WarmStart(Protocol):
@@ -260,7 +259,3 @@ class FitData(Protocol):
     def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
         """The step (T, L) of the nuisance parameters of a held-out test, which must remain a prediction."""
         return step
-
-    def next_test(self, fits: Sequence["Fit"]) -> "NextTest | None":
-        """The further test that best separates some fits, the best one first; None if there is none."""
-        return None

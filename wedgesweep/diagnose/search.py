@@ -47,7 +47,7 @@ SLOWEST = ("column_compliance", "fixture_resonance", "presliding")
 Scans = Mapping[str, Sequence[Evaluation]]
 
 
-def _quiet(step: str) -> None:
+def quiet(step: str) -> None:
     """Report no progress."""
 
 
@@ -62,7 +62,7 @@ class Search:
     effects: tuple[str, ...]
     undetected: tuple[str, ...] = ()
     threads: int = 1
-    progress: Callable[[str], None] = _quiet
+    progress: Callable[[str], None] = quiet
 
     @classmethod
     def of(
@@ -70,7 +70,7 @@ class Search:
         data: FitData,
         effects: Sequence[str],
         threads: int = 1,
-        progress: Callable[[str], None] = _quiet,
+        progress: Callable[[str], None] = quiet,
     ) -> "Search":
         """A search for some effects in some data."""
         detected = data.candidates(effects)

@@ -12,8 +12,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.model import Fit, Model
-from wedgesweep.diagnose.steady import amplitude_grid, next_test, simulation, tone, tone_phase
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone, tone_phase
 from wedgesweep.diagnose.steady.bootstrap import resampled
 from wedgesweep.diagnose.steady.spectra import SIMULATED
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
@@ -247,9 +247,6 @@ class HarmonicData(WhitenedHarmonics, FitData):
         exact = self.rotated(response.harmonics, response.phase) + response.aliases
         spectra = (resampled(s, mean, rng) for s, mean in zip(self.spectra, exact, strict=True))
         return replace(self, spectra=tuple(spectra))
-
-    def next_test(self, fits: Sequence[Fit]) -> next_test.NextTest | None:
-        return next_test.recommend(fits)
 
 
 def groups(values: np.ndarray) -> list[np.ndarray]:

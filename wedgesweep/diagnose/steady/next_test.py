@@ -10,7 +10,7 @@ and its neighbours in amplitude separate, and not at all where a candidate predi
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from scipy.ndimage import minimum_filter1d
@@ -18,11 +18,9 @@ from scipy.ndimage import minimum_filter1d
 from wedgesweep.diagnose.jacobian import STEP, derivatives
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.whitened import real
 from wedgesweep.solvers.periodic import Warm, at_rest
-
-if TYPE_CHECKING:
-    from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
 # Input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.
@@ -97,8 +95,8 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     return NextTest(float(frequency[best]), float(tests.amplitude[best]), names, float(here[closest]))
 
 
-def _data(fit: Fit) -> "HarmonicData":
-    return cast("HarmonicData", fit.model.data)
+def _data(fit: Fit) -> HarmonicData:
+    return cast(HarmonicData, fit.model.data)
 
 
 def _choice(distances: np.ndarray) -> int:
@@ -176,7 +174,7 @@ def _covariance_root(fit: Fit) -> np.ndarray:
     return vectors * np.sqrt(np.maximum(values, 0.0))
 
 
-def _weights(data: "HarmonicData", predictions: Sequence[_Prediction]) -> np.ndarray:
+def _weights(data: HarmonicData, predictions: Sequence[_Prediction]) -> np.ndarray:
     """One over the noise of a real part (n, C, 1), if new tests are as noisy as those made.
 
     The noise is relative to the first prediction that exists, as a wedge may lock under some of them.
