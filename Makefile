@@ -45,4 +45,4 @@ bench: install  ## benchmarks, as ratios within one run
 clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
-.PHONY: help install run test check reproduce validate bench clean
+.PHONY: help install run test lint check reproduce validate bench clean
