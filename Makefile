@@ -36,6 +36,7 @@ reproduce: install  ## run the paper's 1,800 cases and check its claims
 	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
 
 validate: install  ## hide effects in data, diagnose them, compare with the truth (hours; rerun to resume)
+	$(BIN)/python -m pytest -q tests/validation/diagnoses.py
 	$(BIN)/python -m wedgesweep.validation --output $(OUT)/validation
 
 bench: install  ## benchmarks, as ratios within one run
@@ -44,4 +45,4 @@ bench: install  ## benchmarks, as ratios within one run
 clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
-.PHONY: help install run test check reproduce validate bench clean
+.PHONY: help install run test lint check reproduce validate bench clean

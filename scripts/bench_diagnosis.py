@@ -35,7 +35,7 @@ HIDDEN = {
 }
 LAWS = ("coulomb", "static-dynamic", "exponential")
 # Parts that are told as they begin; of the others each fit is told as it ends.
-BEGUN = ("base model", "exact fit", "scores", "held-out tests", "next test")
+BEGUN = ("base model", "final fit", "scores", "held-out tests", "next test")
 
 said = []
 
@@ -88,7 +88,7 @@ def ended(step):
     """The part of a step that is told as it ends, None if it is not."""
     if step.startswith((*BEGUN, "end")):
         return None
-    if step.endswith("from everywhere"):
+    if step.endswith("all starting points"):
         return "singles again"
     return "pairs" if " + " in step else "singles"
 

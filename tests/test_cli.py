@@ -187,7 +187,7 @@ def test_an_unfinished_sweep_of_another_config_is_refused(here):
     run("locked.toml", "--fail-fast", code=1)
     (here / "locked.toml").write_text(LOCKED.replace("2.0", "1.5"))
     told = run("locked.toml", code=2)
-    assert "locked.nc.partial: an unfinished sweep of another set-up" in told
+    assert "locked.nc.partial: an unfinished sweep with another config or version" in told
     assert "sweep.amplitude_mm: [2.0] there, [1.5] now" in told
     assert "--fresh to discard it" in told
     run("locked.toml", "--fresh", code=1)
@@ -378,7 +378,7 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         (["all", "absent/x.nc"], "absent/x.nc: no such file"),
         (
             ["stick-map", "OUT", "--format", "pdf", "-o", "x.png"],
-            "--format pdf and -o x.png are not the same",
+            "--format pdf and -o x.png contradict each other",
         ),
     ],
 )

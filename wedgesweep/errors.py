@@ -1,8 +1,8 @@
-"""The errors that a user can put right: bad input, and everything around the cases of a sweep."""
+"""Errors that a user can correct."""
 
 
 class InputError(Exception):
-    """Input that cannot be used; ``problems`` lists all that is wrong with it, a line each."""
+    """Input that cannot be used; ``problems`` lists everything that is wrong with it, a line each."""
 
     def __init__(self, problems: list[str]) -> None:
         super().__init__(problems)
@@ -13,8 +13,8 @@ class InputError(Exception):
 
 
 class SweepError(Exception):
-    """A sweep that cannot start, go on, be stored or be read; the message says why."""
+    """A sweep cannot start, go on, be stored or be read; the message says why."""
 
 
 class MismatchError(SweepError):
-    """What is stored belongs to a sweep of another config, version or machine set-up."""
+    """Stored results belong to a sweep with another config or version."""

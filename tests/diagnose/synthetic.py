@@ -1,4 +1,4 @@
-"""Problems whose truth is known: harmonics of the model itself with noise drawn on top.
+"""Data whose truth is known: harmonics of the model itself with noise drawn on top.
 
 For tests of the machinery only; data from another solver are in tests/validation.
 """
@@ -8,9 +8,9 @@ from math import pi
 import numpy as np
 
 from wedgesweep import config
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.solvers.periodic import at_rest
@@ -42,8 +42,8 @@ def drawn(
     bench=(FREQUENCIES, AMPLITUDES),
     law="static-dynamic",
     model=MODEL,
-) -> FitData:
-    """Problem of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated.
+) -> HarmonicData:
+    """Data of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated.
 
     ``bench``: frequencies (Hz) and stated amplitudes (m) of all the tests that may be chosen.
     """
@@ -63,7 +63,7 @@ def drawn(
         flat = tuple(SmoothPSD(np.array([2.0 * np.log(level * each), 0.0, 0.0]), 1.0) for each in rms)
         silent = np.zeros((2, SAMPLES))
         spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
-    return FitData(
+    return HarmonicData(
         model,
         law,
         tuple(f"{f:g} Hz" for f in frequencies),
@@ -74,7 +74,7 @@ def drawn(
     )
 
 
-def next_to_breakaway() -> FitData:
+def next_to_breakaway() -> HarmonicData:
     """Stribeck friction and a damper, with a test (8.155 Hz) that sticks if friction is a bit more."""
     return drawn(
         {"stribeck": {"peak": 1.21402e-3, "velocity": 0.379124e-3}, "viscous_damping": {"coefficient": 2.4}},
@@ -89,7 +89,11 @@ def next_to_breakaway() -> FitData:
 
 
 def searched(data, *effects):
-    """Search, base model and the best fit of each effect."""
-    search = Search(data, effects)
-    base = search.base()
-    return search, base, [search.single(effect, base.fit) for effect in effects]
+    """Search, base model and the best single fit of each effect."""
+    search, base = base_fit(Search.of(data, effects))
+    return search, base, [single_fit(search, effect, base.fit).explanation for effect in effects]
+
+
+def base_of(data):
+    """The fitted base model."""
+    return base_fit(Search.of(data, ())).base.fit

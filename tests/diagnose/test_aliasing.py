@@ -1,16 +1,17 @@
-"""Harmonics above half the sampling rate, which a record shows among those below."""
+"""Aliases: harmonics above half the sampling rate, which a record shows among those below."""
 
-from dataclasses import replace
 from math import pi
 
 import numpy as np
 import pytest
 
+from tests.diagnose.synthetic import base_of
 from wedgesweep import config
-from wedgesweep.diagnose.jacobian import AMPLITUDE_STEP, jacobian
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.jacobian import jacobian
+from wedgesweep.diagnose.model import TIGHT
 from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE as LOG_AMPLITUDE
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.spectra import SIMULATED, spectrum
 from wedgesweep.solvers.periodic import at_rest
 
@@ -35,7 +36,7 @@ def sampled(harmonics, ratio, periods=8.4, phase=0.0):
 
 
 @pytest.mark.parametrize("ratio", [20.3, 40.3, 49.5, 63.05, 130.0])
-def test_images_are_what_is_read_beside_the_harmonics(ratio):
+def test_aliases_are_what_is_read_beside_the_harmonics(ratio):
     rng = np.random.default_rng(0)
     harmonics = rng.normal(size=(2, SIMULATED, 2)) @ [1.0, 1j] / np.arange(1, SIMULATED + 1)
     time, channels = sampled(harmonics, ratio)
@@ -50,39 +51,39 @@ def bench(highest, ratio=63.05, level=0.01):
     rng = np.random.default_rng(1)
     model = config.parse(PULSES)
     rows = simulation.records(model, "coulomb", {}, np.array([2.0 * pi * FREQUENCY]), np.array([AMPLITUDE]))
-    harmonics = simulation.respond(rows, at_rest(1), SIMULATED, simulation.TIGHT).harmonics[0]
+    harmonics = simulation.respond(rows, at_rest(1), SIMULATED, TIGHT).harmonics[0]
     time, channels = sampled(harmonics[:, :highest], ratio, phase=1.0)
     channels += level * channels.std(axis=1, keepdims=True) * rng.normal(size=channels.shape)
     found = spectrum(time, channels, FREQUENCY)
-    return FitData(model, "coulomb", ("one",), (found,), np.array([AMPLITUDE]), np.array([1e-4]), {})
+    return HarmonicData(model, "coulomb", ("one",), (found,), np.array([AMPLITUDE]), np.array([1e-4]), {})
 
 
 @pytest.mark.parametrize(("highest", "aliased"), [(SIMULATED, True), (31, False)])
 def test_the_right_model_leaves_noise_whether_or_not_the_record_was_low_passed(highest, aliased):
-    fit = Search(bench(highest), ()).base().fit
+    fit = base_of(bench(highest))
     assert fit.p > 0.01
-    assert fit.evaluation.aliased.all() == aliased
+    assert fit.evaluation.response.aliased.all() == aliased
 
 
-def test_pulses_sampled_often_enough_have_no_images():
-    fit = Search(bench(SIMULATED, ratio=400.0), ()).base().fit
+def test_pulses_sampled_often_enough_have_no_aliases():
+    fit = base_of(bench(SIMULATED, ratio=400.0))
     assert fit.p > 0.01
-    assert not fit.evaluation.aliased.any()
+    assert not fit.evaluation.response.aliased.any()
 
 
-def test_without_their_images_the_pulses_are_not_explained():
+def test_without_their_aliases_the_pulses_are_not_explained():
     data = bench(SIMULATED)
-    fit = Search(data, ()).base().fit
-    left = data.whitened - data.rotated(fit.evaluation.whitened, fit.evaluation.phase)
+    fit = base_of(data)
+    left = data.whitened - data.rotated(fit.evaluation.response.whitened, fit.evaluation.response.phase)
     assert (np.abs(left) ** 2).sum() > 2.0 * fit.chi2
 
 
-def test_images_are_part_of_the_derivatives():
-    fit = Search(bench(SIMULATED), ()).base().fit
+def test_aliases_are_part_of_the_derivatives():
+    fit = base_of(bench(SIMULATED))
     here, point = fit.evaluation, fit.evaluation.point
-    there = fit.model.evaluate(replace(point, amplitude=point.amplitude + AMPLITUDE_STEP))
-    by_local = jacobian(fit.model, here).by_local[0]
-    expected = by_local @ [there.phase[0] - here.phase[0], AMPLITUDE_STEP]
+    there = fit.model.evaluate(point.moved(np.zeros(0), np.array([LOG_AMPLITUDE.step])))
+    by_nuisance = jacobian(fit.model, here).by_nuisance[0]
+    expected = by_nuisance @ [there.response.phase[0] - here.response.phase[0], LOG_AMPLITUDE.step]
     change = there.residual[0] - here.residual[0]
-    # Without the images' part 2.4 % would be left.
+    # Without the aliases 2.4 % would be left.
     assert np.linalg.norm(change - expected) < 0.012 * np.linalg.norm(change)

@@ -1,23 +1,22 @@
-"""Inputs that nobody knows, from what was measured alone."""
+"""Unknown input amplitudes, from the measured response alone."""
 
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import drawn
+from tests.diagnose.synthetic import base_of, drawn
 from wedgesweep import contact, parameters
-from wedgesweep.diagnose.search import Search
 
 FREQUENCIES = np.array([20.0, 30.0, 8.0, 20.0])
 
 
 @pytest.mark.parametrize("beyond", [1.6, 2.0])
-def test_inputs_are_found_next_to_breakaway(beyond):
+def test_inputs_are_found_near_breakaway(beyond):
     """There the bolster moves by a small part of its input, and a bit less input holds it."""
     held = contact.breakaway_acceleration(parameters.record("coulomb", 1e-4, 100.0)[0])
     true = beyond * held / (2.0 * np.pi * FREQUENCIES) ** 2 * np.array([1.0, 1.0, 1.0, 3.0])
     data = drawn(law="coulomb", known=False, bench=(FREQUENCIES, true))
     if beyond < 2.0:
         assert (true > 30.0 * np.abs(data.measured[:, 0, 0])).sum() == 2
-    base = Search(data, ()).base().fit
+    base = base_of(data)
     assert base.p > 1e-3
-    assert base.amplitudes() == pytest.approx(true, rel=1e-3)
+    assert base.model.data.amplitudes(base.point) == pytest.approx(true, rel=1e-3)

@@ -6,6 +6,7 @@ import pytest
 from tests.diagnose.synthetic import LAG, drawn, searched
 from wedgesweep.diagnose import cross_validation
 from wedgesweep.diagnose.cross_validation import Gain, HeldOut
+from wedgesweep.diagnose.steady import harmonic_data
 
 
 def test_gain_on_held_out_tests_reaches_the_noise():
@@ -24,7 +25,7 @@ def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
         left = []
         for seed in range(12):
             _, base, _ = searched(drawn(seed=seed, std=std, known=known))
-            local = cross_validation._local_numbers(base.fit)
+            local = cross_validation.local_numbers(base.fit)
             assert ((least <= local) & (local <= most)).all()
             left.append(
                 (base.fit.evaluation.residual**2).sum() - (base.fit.model.data.observations - local).sum()
@@ -37,7 +38,7 @@ def test_retuning_alone_gains_nothing():
     measured = cross_validation.cross_validate(
         base.fit, lag.fit, lambda function, items: list(map(function, items))
     )
-    base_square, extended, noise = measured.totals()
+    base_square, extended, noise = measured.mean_squares()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
 
@@ -65,7 +66,7 @@ def test_an_effect_that_one_test_denies_is_uncertain():
 def test_a_fine_sweep_is_no_single_group():
     """Each frequency lies within 2 % of the next, not of all."""
     frequencies = np.arange(30.0, 38.1, 0.5)
-    found = cross_validation.groups(frequencies[::-1].copy())
+    found = harmonic_data.groups(frequencies[::-1].copy())
     assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
-    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= cross_validation.ALIKE
+    assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= harmonic_data.SAME_GROUP
     assert len(found) > 5

@@ -8,7 +8,7 @@ from tests.diagnose.synthetic import LAG, LEANING, drawn, searched
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.jacobian import STEP, _smaller, jacobian
-from wedgesweep.diagnose.steady.model import Model
+from wedgesweep.diagnose.model import Model
 
 
 def test_across_a_jump_the_side_without_it_counts():
@@ -26,9 +26,9 @@ def test_both_sides_tell_the_same_of_a_smooth_response():
 
 
 def test_next_to_where_a_wedge_locks_the_near_side_tells():
-    """Without a derivative a number would look as if the tests told nothing of it, or everything."""
+    """Without a derivative a parameter would look undetermined, or exactly known."""
     data = replace(drawn(), law="coulomb", model=config.parse(LEANING))
-    model = Model(data, Hypothesis(("directional_friction",)), data.amplitude)
+    model = Model(data, Hypothesis(("directional_friction",)))
 
     def at(asymmetry):
         return model.evaluate(model.start(None, np.array([asymmetry])))

@@ -60,13 +60,13 @@ def test_what_the_equations_leave_open_is_wide():
 def test_amplitudes_within_their_prior_are_taken_up():
     _, base, _ = searched(drawn(std=0.02, off=0.02))
     assert base.fit.p > 1e-3
-    np.testing.assert_allclose(base.fit.amplitudes(), 1.02 * AMPLITUDES, rtol=0.01)
+    np.testing.assert_allclose(base.fit.model.data.amplitudes(base.fit.point), 1.02 * AMPLITUDES, rtol=0.01)
 
 
 def test_unknown_amplitudes_are_found():
     _, base, _ = searched(drawn(known=False))
     assert base.fit.p > 1e-3
-    np.testing.assert_allclose(base.fit.amplitudes(), AMPLITUDES, rtol=0.02)
+    np.testing.assert_allclose(base.fit.model.data.amplitudes(base.fit.point), AMPLITUDES, rtol=0.02)
 
 
 def test_an_uncertain_number_is_no_cause_within_its_spread():

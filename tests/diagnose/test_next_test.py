@@ -1,18 +1,16 @@
-"""Recommended tests are worth making: they tell explanations apart, and their data can be fitted."""
+"""Recommended tests are worth making: they separate explanations, and their data can be fitted."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LEANING, drawn
+from tests.diagnose.synthetic import LEANING, drawn, searched
 from wedgesweep import config
-from wedgesweep.diagnose import next_test
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.next_test import ACCELERATIONS, FREQUENCIES, SEPARATED, _choice
-from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.model import Fit, Model
+from wedgesweep.diagnose.model import Fit, Model
+from wedgesweep.diagnose.steady import next_test, simulation
+from wedgesweep.diagnose.steady.next_test import ACCELERATIONS, FREQUENCIES, SEPARATED, Conditions, _choice
 from wedgesweep.solvers.periodic import at_rest
 
 SHAPE = (ACCELERATIONS.size, FREQUENCIES.size)
@@ -22,7 +20,7 @@ FAR = 10.0 * SEPARATED
 def explained(effect, values, std):
     """A Coulomb fit of one effect, its numbers known to some standard deviations."""
     data = replace(drawn(), law="coulomb", model=config.parse(LEANING))
-    model = Model(data, Hypothesis((effect,)), data.amplitude)
+    model = Model(data, Hypothesis((effect,)))
     x = model.hypothesis.at({effect: values})
     evaluation = model.evaluate(model.start(None, x))
     return Fit(model, evaluation, np.diag(np.atleast_1d(std)) ** 2.0, True)
@@ -55,7 +53,7 @@ def test_the_next_test_makes_every_suspect_move(suspects):
 
 def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     locking = explained("directional_friction", {"asymmetry": 0.4}, 0.01)
-    assert not next_test._predict(locking, np.array([60.0]), np.array([1e-3])).found.any()
+    assert not next_test._predict(locking, Conditions(np.array([60.0]), np.array([1e-3]))).found.any()
     assert next_test.recommend([*suspects, locking]) == next_test.recommend(suspects)
     assert next_test.recommend([suspects[0], locking]) is None
 
@@ -88,17 +86,16 @@ def test_where_none_tells_enough_the_farthest_is_chosen():
 def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     """Covariances as large as 1e30 stand for numbers of which the tests say nothing."""
     data = drawn({"velocity_lag": {"time": 3e-4}}, known=False)
-    search = Search(data, ("velocity_lag", "displacement_gain"))
-    base = search.base().fit
-    found = [search.single(effect, base).fit for effect in search.effects]
-    omega, amplitude = 2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1])
+    *_, singles = searched(data, "velocity_lag", "displacement_gain")
+    found = [each.fit for each in singles]
+    tests = Conditions(2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1]))
     distances = []
     for factor in (1.0, 1e30):
         fits = [replace(fit, covariance=factor * fit.covariance) for fit in found]
-        one, other = (next_test._predict(fit, omega, amplitude) for fit in fits)
+        one, other = (next_test._predict(fit, tests) for fit in fits)
         weight = next_test._weights(data, [one, other])
         distances.append(next_test._distances(one, other, weight))
         np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
-    told, open_ = distances
-    assert (open_ > 0.0).all()
-    assert (open_ < told).all()
+    usual, undetermined = distances
+    assert (undetermined > 0.0).all()
+    assert (undetermined < usual).all()

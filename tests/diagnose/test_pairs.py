@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from tests.diagnose.synthetic import drawn, next_to_breakaway, searched
+from tests.diagnose.synthetic import drawn, next_to_breakaway
 from wedgesweep.diagnose import pairs
-from wedgesweep.diagnose.least_squares import refine
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.search import Search, base_fit, single_fit, single_fits
 
 # More preload and less friction: alone, neither explains as much as another mass.
 TRUTH = {"preload": {"force": 0.3}, "friction_level": {"scale": 0.85}}
@@ -16,33 +16,38 @@ CANDIDATES = (*TRUTH, "bolster_mass")
 
 def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatch):
     monkeypatch.setattr(pairs, "PARTNERS", 1)
-    search = Search(drawn(TRUTH), CANDIDATES)
-    base = search.base().fit
-    singles = search.singles(base)
+    search, base = base_fit(Search.of(drawn(TRUTH), CANDIDATES))
+    search, singles, scans = single_fits(search, base.fit)
     assert min(singles, key=lambda each: each.fit.chi2).effects == ("bolster_mass",)
-    best = pairs.pairs(search, base, singles)[0]
+    best = pairs.fit_pairs(search, base.fit, singles, scans)[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
 
 
 def test_an_effect_keeps_its_numbers_beside_another_than_that_of_its_pair():
-    search, base, singles = searched(drawn(TRUTH), *CANDIDATES)
-    alone = {each.effects[0]: pairs._single_scan(search, base.fit, each.fit) for each in singles}
+    search, base = base_fit(Search.of(drawn(TRUTH), CANDIDATES))
+    search, singles, scans = single_fits(search, base.fit)
+    known = {
+        name: pairs.single_scan(base.fit, each.fit, scans[name])
+        for name, each in zip(CANDIDATES, singles, strict=True)
+    }
     model = search.model("preload", "bolster_mass")
-    wrong = refine(model, model.evaluate(model.start(base.fit, np.array([0.3, 1.0]))))
+    wrong = minimise(model, model.evaluate(model.start(base.fit, np.array([0.3, 1.0]))))
     assert wrong.p < 1e-9
-    best = pairs._swapped(search, base.fit, alone, [search.explanation(wrong)])[0]
+    best = pairs.swapped_pairs(pairs.PairSearch(search, base.fit, known), [search.explanation(wrong)])[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
 
 
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
-    search, base, (_, damper) = searched(next_to_breakaway(), "stribeck", "viscous_damping")
+    search, base = base_fit(Search.of(next_to_breakaway(), ("stribeck", "viscous_damping")))
+    damper, stribecks = (single_fit(search, effect, base.fit) for effect in ("viscous_damping", "stribeck"))
     model = search.model("stribeck")
-    stribeck = refine(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
-    first, other = (pairs._single_scan(search, base.fit, fit) for fit in (stribeck, damper.fit))
-    (begun,) = pairs._begin(search, first, other, False)
+    stribeck = minimise(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
+    first = pairs.single_scan(base.fit, stribeck, stribecks.scan)
+    second = pairs.single_scan(base.fit, damper.explanation.fit, damper.scan)
+    (begun,) = pairs.begin(search, pairs.Combination(first, second), False)
     assert begun.chi2 < pairs.BEHIND * first.subset.chi2
 
 
@@ -58,6 +63,6 @@ def test_only_what_is_far_behind_a_pair_that_will_do_is_given_up():
     far = 2.0 * pairs.BEHIND * 100.0
     near = 0.9 * pairs.BEHIND * 100.0
     several = fits(far, 100.0, *[near] * pairs.SEVERAL, far, p=0.5)
-    assert [fit.chi2 for fit in pairs._hopeful(several)] == [100.0, *[near] * pairs.SEVERAL]
-    assert len(pairs._hopeful(fits(100.0, *[far] * 9, p=0.5))) == pairs.SEVERAL
-    assert len(pairs._hopeful(fits(100.0, *[far] * 9, p=1e-6))) == 10
+    assert [fit.chi2 for fit in pairs.promising(several)] == [100.0, *[near] * pairs.SEVERAL]
+    assert len(pairs.promising(fits(100.0, *[far] * 9, p=0.5))) == pairs.SEVERAL
+    assert len(pairs.promising(fits(100.0, *[far] * 9, p=1e-6))) == 10

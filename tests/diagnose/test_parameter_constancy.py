@@ -42,12 +42,12 @@ def test_a_number_that_changes_in_the_session_is_found_long_before_noise_is_exce
     _, _, (single,) = searched(worn(1.10, 1.114), "friction_level")
     assert single.fit.p > verdict.ADEQUATE
     assert single.constancy.p < 1e-6
-    assert single.constancy.number == "friction_level.scale"
+    assert single.constancy.parameter == "friction_level.scale"
 
 
 def test_what_changes_in_the_session_is_not_named():
     data = worn(1.10, 1.114)
-    base, found = diagnosis.explain(Search(data, ("friction_level",)))
+    _, base, found, _ = diagnosis.explain(Search.of(data, ("friction_level",)))
     assert base.fit.excess > verdict.STRONG
     assert verdict.decide(base, found, verdict.DEFAULT).verdict == "none-of-mine"
 
@@ -59,7 +59,7 @@ def test_the_base_model_and_a_single_test_have_nothing_that_could_differ():
 
 
 def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
-    """At the least Q the misfit with the pulls on the priors has nothing in it that could be taken up."""
+    """At the minimum the misfit with the pulls on the priors contains nothing that could be taken up."""
     off = 0.03 * np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
     data = drawn({"friction_level": {"scale": 1.1}}, uncertain={"wedge_stiffness": 0.05}, off=off)
     _, _, (single,) = searched(data, "friction_level")

@@ -1,4 +1,4 @@
-"""Intervals by the rise of Q where its curvature at the end of a fit would make them too narrow."""
+"""Intervals by the rise of chi-squared where its curvature would make them too narrow."""
 
 from dataclasses import replace
 
@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import LAG, drawn, searched
-from wedgesweep.diagnose.least_squares import refine, tight_refit
+from wedgesweep.diagnose.least_squares import minimise, tight_refit
+from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.profile_likelihood import RISE, profile_likelihood
-from wedgesweep.diagnose.steady.model import Model
 
 
 def serial(function, items):
@@ -25,11 +25,11 @@ def lag():
     return tight_refit(single.fit)
 
 
-def test_where_q_is_a_parabola_its_curvature_tells_the_interval(lag):
+def test_the_interval_of_a_parabola_is_that_of_its_curvature(lag):
     assert std(profile_likelihood(lag, serial)) == pytest.approx(std(lag), rel=0.05)
 
 
-def test_what_seems_more_certain_than_it_is_becomes_as_wide_as_q_says(lag):
+def test_an_interval_that_is_too_narrow_widens_to_the_rise_of_chi2(lag):
     """As derivatives across a jump make it."""
     certain = replace(lag, covariance=lag.covariance / 50.0**2)
     assert std(profile_likelihood(certain, serial)) == pytest.approx(std(lag), rel=0.2)
@@ -40,13 +40,13 @@ def test_an_interval_is_no_narrower_than_by_the_curvature(lag):
     np.testing.assert_array_equal(std(profile_likelihood(wide, serial)), std(wide))
 
 
-def test_a_fit_that_stopped_short_goes_on_to_the_least_q(lag):
+def test_a_fit_that_stopped_short_continues_to_the_minimum(lag):
     """By the least of the rises that are looked at, as where a ridge lies in between."""
     point = lag.evaluation.point
     x = point.x.copy()
     x[0] += 4.0 * std(lag)[0]
     there = lag.model.evaluate(replace(point, x=x))
-    short = replace(refine(lag.model, there, 0), covariance=lag.covariance)
+    short = replace(minimise(lag.model, there, 0), covariance=lag.covariance)
     assert short.chi2 > lag.chi2 + 10.0
     found = profile_likelihood(short, serial)
     assert found.chi2 == pytest.approx(lag.chi2, abs=0.1)
@@ -54,11 +54,11 @@ def test_a_fit_that_stopped_short_goes_on_to_the_least_q(lag):
 
 
 def rises(fit):
-    """What Q rises at both ends of the interval of a fit's only number."""
+    """Rise of chi-squared at both ends of the interval of a fit's only number."""
     off = np.sqrt(RISE) * std(fit)[0]
     models = [fit.model.holding(0, fit.x[0] + side * off) for side in (-1.0, 1.0)]
     points = [replace(fit.evaluation.point, x=np.r_[each.low[0], fit.x[1:]]) for each in models]
-    return [refine(m, m.evaluate(p)).chi2 - fit.chi2 for m, p in zip(models, points, strict=True)]
+    return [minimise(m, m.evaluate(p)).chi2 - fit.chi2 for m, p in zip(models, points, strict=True)]
 
 
 def compliance(level):
@@ -70,13 +70,13 @@ def compliance(level):
     return fit, profile_likelihood(fit, serial)
 
 
-def test_where_q_is_steeper_to_one_side_the_other_side_tells():
+def test_the_flatter_side_of_chi2_counts():
     before, fit = compliance(0.1)
     assert max(rises(before)) > 1.2 * min(rises(before))
     assert min(rises(fit)) > 0.9 * RISE
 
 
-def test_where_q_is_rugged_the_interval_is_wider_than_by_its_curvature():
+def test_rugged_chi2_widens_the_interval():
     before, fit = compliance(0.3)
     assert max(rises(before)) < RISE / 2.0
     assert min(rises(fit)) > RISE / 2.0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import drawn
+from tests.diagnose.synthetic import base_of, drawn
 from wedgesweep.diagnose import score_test
 from wedgesweep.diagnose.jacobian import jacobian
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.search import Search, base_fit
 
 EFFECTS = (
     "velocity_lag",
@@ -25,8 +25,8 @@ FADING = {
 
 
 def scored(effects=None):
-    search = Search(drawn(effects), EFFECTS)
-    return {each.effect: each for each in score_test.scores(search, search.base().fit)}
+    search, base = base_fit(Search.of(drawn(effects), EFFECTS))
+    return {each.effect: each for each in score_test.scores(search, base.fit, {})}
 
 
 def test_an_effect_that_is_there_scores_and_one_that_is_not_does_not():
@@ -46,7 +46,7 @@ def test_the_weakest_value_is_what_the_tests_would_have_shown():
         assert scored(stronger)[effect].t2 > score_test.DETECTABLE > scored(weaker)[effect].t2
 
 
-def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():
+def test_an_undetected_tone_has_a_detectable_strength():
     tone_undetected = scored()["stray_vibration"]
     assert tone_undetected.t2 is None
     assert tone_undetected.testable
@@ -55,8 +55,8 @@ def test_a_tone_that_nobody_heard_has_a_strength_that_would_have_shown():
 
 @pytest.mark.parametrize("known", [True, False])
 def test_nuisances_take_out_start_phases_and_amplitudes_as_far_as_these_are_unknown(known):
-    fit = Search(drawn(std=1e-6, known=known), ()).base().fit
-    phase, amplitude = np.moveaxis(jacobian(fit.model, fit.evaluation).by_local, -1, 0)
+    fit = base_of(drawn(std=1e-6, known=known))
+    phase, amplitude = np.moveaxis(jacobian(fit.model, fit.evaluation).by_nuisance, -1, 0)
     project = score_test.Projector(fit)
     assert np.linalg.norm(project(phase)) < 1e-6 * np.linalg.norm(phase)
     along = np.einsum("tm,tm->t", phase, amplitude) / np.einsum("tm,tm->t", phase, phase)

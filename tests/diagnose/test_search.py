@@ -1,15 +1,15 @@
-"""Where the search for an explanation goes on, and where it ends."""
+"""Where the search for an explanation continues, and where it ends."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import MODEL, drawn, searched
+from tests.diagnose.synthetic import MODEL, base_of, drawn, searched
 from wedgesweep.diagnose import diagnosis
-from wedgesweep.diagnose.least_squares import refine
-from wedgesweep.diagnose.search import Search, best_of
-from wedgesweep.diagnose.steady.model import Model
+from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.search import Search, base_fit, best_of, multistart, refit_base, single_fit
 
 CANDIDATES = ("displacement_gain", "velocity_lag")
 
@@ -18,34 +18,31 @@ CANDIDATES = ("displacement_gain", "velocity_lag")
     ("truth", "looked"),
     [({"velocity_lag": {"time": 3e-4}}, False), ({"bolster_mass": {"scale": 1.05}}, True)],
 )
-def test_all_starts_are_followed_only_where_nothing_will_do(truth, looked, monkeypatch):
-    schedule = []
-    multistart = Search.multistart
+def test_all_starts_are_followed_only_if_nothing_is_adequate(truth, looked, monkeypatch):
+    again = []
 
-    def told(self):
-        schedule.extend(multistart(self))
-        return schedule
+    def told(search, scans):
+        again.extend(multistart(search, scans))
+        return again
 
-    monkeypatch.setattr(Search, "multistart", told)
-    search = Search(drawn(truth), CANDIDATES)
-    _, found = diagnosis.explain(search)
-    assert [each.effects for each in schedule] == [(name,) for name in CANDIDATES if looked]
+    monkeypatch.setattr(diagnosis, "multistart", told)
+    found = diagnosis.explain(Search.of(drawn(truth), CANDIDATES)).explanations
+    assert [each.effects for each in again] == [(name,) for name in CANDIDATES if looked]
     single = {each.effects: each.fit.chi2 for each in found if len(each.effects) == 1}
-    for each in schedule:
+    for each in again:
         assert single[each.effects] <= each.fit.chi2
 
 
 def test_the_right_way_is_found_though_its_start_looks_worst():
     truth = 3e-4
-    search, _, _ = searched(drawn({"velocity_lag": {"time": truth}}), "velocity_lag")
-    search.scans["velocity_lag"] = sorted(
-        search.scans["velocity_lag"], key=lambda evaluation: evaluation.chi2
-    )[-3:]
-    assert search.multistart()[0].fit.x[0] == pytest.approx(truth, rel=0.05)
+    search, base = base_fit(Search.of(drawn({"velocity_lag": {"time": truth}}), ("velocity_lag",)))
+    scan = single_fit(search, "velocity_lag", base.fit).scan
+    worst = {"velocity_lag": sorted(scan, key=lambda evaluation: evaluation.chi2)[-3:]}
+    assert multistart(search, worst)[0].fit.x[0] == pytest.approx(truth, rel=0.05)
 
 
-def test_what_rough_trials_leave_is_not_taken_for_what_a_fit_leaves():
-    search = Search(drawn({"velocity_lag": {"time": 3e-4}}), ())
+def test_a_rough_misfit_is_not_taken_for_that_of_a_fit():
+    search = Search.of(drawn({"velocity_lag": {"time": 3e-4}}), ())
     model = search.model("displacement_gain")
     evaluation = model.evaluate(model.start(None, np.array([1.02])))
     flattered = replace(evaluation, residual=0.1 * evaluation.residual)
@@ -54,7 +51,7 @@ def test_what_rough_trials_leave_is_not_taken_for_what_a_fit_leaves():
 
 
 @pytest.mark.parametrize("length", [0.9e-6, 1.03e-6, 1.5e-6])
-def test_what_leads_the_base_model_far_astray_begins_without_it(length):
+def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(length):
     """Faces that creep where the base model's stick: it moves only with far less friction or input.
 
     Nor does a fit get there whose inputs are free to make up for a length that is wrong by then.
@@ -64,14 +61,14 @@ def test_what_leads_the_base_model_far_astray_begins_without_it(length):
         {"presliding": {"length": length}}, bench=bench, std=0.01, uncertain={"friction_level": 0.02}
     )
     _, base, (found,) = searched(data, "presliding")
-    assert np.abs(base.fit.evaluation.point.amplitude).max() > 1.0
+    assert np.abs(base.fit.evaluation.point.nuisance[:, 0]).max() > 1.0
     assert found.fit.p > 1e-3
     assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
 
 
-def test_a_tone_that_nobody_hears_leaves_nothing_to_fit():
-    search = Search(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
-    base, found = diagnosis.explain(search)
+def test_an_undetected_tone_leaves_nothing_to_fit():
+    search = Search.of(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
+    _, base, found, _ = diagnosis.explain(search)
     assert base.fit.p < 1e-9
     assert found == []
 
@@ -96,7 +93,7 @@ def clean(seed=0):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_base_model_does_not_stop_short_of_its_uncertain_numbers(seed):
-    base = Search(clean(seed), ()).base().fit
+    base = base_of(clean(seed))
     assert base.x == pytest.approx([0.971], abs=0.003)
     assert base.p > 1e-3
 
@@ -121,21 +118,21 @@ def test_inputs_do_not_make_up_for_uncertain_numbers(seed):
         law="coulomb",
         model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
     )
-    base = Search(data, ()).base().fit
+    base = base_of(data)
     assert base.x == pytest.approx([1.155], abs=0.003)
     assert base.p > 1e-3
 
 
 def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
-    search = Search(clean(), ("velocity_lag",))
+    search = Search.of(clean(), ("velocity_lag",))
     with monkeypatch.context() as alone:
         alone.setattr(Model, "uncertain_starts", lambda self: np.ones((1, 1)))
         alone.setattr("wedgesweep.diagnose.search.refit_without_influential_tests", lambda fit: fit)
-        alone.setattr("wedgesweep.diagnose.search._as_stated", lambda model, evaluation: evaluation)
-        short = search.base()
+        alone.setattr("wedgesweep.diagnose.search._held_as_stated", lambda model, evaluation: evaluation)
+        short = base_fit(search).base
     assert short.fit.p < 1e-9
     model = search.model("velocity_lag")
-    there = model.evaluate(model.start(search.base().fit, model.hypothesis.low))
-    again = search.refit_base(short, [search.explanation(refine(model, there))])
+    there = model.evaluate(model.start(base_fit(search).base.fit, model.hypothesis.low))
+    again = refit_base(search, short, [search.explanation(minimise(model, there))]).base
     assert again.fit.p > 1e-3
-    assert search.refit_base(again, [short]) is again
+    assert refit_base(search, again, [short]).base is again

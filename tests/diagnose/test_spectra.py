@@ -66,31 +66,31 @@ def test_a_second_channel_that_says_nothing_new_is_dropped():
     assert found.mean.shape[0] == 1
 
 
-def spectra_with(rng, foreign, image=0.0):
-    """Spectra of five tests, all with one foreign tone of a given amplitude at 47.3 Hz.
+def spectra_with(rng, amplitude, line=0.0):
+    """Spectra of five tests, all with one spurious tone of a given amplitude at 47.3 Hz.
 
-    ``image``: amplitude of a line at 16.7 Hz that the last test alone has.
+    ``line``: amplitude of a line at 16.7 Hz that the last test alone has.
     """
     spectra = []
     for frequency in (5.0, 8.0, 11.0, 20.0, 32.0):
         time, channels, _ = record(rng, frequency)
-        channels = channels + foreign * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
-        channels += (frequency == 32.0) * image * np.sin(2.0 * pi * 16.7 * time)
+        channels = channels + amplitude * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
+        channels += (frequency == 32.0) * line * np.sin(2.0 * pi * 16.7 * time)
         spectra.append(spectrum(time, channels, frequency))
     return spectra
 
 
 @pytest.mark.parametrize("amplitude", [0.03, 0.3, 3.0])
-def test_a_foreign_tone_is_found_where_it_is(amplitude):
+def test_a_spurious_tone_is_found_where_it_is(amplitude):
     found = tone.find(spectra_with(np.random.default_rng(3), amplitude))
     assert found.frequency == pytest.approx(47.3, abs=0.05)
     assert abs(found.frequency - 47.3) < 4.0 * found.std
 
 
 def test_lines_of_one_response_alone_neither_hide_a_tone_nor_are_one():
-    found = tone.find(spectra_with(np.random.default_rng(4), 0.03, image=1.0))
+    found = tone.find(spectra_with(np.random.default_rng(4), 0.03, line=1.0))
     assert found.frequency == pytest.approx(47.3, abs=0.1)
-    assert [tone.find(spectra_with(np.random.default_rng(seed), 0.0, image=1.0)) for seed in range(12)] == [
+    assert [tone.find(spectra_with(np.random.default_rng(seed), 0.0, line=1.0)) for seed in range(12)] == [
         None
     ] * 12
 
@@ -104,9 +104,9 @@ def test_the_frequency_of_a_tone_is_as_uncertain_as_it_says():
 def test_the_chance_of_a_tone_is_exact_and_never_ends():
     power, count = np.array([0.5, 30.0, 40.0, 5000.0]), np.array([1, 24, 6, 24])
     np.testing.assert_allclose(
-        tone.log_chance(power[:3], count[:3]), gamma.logsf(power[:3], count[:3]), rtol=1e-10
+        tone.log_p_value(power[:3], count[:3]), gamma.logsf(power[:3], count[:3]), rtol=1e-10
     )
-    assert -5000.0 < tone.log_chance(power, count)[3] < -4700.0
+    assert -5000.0 < tone.log_p_value(power, count)[3] < -4700.0
 
 
 def test_a_tone_beside_a_harmonic_leaves_the_others_alone():
@@ -114,9 +114,9 @@ def test_a_tone_beside_a_harmonic_leaves_the_others_alone():
     rng, squares = np.random.default_rng(6), []
     for _ in range(40):
         time, channels, truth = record(rng, 24.0)
-        foreign = 0.1 * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
-        found = spectrum(time, channels + foreign, 24.0, 47.3)
-        assert (found.tone, found.masked, found.observations) == (None, 2, 4 * (COMPARED - 1))
+        spurious = 0.1 * np.sin(2.0 * pi * 47.3 * time + rng.uniform(0.0, 6.0))
+        found = spectrum(time, channels + spurious, 24.0, 47.3)
+        assert (found.tone, found.masked_harmonic, found.observations) == (None, 2, 4 * (COMPARED - 1))
         squares.append(2.0 * np.abs(found.mean - truth) ** 2 / found.variance)
     others = np.delete(np.array(squares), 1, axis=2)
     assert others.mean() == pytest.approx(2.0, rel=0.1)
@@ -129,8 +129,8 @@ def test_what_a_tone_makes_with_the_harmonics_is_no_noise(periods):
     mixed = np.abs(47.3 + 11.0 * np.arange(-12, 12)[:, None])
     for _ in range(40):
         time, channels, truth = record(rng, 11.0, periods)
-        foreign = 0.005 * np.sin(2.0 * pi * mixed * time + rng.uniform(0.0, 6.0, mixed.shape)).sum(axis=0)
-        found = spectrum(time, channels + foreign, 11.0, 47.3)
+        spurious = 0.005 * np.sin(2.0 * pi * mixed * time + rng.uniform(0.0, 6.0, mixed.shape)).sum(axis=0)
+        found = spectrum(time, channels + spurious, 11.0, 47.3)
         squares.append(2.0 * np.abs(found.mean[:, :-1] - truth) ** 2 / found.variance[:, :-1])
     if periods > 8.0:
         assert np.mean(squares) == pytest.approx(2.0, rel=0.08)
@@ -144,7 +144,7 @@ def test_noise_alone_has_no_tone():
 
 
 @pytest.mark.parametrize("frequencies", [(5.0, 8.0, 11.0, 11.0), (11.0, 11.0, 11.0)])
-def test_subharmonics_of_a_response_are_no_foreign_tone(frequencies):
+def test_subharmonics_of_a_response_are_no_spurious_tone(frequencies):
     rng = np.random.default_rng(5)
     spectra = []
     for frequency in frequencies:
@@ -182,8 +182,8 @@ def test_a_tone_is_not_drawn_to_where_a_record_begins_to_tell_it_from_a_harmonic
         rng, spectra = np.random.default_rng(seed), []
         for frequency, size in ((5.0, 0.0), (11.0, 0.0), (20.0, 0.02), (24.0, 0.04), (32.0, 0.02)):
             time, channels, _ = record(rng, frequency)
-            foreign = size * np.sin(2.0 * pi * 74.2 * time + rng.uniform(0.0, 6.0))
-            spectra.append(spectrum(time, channels + foreign, frequency))
+            spurious = size * np.sin(2.0 * pi * 74.2 * time + rng.uniform(0.0, 6.0))
+            spectra.append(spectrum(time, channels + spurious, frequency))
         found = tone.find(spectra)
         assert abs(found.frequency - 74.2) < 4.5 * found.std
 

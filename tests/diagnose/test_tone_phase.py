@@ -1,4 +1,4 @@
-"""At which phase a foreign vibration met the input matters where the record is short of a beat."""
+"""The phase of a tone relative to the input matters if the record is shorter than a beat."""
 
 from dataclasses import replace
 from math import pi
@@ -6,15 +6,14 @@ from math import pi
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import MODEL
+from tests.diagnose.synthetic import MODEL, base_of
 from wedgesweep import config
-from wedgesweep.diagnose.least_squares import refine
+from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
 from wedgesweep.diagnose.score_test import scores
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.fit_data import FitData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.spectra import spectrum
-from wedgesweep.diagnose.steady.tone_phase import with_tone_phase
 from wedgesweep.solvers import periodic
 
 TONE, ACCELERATION, NOISE = 14.41, 7e-3, 0.01
@@ -24,7 +23,7 @@ PERIODS, PER_PERIOD = 8.4, 256
 
 
 def recorded(phases, seed):
-    """Problem of three tests that met the vibration at some phases (rad); starts are those of the input."""
+    """Data of three tests with some phases (rad) of the vibration; records start at phase 0 of the input."""
     rng = np.random.default_rng(seed)
     model = config.parse(MODEL)
     stray = {"stray_vibration": {"acceleration": ACCELERATION, "frequency": TONE}}
@@ -40,39 +39,38 @@ def recorded(phases, seed):
     )
     names = tuple(f"{frequency:g} Hz" for frequency in FREQUENCIES)
     exact = np.full(3, 1e-4)
-    return FitData(model, "static-dynamic", names, spectra, AMPLITUDES, exact, {}, TONE, 0.01)
+    return HarmonicData(model, "static-dynamic", names, spectra, AMPLITUDES, exact, {}, TONE, 0.01)
 
 
-def test_what_a_vibration_leaves_is_explained_by_the_phase_at_which_it_met_the_input():
+def test_the_phase_of_a_vibration_explains_what_an_unknown_phase_leaves():
     before = []
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):
         data = recorded(np.full(3, phase), seed)
-        assert [each.masked for each in data.spectra] == [3, None, None]
-        model = Search(data, ("stray_vibration",)).model("stray_vibration")
-        anyhow = refine(model, model.evaluate(model.start(None, np.array([ACCELERATION]))))
-        fit = with_tone_phase(anyhow)
+        assert [each.masked_harmonic for each in data.spectra] == [3, None, None]
+        model = Search.of(data, ("stray_vibration",)).model("stray_vibration")
+        anyhow = minimise(model, model.evaluate(model.start(None, np.array([ACCELERATION]))))
+        fit = with_extra_nuisances(anyhow)
         assert fit.p > 1e-3
         found = fit.values["stray_vibration"]["acceleration_m_per_s2"]
         assert found == pytest.approx(ACCELERATION, rel=0.05)
         before.append(anyhow.p)
-    # In most phases it is no matter; in others nothing but the right one will do.
+    # Most phases do not matter; with others only the fitted phase is adequate.
     assert min(before) < 1e-6
 
 
-def test_a_model_on_trial_may_have_the_vibration_itself():
+def test_the_base_model_may_contain_the_vibration():
     """Its phases are as unknown as those of one that is a cause."""
     table = f"[effects.stray_vibration]\nacceleration_m_per_s2 = {ACCELERATION}\nfrequency_hz = {TONE}\n"
     for seed, phase in enumerate(np.arange(6) * pi / 3.0):
         data = replace(recorded(np.full(3, phase), seed), model=config.parse(MODEL + table))
-        search = Search(data, ("viscous_damping",))
-        base = search.base()
+        search, base = base_fit(Search.of(data, ("viscous_damping",)))
         assert base.fit.p > 1e-3
-    (damping,) = scores(search, base.fit)
+    (damping,) = scores(search, base.fit, {})
     assert damping.testable
-    assert search.single("viscous_damping", base.fit).penalised > base.penalised
+    assert single_fit(search, "viscous_damping", base.fit).explanation.penalised > base.penalised
 
 
 def test_a_fit_without_a_tone_stays_as_it_is():
     data = recorded(np.zeros(3), 0)
-    base = Search(data, ()).base().fit
-    assert with_tone_phase(base) is base
+    base = base_of(data)
+    assert with_extra_nuisances(base) is base

@@ -3,17 +3,16 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, MODEL, drawn, next_to_breakaway, searched
+from tests.diagnose.synthetic import LAG, MODEL, base_of, drawn, next_to_breakaway, searched
 from wedgesweep.diagnose import trimmed_refit
-from wedgesweep.diagnose.least_squares import refine
+from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import Search
 
 
 def refined(data, effects, x):
     """Fit of effects from their numbers (k,) on, beside the base model's fit."""
-    search = Search(data, effects)
-    model, base = search.model(*effects), search.base().fit if effects else None
-    return refine(model, model.evaluate(model.start(base, np.asarray(x, float))))
+    model, base = Search.of(data, effects).model(*effects), base_of(data) if effects else None
+    return minimise(model, model.evaluate(model.start(base, np.asarray(x, float))))
 
 
 def test_around_a_test_next_to_breakaway():
@@ -52,7 +51,7 @@ def test_around_a_test_that_sticks():
         model=MODEL + "[suspension]\ncolumn_angle_deg = 4.0\n",
     )
     held_up = refined(data, ("end_stop", "bolster_mass"), (np.log(0.4322), np.log(150.6), 1.07))
-    assert held_up.model.sticks(held_up.evaluation).tolist() == [place == 5 for place in range(10)]
+    assert held_up.model.data.insensitive(held_up.evaluation).tolist() == [place == 5 for place in range(10)]
     assert held_up.p < 1e-9
     found = trimmed_refit.refit_without_influential_tests(held_up)
     assert found.p > 0.01
@@ -73,10 +72,10 @@ def test_around_a_test_whose_input_led_to_where_it_sticks(true, off):
         model=MODEL + "[suspension]\ncolumn_angle_deg = 4.0\n",
     )
     held_up = refined(data, (), ())
-    assert held_up.model.sticks(held_up.evaluation).tolist() == [False, True, False, False]
+    assert held_up.model.data.insensitive(held_up.evaluation).tolist() == [False, True, False, False]
     found = trimmed_refit.refit_without_influential_tests(held_up)
     assert found.p > 0.01
-    assert found.amplitudes()[1] == pytest.approx(1e-3 * true, rel=0.002)
+    assert found.model.data.amplitudes(found.point)[1] == pytest.approx(1e-3 * true, rel=0.002)
 
 
 def test_what_nothing_holds_up_stays():

@@ -8,8 +8,8 @@ import pytest
 from tests.command import invoke
 from wedgesweep import config
 from wedgesweep import measured as measurements
-from wedgesweep.diagnose import diagnosis
 from wedgesweep.diagnose.steady import simulation
+from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnosis_result import read
 from wedgesweep.solvers.periodic import at_rest
 
@@ -71,7 +71,7 @@ def measured(tmp_path):
 def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
     out = measured.parent / "found"
     said = invoke("diagnose", measured, "-o", out, "--effects", "preload,friction_level,wedge_stiffness")
-    assert "part of the base model, so no candidates: preload" in said
+    assert "already part of the base model, so no candidates: preload" in said
     found = read(out)
     assert found.verdict == "nothing-missing"
     # What is uncertain scales the model's own number.
@@ -89,18 +89,18 @@ def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
 
 
 def test_a_tone_that_the_model_has_is_not_looked_for(measured):
-    """Nobody hears it in these data: they have none."""
+    """These data have none."""
     table = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.01\nfrequency_hz = 17.3\n"
-    assert diagnosis.fit_data_of(measurements.read(measured)).tone is None
+    assert harmonic_data(measurements.read(measured)).tone is None
     (measured.parent / "model.toml").write_text(MODEL + table)
-    fit_data = diagnosis.fit_data_of(measurements.read(measured))
+    fit_data = harmonic_data(measurements.read(measured))
     assert (fit_data.tone, fit_data.tone_std) == (17.3, 0.0)
 
 
 def test_what_the_model_has_switched_off_is_a_candidate_still(measured):
     silent = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.0\nfrequency_hz = 17.3\n"
     (measured.parent / "model.toml").write_text(f"{MODEL}{silent}[effects.guide_friction]\n")
-    assert diagnosis.fit_data_of(measurements.read(measured)).tone is None
+    assert harmonic_data(measurements.read(measured)).tone is None
     out = measured.parent / "found"
     said = invoke("diagnose", measured, "-o", out, "--no-report", "--effects", "preload,guide_friction")
     assert "no candidates: preload\n" in said

@@ -1,4 +1,4 @@
-"""The six answers, from fits that are set by hand."""
+"""The six verdicts, from fits that are set by hand."""
 
 from types import SimpleNamespace
 
@@ -7,9 +7,9 @@ import pytest
 from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, verdict
+from wedgesweep.diagnose.explanation import POSSIBLE, Explanation
 from wedgesweep.diagnose.parameter_constancy import Constancy
-from wedgesweep.diagnose.search import POSSIBLE, Explanation
-from wedgesweep.diagnose.verdict import Thresholds, decide, on_unseen_tests, where_it_shows
+from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p_where_it_shows
 
 DOF, PENALTY = 700, 12.6
 
@@ -87,8 +87,8 @@ def test_what_has_not_is_no_rival_but_shows_that_others_imitate():
         assert (found.verdict, found.rivals) == (expected, (best if expected == "tied" else rival,))
 
 
-def test_what_hardly_shows_beside_an_effect_is_not_named():
-    """Many will do for a number that differs a little from test to test."""
+def test_a_second_effect_that_hardly_shows_is_not_named():
+    """Many effects fit a parameter that differs a little from test to test."""
     half = explained(760.0, "friction_level", constant=1e-4)
     pair = explained(690.0, "friction_level", "ageing")
     found = verdict_of(explained(5000.0), half, pair)
@@ -119,17 +119,17 @@ def test_tests_that_show_nothing_cannot_make_up_for_a_misfit():
     assert chi2.sf(doubtful.sum(), DOF) > chi2.sf(wrong.sum(), DOF) > verdict.ADEQUATE
 
 
-def test_what_leaves_too_much_where_it_shows_and_fails_on_unseen_tests_is_none():
+def test_a_misfit_where_it_shows_and_a_failure_on_held_out_tests_leave_no_cause():
     base, doubtful = shared(2000.0, DOF / 12), shared(82.0, 54.0)
     start, best = explained(base.sum(), by_test=base), explained(doubtful.sum(), "stribeck", by_test=doubtful)
-    assert best.fit.p > verdict.ADEQUATE > where_it_shows(start.fit, best.fit)
-    found = on_unseen_tests(verdict_of(start, best), start, 0.5, [-0.3, 1.0])
+    assert best.fit.p > verdict.ADEQUATE > p_where_it_shows(start.fit, best.fit)
+    found = on_held_out_tests(verdict_of(start, best), start, 0.5, [-0.3, 1.0])
     assert (found.verdict, found.best) == ("none-of-mine", best)
 
 
 def test_where_nothing_shows_all_that_is_left_counts():
     quiet = explained(600.0)
-    assert where_it_shows(quiet.fit, quiet.fit) > 0.0
+    assert p_where_it_shows(quiet.fit, quiet.fit) > 0.0
 
 
 @pytest.mark.parametrize(
@@ -146,21 +146,21 @@ def test_where_nothing_shows_all_that_is_left_counts():
         (810.0, 0.5, [-0.3, 1.0], "none-of-mine"),
     ],
 )
-def test_a_cause_that_may_make_unseen_tests_worse_is_none(q, removed, interval, expected):
+def test_a_cause_that_may_predict_held_out_tests_worse_is_none(q, removed, interval, expected):
     base, best = explained(5000.0), explained(q, "stribeck")
-    found = on_unseen_tests(verdict_of(base, best), base, removed, interval)
+    found = on_held_out_tests(verdict_of(base, best), base, removed, interval)
     assert (found.verdict, found.best) == (expected, best)
     assert (found.cause is None) == (expected == "none-of-mine")
 
 
-def test_a_rival_that_will_do_is_not_called_none():
+def test_an_adequate_rival_is_not_called_none():
     """The best one leaves a bit more than noise, a rival does not; other tests confirm neither."""
     best, rival = explained(793.0, "stribeck"), explained(787.0, "preload", "end_stop")
     base = explained(5000.0)
     found = verdict_of(base, best, rival)
     assert (found.verdict, found.best, found.rivals) == ("tied", best, (rival,))
     assert rival.fit.p > verdict.ADEQUATE > best.fit.p
-    assert on_unseen_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "data-insufficient"
+    assert on_held_out_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "data-insufficient"
 
 
 def test_a_gain_that_chance_may_bring_is_not_called_none():
@@ -174,18 +174,18 @@ def test_unconfirmed_weak_evidence_names_nothing():
     base, best, other = explained(5000.0), explained(690.0, "stribeck"), explained(720.0, "preload")
     for found in (verdict_of(explained(1200.0), best), verdict_of(base, best, other)):
         assert found.verdict == "consistent-with"
-        found = on_unseen_tests(found, base, 0.5, [-0.3, 1.0])
+        found = on_held_out_tests(found, base, 0.5, [-0.3, 1.0])
         assert (found.verdict, found.cause) == ("data-insufficient", None)
         assert found.alternatives[0] is best
 
 
-def test_a_base_model_that_will_do_needs_no_cause_that_unseen_tests_do_not_confirm():
+def test_a_tolerable_base_model_needs_no_cause_that_held_out_tests_do_not_confirm():
     base = explained(830.0)
     assert verdict.TOLERABLE < base.fit.p < POSSIBLE
     found = verdict_of(base, explained(780.0, "stribeck"))
     assert found.verdict == "consistent-with"
-    assert on_unseen_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "nothing-missing"
-    assert on_unseen_tests(found, base, 0.5, [0.1, 1.0]).verdict == "consistent-with"
+    assert on_held_out_tests(found, base, 0.5, [-0.3, 1.0]).verdict == "nothing-missing"
+    assert on_held_out_tests(found, base, 0.5, [0.1, 1.0]).verdict == "consistent-with"
 
 
 def test_equally_good_explanations_are_tied():
@@ -265,11 +265,11 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
     worse = explained(900.0, "stribeck").fit
     monkeypatch.setattr(diagnosis, "tight_refit", lambda fit: worse if fit is first.fit else fit)
-    monkeypatch.setattr(diagnosis, "with_tone_phase", lambda fit: fit)
+    monkeypatch.setattr(diagnosis, "with_extra_nuisances", lambda fit: fit)
     monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
     search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
-    found, order = diagnosis._refit_best(search, base, tied, [first, second], verdict.DEFAULT)
+    found, order = diagnosis.refit_cause(search, base, tied, [first, second], verdict.DEFAULT)
     assert (found.verdict, found.best.effects) == ("named", ("preload",))
     assert [each.fit.chi2 for each in order] == [709.0, 900.0]

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import AMPLITUDES, MODEL, drawn, searched
+from tests.diagnose.synthetic import MODEL, base_of, drawn, searched
 from wedgesweep import response
 from wedgesweep.diagnose.fit_parameters import Hypothesis
+from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.steady import simulation, waveforms
-from wedgesweep.diagnose.steady.model import Fit, Model
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
 
@@ -19,16 +19,17 @@ GUIDE = {"guide_friction": {"force": DRY}}
 
 
 def seen(level, effects, *numbers):
-    """Leftover force (N) of the base model and the deflection's rate (m/s); input and its phase are known."""
+    """Residual force (N) of the base model and the deflection's rate (m/s); input and its phase are known."""
     data = drawn(effects, level=level)
-    model = Model(data, Hypothesis(()), data.amplitude)
+    model = Model(data, Hypothesis(()))
     evaluation = model.evaluate(model.start(None, np.zeros(0)))
-    true = Model(data, Hypothesis(tuple(effects)), data.amplitude)
-    phase = true.evaluate(true.start(None, np.array(numbers))).phase
-    fit = Fit(model, replace(evaluation, phase=phase), np.zeros((0, 0)), True)
-    harmonics = waveforms.measured_from_phase_zero(fit)
+    true = Model(data, Hypothesis(tuple(effects)))
+    phase = true.evaluate(true.start(None, np.array(numbers))).response.phase
+    response = evaluation.response._replace(phase=phase)
+    fit = Fit(model, replace(evaluation, response=response), np.zeros((0, 0)), True)
+    harmonics = waveforms.measured_from_phase_zero(data, fit)
     rate = waveforms.velocity(data, harmonics)
-    force = waveforms.residual_force(fit, harmonics)
+    force = waveforms.residual_force(data, fit, harmonics)
     return force, -waveforms.waveform(rate)
 
 
@@ -59,15 +60,15 @@ def test_nothing_is_left_of_the_right_model(level):
 def test_effects_with_mechanics_of_their_own_leave_no_force_to_tell():
     model = MODEL + "[effects.viscous_damping]\ncoefficient_N_s_per_m = 5.0\n"
     data = drawn(model=model)
-    fit = searched(data)[1].fit
-    assert np.isnan(waveforms.residual_force(fit, data.measured)).all()
+    fit = base_of(data)
+    assert np.isnan(waveforms.residual_force(data, fit, data.measured)).all()
 
 
 def test_the_base_supplies_what_friction_takes():
     data = drawn()
-    model = Model(data, Hypothesis(()), data.amplitude)
+    model = Model(data, Hypothesis(()))
     fit = Fit(model, model.evaluate(model.start(None, np.zeros(0))), np.zeros((0, 0)), True)
-    supplied = waveforms.input_energy(fit, fit.evaluation.harmonics[:, 0, 0])
+    supplied = waveforms.input_energy(data, fit, fit.evaluation.response.harmonics[:, 0, 0])
     records = simulation.records(data.model, data.law, {}, data.omega, data.amplitude)
     for energy, record in zip(supplied, np.split(records, data.tests), strict=True):
         run = event_driven.solve(record, Window(float(record["omega"][0]), 60, 2, 256), 1e-9, 60.0)
@@ -80,12 +81,13 @@ def test_the_energy_of_measured_tests_is_that_of_the_true_system():
     heavier, off = {"bolster_mass": {"scale": 1.1}}, 0.03
     data = drawn(heavier, std=0.05, off=off)
     _, base, (extended,) = searched(data, "bolster_mass")
-    model = Model(data, Hypothesis(("bolster_mass",)), (1.0 + off) * AMPLITUDES)
-    true = Fit(model, model.evaluate(model.start(None, np.array([1.1]))), np.zeros((1, 1)), True)
-    energy = waveforms.input_energy(true, true.evaluation.harmonics[:, 0, 0])
+    model = Model(data, Hypothesis(("bolster_mass",)))
+    point = model.start(None, np.array([1.1])).moved(np.zeros(1), np.log([1.0 + off]))
+    true = Fit(model, model.evaluate(point), np.zeros((1, 1)), True)
+    energy = waveforms.input_energy(data, true, true.evaluation.response.harmonics[:, 0, 0])
 
     def measured(fit):
-        return waveforms.input_energy(fit, waveforms.measured_from_phase_zero(fit)[:, 0, 0])
+        return waveforms.input_energy(data, fit, waveforms.measured_from_phase_zero(data, fit)[:, 0, 0])
 
     np.testing.assert_allclose(measured(extended.fit), energy, rtol=0.03)
     assert np.abs(measured(base.fit) / energy - 1.0).max() > 0.1
@@ -94,12 +96,11 @@ def test_the_energy_of_measured_tests_is_that_of_the_true_system():
 @pytest.mark.parametrize("effect", ["displacement_gain]\nscale = 1.1", "velocity_lag]\ntime_s = 3e-4"])
 def test_channels_that_are_not_the_motion_tell_no_force(effect):
     data = drawn(model=f"{MODEL}[effects.{effect}\n")
-    fit = searched(data)[1].fit
-    assert np.isnan(waveforms.residual_force(fit, data.measured)).all()
+    fit = base_of(data)
+    assert np.isnan(waveforms.residual_force(data, fit, data.measured)).all()
 
 
 def test_a_fixture_takes_energy_that_the_data_do_not_tell():
-    fit = searched(
-        drawn(model=f"{MODEL}[effects.fixture_resonance]\nfrequency_hz = 60.0\ndamping_ratio = 0.05\n")
-    )[1].fit
-    assert np.isnan(waveforms.input_energy(fit, fit.evaluation.harmonics[:, 0, 0])).all()
+    data = drawn(model=f"{MODEL}[effects.fixture_resonance]\nfrequency_hz = 60.0\ndamping_ratio = 0.05\n")
+    fit = base_of(data)
+    assert np.isnan(waveforms.input_energy(data, fit, fit.evaluation.response.harmonics[:, 0, 0])).all()

@@ -1,7 +1,7 @@
-"""Makes measured data with something hidden in them, and diagnoses data, through the command line."""
+"""Makes measured data of planted effects, and diagnoses data, through the command line."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,8 @@ PAPER = ((20.0, 0.075), (30.0, 0.045))
 
 
 @dataclass(frozen=True)
-class Hidden:
-    """A system and how it was measured; effects in key units. ``spread`` None: amplitudes are not told."""
+class Specimen:
+    """A system and how it is measured; effects in key units. ``spread`` None: amplitudes are unknown."""
 
     name: str
     law: str
@@ -28,8 +28,12 @@ class Hidden:
     tests: tuple[tuple[float, float], ...] = BENCH
     spread: float | None = 0.005
     uncertain: dict[str, float] | None = None
-    withheld: tuple[str, ...] = ()
     seed: int = 1
+
+
+GUIDE_FRICTION = Specimen("guide", "static-dynamic", {"guide_friction": {"force_N": 0.25}}, "ar1")
+CLEAN = Specimen("clean", "static-dynamic", {}, "ar1", uncertain={"friction_level": 0.07}, spread=0.02)
+PAPER_TESTS = replace(GUIDE_FRICTION, name="paper", noise="white", tests=PAPER, spread=None)
 
 
 @dataclass(frozen=True)
@@ -62,19 +66,19 @@ class Found:
         return [self.causes, *(set(rival["effects"]) for rival in self.document["rivals"])]
 
 
-def make(hidden: Hidden, here: Path) -> tuple[Path, dict[str, Any]]:
-    """measured.toml of fresh data, and their truth, which is not left beside them."""
+def make(specimen: Specimen, here: Path) -> tuple[Path, dict[str, Any]]:
+    """Path of measured.toml of new data, and their truth, whose file is removed."""
     system = {
         "title": "true",
-        "effects": hidden.effects,
-        "sweep": {"friction_law": hidden.law, "beta": 1.0, "amplitude_mm": 0.1},
+        "effects": specimen.effects,
+        "sweep": {"friction_law": specimen.law, "beta": 1.0, "amplitude_mm": 0.1},
     }
-    told = {"known": False} if hidden.spread is None else {"amplitude_std": hidden.spread}
-    tests = [{"frequency_hz": f, "amplitude_mm": a, **told} for f, a in hidden.tests]
+    told = {"known": False} if specimen.spread is None else {"amplitude_std": specimen.spread}
+    tests = [{"frequency_hz": f, "amplitude_mm": a, **told} for f, a in specimen.tests]
     (here / "true.toml").write_text(toml.dumps(system))
-    (here / "tests.toml").write_text(toml.dumps({"uncertain": hidden.uncertain or {}, "test": tests}))
+    (here / "tests.toml").write_text(toml.dumps({"uncertain": specimen.uncertain or {}, "test": tests}))
     files = (here / "true.toml", "--tests", here / "tests.toml", "-o", here / "data")
-    invoke("synthesize", *files, "--noise", hidden.noise, "--seed", hidden.seed, "--n-jobs", 2)
+    invoke("synthesize", *files, "--noise", specimen.noise, "--seed", specimen.seed, "--n-jobs", 2)
     truth = here / "data" / "truth.json"
     document = json.loads(truth.read_text())
     truth.unlink()

@@ -28,16 +28,16 @@ def _table(descriptions: dict[str, str]) -> str:
 HELP = f"""Draw a figure of OUT: the dataset of a run, or the directory of a diagnosis.
 
 \b
-KIND is for a dataset one of
+For a dataset, KIND is one of
 {_table(DESCRIPTIONS)}
 
 \b
-for the directory of a diagnosis one of
+For the directory of a diagnosis, one of
 {_table(diagnosis.DESCRIPTIONS)}
 
 \b
-and for both
-  {ALL:<16} each of them that suits OUT
+For both
+  {ALL:<16} every figure that suits OUT
 """
 
 POSITIVE = click.FloatRange(min=0.0, min_open=True)
@@ -53,15 +53,15 @@ POSITIVE = click.FloatRange(min=0.0, min_open=True)
     help=f"File ({', '.join(FORMATS)}), for 'all' a directory; default: beside the data.",
 )
 @click.option("--format", "suffix", type=click.Choice(SUFFIXES), default="png", show_default=True)
-@click.option("--beta", type=POSITIVE, help="Frequency ratio; the nearest in OUT is drawn.")
+@click.option("--beta", type=POSITIVE, help="Frequency ratio; the nearest one in OUT is drawn.")
 @click.option(
     "--amplitude",
     type=POSITIVE,
     multiple=True,
     metavar="MM",
-    help="Input amplitude; the nearest in OUT is drawn; may be repeated.",
+    help="Input amplitude in mm; the nearest one in OUT is drawn; may be repeated.",
 )
-@click.option("--law", help="Friction law.")
+@click.option("--law", help="Friction law to draw.")
 @click.pass_context
 def plot(
     ctx: click.Context,
@@ -69,13 +69,11 @@ def plot(
     path: Path,
     output: Path | None,
     suffix: str,
-    beta: float | None,
-    amplitude: tuple[float, ...],
-    law: str | None,
+    **picks: Any,
 ) -> None:
     """Draw a figure."""  # the text of --help is HELP
-    wanted = {"beta": beta, "amplitude": [value * 1e-3 for value in amplitude], "law": law}
-    options = {name: value for name, value in wanted.items() if value not in (None, [])}
+    picks["amplitude"] = [value * 1e-3 for value in picks["amplitude"]]
+    options = {name: value for name, value in picks.items() if value not in (None, [])}
     if kind == ALL:
         directory, found = output or _beside(path), _read(path)
         directory.mkdir(parents=True, exist_ok=True)
@@ -84,7 +82,7 @@ def plot(
     _require_kind(kind, path)
     asked = ctx.get_parameter_source("suffix") is not ParameterSource.DEFAULT
     if output and asked and output.suffix.lower() != f".{suffix}":
-        message = f"--format {suffix} and -o {output} are not the same; leave one out"
+        message = f"--format {suffix} and -o {output} contradict each other; leave one out"
         raise click.UsageError(message)
     file = output or _beside(path) / f"{kind}.{suffix}"
     _require_place(file)
@@ -106,7 +104,7 @@ def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
 
 
 def _require_kind(kind: str, path: Path) -> None:
-    """Complain where a figure of a diagnosis is asked of a dataset, or the other way round."""
+    """Refuse a figure of a diagnosis for a dataset, and the reverse."""
     if path.is_dir() and kind in DESCRIPTIONS:
         valid = ", ".join(diagnosis.DESCRIPTIONS)
         message = f"{path}: a directory; {kind} draws the dataset of a run, a diagnosis has {valid}"
@@ -117,7 +115,7 @@ def _require_kind(kind: str, path: Path) -> None:
 
 
 def _require_place(file: Path) -> None:
-    """Complain before the drawing about what would go wrong after it."""
+    """Check before the drawing that the file can be written."""
     if file.suffix.lower() not in FORMATS:
         message = f"{file}: the suffix must be one of {', '.join(FORMATS)}"
         raise Failure(message)
@@ -150,7 +148,7 @@ def _draw(
 
 
 def _accepted(kind: str, names: tuple[str, ...], options: dict[str, Any], strict: bool) -> dict[str, Any]:
-    """Options by the figure's names for them; one that it lacks is an error if strict."""
+    """Select the options that the figure takes, by its names; another one is an error if strict."""
     accepted = {}
     for name, value in options.items():
         if name == "amplitude" and "amplitudes" in names:

@@ -15,17 +15,17 @@ from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
 
-# The effect that may leave a suspension no place to rest.
+# With this effect a suspension may have no equilibrium.
 SOFTENING = "cubic_stiffness"
 
-# What needs numba or scipy is imported late, so that `wedgesweep --help` does not wait for it.
+# Imports that load numba or scipy come late, so that `wedgesweep --help` does not wait for them.
 if TYPE_CHECKING:
     from wedgesweep.quantity import Quantity
     from wedgesweep.simulate import Settings
 
 
 class ConfigError(InputError):
-    """A config that cannot run."""
+    """A config cannot run; ``problems`` lists all its faults."""
 
 
 class Case(NamedTuple):
@@ -38,7 +38,7 @@ class Case(NamedTuple):
 
 @dataclass(frozen=True)
 class Cases:
-    """The cases: a grid, or where ``cases`` is given a list (the grid is empty then).
+    """The cases: a grid, or a list in ``cases`` (the grid is then empty).
 
     ``beta`` and ``amplitude`` (m) have shapes (n,) and (m,); beta refers to ``omega_n`` (rad/s).
     """
@@ -116,7 +116,7 @@ class Config:
         )
 
     def with_method(self, method: str) -> "Config":
-        """The same config with another solver; raises ConfigError if its settings need the old one."""
+        """The same config with another solver; raises ConfigError if its settings do not allow it."""
         document = self.document | {"solver": self.document["solver"] | {"method": method}}
         if problems := list(contradictions(document)):
             raise ConfigError([f'solver "{method}": {problem}' for problem in problems])
@@ -155,7 +155,7 @@ class Config:
     def case_coordinates(
         self,
     ) -> tuple[tuple[int, ...], dict[str, tuple[str, Any, dict[str, str]]]]:
-        """Shape of the cases; dimension, values and attributes of the coordinates they have."""
+        """Shape of the cases; dimension, values and attributes of their coordinates."""
         sweep = self.sweep
         if sweep.cases is None:
             dims = ["friction_law", "beta", "amplitude"]
@@ -175,7 +175,7 @@ class Config:
         }
 
     def record(self, case: Case) -> np.ndarray:
-        """Parameters of a case for the solvers, shape (1,)."""
+        """Parameter record of a case, shape (1,)."""
         from wedgesweep.systems.suspension import parameters
 
         return parameters.record(
@@ -188,7 +188,7 @@ class Config:
         )
 
     def records(self) -> np.ndarray:
-        """``record`` of all cases, shape (n,)."""
+        """Parameter records of all cases, shape (n,)."""
         sweep = self.sweep
         if sweep.cases is None:
             axes = (sweep.friction_law, sweep.beta, sweep.amplitude)
@@ -205,12 +205,12 @@ class Config:
         return records
 
     def to_toml(self) -> str:
-        """The resolved config: every key, ranges written out; ``parse`` gives the same config."""
+        """The resolved config with every key, ranges expanded; ``parse`` of it gives the same config."""
         return toml.dumps(self.document)
 
     @property
     def remark(self) -> str | None:
-        """What a reader of the results should know of how effects changed a law."""
+        """A note for readers of the results if effects change a friction law."""
         from wedgesweep.systems.suspension import parameters
 
         law, sweep = "coulomb", self.sweep
@@ -270,9 +270,9 @@ def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
 
 
 def _require_rest(found: Config, source: str) -> None:
-    """Refuse springs that soften until they hold no weight."""
+    """Refuse springs that soften so much that they have no equilibrium under the weight."""
     if isnan(found.record(Case("static-dynamic", 1.0, 1e-3))["geometry"]["rest"][0]):
-        problem = "leaves the springs no place to hold the weight; it must be larger"
+        problem = "leaves the springs no equilibrium under the weight; it must be larger"
         raise ConfigError([f"{source}: effects.{SOFTENING}.coefficient_N_per_mm3: {problem}"])
 
 
@@ -302,7 +302,7 @@ def _betas(given: Mapping[str, Any], omega_n: float) -> list[float]:
 
 
 def _metres(amplitudes: list[float]) -> list[float]:
-    """From mm, rounded so that 0.3 mm is the float 0.0003 that a reader will select by."""
+    """Convert from mm, rounded so that 0.3 mm is the float 0.0003, by which users select."""
     return [float(f"{amplitude * 1e-3:.15g}") for amplitude in amplitudes]
 
 

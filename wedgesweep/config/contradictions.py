@@ -1,4 +1,4 @@
-"""Settings of a config that are right each, but cannot run together."""
+"""Settings of a config that are valid alone, but contradict each other."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from math import nan
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
-    """All of them, each as a line that names the key and says what would be right."""
+    """Yield all contradictions, each as a line that names the key and a valid setting."""
     yield from _geometry(document)
     yield from _settling(document)
 
@@ -17,14 +17,14 @@ def _geometry(document: Mapping[str, Any]) -> Iterator[str]:
     if wedge + column <= 0.0:
         yield (
             f"suspension.column_angle_deg: {column} closes a wedge of {wedge} deg; "
-            "the sum of both angles must be greater than 0"
+            "the sum of both angles must be positive"
         )
     cases: Iterable[Mapping[str, Any]] = filter(None, sweep.get("case", ()))
     laws = [*sweep.get("friction_law", ()), *(case.get("friction_law") for case in cases)]
     if "coulomb" in laws and column == 0.0 and document.get("friction", {}).get("dynamic", 0.0) > 0.0:
         yield (
-            "suspension.column_angle_deg: 0 leaves the bolster face without slip, where coulomb "
-            "does not determine the friction; use friction.dynamic = 0, another law, or a lean"
+            "suspension.column_angle_deg: at 0 the bolster face does not slip, and coulomb "
+            "does not determine its friction; use friction.dynamic = 0, another law, or another angle"
         )
 
 
@@ -37,11 +37,11 @@ def _settling(document: Mapping[str, Any]) -> Iterator[str]:
         return
     if not (event_driven and steady):
         yield (
-            "solver.continuation: hands steady states on, which only the event-driven solver finds; "
+            "solver.continuation: needs steady states, which only the event-driven solver finds; "
             'write method = "event-driven" and settle = "steady"'
         )
     if "case" in document.get("sweep", {}):
         yield (
-            "solver.continuation: a list of cases has no neighbours in beta; "
+            "solver.continuation: needs a grid, not a list of cases; "
             "write [sweep] with lists of frequencies and amplitudes"
         )

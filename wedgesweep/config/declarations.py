@@ -1,4 +1,4 @@
-"""Every key of the config with its default, range and meaning: the one place that declares them."""
+"""Declaration of every config key with its default, range and meaning."""
 
 from math import nan, sqrt
 from typing import Any

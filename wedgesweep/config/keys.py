@@ -1,8 +1,8 @@
-"""Kinds of config keys: how each checks what it is given and describes itself to editors.
+"""Kinds of config keys: how each checks its value and describes itself to editors.
 
-``read`` returns the value as it will stand in the resolved config, in the key's own unit. What is
-wrong, and what would be right, is appended to ``problems`` with its TOML path; the value returned
-then is None, which also stands for "absent" (TOML has no null).
+``read`` returns the value for the resolved config, in the unit of the key. If the value is wrong, it appends
+the TOML path, the fault and a valid alternative to ``problems``, and returns None, which also stands for
+"absent" (TOML has no null).
 """
 
 import sys
@@ -20,13 +20,13 @@ LARGEST = sys.float_info.max
 
 
 def show(value: Any) -> str:
-    """A value of the config for an error message, cut short."""
+    """Format a value for an error message, shortened."""
     text = toml.inline(value)
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
 def hint(name: str, valid: Iterable[str]) -> str:
-    """The nearest valid name, or all of them."""
+    """Suggest the nearest valid name, or list all of them."""
     valid = tuple(valid)
     close = get_close_matches(name.lower(), valid, n=1, cutoff=0.55)
     return f'did you mean "{close[0]}"?' if close else f"valid here: {', '.join(valid)}"
@@ -36,8 +36,8 @@ def hint(name: str, valid: Iterable[str]) -> str:
 class Key(ABC):
     """A key of the config.
 
-    Where it is absent ``default`` is read; without a default that is an error unless it is
-    ``optional``. ``example`` stands in the template of a key without default; a table's is its full path.
+    An absent key takes its ``default``; without a default it must be given, unless it is ``optional``. The
+    template shows ``example`` for a key without default; the example of a table is its full path.
     """
 
     key: str

@@ -13,7 +13,7 @@ from wedgesweep.quantity import Quantity
 
 
 def spaced(start: float, stop: float, num: int, spacing: str) -> list[float]:
-    """Values of a range, rounded to the decimals that they read as; the ends are exact."""
+    """Values of a range, rounded to 12 digits; the ends are exact."""
     space = np.geomspace if spacing == "log" else np.linspace
     inner = [float(f"{value:.12g}") for value in space(start, stop, num)[1:-1]]
     return [start, *inner, stop][:num]
@@ -36,7 +36,7 @@ class Several(Key):
         return None if faults or not values or None in values else values
 
     def _faults(self, values: list[Any]) -> list[str]:
-        """What is wrong with the list as a whole."""
+        """Faults of the list as a whole."""
         repeated = [each for each, times in Counter(values).items() if times > 1]
         return [f"{show(each)} is repeated; keep one" for each in repeated]
 

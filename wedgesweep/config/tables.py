@@ -1,4 +1,4 @@
-"""Tables of keys, and the two forms of a sweep."""
+"""Tables of keys, and the two forms of [sweep]."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -11,7 +11,7 @@ Group = tuple[Key, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Table(Key):
-    """Keys in groups; those of a group exclude each other, the first has the default."""
+    """Keys in groups; keys of a group exclude each other, and the first one has the default."""
 
     groups: tuple[Group, ...]
 
@@ -69,7 +69,7 @@ def _in_force(group: Group, value: dict[str, Any], at: str, problems: list[str])
 
 
 def _rules(group: Group) -> list[dict[str, Any]]:
-    """JSON schema's form of ``_in_force``."""
+    """The rules of ``_in_force`` as JSON schema."""
     if group[0].required:
         return [{"oneOf": [{"required": [key.key]} for key in group]}]
     return [{"not": {"required": [a.key, b.key]}} for a, b in combinations(group, 2)]
@@ -101,7 +101,7 @@ class TableList(Key):
 
 @dataclass(frozen=True, kw_only=True)
 class GridOrList(Key):
-    """A table that is a grid or, with the key that only ``listed`` has, a list of cases."""
+    """A table that is a grid of cases or, if it has the key that only ``listed`` has, a list of them."""
 
     grid: Table
     listed: Table

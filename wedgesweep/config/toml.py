@@ -1,13 +1,13 @@
-"""Writes TOML (the standard library only reads it)."""
+"""TOML writer; the standard library only reads TOML."""
 
 import json
 from typing import Any
 
 
 def inline(value: Any) -> str:
-    """A value as it stands behind the equals sign; floats with full precision."""
+    """Format a value; floats with full precision."""
     if isinstance(value, str):
-        # A JSON string is a TOML basic string but for DEL, which TOML wants escaped.
+        # A JSON string is a TOML basic string, except that TOML requires DEL to be escaped.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, bool):
         return str(value).lower()
@@ -19,7 +19,7 @@ def inline(value: Any) -> str:
 
 
 def dumps(document: dict[str, Any], path: str = "") -> str:
-    """A document of nested tables as TOML text; its keys must be bare keys."""
+    """Format a document of nested tables as TOML; its keys must be bare keys."""
     plain, tables = "", ""
     for key, value in document.items():
         if isinstance(value, dict):

@@ -1,27 +1,34 @@
-"""Thresholds from the user's own tests: a parametric bootstrap.
+"""Thresholds from the user's own tests by a parametric bootstrap.
 
 Data are drawn from the fitted base model: how much does the best of all candidates gain where nothing is
 missing? And from the best explanation: how often does the search find it again?
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.search import Explanation, Search
-from wedgesweep.diagnose.steady.fit_data import FitData
-from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.explanation import Explanation
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.search import Search
 
-DRAWS = 20
-# Share of draws in which the search must find the truth again for its name to be given.
+SAMPLES = 20
+# Share of samples in which the search must find the truth again for its name to be given.
 SAFE = 0.95
+
+# Runs a whole search; returns the base model and all explanations.
+Explain = Callable[[Search], tuple[Explanation, Sequence[Explanation]]]
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Penalised gains of the best candidate on clean draws, and the share of draws that find the truth."""
+    """Result of a calibration.
+
+    ``gains``: penalised gain of the best candidate in each clean sample. ``found``: share of samples of the
+    best explanation in which it was found again, None if there was none.
+    """
 
     gains: np.ndarray
     found: float | None
@@ -30,38 +37,52 @@ class Calibration:
     def least_gain(self) -> float:
         """Penalised gain that clean data of these tests practically never reach.
 
-        A base model that has no response to its own data says nothing of it.
+        Samples on which the base model has no response do not count.
         """
         return float(self.gains[np.isfinite(self.gains)].max(initial=0.0))
 
     @property
     def thresholds(self) -> verdict.Thresholds:
-        """A strong name wherever the truth is found again, however small the excess; else a weak one."""
+        """A cause may be named if it is found again, however small the excess; otherwise never."""
         safe = self.found is not None and self.found >= SAFE
         return verdict.Thresholds(strong=0.0 if safe else np.inf, least_gain=self.least_gain)
 
     def as_dict(self) -> dict[str, float | None]:
-        return {"draws": DRAWS, "least_gain": self.least_gain, "found_again": self.found}
+        return {"draws": SAMPLES, "least_gain": self.least_gain, "found_again": self.found}
 
 
 def calibrate(
+    search: Search,
     base: Explanation,
     best: Explanation | None,
-    explain: Callable[[Search], tuple[Explanation, Sequence[Explanation]]],
-    effects: Sequence[str],
-    threads: int,
-    progress: Callable[[str], None],
+    explain: Explain,
+    candidates: Sequence[str],
     seed: int = 0,
 ) -> Calibration:
-    """Run the search on draws from the base model, and from the best explanation where there is one."""
+    """Repeat the search on samples from the base model, and from the best explanation if there is one.
+
+    Parameters
+    ----------
+    search : Search
+        The search on the measured data: its number of threads, and who is told of progress.
+    base, best : Explanation
+        What samples are drawn from.
+    explain : callable
+        The whole search.
+    candidates : sequence of str
+        Effects to try on each sample.
+    seed : int
+        Of the random numbers.
+    """
     rng = np.random.default_rng(seed)
 
     def outcomes(truth: Fit, label: str) -> list[tuple[Explanation, list[Explanation]]]:
         results = []
-        for number in range(DRAWS):
-            start, found = explain(Search(bootstrap_sample(truth, rng), effects, threads))
+        for number in range(SAMPLES):
+            sample = truth.model.data.bootstrap_sample(truth.evaluation, rng)
+            start, found = explain(Search.of(sample, candidates, search.threads))
             results.append((start, verdict.ranked(found)))
-            progress(f"calibration, {label}: {number + 1} of {DRAWS}")
+            search.progress(f"calibration, {label}: {number + 1} of {SAMPLES}")
         return results
 
     clean = outcomes(base.fit, "nothing missing")
@@ -72,23 +93,3 @@ def calibrate(
         hits = [bool(order) and set(order[0].effects) == set(best.effects) for _, order in again]
         found = float(np.mean(hits))
     return Calibration(gains, found)
-
-
-def bootstrap_sample(truth: Fit, rng: np.random.Generator) -> FitData:
-    """The problem with the fitted harmonics and new noise in place of what was measured."""
-    data = truth.model.data
-    exact = data.rotated(truth.evaluation.harmonics, truth.evaluation.phase) + truth.evaluation.aliases
-    spectra = []
-    for spectrum, mean in zip(data.spectra, exact, strict=True):
-        channels = spectrum.mean.shape[0]
-        kept = mean[:channels, : spectrum.harmonics]
-        if spectrum.tone is not None:
-            kept = np.concatenate([kept, mean[:channels, -1:]], axis=1)
-        noise = rng.normal(size=(2, *kept.shape)) * np.sqrt(spectrum.variance / 2.0)
-        noise = noise[0] + 1j * noise[1]
-        if channels == 2 and spectrum.coherence:
-            share = spectrum.coherence
-            scale = np.sqrt(spectrum.variance)
-            noise[1] = np.sqrt(1.0 - abs(share) ** 2) * noise[1] + share * noise[0] / scale[0] * scale[1]
-        spectra.append(replace(spectrum, mean=kept + noise))
-    return replace(data, spectra=tuple(spectra))

@@ -1,31 +1,41 @@
-"""What an extended model gains on tests that it was not fitted to."""
+"""Gain of an extended model on tests that it was not fitted to."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtr, stdtrit
 
-from wedgesweep.diagnose.least_squares import refine, subset_fit
+from wedgesweep.diagnose.fit_data import Evaluation, Point
+from wedgesweep.diagnose.least_squares import minimise, subset_fit
+from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
-from wedgesweep.diagnose.steady.model import Evaluation, Fit, Model, Point
 
-# Iterations that adapt a fit to fewer tests, and the phase and amplitude to a held-out one.
+# Iterations that adapt a fit to the remaining tests, and nuisance parameters to a held-out one.
 ADAPT, LOCAL = 6, 4
-# Amplitudes (or frequencies) closer than this belong together.
-ALIKE = 0.02
-RESAMPLED = 2000
-# With fewer tests an interval would be a pretence.
-FEWEST = 8
-# Tests drawn with less than this share of the excess hold nothing that could be removed.
+# Largest step of a nuisance parameter of a held-out test.
+LOCAL_STEP = 0.3
+# Bootstrap samples, and the least number of tests for which an interval means anything.
+RESAMPLED, FEWEST = 2000, 8
+# Bootstrap samples with less than this share of the excess contain nothing that could be removed.
 SHOWS = 0.1
+
+
+class MeanSquares(NamedTuple):
+    """Mean squares of the whitened residuals that base model, extended model and noise leave."""
+
+    base: float
+    extended: float
+    noise: float
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Whitened squared misfit of one test under models that were fitted to others, and its points.
+    """Squared misfit of one test under models that were fitted to other tests.
 
-    ``local``: how many numbers the test itself has determined, a number with a prior in part.
+    ``local``: number of its own nuisance parameters that the test determines; one with a prior counts in
+    part.
     """
 
     test: int
@@ -37,45 +47,42 @@ class HeldOut:
 
     @property
     def noise(self) -> float:
-        """Squared misfit that noise leaves after phase and amplitude are fitted."""
+        """Squared misfit that noise leaves after the nuisance parameters are fitted."""
         return self.observations - self.local
 
     def rmse(self, squared: float) -> float:
+        """Root mean square of whitened residuals with this squared misfit."""
         return float(np.sqrt(squared / self.observations))
 
 
 @dataclass(frozen=True)
 class Gain:
-    """Gain over all held-out tests; ``interval`` of ``excess_removed``, None for too few tests."""
+    """Gain over all held-out tests."""
 
     held_out: tuple[HeldOut, ...]
 
-    def _total(self, part: Callable[[HeldOut], float], chosen: Sequence[HeldOut]) -> float:
-        return sum(map(part, chosen)) / sum(each.observations for each in chosen)
-
-    def totals(self, chosen: Sequence[HeldOut] | None = None) -> tuple[float, float, float]:
-        """Mean squares of base, extended and noise."""
-        chosen = self.held_out if chosen is None else chosen
-        parts = (lambda h: h.base, lambda h: h.extended, lambda h: h.noise)
-        return tuple(self._total(part, chosen) for part in parts)  # type: ignore[return-value]
-
-    @staticmethod
-    def removed(base: float, extended: float, noise: float) -> float:
-        """Share of the excess that is gone."""
-        return (base - extended) / (base - noise) if base > noise else 0.0
+    def mean_squares(self) -> MeanSquares:
+        observations = sum(each.observations for each in self.held_out)
+        return MeanSquares(
+            sum(each.base for each in self.held_out) / observations,
+            sum(each.extended for each in self.held_out) / observations,
+            sum(each.noise for each in self.held_out) / observations,
+        )
 
     @property
     def excess_removed(self) -> float:
-        return self.removed(*self.totals())
+        """Share of the base model's excess over noise that the extended model removes."""
+        base, extended, noise = self.mean_squares()
+        return (base - extended) / (base - noise) if base > noise else 0.0
 
     @property
     def interval(self) -> list[float] | None:
-        """95 % interval of ``excess_removed`` from tests drawn again, both schemes of a test together.
+        """95 % bootstrap interval of ``excess_removed``; None for fewer than FEWEST tests.
 
-        Where few tests show the effect many draws have none of them: what little there is to explain is
-        noise then, and its share that is removed says nothing. They do not count.
-        Few tests scatter less when drawn again than they did when they were made, which the quantiles make
-        up for (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
+        Tests are resampled with all their schemes. Where few tests show the effect, many samples contain
+        none of them: their little excess is noise, and the share of it that is removed means nothing. They
+        do not count. The quantiles are widened because few tests scatter less when resampled than they did
+        when they were made (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
         """
         tests = sorted({each.test for each in self.held_out})
         if len(tests) < FEWEST:
@@ -98,81 +105,68 @@ class Gain:
 
 
 def cross_validate(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) -> Gain:
-    """Leave out one frequency, then one amplitude, and predict that; ``each`` maps a function."""
+    """Leave out groups of tests, fit the others, and predict those that were left out.
+
+    Parameters
+    ----------
+    base, extended : Fit
+        The two models to compare, fitted to all tests.
+    each : callable
+        Maps a function over a list.
+    """
     data = base.model.data
-    jobs = [("frequency", rows) for rows in groups(data.omega)]
-    if not np.isinf(data.amplitude_std).any():
-        jobs += [("amplitude", rows) for rows in groups(data.amplitude)]
-    jobs = [job for job in jobs if len(job[1]) < data.tests]
-    local = _local_numbers(extended)
-    rows = each(lambda job: _held_out(base, extended, local, *job), jobs)
-    return Gain(tuple(one for group in rows for one in group))
+    groups = [group for group in data.held_out_groups() if len(group[1]) < data.tests]
+    local = local_numbers(extended)
+    found = each(lambda group: _held_out(base, extended, local, *group), groups)
+    return Gain(tuple(one for some in found for one in some))
 
 
-def groups(values: np.ndarray) -> list[np.ndarray]:
-    """Indices of values that are alike, group by group."""
-    order = np.argsort(values)
-    found = [[order[0]]]
-    for place in order[1:]:
-        # Compared with the first: in a fine sweep each is close to its neighbour.
-        if np.log(values[place] / values[found[-1][0]]) > ALIKE:
-            found.append([])
-        found[-1].append(place)
-    return [np.array(group) for group in found]
-
-
-def _local_numbers(fit: Fit) -> np.ndarray:
-    """Numbers (T,) that each test determines: phase, and amplitude as far as it is not known before."""
-    model = fit.model
-    inner = normal_equations(model, fit.evaluation).local_block
-    known = model.amplitude_weight**2
-    both = inner[:, 1, 1] - inner[:, 0, 1] ** 2 / inner[:, 0, 0]
-    return 1.0 + np.clip(1.0 - known / both, 0.0, 1.0) + model.tone_tests
+def local_numbers(fit: Fit) -> np.ndarray:
+    """Number (T,) of its nuisance parameters that each test determines, beyond what priors say."""
+    model, equations = fit.model, normal_equations(fit.model, fit.evaluation)
+    first, last = equations.eliminated, equations.eliminated + model.nuisance_weight.shape[1]
+    block = equations.local_block[:, :last, :last]
+    coupling = block[:, :first, first:]
+    reduced = block[:, first:, first:] - np.swapaxes(coupling, 1, 2) @ np.linalg.solve(
+        block[:, :first, :first], coupling
+    )
+    known = model.nuisance_weight**2 * np.diagonal(np.linalg.inv(reduced), axis1=1, axis2=2)
+    determined = np.clip(1.0 - known, 0.0, 1.0).sum(axis=1)
+    return equations.eliminated + determined + model.data.extra_nuisances(fit.effects)
 
 
 def _held_out(base: Fit, extended: Fit, local: np.ndarray, scheme: str, rows: np.ndarray) -> list[HeldOut]:
-    rest = np.setdiff1d(np.arange(base.model.data.tests), rows)
-    misfits = [_predict(fit, rest, rows) for fit in (base, extended)]
     data = base.model.data
+    rest = np.setdiff1d(np.arange(data.tests), rows)
+    misfits = [_predicted_misfit(fit, rest, rows) for fit in (base, extended)]
     return [
         HeldOut(int(test), scheme, float(b), float(e), int(data.observations[test]), float(local[test]))
         for test, b, e in zip(rows, *misfits, strict=True)
     ]
 
 
-def _predict(fit: Fit, rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Squared misfits (rows,) after a fit to the rest of the tests."""
+def _predicted_misfit(fit: Fit, rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Squared misfits of the tests ``rows`` after a fit to the ``rest`` of them.
+
+    Each held-out test keeps nuisance parameters of its own, as its kind of record allows.
+    """
     trained = subset_fit(fit, rest)
     if len(fit.x):
-        trained = refine(trained.model, trained.evaluation, ADAPT)
-    return predict(fit, trained.x, rows)
-
-
-def predict(fit: Fit, x: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Squared misfits (rows,) with given numbers; each test keeps its own phase and amplitude.
-
-    A known amplitude may move within its prior; an unknown one comes from the fundamental of the displacement
-    alone, so that the rest of the test is a prediction.
-    """
+        trained = minimise(trained.model, trained.evaluation, ADAPT)
     part = subset_fit(fit, rows)
-    unknown = np.isinf(part.model.data.amplitude_std)
-    evaluation = part.model.evaluate(replace(part.evaluation.point, x=x))
+    evaluation = part.model.evaluate(replace(part.point, x=trained.x))
     for _ in range(LOCAL):
         if not evaluation.found:
             break
-        evaluation = part.model.evaluate(_moved(part.model, evaluation, unknown))
+        evaluation = part.model.evaluate(_with_own_nuisances(part.model, evaluation))
     misfit = (evaluation.residual**2).sum(-1)
     return np.where(evaluation.found_tests, misfit, part.model.data.power)
 
 
-def _moved(model: Model, evaluation: Evaluation, unknown: np.ndarray) -> Point:
-    """Point with each amplitude moved: by its prior and data, or to match the fundamental."""
-    point = evaluation.point
+def _with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:
+    """The point after a step of the nuisance parameters alone."""
     equations = normal_equations(model, evaluation)
-    still = np.zeros(len(point.x))
-    local = equations.local_step(still, 0.0)[:, 1:]
-    measured = np.abs(model.data.measured[:, 0, 0])
-    simulated = np.abs(evaluation.harmonics[:, 0, 0])
-    match = np.log(measured / np.where(simulated > 0.0, simulated, measured))
-    local[:, 0] = np.where(unknown, match, local[:, 0])
-    return point.moved(still, np.clip(local, -0.3, 0.3))
+    nothing = np.zeros(len(evaluation.point.x))
+    step = equations.local_step(nothing, 0.0)[:, equations.eliminated :]
+    step = model.data.predicted_nuisances(evaluation, step)
+    return evaluation.point.moved(nothing, np.clip(step, -LOCAL_STEP, LOCAL_STEP))

@@ -2,29 +2,37 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-import numpy as np
-
-from wedgesweep.diagnose import cross_validation, next_test, pairs, score_test, verdict
+from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
-from wedgesweep.diagnose.least_squares import tight_refit
-from wedgesweep.diagnose.next_test import NextTest
+from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.score_test import Score
-from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
-from wedgesweep.diagnose.steady import tone
-from wedgesweep.diagnose.steady.fit_data import FitData
-from wedgesweep.diagnose.steady.model import Fit
-from wedgesweep.diagnose.steady.spectra import fitted, spectrum
-from wedgesweep.diagnose.steady.tone_phase import with_tone_phase
+from wedgesweep.diagnose.search import (
+    Scans,
+    Search,
+    base_fit,
+    multistart,
+    quiet,
+    refit_base,
+    refit_best,
+    single_fits,
+)
+from wedgesweep.diagnose.steady.from_measurement import harmonic_data
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.diagnose.steady.next_test import NextTest, recommend
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.effects import EFFECTS, SCALES, acting
-from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured import Measurement
 
-# Explanations that a next test should tell apart where the verdict abstains.
+# Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
-# A base model that leaves less than this share of what it left first may have other singles beside it.
+# Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
 MUCH = 0.9
 
 
@@ -33,7 +41,7 @@ class Diagnosis:
     """Everything that was found; ``explanations`` are sorted, the best first."""
 
     measurement: Measurement
-    data: FitData
+    data: HarmonicData
     base: Explanation
     explanations: tuple[Explanation, ...]
     scores: tuple[Score, ...]
@@ -45,145 +53,134 @@ class Diagnosis:
 
     @property
     def extended(self) -> Fit:
-        """The best explanation's fit, the base model's where the verdict is that nothing is missing."""
+        """The best explanation's fit, or the base model's if the verdict is that nothing is missing."""
         best = self.finding.best
         return self.base.fit if best is None else best.fit
 
 
-def fit_data_of(measurement: Measurement) -> FitData:
-    """Spectra of all tests at their actual frequencies; a foreign tone is the model's, or it is found."""
-    tests = measurement.tests
-    signals = [_channels(test, measurement.derived_velocity) for test in tests]
-    records = [(test.time, s, test.refined_frequency) for test, s in zip(tests, signals, strict=True)]
-    foreign = tone.of(acting(measurement.model.effects)) or tone.find([fitted(*each) for each in records])
-    found = [spectrum(*each, foreign.frequency if foreign else None) for each in records]
-    known = [test.amplitude is not None for test in tests]
-    return FitData(
-        measurement.model,
-        measurement.law,
-        tuple(test.name for test in tests),
-        tuple(found),
-        np.array([test.amplitude if test.amplitude else np.nan for test in tests]),
-        np.array([t.amplitude_std if k else np.inf for t, k in zip(tests, known, strict=True)]),
-        dict(measurement.uncertain),
-        foreign.frequency if foreign else None,
-        foreign.std if foreign else 0.0,
-    )
+class Explained(NamedTuple):
+    """Result of a search: the base model and all explanations, best first, with what was scanned."""
 
-
-def _channels(test: TestRecord, derived_velocity: bool) -> np.ndarray:
-    """Channels that say something of their own, (C, n)."""
-    if test.velocity is None or derived_velocity:
-        return test.displacement[None]
-    return np.array([test.displacement, test.velocity])
+    search: Search
+    base: Explanation
+    explanations: list[Explanation]
+    scans: Scans
 
 
 def diagnose(
     measurement: Measurement,
     effects: Sequence[str] = tuple(EFFECTS),
     threads: int = 1,
-    progress: Callable[[str], None] = lambda step: None,
+    progress: Callable[[str], None] = quiet,
     calibrated: bool = False,
 ) -> Diagnosis:
     """Name what the base model misses, or say why it cannot be named.
 
-    ``effects``: the candidates; what the base model has already is none, unless it scales a number.
-    ``calibrated``: with thresholds from simulations of these very tests, not the general ones.
+    Parameters
+    ----------
+    measurement : Measurement
+        Tests of one suspension, and the config of the base model.
+    effects : sequence of str
+        Candidates. An effect that the base model has is none, unless it scales a parameter.
+    threads : int
+        Fits that run at the same time.
+    progress : callable
+        Is told of each step.
+    calibrated : bool
+        Take the thresholds of the verdict from simulations of these very tests.
+
+    Returns
+    -------
+    Diagnosis
+        Verdict, fits, scores, gain on held-out tests and the recommended next test.
     """
-    data = fit_data_of(measurement)
-    effects = _missing(effects, measurement, progress)
-    search = Search(data, effects, threads, progress)
-    base, explanations = explain(search)
-    thresholds, simulated = verdict.DEFAULT, None
+    data = harmonic_data(measurement)
+    effects = _candidates(effects, measurement, progress)
+    search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
+    thresholds, calibration = verdict.DEFAULT, None
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
-        simulated = calibrate(base, finding.best, explain, effects, threads, progress)
-        thresholds = simulated.thresholds
+        result = calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
+        thresholds, calibration = result.thresholds, result.as_dict()
         finding = verdict.decide(base, explanations, thresholds)
-    finding, explanations = _refit_best(search, base, finding, explanations, thresholds)
+    finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
     progress("scores")
-    scores = score_test.scores(search, base.fit)
-    measured_gain = None
+    scores = score_test.scores(search, base.fit, scans)
+    gain = None
     if finding.best is not None and data.tests > 1:
         progress("held-out tests")
-        measured_gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
-        finding = verdict.on_unseen_tests(finding, base, measured_gain.excess_removed, measured_gain.interval)
-        measured_gain = measured_gain if finding.best is not None else None
+        gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
+        finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
+        gain = gain if finding.best is not None else None
     progress("next test")
-    following = next_test.recommend(_undecided(finding, explanations, thresholds))
+    next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
-        measurement,
-        data,
-        base,
-        tuple(explanations),
-        tuple(scores),
-        finding,
-        measured_gain,
-        following,
-        thresholds,
-        simulated.as_dict() if simulated else None,
+        measurement=measurement,
+        data=data,
+        base=base,
+        explanations=tuple(explanations),
+        scores=tuple(scores),
+        finding=finding,
+        gain=gain,
+        next_test=next_test,
+        thresholds=thresholds,
+        calibration=calibration,
     )
 
 
-def _missing(
+def _candidates(
     effects: Sequence[str], measurement: Measurement, progress: Callable[[str], None]
 ) -> tuple[str, ...]:
     """Effects that the base model may lack."""
     own = acting(measurement.model.effects)
     there = [name for name in effects if name in own and name not in SCALES]
     if there:
-        progress(f"part of the base model, so no candidates: {', '.join(there)}")
+        progress(f"already part of the base model, so no candidates: {', '.join(there)}")
     return tuple(name for name in effects if name not in there)
 
 
-def _refit_best(
+def refit_cause(
     search: Search, base: Explanation, finding: Finding, found: list[Explanation], thresholds: Thresholds
 ) -> tuple[Finding, list[Explanation]]:
-    """The finding with its best explanation fitted exactly, and all explanations, best first.
+    """The finding with its best explanation fitted tightly, and all explanations, best first.
 
-    One that was only the best for the error of its responses gives way to the next.
+    An explanation that was best only by the error of its simulations gives way to the next.
     """
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
-        search.progress(f"exact fit of {' + '.join(finding.best.effects)}")
-        done.append(
-            search.explanation(
-                profile_likelihood(tight_refit(with_tone_phase(finding.best.fit)), search.each)
-            )
-        )
+        search.progress(f"final fit of {' + '.join(finding.best.effects)}")
+        fit = tight_refit(with_extra_nuisances(finding.best.fit))
+        done.append(search.explanation(profile_likelihood(fit, search.each)))
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
     return finding, found
 
 
-def explain(search: Search) -> tuple[Explanation, list[Explanation]]:
-    """The base model and all that was fitted beside it, best first."""
+def explain(search: Search) -> Explained:
+    """Fit the base model, every candidate, and pairs of candidates where no single one is adequate."""
     search.progress("base model")
-    base = search.base()
-    found = search.singles(base.fit)
-    better = search.refit_base(base, found)
+    search, base = base_fit(search)
+    search, found, scans = single_fits(search, base.fit)
+    search, better = refit_base(search, base, found)
     if better.fit.chi2 < MUCH * base.fit.chi2:
-        found = best_of_each([*found, *search.singles(better.fit)], penalised)
+        search, again, scans = single_fits(search, better.fit)
+        found = best_of_each([*found, *again], penalised)
     base = better
-    found = _more(search, base, found)
-    return search.refit_base(base, found), found
-
-
-def _more(search: Search, base: Explanation, found: list[Explanation]) -> list[Explanation]:
-    """All fits, best first: pairs only where no single effect will do, and all starts where no pair will."""
     if verdict.none_adequate([base]):
-        found = search.around(found)
+        found = refit_best(search, found)
     if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
-        both = pairs.pairs(search, base.fit, found)
-        found = found + both + pairs.component_fits(search, both)
+        pairs = fit_pairs(search, base.fit, found, scans)
+        found = found + pairs + component_fits(search, pairs)
         if verdict.none_adequate(found):
-            found = found + search.multistart()
-    return best_of_each(found, penalised)
+            found = found + multistart(search, scans)
+    found = best_of_each(found, penalised)
+    search, base = refit_base(search, base, found)
+    return Explained(search, base, found, scans)
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should tell apart: a cause and its rivals, or without one what comes closest."""
+    """Fits that a next test should separate: a cause and its rivals, or without one what comes closest."""
     if finding.cause is not None:
         return [finding.cause.fit, *(each.fit for each in finding.rivals)]
     if finding.verdict == verdict.INSUFFICIENT:

@@ -1,4 +1,4 @@
-"""Effects as coordinates of a fit: bounded numbers, in which their action is smooth.
+"""Effects as bounded fit parameters in which their action is smooth.
 
 A positive number that spans decades is fitted as its logarithm, an amplitude with its phase as cosine and
 sine parts; everything else is fitted as it stands in a config.
@@ -16,17 +16,21 @@ from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
 PHASE = "_phase_deg"
-# Points along the first coordinate, and along each further one, at which a fit may start.
-ALONG, FURTHER = 12, 4
-# The start closest to a neutral value, as a share of the range.
-CLOSEST = 4e-3
-# Effects by name, and their numbers by name (SI) or key (its unit).
+# Grid points of the first parameter of an effect, and of each further one, at which a fit may start.
+FIRST, FURTHER = 12, 4
+# Grid points closest to and farthest from a neutral value, as shares of the range.
+CLOSEST, FARTHEST = 4e-3, 0.8
+# With more parameters (amplitudes with phases) the response is linear enough to start at zero.
+MOST_GRIDDED = 3
+# Scale of a logarithm, and of other parameters as a share of their range.
+LOG_SCALE, RANGE_SCALE = 0.5, 0.1
+# Effects by name, and their numbers by name (SI) or by key (in its unit).
 Values = dict[str, dict[str, float]]
 
 
 @dataclass(frozen=True)
 class FitParameter:
-    """One fitted number; ``width`` is a change of it that matters. An angle has no bounds."""
+    """One fitted number, with bounds (angles have none) and the value at which it does nothing."""
 
     name: str
     low: float
@@ -40,16 +44,17 @@ class FitParameter:
 
     @property
     def scale(self) -> float:
-        return 0.5 if self.logarithmic else 0.1 * (self.high - self.low)
+        """A change that matters."""
+        return LOG_SCALE if self.logarithmic else RANGE_SCALE * (self.high - self.low)
 
-    def along(self, points: int) -> np.ndarray:
-        """Points inside the range, shape (points,): even, or ever closer towards a neutral value."""
+    def grid(self, points: int) -> np.ndarray:
+        """Points (points,) inside the range: evenly spaced, or ever closer towards a neutral value."""
         if self.logarithmic or self.angle:
             return self.low + (self.high - self.low) * (np.arange(points) + 0.5) / points
         neutral = min(max(self.neutral, self.low), self.high)
-        ways = [end - neutral for end in (self.low, self.high) if abs(end - neutral) > 0.0]
-        shares = np.geomspace(CLOSEST, 0.8, points // len(ways))
-        return np.concatenate([neutral + way * shares for way in ways])
+        spans = [end - neutral for end in (self.low, self.high) if abs(end - neutral) > 0.0]
+        shares = np.geomspace(CLOSEST, FARTHEST, points // len(spans))
+        return np.concatenate([neutral + span * shares for span in spans])
 
 
 def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
@@ -60,7 +65,7 @@ def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
             yield quantity, by_key.get(key + PHASE)
 
 
-def _coordinates(effect: str) -> Iterator[FitParameter]:
+def _parameters(effect: str) -> Iterator[FitParameter]:
     for quantity, phase in _split(effect):
         low, high = quantity.search or (0.0, 0.0)
         name = f"{effect}.{quantity.key}"
@@ -74,7 +79,7 @@ def _coordinates(effect: str) -> Iterator[FitParameter]:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """Some effects together, as a vector x (k,) of coordinates; no effects: the base model.
+    """Some effects together, as a vector x (k,) of fit parameters; no effects: the base model.
 
     ``fixed``: numbers, as ("effect.key", value) in key units, that are known from elsewhere and not fitted.
     """
@@ -85,18 +90,21 @@ class Hypothesis:
     @cached_property
     def parameters(self) -> tuple[FitParameter, ...]:
         known = {name for name, _ in self.fixed}
-        return tuple(each for name in self.effects for each in _coordinates(name) if each.name not in known)
+        return tuple(each for name in self.effects for each in _parameters(name) if each.name not in known)
 
     @cached_property
     def low(self) -> np.ndarray:
+        """Lower bounds (k,)."""
         return np.array([-inf if each.angle else each.low for each in self.parameters])
 
     @cached_property
     def high(self) -> np.ndarray:
+        """Upper bounds (k,)."""
         return np.array([inf if each.angle else each.high for each in self.parameters])
 
     @cached_property
     def scale(self) -> np.ndarray:
+        """Changes that matter (k,)."""
         return np.array([each.scale for each in self.parameters])
 
     def in_key_units(self, x: np.ndarray) -> Values:
@@ -127,12 +135,13 @@ class Hypothesis:
         }
 
     def at(self, values: Values) -> np.ndarray:
-        """Coordinates of numbers in key units, shape (k,)."""
+        """The vector x (k,) of numbers in key units."""
+        known = dict(self.fixed)
         x: list[float] = []
         for name in self.effects:
             numbers = values[name]
             for quantity, phase in _split(name):
-                if any(known == f"{name}.{quantity.key}" for known, _ in self.fixed):
+                if f"{name}.{quantity.key}" in known:
                     continue
                 value = numbers[quantity.key]
                 if phase:
@@ -143,14 +152,13 @@ class Hypothesis:
         return np.array(x)
 
     def near_neutral(self, x: np.ndarray) -> np.ndarray:
-        """A point (k,) with neutral numbers, but for logarithms, whose neutral value may be infinite."""
+        """The point (k,) with neutral parameters; logarithms, whose neutral value may be infinite, stay."""
         neutral = np.clip([each.neutral for each in self.parameters], self.low, self.high)
         return np.where([each.logarithmic for each in self.parameters], x, neutral)
 
     def starts(self) -> np.ndarray:
-        """Points from which a fit may start, shape (n, k)."""
-        neutral = np.clip(np.zeros(len(self.parameters)), self.low, self.high)
-        if len(self.parameters) > 3:  # amplitudes with phases: linear enough to start at zero
-            return neutral[None]
-        ways = [each.along(FURTHER if i else ALONG) for i, each in enumerate(self.parameters)]
-        return np.array(list(product(*ways)))
+        """Points (n, k) from which a fit may start."""
+        if len(self.parameters) > MOST_GRIDDED:
+            return np.clip(np.zeros(len(self.parameters)), self.low, self.high)[None]
+        grids = [each.grid(FURTHER if i else FIRST) for i, each in enumerate(self.parameters)]
+        return np.array(list(product(*grids)))

@@ -1,117 +1,127 @@
-"""Weighted least squares of a hypothesis and all that is unknown beside it (Levenberg and Marquardt).
-
-Amplitudes are local to a test, so that each step solves for them test by test.
-"""
+"""Weighted least squares by Levenberg and Marquardt, with bounds on parameters and limits on steps."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.fit_data import Evaluation, Point, best_evaluation_per_test
 from wedgesweep.diagnose.jacobian import conservative_jacobian
+from wedgesweep.diagnose.model import TIGHT, Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
-from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.model import Evaluation, Fit, Model, Point
 
 ITERATIONS = 25
-# A fit has arrived when a step promises less than this of Q, or this share of what Q has above noise: far
-# from the data the last digit is of no use.
+# A fit has converged when the next step is predicted to reduce chi-squared by less than this, or by less than
+# this share of its excess: far from the data the last digit is of no use.
 CONVERGED, CONVERGED_SHARE = 0.02, 1e-3
-# Damping of a step at the start, and at which it has failed.
-DAMPING, MOST_DAMPING = 1e-3, 1e8
-# Eigenvalue of scaled normal equations below which they leave a combination of numbers open.
-SINGULAR = 1e-12
-# Largest step of one iteration, in widths of the coordinates.
+# Damping of the first step, the least one, that at which a step has failed, and the factors of its change.
+DAMPING, LEAST_DAMPING, MOST_DAMPING, UP, DOWN = 1e-3, 1e-9, 1e8, 8.0, 8.0
+# Eigenvalue of the scaled normal equations below which a combination of parameters is undetermined.
+UNDETERMINED = 1e-12
+# Largest step of one iteration, in scales of the parameters.
 MAX_STEP = 3.0
-# Largest relative step of an input amplitude.
-MAX_AMPLITUDE_STEP = 0.1
-# And of the phase of a foreign vibration (rad).
-MAX_TONE_PHASE_STEP = 0.3
 
 
-def refine(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> Fit:
-    """Follow a trial to the nearest minimum of Q within the bounds."""
+class Step(NamedTuple):
+    """A proposed point, by how much it should reduce chi-squared, and whether a limit cut the step short."""
+
+    point: Point
+    predicted: float
+    limited: bool
+
+
+def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> Fit:
+    """Follow an evaluation to the nearest minimum of chi-squared within the bounds."""
     evaluation, damping, converged = start, DAMPING, False
     matrix = np.zeros((len(model.low), len(model.low)))
     for _ in range(iterations):
         if not evaluation.found:
             break
         equations = normal_equations(model, evaluation)
-        matrix, _ = equations.schur_complement()
+        matrix = equations.schur_complement().matrix
         better, predicted = None, np.inf
         little = max(CONVERGED, CONVERGED_SHARE * (evaluation.chi2 - model.dof))
         while better is None and damping < MOST_DAMPING:
-            step, predicted, limited = lm_step(model, evaluation.point, equations, damping)
-            # A step cut short at a limit may promise nothing; a more damped one still may.
-            if predicted < little and not limited:
+            step = lm_step(model, evaluation.point, equations, damping)
+            predicted = step.predicted
+            # A step that a limit cut short may gain nothing where a more damped one still does.
+            if predicted < little and not step.limited:
                 break
-            better = _better(model, evaluation, step) if predicted >= little else None
+            better = _better(model, evaluation, step.point) if predicted >= little else None
             if better is None:
-                damping *= 8.0
+                damping *= UP
         if better is None:
             converged = predicted < little
             break
         gained = evaluation.chi2 - better.chi2
-        evaluation, damping = better, max(damping / (8.0 if gained > 0.5 * predicted else 1.0), 1e-9)
+        damping = max(damping / (DOWN if gained > 0.5 * predicted else 1.0), LEAST_DAMPING)
+        evaluation = better
     return Fit(model, evaluation, _covariance(matrix), converged)
 
 
-def _better(model: Model, evaluation: Evaluation, step: Point) -> Evaluation | None:
-    tried = model.evaluate(step)
+def _better(model: Model, evaluation: Evaluation, point: Point) -> Evaluation | None:
+    tried = model.evaluate(point)
     return tried if tried.chi2 < evaluation.chi2 else None
 
 
-def tight_refit(fit: Fit) -> Fit:
-    """A fit followed on with responses so exact that their error cannot pass for information."""
-    model = Model(fit.model.data, fit.model.hypothesis, fit.model.reference, simulation.TIGHT)
-    found = refine(model, model.evaluate(fit.evaluation.point))
-    if not found.evaluation.found:
-        return fit
-    matrix, _ = normal_equations(
-        model, found.evaluation, conservative_jacobian(model, found.evaluation)
-    ).schur_complement()
-    return replace(found, covariance=_covariance(matrix))
-
-
-def subset_fit(fit: Fit, rows: np.ndarray) -> Fit:
-    """The same point on some of a fit's tests."""
-    model = Model(fit.model.data.subset(rows), fit.model.hypothesis, fit.model.reference[rows])
-    point = fit.evaluation.point
-    evaluation = model.evaluate(
-        Point(point.x, point.amplitude[rows], point.tone_phase[rows], point.warm.of(rows))
-    )
-    return Fit(model, evaluation, fit.covariance, fit.converged)
-
-
-def lm_step(
-    model: Model, point: Point, equations: NormalEquations, damping: float
-) -> tuple[Point, float, bool]:
-    """The point after a damped step, what it promises to take off Q, and whether a limit cut it short."""
+def lm_step(model: Model, point: Point, equations: NormalEquations, damping: float) -> Step:
+    """The damped Gauss-Newton step from a point, within bounds and limits."""
     x = point.x
     matrix, gradient = equations.schur_complement(damping)
     free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
     step = np.zeros(len(x))
     if free.any():
-        inner = matrix[np.ix_(free, free)]
-        scale = np.diag(np.diag(inner) + 1e-12 * (1.0 + np.trace(inner)))
-        step[free] = -np.linalg.solve(inner + damping * scale, gradient[free])
+        block = matrix[np.ix_(free, free)]
+        scale = np.diag(np.diag(block) + 1e-12 * (1.0 + np.trace(block)))
+        step[free] = -np.linalg.solve(block + damping * scale, gradient[free])
     longest = np.max(np.abs(step) / model.scale, initial=0.0)
     if longest > MAX_STEP:
         step *= MAX_STEP / longest
     aim = np.clip(x + step, model.low, model.high)
     limited = bool((aim != x + step).any())
-    within = aim - x
-    local = equations.local_step(within, damping)
-    max_local_step = np.array([np.inf, MAX_AMPLITUDE_STEP, MAX_TONE_PHASE_STEP])[: local.shape[1]]
-    limited = limited or bool((np.abs(local) > max_local_step).any())
-    local = np.clip(local, -max_local_step, max_local_step)
-    predicted = equations.predicted_reduction(within, local)
-    return point.moved(within, local[:, 1:]), predicted, limited
+    step = aim - x
+    local = equations.local_step(step, damping)
+    fitted = [each.max_step for each in model.data.nuisances(model.effects, point)]
+    longest_local = np.r_[[np.inf] * equations.eliminated, fitted]
+    limited = limited or bool((np.abs(local) > longest_local).any())
+    local = np.clip(local, -longest_local, longest_local)
+    predicted = equations.predicted_reduction(step, local)
+    return Step(point.moved(step, local[:, equations.eliminated :]), predicted, limited)
+
+
+def tight_refit(fit: Fit) -> Fit:
+    """The fit continued at a tolerance whose error is no longer mistaken for information."""
+    model = Model(fit.model.data, fit.model.hypothesis, TIGHT)
+    found = minimise(model, model.evaluate(fit.point))
+    if not found.evaluation.found:
+        return fit
+    derivatives = conservative_jacobian(model, found.evaluation)
+    equations = normal_equations(model, found.evaluation, derivatives)
+    return replace(found, covariance=_covariance(equations.schur_complement().matrix))
+
+
+def subset_fit(fit: Fit, rows: np.ndarray) -> Fit:
+    """The same point on some of a fit's tests."""
+    model = Model(fit.model.data.subset(rows), fit.model.hypothesis)
+    return Fit(model, model.evaluate(fit.point.subset(rows)), fit.covariance, fit.converged)
+
+
+def with_extra_nuisances(fit: Fit) -> Fit:
+    """The fit continued with the nuisance parameters that its effects bring along, if that is better."""
+    model = fit.model
+    points = model.data.extra_nuisance_points(fit.effects, fit.point) if fit.evaluation.found else []
+    if not points:
+        return fit
+    best = best_evaluation_per_test(model.evaluate_all(points))
+    nuisance = np.array([each.nuisance for each in points])[best, np.arange(best.size)]
+    again = minimise(model, model.evaluate(replace(fit.point, nuisance=nuisance)))
+    return min(fit, again, key=lambda each: each.chi2)
 
 
 def _covariance(matrix: np.ndarray) -> np.ndarray:
-    """Inverse of the matrix of normal equations; what they say nothing of is wide, not exact."""
+    """Inverse of the matrix of normal equations; undetermined combinations are wide, not exact."""
     size = np.sqrt(np.diag(matrix))
     size = np.where(size > 0.0, size, 1.0)
     values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
-    inverse = vectors / np.maximum(values, SINGULAR) @ vectors.T
+    inverse = vectors / np.maximum(values, UNDETERMINED) @ vectors.T
     return inverse / np.outer(size, size)

@@ -1,71 +1,81 @@
-"""Normal equations of a trial, in which amplitudes and phases are local to their tests."""
+"""Normal equations in which nuisance parameters belong to one test each, solved by a Schur complement."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.fit_data import Evaluation
 from wedgesweep.diagnose.jacobian import Jacobian, jacobian
-from wedgesweep.diagnose.steady.model import Evaluation, Model
+from wedgesweep.diagnose.model import Model
+
+
+class Reduced(NamedTuple):
+    """Normal equations of the parameters alone: matrix (k, k) and gradient (k,)."""
+
+    matrix: np.ndarray
+    gradient: np.ndarray
 
 
 @dataclass(frozen=True)
 class NormalEquations:
-    """Normal equations: numbers (k), and what is local to each test (T, L), solved for first.
+    """Blocks of the normal equations: L nuisance parameters local to each test, k global parameters.
 
-    Local are start phase, amplitude, and the phase of a foreign vibration where the point has one.
+    ``local_block`` (T, L, L), ``coupling_block`` (T, L, k), ``global_block`` (k, k), ``local_gradient``
+    (T, L), ``global_gradient`` (k,). The first ``eliminated`` nuisance parameters are never damped.
     """
 
     local_block: np.ndarray
     coupling_block: np.ndarray
-    local_gradient: np.ndarray
     global_block: np.ndarray
+    local_gradient: np.ndarray
     global_gradient: np.ndarray
+    eliminated: int
 
-    def eliminated(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
-        """What is local does by itself (T, L), and along with the numbers (T, L, k)."""
-        inner = self.local_block.copy()
-        for i in range(1, inner.shape[-1]):
-            inner[:, i, i] *= 1.0 + damping
-        solved = np.linalg.solve(
-            inner, np.concatenate([self.coupling_block, self.local_gradient[..., None]], axis=-1)
-        )
+    def _eliminate(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
+        """Local block inverted and applied to the local gradient (T, L) and to the coupling (T, L, k)."""
+        block = self.local_block.copy()
+        for i in range(self.eliminated, block.shape[-1]):
+            block[:, i, i] *= 1.0 + damping
+        right = np.concatenate([self.coupling_block, self.local_gradient[..., None]], axis=-1)
+        solved = np.linalg.solve(block, right)
         return solved[..., -1], solved[..., :-1]
 
-    def schur_complement(self, damping: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Matrix (k, k) and gradient (k,) for the numbers alone."""
-        own, along = self.eliminated(damping)
-        matrix = self.global_block - np.einsum("tik,til->kl", self.coupling_block, along)
-        return matrix, self.global_gradient - np.einsum("tik,ti->k", self.coupling_block, own)
+    def schur_complement(self, damping: float = 0.0) -> Reduced:
+        """Normal equations of the parameters, nuisance parameters eliminated."""
+        own, coupled = self._eliminate(damping)
+        matrix = self.global_block - np.einsum("tik,til->kl", self.coupling_block, coupled)
+        return Reduced(matrix, self.global_gradient - np.einsum("tik,ti->k", self.coupling_block, own))
 
-    def local_step(self, numbers: np.ndarray, damping: float) -> np.ndarray:
-        """Steps of what is local (T, L) that go with a step of the numbers (k,)."""
-        own, along = self.eliminated(damping)
-        return -own - along @ numbers
+    def local_step(self, step: np.ndarray, damping: float) -> np.ndarray:
+        """Best step of the nuisance parameters (T, L) beside a step of the parameters (k,)."""
+        own, coupled = self._eliminate(damping)
+        return -own - coupled @ step
 
-    def predicted_reduction(self, numbers: np.ndarray, local: np.ndarray) -> float:
-        """What a step takes off Q if the responses are linear."""
-        slope = self.global_gradient @ numbers + (self.local_gradient * local).sum()
-        bend = numbers @ self.global_block @ numbers + np.einsum(
-            "ti,tij,tj->", local, self.local_block, local
-        )
-        bend += 2.0 * np.einsum("ti,tik,k->", local, self.coupling_block, numbers)
+    def predicted_reduction(self, step: np.ndarray, local: np.ndarray) -> float:
+        """Reduction of chi-squared by a step if the responses are linear."""
+        slope = self.global_gradient @ step + (self.local_gradient * local).sum()
+        bend = step @ self.global_block @ step + np.einsum("ti,tij,tj->", local, self.local_block, local)
+        bend += 2.0 * np.einsum("ti,tik,k->", local, self.coupling_block, step)
         return float(-2.0 * slope - bend)
 
 
 def normal_equations(
-    model: Model, evaluation: Evaluation, tangents: Jacobian | None = None
+    model: Model, evaluation: Evaluation, derivatives: Jacobian | None = None
 ) -> NormalEquations:
-    """Normal equations of a step from a trial, with its own derivatives if none are given."""
-    by_parameter, by_local = jacobian(model, evaluation) if tangents is None else tangents
-    tests = model.data.tests
-    inner = np.einsum("tmi,tmj->tij", by_local, by_local)
-    inner[:, 1, 1] += model.amplitude_weight**2
-    inner += 1e-12 * (1.0 + np.einsum("tii->t", inner))[:, None, None] * np.eye(inner.shape[-1])
-    right = np.einsum("tmi,tm->ti", by_local, evaluation.residual)
-    right[:, 1] += model.amplitude_weight * evaluation.prior[:tests]
-    outer = np.einsum("tmk,tml->kl", by_parameter, by_parameter)
-    gradient = np.einsum("tmk,tm->k", by_parameter, evaluation.residual)
-    free = np.arange(model.size, len(gradient))
-    outer[free, free] += model.prior_std**-2.0
-    gradient[model.size :] += evaluation.prior[tests:] / model.prior_std
-    return NormalEquations(inner, np.einsum("tmi,tmk->tik", by_local, by_parameter), right, outer, gradient)
+    """Normal equations at an evaluation, with its own Jacobian if none is given."""
+    by_parameter, by_nuisance = jacobian(model, evaluation) if derivatives is None else derivatives
+    eliminated, weight = model.data.eliminated, model.nuisance_weight
+    local = np.einsum("tmi,tmj->tij", by_nuisance, by_nuisance)
+    gradient = np.einsum("tmi,tm->ti", by_nuisance, evaluation.residual)
+    for i in range(weight.shape[1]):
+        local[:, eliminated + i, eliminated + i] += weight[:, i] ** 2
+        gradient[:, eliminated + i] += weight[:, i] * evaluation.nuisance_prior[:, i]
+    local += 1e-12 * (1.0 + np.einsum("tii->t", local))[:, None, None] * np.eye(local.shape[-1])
+    global_block = np.einsum("tmk,tml->kl", by_parameter, by_parameter)
+    global_gradient = np.einsum("tmk,tm->k", by_parameter, evaluation.residual)
+    uncertain = np.arange(model.size, len(global_gradient))
+    global_block[uncertain, uncertain] += model.prior_std**-2.0
+    global_gradient[model.size :] += evaluation.uncertain_prior / model.prior_std
+    coupling = np.einsum("tmi,tmk->tik", by_nuisance, by_parameter)
+    return NormalEquations(local, coupling, global_block, gradient, global_gradient, eliminated)

@@ -1,10 +1,10 @@
 """Fits of two effects at a time.
 
-A weak effect alone may be half of the right pair, so that no effect is dropped for its own fit: conditional
-each of the best single fits every other effect is tried. Where it starts is chosen as if responses added;
-what promises most after a few iterations on some of the tests goes on to more of both (successive halving).
-Where none will do, effects that only show in pairs are tried beside every other as well, and the best
-pairs begin once more, from starts that are no neighbours.
+A weak effect by itself may be one component of the right pair, so no effect is dropped for its own fit:
+every other effect is tried together with each of the best single fits. The second effect starts where it
+would fit best if responses added. The most promising pairs are then followed further, on more tests
+(successive halving). Where no pair is adequate, effects that only show in pairs are tried with every other
+as well, and the best pairs are fitted again from diverse starts.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,38 +15,39 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.least_squares import ITERATIONS, refine, subset_fit
-from wedgesweep.diagnose.search import Explanation, Search, best_of_each, penalised
-from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.model import Evaluation, Fit, Model
+from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.fit_data import Evaluation
+from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
+from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
+from wedgesweep.diagnose.search import Scans, Search, refit_best
 
-# Single fits conditional which every other effect is tried, and starting points of the other effect.
+# Best single fits with which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
-# Iterations of the rounds of improvement on some of the tests; then all tests. So many pairs enter the last
-# round, or the second where one nearly will do by then: its misfit is this many times noise at the most.
-ROUNDS, ENTERING, NEARLY = (1, 2, 5), 40, 2.0
-GOING_ON = 8
-# Where one pair will do, others with this many times its misfit go no further; a few always do. A start is
-# that far behind the fit conditional which it is, too.
+# Iterations of each round. At most ENTERING pairs enter the last round, or the second one if some pair is
+# nearly adequate by then (chi-squared below NEARLY times the degrees of freedom). COMPLETED pairs are then
+# fitted to all tests.
+ROUNDS, ENTERING, NEARLY, COMPLETED = (1, 2, 5), 40, 2.0, 8
+# Once a pair is adequate, pairs with this many times its misfit are dropped, but the best SEVERAL never are.
+# A start is as poor if it is that many times worse than the single fit with which it is combined.
 BEHIND, SEVERAL = 5.0, 4
-# Tests that the first look takes.
+# Tests on which pairs are fitted first.
 SUBSET = 6
-# Where no pair will do: starting points of another look at the best pairs, and how many pairs are the best.
-DIVERSE_STARTS, REFITTED_PAIRS = 4, 4
-# Best pairs of which each effect is tried conditional others, where no pair will do.
+# Where no pair is adequate: diverse starts of the best pairs, and how many pairs are the best.
+DIVERSE_STARTS, LEADING = 4, 4
+# Best pairs whose effects are each combined with other effects, where no pair is adequate.
 SWAPPED = 2
-# Pairs whose misfit is this close to the best have each of their effects fitted alone again.
+# Pairs whose chi-squared is this close to the best have their components fitted by themselves.
 NEAR_BEST = 50.0
-# Least change (squared, in noise) of a response that says something.
+# Least squared change of a whitened response that is more than numerical noise.
 SEEN = 4.0
-# An effect may be this much weaker or stronger than where it was tried.
+# An effect may be this much weaker or stronger than where it was evaluated.
 SCALES = (0.1, 2.0)
 
 
 class SingleScan(NamedTuple):
-    """What is known of one effect: its fit, on all tests and on the few that it leaves unexplained.
+    """What is known of one effect: its fit to all tests, and the same on the few that it fits worst.
 
-    ``x`` (n, k): its numbers over their range; ``changes`` (n, m): what they change of the base responses.
+    ``x`` (n, k): its parameters over their range; ``changes`` (n, m): changes of the base model's responses.
     """
 
     fit: Fit
@@ -55,76 +56,105 @@ class SingleScan(NamedTuple):
     changes: np.ndarray
 
 
-def pairs(search: Search, base: Fit, singles: Sequence[Explanation]) -> list[Explanation]:
-    """The best fits of pairs, best first."""
-    alone = {each.effects[0]: _single_scan(search, base, each.fit) for each in singles}
-    leading = sorted(alone, key=lambda effect: alone[effect].fit.chi2)[:PARTNERS]
-    conditional = [(alone[one], alone[other]) for one in leading for other in alone if one != other]
-    found = _followed(search, base, conditional, False, GOING_ON)
+class Combination(NamedTuple):
+    """An effect as it was fitted, and a second one whose start depends on the first."""
+
+    first: SingleScan
+    second: SingleScan
+
+
+class PairSearch(NamedTuple):
+    """What all stages of the search for pairs need: data, base fit, and all effects by themselves."""
+
+    search: Search
+    base: Fit
+    singles: Mapping[str, SingleScan]
+
+
+def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: Scans) -> list[Explanation]:
+    """Fit pairs of effects, and return them best first.
+
+    Parameters
+    ----------
+    search : Search
+        Data and candidates.
+    base : Fit
+        The fitted base model.
+    singles : sequence of Explanation
+        Best fit of each effect by itself.
+    scans : mapping of str to sequence of Evaluation
+        Evaluations of each effect over its range.
+    """
+    known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
+    job = PairSearch(search, base, known)
+    leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:PARTNERS]
+    found = _fit_combinations(job, _with_all_others(known, leading, ()), COMPLETED)
     if verdict.none_adequate(found):
-        # Alone they stood behind, conditional others they show: each may be the first of a pair, too.
-        shown = dict.fromkeys(effect for each in found[:REFITTED_PAIRS] for effect in each.effects)
-        conditional = [
-            (alone[one], alone[other]) for one in shown for other in alone if one not in (*leading, other)
-        ]
-        found = best_of_each(found + _followed(search, base, conditional, False, GOING_ON), penalised)
+        # Effects that do not stand out by themselves may do so in a pair.
+        showing = dict.fromkeys(effect for each in found[:LEADING] for effect in each.effects)
+        combinations = _with_all_others(known, showing, leading)
+        found = best_of_each(found + _fit_combinations(job, combinations, COMPLETED), penalised)
     if verdict.none_adequate(found):
-        found = best_of_each(found + _swapped(search, base, alone, found), penalised)
+        found = best_of_each(found + swapped_pairs(job, found), penalised)
     if verdict.none_adequate(found):
-        ways = [pair for each in found[:GOING_ON] for pair in permutations(each.effects)]
-        conditional = [(alone[one], alone[other]) for one, other in ways]
-        found += _followed(search, base, conditional, True, REFITTED_PAIRS)
+        orders = [order for each in found[:COMPLETED] for order in permutations(each.effects)]
+        combinations = [Combination(known[one], known[other]) for one, other in orders]
+        found += _fit_combinations(job, combinations, LEADING, diverse=True)
     return best_of_each(found, penalised)
 
 
-def _swapped(
-    search: Search, base: Fit, alone: Mapping[str, SingleScan], found: Sequence[Explanation]
-) -> list[Explanation]:
-    """Pairs in which an effect keeps its numbers from one of the best pairs, and the other one is another."""
-    parts = [(pair.fit, effect) for pair in found[:SWAPPED] for effect in pair.effects]
-    kept = search.each(lambda part: _within(search, *part), parts)
-    conditional = [
-        (first, other)
-        for (pair, _), first in zip(parts, kept, strict=True)
-        for effect, other in alone.items()
+def _with_all_others(
+    known: Mapping[str, SingleScan], first: Sequence[str] | Mapping[str, None], except_for: Sequence[str]
+) -> list[Combination]:
+    """Some effects, each with every other effect but for some."""
+    return [
+        Combination(known[one], known[other])
+        for one in first
+        for other in known
+        if one != other and one not in except_for
+    ]
+
+
+def swapped_pairs(job: PairSearch, found: Sequence[Explanation]) -> list[Explanation]:
+    """Pairs in which one effect is kept as in one of the best pairs, and the other is replaced."""
+    components = [(pair.fit, effect) for pair in found[:SWAPPED] for effect in pair.effects]
+    kept = job.search.each(lambda one: _as_in_pair(job.search, *one), components)
+    combinations = [
+        Combination(first, second)
+        for (pair, _), first in zip(components, kept, strict=True)
+        for effect, second in job.singles.items()
         if effect not in pair.effects and first.fit.evaluation.found
     ]
-    return _followed(search, base, conditional, False, GOING_ON)
+    return _fit_combinations(job, combinations, COMPLETED)
 
 
-def _followed(
-    search: Search,
-    base: Fit,
-    conditional: Sequence[tuple[SingleScan, SingleScan]],
-    diverse: bool,
-    going_on: int,
+def _fit_combinations(
+    job: PairSearch, combinations: Sequence[Combination], completed: int, diverse: bool = False
 ) -> list[Explanation]:
-    """Fits of second effects conditional first ones, the best first.
-
-    ``diverse``: from several starts of each that are no neighbours.
-    """
-    jobs = [(first, other) for first, other in conditional if len(other.x)]
-    begun = search.each(lambda job: _begin(search, job[0], job[1], diverse), jobs)
+    """Fits of combinations, the best first; ``diverse``: from several starts of each."""
+    search = job.search
+    useful = [each for each in combinations if len(each.second.x)]
+    begun = search.each(lambda each: begin(search, each, diverse), useful)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.chi2)]
-    fits = _further(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0])
+    fits = _continued(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0])
     if any(fit.chi2 < NEARLY * fit.dof for fit in fits):
         fits = _best_of_pairs(fits)[:ENTERING]
-    fits = _further(search, fits, ROUNDS[1])
-    fits = _further(search, fits if diverse else _hopeful(fits)[:ENTERING], ROUNDS[2])
-    found = search.each(lambda fit: _finish(search, base, fit), _hopeful(fits)[:going_on])
-    return search.around(found)
+    fits = _continued(search, fits, ROUNDS[1])
+    fits = _continued(search, fits if diverse else promising(fits)[:ENTERING], ROUNDS[2])
+    found = search.each(lambda fit: _complete(search, job.base, fit), promising(fits)[:completed])
+    return refit_best(search, found)
 
 
-def _further(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
-    return search.each(lambda fit: refine(fit.model, fit.evaluation, iterations), fits)
+def _continued(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
+    return search.each(lambda fit: minimise(fit.model, fit.evaluation, iterations), fits)
 
 
 def _best_of_pairs(fits: Sequence[Fit]) -> list[Fit]:
     return best_of_each(fits, lambda fit: fit.chi2)
 
 
-def _hopeful(fits: Sequence[Fit]) -> list[Fit]:
-    """The best fit of each pair, the best first, without those that are far behind one that will do."""
+def promising(fits: Sequence[Fit]) -> list[Fit]:
+    """The best fit of each pair, best first, without those far behind an adequate one."""
     found = _best_of_pairs(fits)
     if not found or found[0].p < verdict.ADEQUATE:
         return found
@@ -132,93 +162,83 @@ def _hopeful(fits: Sequence[Fit]) -> list[Fit]:
     return found[: max(len(near), SEVERAL)]
 
 
-def component_fits(search: Search, both: Sequence[Explanation]) -> list[Explanation]:
-    """Either effect of the leading pairs alone, from its numbers in the pair.
+def component_fits(search: Search, pairs: Sequence[Explanation]) -> list[Explanation]:
+    """Fits of either component of the leading pairs by itself, from its parameters in the pair.
 
-    A pair whose other half does nothing shows a minimum that the single fit had missed.
+    A pair whose other component does nothing reveals a minimum that the single fit had missed.
     """
-    if not both:
+    if not pairs:
         return []
-    close = [each for each in both if each.fit.chi2 - both[0].fit.chi2 < NEAR_BEST]
-    jobs = [(pair.fit, effect) for pair in close for effect in pair.effects]
-    parts = search.each(lambda job: _part(search, *job), jobs)
-    return [search.explanation(fit) for fit in _further(search, parts, ITERATIONS)]
+    near = [each for each in pairs if each.fit.chi2 - pairs[0].fit.chi2 < NEAR_BEST]
+    components = [(pair.fit, effect) for pair in near for effect in pair.effects]
+    starts = search.each(lambda one: _component(search, *one), components)
+    return [search.explanation(fit) for fit in _continued(search, starts, ITERATIONS)]
 
 
-def _part(search: Search, pair: Fit, effect: str) -> Fit:
-    """One effect of a pair alone, at its numbers there."""
+def _component(search: Search, pair: Fit, effect: str) -> Fit:
+    """One effect of a pair by itself, with its parameters there."""
     model = search.model(effect)
-    evaluation = model.evaluate(model.start(pair, model.hypothesis.at(pair.values)))
-    return Fit(model, evaluation, np.zeros((evaluation.point.x.size,) * 2), False)
+    return unfitted(model, model.evaluate(model.start(pair, model.hypothesis.at(pair.values))))
 
 
-def _within(search: Search, pair: Fit, effect: str) -> SingleScan:
-    """One effect of a pair at its numbers there, to be the first of others: no other numbers are tried."""
-    fit = _part(search, pair, effect)
+def _as_in_pair(search: Search, pair: Fit, effect: str) -> SingleScan:
+    """One effect of a pair with its parameters there, to be the first of a combination."""
+    fit = _component(search, pair, effect)
     nothing = np.zeros((0, fit.model.size))
-    return SingleScan(fit, _subset(fit), nothing, nothing)
+    return SingleScan(fit, _worst_tests(fit), nothing, nothing)
 
 
-def _subset(fit: Fit) -> Fit:
-    """The same point on the tests that it leaves most of."""
+def _worst_tests(fit: Fit) -> Fit:
+    """The same point on the tests with the largest misfit."""
     return subset_fit(fit, np.sort(np.argsort(-fit.evaluation.chi2_by_test)[:SUBSET]))
 
 
-def _single_scan(search: Search, base: Fit, fit: Fit) -> SingleScan:
-    """A single fit with everything that was simulated of its effect."""
-    evaluations = [
-        evaluation for evaluation in (*search.scans[fit.effects[0]], fit.evaluation) if evaluation.found
-    ]
-    size = fit.model.size
-    changes = np.array(
-        [(base.evaluation.residual - evaluation.residual).ravel() for evaluation in evaluations]
-    )
-    x = np.array([evaluation.point.x[:size] for evaluation in evaluations])
+def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
+    """A single fit with everything that was evaluated of its effect."""
+    evaluations = [each for each in (*scan, fit.evaluation) if each.found]
+    changes = np.array([(base.evaluation.residual - each.residual).ravel() for each in evaluations])
+    x = np.array([each.point.x[: fit.model.size] for each in evaluations])
     seen = np.array([change @ change > SEEN for change in changes], dtype=bool)
-    return SingleScan(fit, _subset(fit), x[seen], changes[seen] if seen.any() else changes[:0])
+    return SingleScan(fit, _worst_tests(fit), x[seen], changes[seen] if seen.any() else changes[:0])
 
 
-def _starts(first: Fit, other: SingleScan, diverse: bool) -> np.ndarray:
-    """Points (n, k) of the other effect that go best with a fit, if responses add.
+def _starts(first: Fit, second: SingleScan, diverse: bool) -> np.ndarray:
+    """Points (n, k) of the second effect that fit best beside the first, if responses add.
 
-    ``diverse``: the best one of each value of its last number.
+    ``diverse``: the best one for each value of its last parameter.
     """
     residual = first.evaluation.residual.ravel()
-    size, along = (other.changes**2).sum(1), other.changes @ residual
+    size, along = (second.changes**2).sum(1), second.changes @ residual
     scale = np.clip(along / size, *SCALES)
-    points = other.x[np.argsort(scale**2 * size - 2.0 * scale * along)]
+    points = second.x[np.argsort(scale**2 * size - 2.0 * scale * along)]
     if diverse and points.shape[1] > 1:
         _, at = np.unique(points[:, -1], return_index=True)
         return points[np.sort(at)][:DIVERSE_STARTS]
     return points[: DIVERSE_STARTS if diverse else STARTS]
 
 
-def _begin(search: Search, first: SingleScan, other: SingleScan, diverse: bool) -> list[Fit]:
-    """Starts of a second effect beside a fitted one, on some of the tests: the best, or all."""
-    fit, subset = first.fit, first.subset
-    hypothesis = search.model(*fit.effects, *other.fit.effects).hypothesis
-    model = Model(subset.model.data, hypothesis, subset.model.reference, simulation.ROUGH)
-    known = fit.x[: fit.model.size]
+def begin(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
+    """Starts of a combination on a subset of the tests: the best one, or all of them if ``diverse``."""
+    fit, subset, second = combination.first.fit, combination.first.subset, combination.second
+    model = search.model(*fit.effects, *second.fit.effects, tolerance=ROUGH)
+    model = replace(model, data=subset.model.data)
+    first_x = fit.x[: fit.model.size]
 
-    def tried(points: np.ndarray) -> list[Evaluation]:
-        return model.evaluate_all([model.start(subset, np.r_[known, x]) for x in points])
+    def evaluated(points: np.ndarray) -> list[Evaluation]:
+        return model.evaluate_all([model.start(subset, np.r_[first_x, x]) for x in points])
 
-    evaluations = tried(_starts(fit, other, diverse))
+    evaluations = evaluated(_starts(fit, second, diverse))
     if not diverse and min(each.chi2 for each in evaluations) > BEHIND * subset.chi2:
-        # Responses do not add where a test sticks that slid: what acts least leaves them where they are.
-        evaluations += tried(
-            other.fit.model.hypothesis.near_neutral(other.x[np.argmin((other.changes**2).sum(1))])[None]
-        )
+        # Responses do not add where a test sticks that had slid; the weakest effect leaves them as they are.
+        weakest = second.x[np.argmin((second.changes**2).sum(1))]
+        evaluations += evaluated(second.fit.model.hypothesis.near_neutral(weakest)[None])
     chosen = evaluations if diverse else [min(evaluations, key=lambda each: each.chi2)]
-    return [Fit(model, each, np.zeros((each.point.x.size,) * 2), False) for each in chosen]
+    return [unfitted(model, each) for each in chosen]
 
 
-def _finish(search: Search, base: Fit, first: Fit) -> Explanation:
-    """A fit on all tests from one on some of them."""
-    effects = first.effects
-    model = search.model(*effects)
-    start = model.start(base, first.x[: model.size])
-    start = replace(start, x=np.r_[first.x[: model.size], start.x[model.size :]])
-    fit = refine(model, model.evaluate(start))
-    search.progress(" + ".join(effects))
+def _complete(search: Search, base: Fit, subset: Fit) -> Explanation:
+    """A fit to all tests from one to some of them."""
+    model = search.model(*subset.effects)
+    fit = minimise(model, model.evaluate(model.start(base, subset.x[: model.size])))
+    search.progress(" + ".join(subset.effects))
     return search.explanation(fit)

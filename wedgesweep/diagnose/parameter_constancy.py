@@ -1,9 +1,9 @@
-"""Whether the numbers of an explanation are the same in all tests.
+"""Whether the parameters of an explanation are the same in all tests.
 
-What is not the cause may imitate it in every test, but hardly by one number in all of them: then the misfit
-that is left points the way in which the number would have to differ from test to test, long before it is too
-large for noise as a whole. This is the Lagrange multiplier test (Breusch and Pagan, 1980) of constant
-parameters (Nyblom, 1989).
+A wrong cause may imitate the right one in every single test, but hardly with one value in all of them. What
+the fit leaves then points in the direction in which the value would have to differ from test to test, long
+before the misfit as a whole exceeds the noise. This is the Lagrange multiplier test (Breusch and Pagan, 1980)
+of constant parameters (Nyblom, 1989).
 """
 
 from typing import NamedTuple
@@ -11,22 +11,22 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import chdtrc
 
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.projector import Projector
-from wedgesweep.diagnose.steady.model import Fit
 
-# Of what a number does in the test that shows it best, less than this share says nothing of it.
+# Directions with less than this share of the effect in the test that shows a parameter best are left out.
 FAINT = 1e-3
 
 
 class Constancy(NamedTuple):
-    """Probability that all numbers are constant, and the one that most seems not to be ("effect.key")."""
+    """Probability that all parameters are constant, and the least constant one ("effect.key")."""
 
     p: float
-    number: str | None
+    parameter: str | None
 
 
 def parameter_constancy(fit: Fit) -> Constancy:
-    """Constancy of the numbers of a fit's hypothesis, each tried alone; simulates once for each of them."""
+    """Test the parameters of a fit's hypothesis one by one, with a Bonferroni correction."""
     size = fit.model.size
     if not (size and fit.evaluation.found):
         return Constancy(1.0, None)
@@ -36,10 +36,10 @@ def parameter_constancy(fit: Fit) -> Constancy:
     return Constancy(min(1.0, size * p[least]), fit.model.hypothesis.parameters[least].name)
 
 
-def _constant(project: Projector, tangent: np.ndarray) -> float:
-    """Probability of the misfit along changes of one number, a test at a time; ``tangent`` (T, m)."""
-    alone = tangent[None] * np.eye(len(tangent))[..., None]
-    ways = np.array([project(each) for each in alone])
-    _, size, basis = np.linalg.svd(ways, full_matrices=False)
-    basis = basis[size > FAINT * np.linalg.norm(tangent, axis=1).max()]
+def _constant(project: Projector, derivative: np.ndarray) -> float:
+    """Probability of the misfit along changes of one parameter in single tests; ``derivative`` (T, m)."""
+    alone = derivative[None] * np.eye(len(derivative))[..., None]
+    directions = np.array([project(each) for each in alone])
+    _, size, basis = np.linalg.svd(directions, full_matrices=False)
+    basis = basis[size > FAINT * np.linalg.norm(derivative, axis=1).max()]
     return float(chdtrc(len(basis), ((basis @ project.misfit) ** 2).sum())) if len(basis) else 1.0

@@ -1,8 +1,8 @@
-"""How far numbers may be from where a fit ended, by what Q rises there (profile likelihood).
+"""Confidence intervals from the rise of chi-squared (profile likelihood).
 
-Next to breakaway Q is rugged: a fit stops short of the least Q, and the curvature there makes a number seem
-more certain than it is. So each number is held where its interval should end, and the rest are fitted
-again, as MINUIT's MINOS does (James and Roos, 1975, Computer Physics Communications 10, 343).
+Near breakaway chi-squared is rugged: a fit may stop short of its minimum, and the curvature there makes a
+parameter look more certain than it is. So each parameter is held where its interval should end and the others
+are fitted again, as MINUIT's MINOS does (James and Roos, 1975, Computer Physics Communications 10, 343).
 """
 
 from collections.abc import Callable
@@ -12,42 +12,48 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.least_squares import refine, tight_refit
-from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.least_squares import minimise, tight_refit
+from wedgesweep.diagnose.model import Fit
 
-# Half a 95 % interval of one number in standard deviations, and the rise of Q at its ends.
+# Half a 95 % interval of one parameter in standard deviations, and the rise of chi-squared at its ends.
 TWO_SIDED = 1.959964
 RISE = TWO_SIDED**2
-# An end is found if Q has risen by this share of that, or after so many tries.
-CLOSE_ENOUGH, TRIES = 0.8, 5
-# The next try is no more than this many times further off.
+# An end is found if chi-squared has risen by this share of RISE, or after this many tries.
+RISE_SHARE, TRIES = 0.8, 5
+# The next try is at most this many times further out.
 FURTHER = 3.0
-# Iterations of a fit with a number held.
+# Iterations of a fit with a parameter held.
 ITERATIONS = 10
-# A fit that takes this much off Q is better, and is gone on from, so many times at the most.
-LOWER, ONWARD = 0.5, 6
+# A fit that is better by this much becomes the new centre, at most this many times.
+LOWER, RESTARTS = 0.5, 6
 
 
 class ProfileEnd(NamedTuple):
-    """End of an interval, in standard deviations by the curvature, and the fit of the least Q on the way."""
+    """End of an interval in standard deviations by the curvature, and the best fit on the way there."""
 
     end: float
-    least: Fit
+    best: Fit
 
 
 def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
-    """A fit or a better one next to it, its covariance no less than where Q says that intervals end.
+    """The fit, or a better one found beside it, with a covariance as wide as its profile likelihood.
 
-    ``each`` maps a function. An interval is never narrower than by the curvature at the minimum: where Q is
-    rugged a fit with a number held may have stopped short, too.
+    Intervals never become narrower than by the curvature: a fit with a parameter held may stop short as well.
+
+    Parameters
+    ----------
+    fit : Fit
+        A fit with its covariance by the curvature.
+    each : callable
+        Maps a function over a list.
     """
     sides = list(product(range(fit.model.size), (1.0, -1.0)))
     ends = np.full((fit.model.size, 2), TWO_SIDED)
-    for _ in range(ONWARD if fit.evaluation.found else 0):
-        ends_found = each(lambda side, fit=fit: _profile_end(fit, *side), sides)
-        ends = np.reshape([each.end for each in ends_found], ends.shape)
-        least = min((each.least for each in ends_found), key=lambda found: found.chi2, default=fit)
-        better = fit if least is fit else tight_refit(replace(least, model=fit.model))
+    for _ in range(RESTARTS if fit.evaluation.found else 0):
+        found = each(lambda side, fit=fit: _profile_end(fit, *side), sides)
+        ends = np.reshape([one.end for one in found], ends.shape)
+        best = min((one.best for one in found), key=lambda one: one.chi2, default=fit)
+        better = fit if best is fit else tight_refit(replace(best, model=fit.model))
         if better.chi2 > fit.chi2 - LOWER:
             break
         fit = better
@@ -55,28 +61,28 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     return replace(fit, covariance=wider[:, None] * fit.covariance * wider)
 
 
-def _profile_end(fit: Fit, number: int, side: float) -> ProfileEnd:
-    """Out from a fit along one number until Q has risen enough, or is lower than where it began."""
-    std = np.sqrt(fit.covariance[number, number])
-    bound = (fit.model.high if side > 0.0 else fit.model.low)[number]
-    furthest = abs(bound - fit.x[number]) / std
+def _profile_end(fit: Fit, parameter: int, side: float) -> ProfileEnd:
+    """Move one parameter out until chi-squared has risen enough, or is lower than where it began."""
+    std = np.sqrt(fit.covariance[parameter, parameter])
+    bound = (fit.model.high if side > 0.0 else fit.model.low)[parameter]
+    furthest = abs(bound - fit.x[parameter]) / std
     end, held = TWO_SIDED, fit
     for _ in range(TRIES):
         off = min(end, furthest)
-        held = _held(fit, held, number, fit.x[number] + side * off * std)
+        held = _held(fit, held, parameter, fit.x[parameter] + side * off * std)
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(end, held)
         share = np.sqrt(RISE / max(rise, RISE / FURTHER**2))
         end = max(off * share, TWO_SIDED)
-        if rise > CLOSE_ENOUGH * RISE or off == furthest:
+        if rise > RISE_SHARE * RISE or off == furthest:
             break
     return ProfileEnd(end, fit)
 
 
-def _held(fit: Fit, start: Fit, number: int, value: float) -> Fit:
-    """Fit with a number held, from where the others go with it by the covariance."""
-    model = fit.model.holding(number, value)
-    along = fit.covariance[:, number] / fit.covariance[number, number]
-    x = np.clip(start.x + along * (value - start.x[number]), model.low, model.high)
-    return refine(model, model.evaluate(replace(start.evaluation.point, x=x)), ITERATIONS)
+def _held(fit: Fit, start: Fit, parameter: int, value: float) -> Fit:
+    """Fit with one parameter held, the others starting where the covariance predicts them."""
+    model = fit.model.holding(parameter, value)
+    slope = fit.covariance[:, parameter] / fit.covariance[parameter, parameter]
+    x = np.clip(start.x + slope * (value - start.x[parameter]), model.low, model.high)
+    return minimise(model, model.evaluate(replace(start.point, x=x)), ITERATIONS)

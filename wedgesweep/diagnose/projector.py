@@ -1,52 +1,52 @@
-"""What the nuisances of a fit cannot imitate."""
+"""Projection of a change of the responses onto what no fitted parameter can imitate."""
 
 import numpy as np
 
 from wedgesweep.diagnose.jacobian import jacobian
-from wedgesweep.diagnose.steady.model import Evaluation, Fit
+from wedgesweep.diagnose.model import Fit
 
-# Singular value of the scaled tangents below which a direction is one of the others.
-SINGULAR = 1e-9
+# Singular value of the scaled derivatives below which a direction depends on the others.
+DEPENDENT = 1e-9
 
 
 class Projector:
-    """Takes out of a change of the responses what everything that is fitted can take up.
+    """Removes from a change of the residual everything that the parameters of a fit can take up.
 
-    ``by_parameter`` (T, m, k + u): derivatives of the residual by the numbers; ``misfit``: what a fit leaves
-    of the data and of its priors, as one vector.
+    ``by_parameter`` (T, m, k + u): derivatives of the residual. ``misfit``: what the fit leaves of the data
+    and of its priors, projected, as one vector.
     """
 
     def __init__(self, fit: Fit) -> None:
-        self._model = fit.model
-        self.by_parameter, by_local = jacobian(fit.model, fit.evaluation)
-        tests, points, numbers = self.by_parameter.shape
-        local = np.zeros((tests, points, tests, by_local.shape[-1]))
-        local[np.arange(tests), :, np.arange(tests)] = by_local
-        tangents = np.concatenate(
-            [local.reshape(tests * points, -1), self.by_parameter.reshape(tests * points, numbers)], axis=1
+        self._model = model = fit.model
+        self.by_parameter, by_nuisance = jacobian(model, fit.evaluation)
+        tests, observations, parameters = self.by_parameter.shape
+        self._nuisances = by_nuisance.shape[-1]
+        by_test = np.zeros((tests, observations, tests, self._nuisances))
+        by_test[np.arange(tests), :, np.arange(tests)] = by_nuisance
+        rows = tests * observations
+        derivatives = np.concatenate(
+            [by_test.reshape(rows, -1), self.by_parameter.reshape(rows, parameters)], axis=1
         )
-        self._locals = by_local.shape[-1]
-        stiff = self._over_all(fit.model.amplitude_weight, 1.0 / fit.model.prior_std)
-        matrix = np.concatenate([tangents, np.diag(stiff)])
+        priors = self._over_all(model.nuisance_weight, 1.0 / model.prior_std)
+        matrix = np.concatenate([derivatives, np.diag(priors)])
         matrix /= np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
         u, s, _ = np.linalg.svd(matrix, full_matrices=False)
-        self._basis = u[:, s > SINGULAR]
-        self.misfit = self._left(fit.evaluation.residual, self._priors(fit.evaluation))
+        self._basis = u[:, s > DEPENDENT]
+        evaluation = fit.evaluation
+        pulls = self._over_all(evaluation.nuisance_prior, evaluation.uncertain_prior)
+        self.misfit = self._project(evaluation.residual, pulls)
 
-    def _over_all(self, amplitudes: np.ndarray, uncertain: np.ndarray) -> np.ndarray:
-        """A value for each that is fitted: of amplitudes (T,) and uncertain numbers (u,), else 0."""
-        by_local = np.zeros((amplitudes.size, self._locals))
-        by_local[:, 1] = amplitudes
-        return np.r_[by_local.ravel(), np.zeros(self._model.size), uncertain]
+    def _over_all(self, nuisance: np.ndarray, uncertain: np.ndarray) -> np.ndarray:
+        """A value for each fitted number: of nuisances (T, P) and uncertain parameters (u,), 0 for others."""
+        eliminated = self._model.data.eliminated
+        by_test = np.zeros((len(nuisance), self._nuisances))
+        by_test[:, eliminated : eliminated + nuisance.shape[1]] = nuisance
+        return np.r_[by_test.ravel(), np.zeros(self._model.size), uncertain]
 
-    def _priors(self, evaluation: Evaluation) -> np.ndarray:
-        tests = len(evaluation.residual)
-        return self._over_all(evaluation.prior[:tests], evaluation.prior[tests:])
-
-    def _left(self, change: np.ndarray, priors: np.ndarray) -> np.ndarray:
+    def _project(self, change: np.ndarray, priors: np.ndarray) -> np.ndarray:
         vector = np.r_[change.ravel(), priors]
         return vector - self._basis @ (self._basis.T @ vector)
 
     def __call__(self, change: np.ndarray) -> np.ndarray:
-        """What is left of a change (T, m), as one vector."""
-        return self._left(change, np.zeros(len(self._basis) - change.size))
+        """What remains of a change (T, m), as one vector."""
+        return self._project(change, np.zeros(len(self._basis) - change.size))

@@ -1,265 +1,277 @@
-"""Fits of every candidate alone; see pairs.py for two at a time."""
+"""Fits of the base model and of every candidate effect by itself; pairs.py fits two at a time.
 
-from collections.abc import Callable, Iterable, Sequence
+Each stage is a function of what earlier stages returned; nothing is kept in between.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import log
-from typing import TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
+from wedgesweep.diagnose.fit_data import Evaluation, FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.least_squares import refine
-from wedgesweep.diagnose.parameter_constancy import Constancy, parameter_constancy
-from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.amplitude_grid import best_amplitudes
-from wedgesweep.diagnose.steady.fit_data import FitData
-from wedgesweep.diagnose.steady.model import Evaluation, Fit, Model
-from wedgesweep.diagnose.steady.tone import TONE
-from wedgesweep.diagnose.steady.tone_phase import with_tone_phase
+from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
+from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
-from wedgesweep.solvers.periodic import at_rest
 
-# What one more number costs is ln n + PENALTY: with 21 candidates clean data keep the base model.
-PENALTY = 6.0
-# Starting points that are followed, and for how many iterations; the best of the last go on to the end.
-SCHEDULE = ((4, 3), (2, 4))
-# Times the base model's misfit at which an effect that was followed a little way goes no further alone.
+
+class Round(NamedTuple):
+    """A round of successive halving: how many of the best fits enter (None: all), and their iterations."""
+
+    entering: int | None
+    iterations: int
+
+
+# Rounds from the starting points of an effect; the best fit of the last round is followed to its minimum.
+SCHEDULE = (Round(4, 3), Round(2, 4))
+# Where the base model is adequate a cause can only be weak, and any start will do.
+SHORT_SCHEDULE = (Round(1, 3),)
+# Rounds from all starting points, where nothing is adequate.
+MULTISTART_SCHEDULE = (Round(None, 3), Round(4, 5), Round(2, 8))
+# An effect is dropped after the first round if its misfit is this many times the base model's.
 CUT_OFF = 100.0
-# How the starts are followed once more, all of them at first, where nothing will do.
-MULTISTART_SCHEDULE = ((None, 3), (4, 5), (2, 8))
-# Best explanations of which those that leave more than noise look for a way around what holds them up.
-DETOURS = 8
-# Least probability of what is left at which a model is possible at all.
-POSSIBLE = 1e-3
-# Relative error of a stated input amplitude that is no measurement's, but the base model's.
-IMPLAUSIBLE_INPUT = 0.3
-# Then fits begin with iterations in which it is no further off than this.
-AS_STATED, HELD = 8, 1e-4
-# A fit is better if it takes this much off Q.
+# So many of the best explanations, if they are impossible, are refitted without influential tests.
+REFITTED = 8
+# Iterations of a fit whose nuisance parameters are held as stated.
+HELD_ITERATIONS = 8
+# A fit is better if it takes this much off chi-squared.
 SLIGHT = 1.0
-# Effects with states of their own take longest.
+# Effects with states of their own take longest to fit, and begin first.
 SLOWEST = ("column_compliance", "fixture_resonance", "presliding")
-TONE_FREQUENCY = f"{TONE}.frequency_hz"
+
+# Evaluations of each effect over the range of its parameters, beside the base model.
+Scans = Mapping[str, Sequence[Evaluation]]
 
 
-def unknown_reference(data: FitData) -> np.ndarray:
-    """Input amplitudes (T,) in m about which a fit looks: the stated ones, else the fundamental's."""
-    fundamental = np.abs(data.measured[:, 0, 0])
-    return np.where(np.isinf(data.amplitude_std), fundamental, data.amplitude)
+def quiet(step: str) -> None:
+    """Report no progress."""
 
 
 @dataclass(frozen=True)
-class Explanation:
-    """A hypothesis with its fit, and what a number costs."""
-
-    fit: Fit
-    parameter_penalty: float
-
-    @property
-    def effects(self) -> tuple[str, ...]:
-        return self.fit.effects
-
-    @cached_property
-    def constancy(self) -> Constancy:
-        """Whether its numbers are the same in all tests."""
-        return parameter_constancy(self.fit)
-
-    @property
-    def p_value(self) -> float:
-        """Probability of what it leaves, or of numbers that are constant, if that is less.
-
-        The latter takes simulations: it is not looked at where the former is out of the question.
-        """
-        return min(self.fit.p, self.constancy.p) if self.fit.p >= POSSIBLE else self.fit.p
-
-    @property
-    def penalised(self) -> float:
-        return self.fit.chi2 + self.parameter_penalty * self.fit.model.size
-
-
-def penalised(each: Explanation) -> float:
-    """What explanations are ranked by."""
-    return each.penalised
-
-
-Each = TypeVar("Each", Fit, Explanation)
-
-
 class Search:
-    """All fits to one problem; ``progress`` is told each step that is done."""
+    """What all stages share: data, candidate effects, number of threads, and who is told of progress.
 
-    def __init__(
-        self,
+    ``undetected``: candidates of which the records show nothing, so that there is nothing to fit.
+    """
+
+    data: FitData
+    effects: tuple[str, ...]
+    undetected: tuple[str, ...] = ()
+    threads: int = 1
+    progress: Callable[[str], None] = quiet
+
+    @classmethod
+    def of(
+        cls,
         data: FitData,
         effects: Sequence[str],
         threads: int = 1,
-        progress: Callable[[str], None] = lambda step: None,
-    ) -> None:
-        self.data, self.threads, self.progress = data, threads, progress
-        # Where no tone stands out there is nothing to fit one to.
-        self.tone_undetected = TONE in effects and data.tone is None
-        self.effects = tuple(name for name in effects if name != TONE or not self.tone_undetected)
-        self.reference = unknown_reference(data)
-        self.parameter_penalty = log(data.observations.sum()) + PENALTY
-        # What was simulated of each effect over its range beside the base model.
-        self.scans: dict[str, Sequence[Evaluation]] = {}
+        progress: Callable[[str], None] = quiet,
+    ) -> "Search":
+        """A search for some effects in some data."""
+        detected = data.candidates(effects)
+        undetected = tuple(effect for effect in effects if effect not in detected)
+        return cls(data, detected, undetected, threads, progress)
 
-    def model(self, *effects: str, tolerance: float = simulation.TOLERANCE) -> Model:
-        tone = self.data.tone
-        fixed = ((TONE_FREQUENCY, tone),) if tone is not None and TONE in effects else ()
-        return Model(self.data, Hypothesis(effects, fixed), self.reference, tolerance)
+    @property
+    def parameter_penalty(self) -> float:
+        return log(self.data.observations.sum()) + PENALTY
+
+    def model(self, *effects: str, tolerance: float = TOLERANCE) -> Model:
+        """The model with some effects; no effects: the base model."""
+        known = self.data.known
+        fixed = tuple((name, value) for name, (value, _) in known.items() if name.split(".")[0] in effects)
+        return Model(self.data, Hypothesis(effects, fixed), tolerance)
 
     def explanation(self, fit: Fit) -> Explanation:
         return Explanation(fit, self.parameter_penalty)
 
-    def base(self) -> Explanation:
-        """The base model with everything fitted that is unknown about the tests."""
-        model = self.model()
-        start = model.start(None, np.zeros(0))
-        evaluations = best_amplitudes(model, [replace(start, x=x) for x in model.uncertain_starts()])
-        fits = self.each(lambda evaluation: refine(model, evaluation), evaluations)
-        if model.uncertain and min(fits, key=lambda fit: fit.chi2).p < POSSIBLE:
-            # Inputs may have made up for numbers that they should have led to.
-            fits += self.each(lambda evaluation: refine(model, _as_stated(model, evaluation)), evaluations)
-        fit = self._with_tone_phase(refit_without_influential_tests(min(fits, key=lambda fit: fit.chi2)))
-        return self.explanation(fit)
-
-    def refit_base(self, base: Explanation, found: Sequence[Explanation]) -> Explanation:
-        """The base model, or a better fit of it from where the best of its extensions ended.
-
-        What it has lost by stopping short is no gain of theirs.
-        """
-        best = min(found, key=penalised, default=base).fit
-        model, numbers = self.model(), best.model.values(best.x)
-        x = np.array([numbers[name]["scale"] for name in model.uncertain])
-        start = replace(best.evaluation.point, x=x, warm=at_rest(self.data.tests))
-        fit = refine(model, model.evaluate(start))
-        return self.explanation(self._with_tone_phase(fit)) if fit.chi2 < base.fit.chi2 - SLIGHT else base
-
-    def _with_tone_phase(self, fit: Fit) -> Fit:
-        """The fit, followed on where its start phases tell how input and foreign tone met in each record."""
-        self.data = replace(self.data, start=fit.evaluation.phase)
-        if not fit.model.has_tone:
-            return fit
-        model = self.model(*fit.effects)
-        return with_tone_phase(refine(model, model.evaluate(fit.evaluation.point)))
-
-    def single(self, effect: str, base: Fit) -> Explanation:
-        """Best fit of one effect; the trials among which it began are kept in ``along``."""
-        model, rough = self.model(effect), self.model(effect, tolerance=simulation.ROUGH)
-        points = model.hypothesis.starts()
-        evaluations = best_amplitudes(rough, [model.start(base, x) for x in points])
-        self.scans[effect] = evaluations
-        evaluations = _best_along_first(evaluations)
-        if effect == TONE or _implausible_inputs(base):
-            # What the base model made of the effect has led its own numbers far astray, or may have.
-            fresh = best_amplitudes(rough, [model.start(None, x) for x in points])
-            evaluations = evaluations + fresh
-            if _implausible_inputs(base):
-                evaluations = evaluations + [
-                    _as_stated(model, evaluation) for evaluation in _leading(fresh, SCHEDULE[0][0])
-                ]
-        # Where the base model will do, a cause could only be weak: one start is as good as another.
-        schedule = SCHEDULE if base.p < POSSIBLE else ((1, 3),)
-        fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
-        if effect == TONE:
-            fit = self._with_tone_phase(fit)
-        self.progress(effect)
-        return self.explanation(fit)
-
-    def singles(self, base: Fit) -> list[Explanation]:
-        """Best fits of every effect, in their order."""
-        return self._each_effect(lambda effect: self.single(effect, base))
-
-    def around(self, found: Sequence[Explanation]) -> list[Explanation]:
-        """Explanations, the best first; the best ones of them around what held up their fits."""
-        best = sorted(found, key=penalised)[:DETOURS]
-        best = [each for each in best if each.fit.p < POSSIBLE]
-        again = self.each(
-            lambda each: self.explanation(refit_without_influential_tests(with_tone_phase(each.fit))),
-            best,
-        )
-        return best_of_each([*again, *found], penalised)
-
-    def multistart(self) -> list[Explanation]:
-        """Singles again, from every value of their first number at which they were tried.
-
-        Next to breakaway a single test can make the start of the right way look worse than all others.
-        """
-        return self._each_effect(self._multistart_one)
-
-    def _multistart_one(self, effect: str) -> Explanation:
-        evaluations = _best_along_first(self.scans[effect])
-        self.progress(f"{effect}, from multistart")
-        return self.explanation(best_of(self.model(effect), evaluations, MULTISTART_SCHEDULE))
-
-    def _each_effect(self, function: Callable[[str], Explanation]) -> list[Explanation]:
-        """What a function finds for every effect, in their order; the longest begin first."""
-        order = sorted(self.effects, key=lambda effect: effect not in SLOWEST)
-        found = dict(zip(order, self.each(function, order), strict=True))
-        return [found[effect] for effect in self.effects]
-
-    def each(self, function: Callable, items: Iterable) -> list:
+    def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+        """Results of a function for all items, in their order."""
         if self.threads == 1:
             return [function(item) for item in items]
         with ThreadPoolExecutor(self.threads) as pool:
             return list(pool.map(function, items))
 
-
-def best_of_each(found: Iterable[Each], misfit: Callable[[Each], float]) -> list[Each]:
-    """Of fits or explanations, the best one of each set of effects; sorted, the best first."""
-    best: dict[frozenset[str], Each] = {}
-    for each in sorted(found, key=misfit):
-        best.setdefault(frozenset(each.effects), each)
-    return list(best.values())
+    def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
+        """Results of a function for every candidate effect, in their order; the slowest begin first."""
+        order = sorted(self.effects, key=lambda effect: effect not in SLOWEST)
+        found = dict(zip(order, self.each(function, order), strict=True))
+        return {effect: found[effect] for effect in self.effects}
 
 
-def _implausible_inputs(base: Fit) -> bool:
-    """Whether a base model makes up for what it lacks by inputs that are far from those stated."""
-    stated = np.isfinite(base.model.data.amplitude_std)
-    return bool((np.abs(base.evaluation.point.amplitude[stated]) > IMPLAUSIBLE_INPUT).any())
+class BaseFit(NamedTuple):
+    """The fitted base model, and the search with what the fit tells of the records' start."""
+
+    search: Search
+    base: Explanation
 
 
-def _as_stated(model: Model, evaluation: Evaluation) -> Evaluation:
-    """Where a trial leads while the input amplitudes stay those stated."""
-    std = model.data.amplitude_std
-    held = replace(model.data, amplitude_std=np.where(np.isinf(std), std, np.minimum(std, HELD)))
-    strict = Model(held, model.hypothesis, model.reference, model.tolerance)
-    found = refine(strict, strict.evaluate(evaluation.point), AS_STATED)
-    return model.evaluate(found.evaluation.point)
+class SingleFit(NamedTuple):
+    """Best fit of one effect, the evaluations among which it began, and the data that it leaves."""
+
+    explanation: Explanation
+    scan: list[Evaluation]
+    data: FitData
 
 
-def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Evaluation]:
-    return sorted(evaluations, key=lambda each: each.chi2)[:entering]
+class SingleFits(NamedTuple):
+    """Best fits of all effects, in their order, with their scans."""
+
+    search: Search
+    explanations: list[Explanation]
+    scans: Scans
 
 
-def _best_along_first(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """The best trial at each value of the first number, so that not all that are followed are neighbours."""
-    best: dict[float, Evaluation] = {}
-    for evaluation in sorted(evaluations, key=lambda each: each.chi2):
-        best.setdefault(float(evaluation.point.x[0]), evaluation)
-    return list(best.values())
+def base_fit(search: Search) -> BaseFit:
+    """Fit the base model: nuisance parameters of the tests and uncertain parameters only."""
+    model = search.model()
+    start = model.start(None, np.zeros(0))
+    points = [replace(start, x=x) for x in model.uncertain_starts()]
+    evaluations = search.data.search_nuisances(model, points)
+    fits = search.each(lambda evaluation: minimise(model, evaluation), evaluations)
+    if model.uncertain and min(fits, key=_chi2).p < POSSIBLE:
+        # Nuisance parameters may have made up for wrong values of uncertain parameters.
+        fits += search.each(
+            lambda evaluation: minimise(model, _held_as_stated(model, evaluation)), evaluations
+        )
+    fit = _aligned(refit_without_influential_tests(min(fits, key=_chi2)))
+    return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
+
+
+def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) -> BaseFit:
+    """Fit the base model again from where its best extension ended, and keep the better fit.
+
+    Otherwise an extension would gain what the base model lost by stopping short of its minimum.
+    """
+    best = min(found, key=penalised, default=base).fit
+    model, values = search.model(), best.model.values(best.x)
+    x = np.array([values[name]["scale"] for name in model.uncertain])
+    _, at_rest = search.data.start()
+    fit = minimise(model, model.evaluate(replace(best.point, x=x, warm=at_rest)))
+    if fit.chi2 >= base.fit.chi2 - SLIGHT:
+        return BaseFit(search, base)
+    fit = _aligned(fit)
+    return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
+
+
+def _aligned(fit: Fit) -> Fit:
+    """The fit on data that know what it tells of the records' start, continued where that matters."""
+    model = replace(fit.model, data=fit.model.data.aligned_to(fit.evaluation))
+    if model.data.repeats(fit.effects):
+        return replace(fit, model=model)
+    return with_extra_nuisances(minimise(model, model.evaluate(fit.point)))
+
+
+def single_fits(search: Search, base: Fit) -> SingleFits:
+    """Fit every candidate effect by itself."""
+    found: dict[str, SingleFit] = search.each_effect(lambda effect: single_fit(search, effect, base))
+    aligned = [one.data for effect, one in found.items() if search.data.brings_nuisances(effect)]
+    return SingleFits(
+        replace(search, data=aligned[-1]) if aligned else search,
+        [one.explanation for one in found.values()],
+        {effect: one.scan for effect, one in found.items()},
+    )
+
+
+def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
+    """Fit one effect from starting points over its range, beside the fitted base model."""
+    data, model, rough = search.data, search.model(effect), search.model(effect, tolerance=ROUGH)
+    points = model.hypothesis.starts()
+    scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
+    evaluations = _best_per_first_parameter(scan)
+    implausible = data.implausible(base.point)
+    if implausible or data.brings_nuisances(effect):
+        # Without the effect the base model's own parameters are, or may be, far from the truth.
+        fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
+        evaluations = evaluations + fresh
+        if implausible:
+            leading = _leading(fresh, SCHEDULE[0].entering)
+            evaluations = evaluations + [_held_as_stated(model, evaluation) for evaluation in leading]
+    schedule = SCHEDULE if base.p < POSSIBLE else SHORT_SCHEDULE
+    fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
+    if data.brings_nuisances(effect):
+        fit = _aligned(fit)
+    search.progress(effect)
+    return SingleFit(search.explanation(fit), scan, fit.model.data)
+
+
+def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """Explanations, the best first; the best that are impossible refitted without influential tests."""
+    best = [each for each in sorted(found, key=penalised)[:REFITTED] if each.fit.p < POSSIBLE]
+
+    def refitted(each: Explanation) -> Explanation:
+        return search.explanation(refit_without_influential_tests(with_extra_nuisances(each.fit)))
+
+    return best_of_each([*search.each(refitted, best), *found], penalised)
+
+
+def multistart(search: Search, scans: Scans) -> list[Explanation]:
+    """Fit every effect from every value of its first parameter that was scanned.
+
+    Near breakaway a single test can make the right start look worse than all others.
+    """
+
+    def fitted(effect: str) -> Explanation:
+        evaluations = _best_per_first_parameter(scans[effect])
+        search.progress(f"{effect}, all starting points")
+        return search.explanation(best_of(search.model(effect), evaluations, MULTISTART_SCHEDULE))
+
+    return list(search.each_effect(fitted).values())
 
 
 def best_of(
     model: Model,
     evaluations: Sequence[Evaluation],
-    schedule: Sequence[tuple[int | None, int]] = SCHEDULE,
+    schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
 ) -> Fit:
-    """Follow the best few trials a little way, the best of these further, the best of those to the end.
+    """Fit from several evaluations by successive halving; the best one is followed to its minimum.
 
-    ``limit``: misfit that the first few iterations must get below. The trials may be a rougher model's.
+    Parameters
+    ----------
+    model : Model
+        The model to fit.
+    evaluations : sequence of Evaluation
+        Where fits begin; they may be of a rougher tolerance.
+    schedule : sequence of Round
+        Rounds, in each of which fewer fits are followed further.
+    limit : float
+        Chi-squared that the best fit of a round must not exceed for the next round to take place.
     """
-    evaluations = model.evaluate_all(
-        [evaluation.point for evaluation in _leading(evaluations, schedule[0][0])]
-    )
+    points = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
+    evaluations = model.evaluate_all(points)
     for entering, iterations in schedule:
-        fits = [refine(model, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
+        fits = [minimise(model, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
         evaluations = [fit.evaluation for fit in fits]
-        best = min(fits, key=lambda fit: fit.chi2)
+        best = min(fits, key=_chi2)
         if best.chi2 > limit:
             return best
-    return best if best.converged else refine(model, best.evaluation)
+    return best if best.converged else minimise(model, best.evaluation)
+
+
+def _chi2(each: Fit | Evaluation) -> float:
+    return each.chi2
+
+
+def _held_as_stated(model: Model, evaluation: Evaluation) -> Evaluation:
+    """Where an evaluation leads while nuisance parameters stay as stated."""
+    strict = replace(model, data=model.data.held_as_stated())
+    found = minimise(strict, strict.evaluate(evaluation.point), HELD_ITERATIONS)
+    return model.evaluate(found.point)
+
+
+def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Evaluation]:
+    return sorted(evaluations, key=_chi2)[:entering]
+
+
+def _best_per_first_parameter(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+    """The best evaluation at each value of the first parameter, so that not all starts are neighbours."""
+    best: dict[float, Evaluation] = {}
+    for evaluation in sorted(evaluations, key=_chi2):
+        best.setdefault(float(evaluation.point.x[0]), evaluation)
+    return list(best.values())

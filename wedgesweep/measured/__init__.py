@@ -8,19 +8,31 @@ __all__ = ["MeasuredError", "Measurement", "TestRecord", "is_measured", "read"]
 
 
 def is_measured(path: Path) -> bool:
-    """Whether a file is meant as measured data, not as a config: by its ending or its [measurement]."""
+    """Whether a file holds measured data and not a config, by its suffix or its table [measurement]."""
     from wedgesweep.measured import netcdf, toml_and_csv
 
     return path.suffix in netcdf.SUFFIXES or toml_and_csv.has_measurement(path)
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
-    """Read measured data; ``model`` is a config to take instead of the one that the data name.
+    """Read measured data.
+
+    Parameters
+    ----------
+    path : Path
+        A measured.toml or a netCDF file.
+    model : Path, optional
+        Config of the base model, instead of the one that the data name.
+
+    Returns
+    -------
+    Measurement
+        The base model and the tests, in SI units.
 
     Raises
     ------
     MeasuredError
-        With everything that is wrong: in the file itself, in the data of each test and in the model.
+        Lists everything that is wrong: in the file, in the data of each test and in the model.
     """
     from wedgesweep.measured import netcdf, toml_and_csv
     from wedgesweep.measured.plausibility import amplitude_faults

@@ -1,4 +1,4 @@
-"""From numbers in a file to a test in SI units, with what is wrong named by its place."""
+"""Builds the record of a test in SI units from the numbers in a file; faults name their place."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from wedgesweep.measured.steadiness import frequency_faults
 
 @dataclass(frozen=True)
 class Channels:
-    """Columns of a test as they stand in its file, shape (n,) each, with their units.
+    """Columns of a test as in its file, shape (n,) each, with their units.
 
     ``file`` names the file and ``where`` the place of a sample in it.
     """
@@ -35,12 +35,12 @@ class Channels:
 def build_record(
     name: str, given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]
 ) -> TestRecord | None:
-    """Test of the checked keys ``given``, which stand at the place ``at``; None if something is wrong."""
+    """Build the record of a test from its checked keys ``given``, found at ``at``; None after a fault."""
     before = len(problems)
     grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
     for channel in set(channels.columns) - {"time"}:
         if np.ptp(channels.columns[channel]) == 0.0:
-            problems.append(f"{channels.file}: {channel} never changes; there is no vibration in it")
+            problems.append(f"{channels.file}: {channel} is constant; there is no vibration in it")
     if len(problems) > before:
         return None
     displacement = channels.si("displacement")

@@ -1,4 +1,4 @@
-"""Columns of a CSV file as numbers, with the line of every fault."""
+"""Numbers of the columns of a CSV file; faults name their line."""
 
 import csv
 from collections import Counter
@@ -10,7 +10,7 @@ import numpy as np
 
 from wedgesweep.config.keys import hint, show
 
-# After so many faulty lines of a file the others are only counted.
+# Number of faulty lines that are listed per file; the others are counted.
 LISTED = 3
 
 
@@ -18,10 +18,10 @@ Columns = tuple[dict[str, np.ndarray], np.ndarray]
 
 
 def read(path: Path, wanted: Mapping[str, str], problems: list[str]) -> Columns:
-    """Numbers of the wanted columns, each of shape (n,), and the line (from 1) of each row.
+    """Read the wanted columns, each of shape (n,), and the line number (from 1) of each row.
 
-    ``wanted`` has the header name of each channel; both results are empty after a fault, which is appended
-    to ``problems``.
+    ``wanted`` maps each channel to its header name. Faults are appended to ``problems``; then both
+    results are empty.
     """
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
@@ -36,7 +36,7 @@ def read(path: Path, wanted: Mapping[str, str], problems: list[str]) -> Columns:
     problems.extend(f"{path}:1: {fault}" for fault in _header_faults(header, wanted))
     filled = np.array([place for place, line in enumerate(lines, 1) if line.strip()][1:], int)
     if len(problems) == before and not filled.size:
-        problems.append(f"{path}: no data below the header; write a line per sample")
+        problems.append(f"{path}: no data below the header; write one line per sample")
     if len(problems) > before:
         return _NOTHING
     places = {channel: header.index(name) for channel, name in wanted.items()}
@@ -53,12 +53,12 @@ def _header_faults(header: Sequence[str], wanted: Mapping[str, str]) -> list[str
     if not any(header):
         return ["empty; the first line must hold the names of the columns"]
     faults = [
-        f"column {show(name)} is there {times} times; its name must be unique"
+        f"column {show(name)} occurs {times} times; names must be unique"
         for name, times in Counter(header).items()
         if times > 1 and name in wanted.values()
     ]
     if len(header) == 1 and len(wanted) > 1:
-        faults.append(f"one column only, {show(header[0])}; separate columns by commas")
+        faults.append(f"only one column, {show(header[0])}; separate columns by commas")
         return faults
     return faults + [
         f"no column {show(name)} ({channel}); {hint(name, [each for each in header if each])}"
@@ -68,7 +68,7 @@ def _header_faults(header: Sequence[str], wanted: Mapping[str, str]) -> list[str
 
 
 def _numbers(lines: Sequence[str], width: int, places: Mapping[str, int]) -> dict[str, np.ndarray] | None:
-    """The fast way; None where a line is not ``width`` finite numbers."""
+    """Parse all lines at once; None if a line does not hold ``width`` finite numbers."""
     try:
         rows = np.loadtxt(lines, delimiter=",", comments=None, ndmin=2)
     except ValueError:
@@ -86,7 +86,7 @@ def _numbers_one_by_one(
     places: Mapping[str, int],
     problems: list[str],
 ) -> dict[str, np.ndarray] | None:
-    """As ``_numbers``, cell by cell: other columns may hold text, and each fault has its line."""
+    """Parse cell by cell: other columns may hold text, and each fault names its line."""
     faults, rows = [], []
     for place, cells in zip(filled.tolist(), csv.reader(lines[i - 1] for i in filled), strict=True):
         if len(cells) != len(header):

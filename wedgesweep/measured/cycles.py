@@ -1,4 +1,4 @@
-"""Harmonics of a record, cycle by cycle: what repeats, and by how much each cycle differs."""
+"""Harmonics of each cycle of a record."""
 
 from dataclasses import dataclass
 from math import pi
@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 
 FIRST_HARMONICS = np.arange(1, 13)
-# A harmonic is seen if its mean square exceeds this many times the variance of the mean.
+# A harmonic is detected if its squared mean exceeds this many times the variance of the mean.
 SEEN = 15.0
 
 
@@ -15,8 +15,8 @@ class Cycles:
     """Harmonics of P cycles; the coefficients D of y = Re sum_k D_k exp(i k omega (t - middle)).
 
     ``times`` (s), shape (P,), are the middles of the cycles, counted from ``middle`` (s) of the record;
-    ``harmonics``, shape (P, K), of the given ``orders``, shape (K,), are fitted to each cycle alone, with a
-    constant part of its own.
+    ``harmonics``, shape (P, K), of the given ``orders``, shape (K,), are fitted to each cycle separately,
+    together with a constant.
     """
 
     omega: float
@@ -29,7 +29,7 @@ class Cycles:
 def cut(
     time: np.ndarray, signal: np.ndarray, frequency: float, orders: np.ndarray = FIRST_HARMONICS
 ) -> Cycles:
-    """Cut a record, shape (n,), into its cycles of a frequency (Hz); too high orders are left out.
+    """Cut a record, shape (n,), into cycles of a frequency (Hz), without orders that are too high to fit.
 
     Cycles are a little longer than a period, so that they use the whole record; the least-squares fit
     does not need whole periods (Pintelon and Schoukens, System Identification, 2012, ch. 13).
@@ -44,7 +44,7 @@ def cut(
     waves = np.exp(1j * omega * np.outer(local, orders))
     design = np.hstack([np.ones((length, 1)), waves.real, -waves.imag])
     blocks = signal[first : first + count * length].reshape(count, length)
-    # The waves are all but orthogonal, so that the normal equations lose nothing.
+    # The waves are almost orthogonal, so that the normal equations are well conditioned.
     fitted = np.linalg.solve(design.T @ design, design.T @ (blocks - signal.mean()).T).T
     here = fitted[:, 1 : orders.size + 1] + 1j * fitted[:, orders.size + 1 :]
     times = step * length * (np.arange(count) - 0.5 * (count - 1))

@@ -1,4 +1,4 @@
-"""Every key of a measured.toml: the one place that declares them."""
+"""Declaration of every key of measured.toml."""
 
 from dataclasses import dataclass
 from math import nan
@@ -15,17 +15,17 @@ UNITS = {
     "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
 }
-# Effects that scale a number of the model, so that it may be known up to a relative std only.
+# Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
-FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated where absent", above=0.0)
-AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it where unknown", above=0.0)
+FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
+AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
 AMPLITUDE_STD = Quantity("amplitude_std", 0.0, "relative std of the amplitude", minimum=0.0, below=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Inline(Table):
-    """A table that is written in braces."""
+    """A table that is written inline, in braces."""
 
     @property
     def written(self) -> str:
@@ -35,7 +35,7 @@ class Inline(Table):
 
 @dataclass(frozen=True, kw_only=True)
 class Unit(Choice):
-    """A unit of a channel; near misses are other units, so all are listed."""
+    """A unit of a channel; an unknown one is answered by all valid ones, as similar names are other units."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> str | None:
         if value in self.choices:
@@ -51,7 +51,7 @@ class RecordTable(Table):
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
         if isinstance(value, dict) and "amplitude_std" in value and "amplitude_mm" not in value:
             at = f"{path}." if path else ""
-            problems.append(f"{at}amplitude_std: there is no amplitude_mm that it belongs to; omit it")
+            problems.append(f"{at}amplitude_std: given without amplitude_mm; omit it")
         return super().read(value, path, problems)
 
 
@@ -66,18 +66,18 @@ def _channel(name: str, meaning: str, column: str, unit: str, *more: Flag, optio
 
 
 def _uncertain(name: str) -> Number:
-    meaning = f"relative std of what the effect {name} scales"
+    meaning = f"relative std of the quantity that the effect {name} scales"
     return Number.of(Quantity(name, nan, meaning, above=0.0, below=1.0), optional=True)
 
 
-DERIVED = Flag(key="derived", meaning="computed from the displacement", default=False)
+DERIVED = Flag(key="derived", meaning="whether it is computed from the displacement", default=False)
 
 COLUMNS = table(
     "columns",
     "header name and unit of each channel",
     _channel("time", "time at a constant sampling rate", "t", "s"),
     _channel("displacement", "side frame minus bolster, x - y", "d", "mm"),
-    _channel("velocity", "its rate, x' - y'", "v", "mm/s", DERIVED, optional=True),
+    _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, optional=True),
     example="measurement.columns",
 )
 

@@ -1,11 +1,12 @@
-"""Frequency of a steady vibration, and its drift, from the phases of its cycles.
+"""Frequency of a steady vibration and its drift, from the phases of its cycles.
 
-If the frequency is off by delta and changes by beta, the harmonics of the cycle at time t turn:
+If the frequency is wrong by delta and changes at rate beta, the harmonics of the cycle at time t rotate:
 
     D_k(t) = A_k exp(i k (delta t + beta t^2 / 2))
 
-Each harmonic gives delta and beta by a straight and a bent line through its phases, weighted by its noise,
-which is estimated from the scatter between cycles, so that coloured noise and spurious tones count too.
+A linear and a quadratic term fitted to the phases of each harmonic give delta and beta. Harmonics are
+weighted by their noise, estimated from the scatter between cycles, so that coloured noise and spurious tones
+count too.
 """
 
 from dataclasses import dataclass
@@ -16,23 +17,23 @@ import numpy as np
 from wedgesweep.measured.cycles import FIRST_HARMONICS, SEEN, Cycles, cut
 from wedgesweep.measured.noise_estimate import estimate_noise
 
-# Fewer cycles leave no scatter to compare with.
+# Fewer cycles give no estimate of the scatter.
 FEWEST_CYCLES = 4
-# The first search goes this far from the frequency given, as a share of it, or from the highest peak of a
-# spectrum, over the record.
+# Range of the first search around a given frequency, relative to it, and around the highest peak of a
+# spectrum, times one over the length of the record.
 RANGE, LOBE = 0.15, 1.5
-# Weak fundamentals under a strong harmonic are looked for by dividing its frequency by these.
+# Weak fundamentals below a strong harmonic are sought at its frequency divided by these.
 DIVISORS = (2, 3, 5, 7)
-# An even harmonic outdoes its fundamental by no more than this: what is weaker at half the frequency of the
-# strongest line is a response that repeats every other period, or a spurious tone.
+# A fundamental is at least this share of its second harmonic: a weaker line at half the frequency of the
+# strongest one is a period-two response or a spurious tone.
 HALF = 0.3
-# Chance that noise passes for a line.
+# False-alarm probability of a line in noise.
 CHANCE = 1e-5
-# A difference is significant if it is as improbable as 5 std of a normal variable.
+# Significance level of a difference: that of 5 std of a normal variable.
 IMPROBABLE = 2.9e-7
 PADDING = 8
-# Frequencies that differ or change by less than this share are the same. In a record of few cycles (``FEW``)
-# they do no harm, if they differ by less than this part of a cycle over all of it.
+# Relative differences of frequency below NEGLIGIBLE are ignored; in a record of fewer than FEW cycles also
+# those that amount to less than SLIP cycles over the record.
 NEGLIGIBLE, SLIP, FEW = 2e-3, 0.02, 20.0
 
 
@@ -60,7 +61,7 @@ class FrequencyEstimate:
 
 
 def estimate_frequency(time: np.ndarray, displacement: np.ndarray) -> float:
-    """Frequency (Hz) of the slowest vibration that repeats in a record, shape (n,); NaN if none is seen."""
+    """Frequency (Hz) of the slowest periodic vibration in a record, shape (n,); NaN if none is detected."""
     frequency = _strongest(time, displacement)
     if _cycle_count(time, frequency) < FEWEST_CYCLES:
         return frequency
@@ -121,7 +122,7 @@ def stands_out(time: np.ndarray, displacement: np.ndarray, frequency: float) -> 
 
 
 def _search(cycles: Cycles, reach: float) -> float:
-    """Change of frequency (Hz) within ``reach`` that lines the cycles up best."""
+    """Change of frequency (Hz) within ``reach`` that aligns the cycles best."""
     span = cycles.times[-1] - cycles.times[0]
     fine = 1.0 / (8.0 * span * cycles.orders[-1])
     changes = np.arange(-reach, reach + fine, fine)
@@ -133,7 +134,7 @@ def _search(cycles: Cycles, reach: float) -> float:
 
 
 def _fit(cycles: Cycles) -> FrequencyEstimate:
-    """One step of weighted least squares on the phases of all harmonics that are seen."""
+    """One step of weighted least squares on the phases of all detected harmonics."""
     times, count = cycles.times, cycles.times.size
     mean = cycles.harmonics.mean(axis=0)
     turned = cycles.harmonics * np.exp(-1j * np.angle(mean))
@@ -164,7 +165,7 @@ def _bound(freedom: int) -> float:
 
 
 def _smooth(variance: np.ndarray) -> np.ndarray:
-    """Mean of each variance and its neighbours: single ones have few degrees of freedom."""
+    """Average each variance with its neighbours: a single one has few degrees of freedom."""
     padded = np.pad(variance, 1, mode="edge")
     return np.maximum((padded[:-2] + padded[1:-1] + padded[2:]) / 3.0, np.finfo(float).tiny)
 
@@ -174,9 +175,9 @@ def _cycle_count(time: np.ndarray, frequency: float) -> float:
 
 
 def _strongest(time: np.ndarray, signal: np.ndarray) -> float:
-    """Frequency (Hz) of the highest peak of the spectrum, from one and a half cycles per record on.
+    """Frequency (Hz) of the highest peak of the spectrum.
 
-    A cycle has four samples at the least: with fewer a cycle cannot be fitted for itself.
+    From 1.5 cycles per record up to 4 samples per cycle; with fewer samples a cycle cannot be fitted alone.
     """
     count = time.size
     step = (time[-1] - time[0]) / (count - 1)
@@ -188,9 +189,9 @@ def _strongest(time: np.ndarray, signal: np.ndarray) -> float:
 
 
 def _divisor(time: np.ndarray, signal: np.ndarray, frequency: float) -> int:
-    """That of DIVISORS at which a frequency has lines between its harmonics; 0 if none.
+    """Return the divisor of a frequency at which there are lines between its harmonics; 0 if there is none.
 
-    Lines leak into each other: of several divisors the one that leaves least of the signal is right.
+    As lines leak into each other, the divisor with the smallest residual is taken.
     """
     left: dict[int, float] = {}
     for divisor in DIVISORS:

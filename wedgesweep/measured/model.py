@@ -6,7 +6,7 @@ from wedgesweep.config import Config, ConfigError, load, parse
 
 
 def load_model(path: Path, problems: list[str]) -> tuple[Config | None, str]:
-    """The config and its friction law; what is wrong goes to ``problems``."""
+    """Read a config and its one friction law; faults go to ``problems``."""
     try:
         return with_law(load(path), str(path), problems)
     except ConfigError as error:
@@ -15,7 +15,7 @@ def load_model(path: Path, problems: list[str]) -> tuple[Config | None, str]:
 
 
 def parse_model(text: str, source: str, problems: list[str]) -> tuple[Config | None, str]:
-    """As ``load_model``, from TOML text."""
+    """Read a config from TOML text, as ``load_model``."""
     try:
         return with_law(parse(text, source), source, problems)
     except ConfigError as error:
@@ -24,7 +24,7 @@ def parse_model(text: str, source: str, problems: list[str]) -> tuple[Config | N
 
 
 def with_law(config: Config, source: str, problems: list[str]) -> tuple[Config, str]:
-    """The config and its one friction law; several are a problem."""
+    """Return the config and its one friction law; several laws are a fault."""
     laws = list(dict.fromkeys(case.law for case in config.case_list()))
     if len(laws) > 1:
         names = ", ".join(laws)

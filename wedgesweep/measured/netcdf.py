@@ -30,7 +30,7 @@ LONG_NAMES = {"time": "time", "displacement": "side frame minus bolster", "veloc
 
 
 def write_netcdf(measurement: Measurement, path: Path) -> None:
-    """Write a measurement as one netCDF file, in SI units; nothing is left of a file that fails."""
+    """Write a measurement as one netCDF file, in SI units; a failed write leaves no file."""
     import netCDF4
 
     partial = path.with_name(path.name + ".partial")
@@ -67,7 +67,7 @@ def _write_test(group: Any, test: TestRecord, derived: bool) -> None:
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
-    """Read a file of the layout above; raises MeasuredError with all that is wrong."""
+    """Read a file of the layout above; raises MeasuredError with everything that is wrong."""
     import netCDF4
 
     try:
@@ -82,7 +82,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     groups = list(root.groups["tests"].groups.values()) if "tests" in root.groups else []
     if not groups:
-        told = "no measured data; each test would be a group within the group tests"
+        told = "no measured data; each test must be a group within the group tests"
         raise MeasuredError([f"{path}: {told}"])
     problems: list[str] = []
     attributes = _attributes(root)
@@ -136,7 +136,7 @@ def _attributes(group: Any) -> dict[str, Any]:
 
 
 def _checked(table: Table, given: Mapping[str, Any], at: str, problems: list[str]) -> dict[str, Any]:
-    """Attributes read as the table of measured.toml that has the same keys."""
+    """Check attributes as the table of measured.toml with the same keys."""
     found: list[str] = []
     read = table.read(dict(given), "", found)
     problems.extend(f"{at}: {problem}" for problem in found)

@@ -1,4 +1,4 @@
-"""The noise of a channel: what does not repeat from period to period."""
+"""The noise of a channel: the part that is not periodic."""
 
 from dataclasses import dataclass
 
@@ -11,10 +11,10 @@ HARMONICS = np.arange(1, 41)
 
 @dataclass(frozen=True)
 class NoiseEstimate:
-    """The part of a channel that does not repeat.
+    """The part of a channel that is not periodic.
 
-    ``std`` is in the channel's unit, ``share`` is over the rms of what repeats; ``harmonics`` are the orders
-    that stand out of the noise.
+    ``std`` is in the channel's unit, ``share`` is relative to the rms of the periodic part; ``harmonics`` are
+    the orders that stand out of the noise.
     """
 
     std: float

@@ -1,28 +1,28 @@
-"""Time stamps: an even grid, or the place where they are not."""
+"""Check of time stamps: they must be an even grid."""
 
 from collections.abc import Callable
 
 import numpy as np
 
-# Stamps may be off their grid by this share of a sampling interval, besides their rounding.
+# Tolerated deviation of a stamp from the grid besides its rounding, over the sampling interval.
 JITTER = 0.01
 DRIFT = 0.05
-# More decimals than this are taken for stamps that are not rounded at all.
+# Stamps with more decimals count as not rounded.
 DECIMALS = 12
 FEWEST = 8
 
 
 def even_grid(stamps: np.ndarray, where: Callable[[int], str], problems: list[str]) -> np.ndarray:
-    """The even grid, shape (n,), that the time stamps stand for, in their unit.
+    """Return the even grid, shape (n,), of which the time stamps are rounded values, in their unit.
 
     Parameters
     ----------
     stamps : array, shape (n,)
         As written, so that their rounding shows.
     where : callable
-        Names the place of a sample, by its index, for an error message.
+        Names the place of a sample in the file, by its index.
     problems : list
-        Receives what is wrong; the result is then empty.
+        Receives the faults; the result is then empty.
     """
     fault = _too_few(stamps, where) or _step_fault(stamps, where) or _drift_fault(stamps, where)
     if fault:
@@ -33,9 +33,10 @@ def even_grid(stamps: np.ndarray, where: Callable[[int], str], problems: list[st
 
 
 def resolution(stamps: np.ndarray) -> np.ndarray:
-    """Distance of the values that each rounded stamp can take, shape (n,): powers of ten.
+    """Rounding step of each stamp, shape (n,): a power of ten.
 
-    It is found decade by decade, since where digits, not decimals, are limited, it differs between them.
+    It is found decade by decade, as it differs between them if the number of digits is limited, not that of
+    decimals.
     """
     decades = np.floor(np.log10(np.maximum(np.abs(stamps), 10.0**-DECIMALS)))
     found = np.empty(stamps.size)

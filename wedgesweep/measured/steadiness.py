@@ -1,4 +1,4 @@
-"""Whether a test vibrates steadily at its frequency, for long enough."""
+"""Checks that a test vibrates steadily at its frequency for long enough."""
 
 from math import isnan
 
@@ -8,21 +8,21 @@ from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
 
 FEWEST_PERIODS = 4
-# A last period that lacks less than this share counts as whole: frequencies are rounded, too.
+# A period that lacks less than this share counts as complete, as frequencies are rounded.
 WHOLE = 1e-3
-# With fewer samples a period two harmonics do not fit below what an anti-aliasing filter leaves.
+# With fewer samples per period, two harmonics do not fit below the cut-off of an anti-aliasing filter.
 FEWEST_SAMPLES = 5
-# A record with more samples takes gigabytes; it says no more than a shorter one, or one at a lower rate.
+# More samples take gigabytes of memory and add no information.
 MOST_SAMPLES = 300_000
-# Farther off than the search goes a line leaks less than this share of its amplitude into the stated one.
+# A line outside of the search range leaks less than this share of its amplitude into the stated frequency.
 LEAKAGE = 0.3
-# A wrong frequency leaves this many times the variance that the right one leaves. Less may come from a tone
-# beside a harmonic: it modulates the whole response, and over a short record that looks like another one.
+# Ratio of residual variances above which the stated frequency is wrong. A smaller ratio may come from a tone
+# beside a harmonic, whose modulation of a short record resembles another frequency.
 WORSE = 3.0
 
 
 def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
-    """What is wrong with the frequency of a test, as its keys ``at`` a place state it and in the data."""
+    """Faults of the frequency of a test, in its data or as stated by its keys at ``at``."""
     if test.time.size > MOST_SAMPLES:
         told = f"has {test.time.size} samples, at most {MOST_SAMPLES} are used"
         return [f"{file}: {told}; cut it shorter, or low-pass it and sample it down"]
@@ -59,7 +59,7 @@ def _contradiction(test: TestRecord, estimate: FrequencyEstimate, file: str, at:
 
 
 def _worse(test: TestRecord, stated: float, other: float) -> bool:
-    """Whether a record repeats much better at another frequency (Hz) than at the one stated."""
+    """Whether another frequency (Hz) fits a record much better than the stated one."""
     here, there = (_noise(test, each).std for each in (stated, other))
     return here**2 > WORSE * there**2
 
@@ -69,9 +69,9 @@ def _noise(test: TestRecord, at: float) -> NoiseEstimate:
 
 
 def _elsewhere(test: TestRecord, stated: float) -> float:
-    """Frequency (Hz) of a vibration beside which the stated one is nothing; else the stated one."""
+    """Frequency (Hz) of a vibration that dominates the stated one; else the stated one."""
     found = frequency.estimate_frequency(test.time, test.displacement)
-    # The highest line of a record of noise alone is a small part of it.
+    # In noise alone the highest line is a small part of the record.
     if isnan(found) or test.duration * found < 2.0 or _noise(test, found).share > 1.0:
         return stated
     there, here = (frequency.amplitude(test.time, test.displacement, each) for each in (found, stated))
@@ -83,4 +83,4 @@ def _drift(estimate: FrequencyEstimate, periods: float, file: str) -> list[str]:
         return []
     share, std = 100.0 * estimate.drift, 100.0 * estimate.drift_std
     change = f"by {share:+.2g} % ({std:.1g} % std) around {estimate.frequency:.6g} Hz"
-    return [f"{file}: the frequency drifts {change}; measure at a constant one, or cut the record shorter"]
+    return [f"{file}: the frequency drifts {change}; keep it constant, or cut the record shorter"]

@@ -11,12 +11,12 @@ from wedgesweep.measured.declarations import ROOT
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
 
-# Found even in a file that is not valid TOML, so that its error speaks of measured data.
+# Also matches in a file that is not valid TOML, so that its errors are those of measured data.
 HEADER = re.compile(r"^\s*\[+\s*measurement\b", re.MULTILINE)
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
-    """Read a measured.toml with all that it names; raises MeasuredError with all that is wrong."""
+    """Read a measured.toml and its files; raises MeasuredError with everything that is wrong."""
     problems: list[str] = []
     given = _document(path, problems)
     measurement = given.get("measurement", {})
@@ -40,7 +40,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 
 
 def has_measurement(path: Path) -> bool:
-    """Whether a file has a [measurement] table, or what is to become one."""
+    """Whether a file has a [measurement] table, even if it is not valid TOML."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError):
@@ -49,7 +49,7 @@ def has_measurement(path: Path) -> bool:
 
 
 def _document(path: Path, problems: list[str]) -> dict[str, Any]:
-    """The checked document; what is wrong with it goes to ``problems``."""
+    """The checked document; its faults go to ``problems``."""
     try:
         given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -67,7 +67,7 @@ def _document(path: Path, problems: list[str]) -> dict[str, Any]:
 
 
 def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[TestRecord]:
-    """The tests whose keys and data are right; the columns must be known to read any."""
+    """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
     complete = {"time", "displacement"} <= columns.keys() and all(
         {"column", "unit"} <= each.keys() for each in columns.values()

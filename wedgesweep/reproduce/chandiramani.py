@@ -16,13 +16,7 @@ import numpy as np
 
 from wedgesweep.reproduce.best import HERTZ, Best, computed
 from wedgesweep.reproduce.discrimination import Discrimination, discriminate
-from wedgesweep.reproduce.hypotheses import (
-    HYPOTHESES,
-    INDEPENDENT_INPUTS,
-    INTERPRETATIONS,
-    LEANS,
-    Hypothesis,
-)
+from wedgesweep.reproduce.hypotheses import HYPOTHESES, INDEPENDENT_INPUTS, INTERPRETATIONS, LEANS, Hypothesis
 from wedgesweep.reproduce.observations import OBSERVATIONS, Recording
 from wedgesweep.reproduce.scenarios import LOOSE, Scenario, recordings
 from wedgesweep.reproduce.search import COARSE, FINE, MEDIUM, Budget, SearchResult, search

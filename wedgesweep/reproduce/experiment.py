@@ -4,16 +4,7 @@ from math import nan
 
 import numpy as np
 
-from wedgesweep.reproduce.findings import (
-    DISTORTED,
-    MOVES,
-    STICKS,
-    Finding,
-    above,
-    below,
-    claim,
-    untested,
-)
+from wedgesweep.reproduce.findings import DISTORTED, MOVES, STICKS, Finding, above, below, claim, untested
 from wedgesweep.reproduce.runs import MM, Runs, distortion
 
 JUMP_HERTZ = (32.0, 38.0)  # around the measured jump

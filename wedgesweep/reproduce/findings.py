@@ -5,12 +5,8 @@ from dataclasses import dataclass
 
 from wedgesweep.reproduce.runs import Runs
 
-HOLDS, PARTLY, CONTRADICTED, NOT_TESTABLE = VERDICTS = (
-    "holds",
-    "partly",
-    "contradicted",
-    "not testable",
-)
+VERDICTS = ("holds", "partly", "contradicted", "not testable")
+HOLDS, PARTLY, CONTRADICTED, NOT_TESTABLE = VERDICTS
 # Criteria that several claims share: amplitude ratio above which the bolster moves, higher harmonics over the
 # fundamental of a distorted response, share of time stuck of one that sticks.
 MOVES, DISTORTED, STICKS = 1e-3, 0.1, 0.01

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import simulate
-from wedgesweep.config import Case, Config, parse, toml
+from wedgesweep.config import Case, Config, from_document
 from wedgesweep.reproduce.runs import MM, Run
 from wedgesweep.response import NUMBERS
 from wedgesweep.solvers.trajectory import CaseError
@@ -22,7 +22,7 @@ def changed(config: Config, changes: Changes) -> Config:
     document = {**config.document, **{name: config.document[name] | changes[name] for name in changes}}
     if "settle_periods" in changes.get("solver", {}):
         document["solver"] = {key: value for key, value in document["solver"].items() if key != "duration_s"}
-    return parse(toml.dumps(document))
+    return from_document(document)
 
 
 def other_lean(config: Config) -> dict[str, dict[str, float]]:

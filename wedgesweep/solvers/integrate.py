@@ -156,7 +156,9 @@ class _Acceleration(NamedTuple):
 @inner
 def _velocity(share, context):
     step, p = context.step, context.p
-    return context.sign * observed(inside(share, step), p)[1], context.sign * observed(slope(share, step), p)[1]
+    return context.sign * observed(inside(share, step), p)[1], context.sign * observed(slope(share, step), p)[
+        1
+    ]
 
 
 @searched(_Acceleration)

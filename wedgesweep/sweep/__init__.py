@@ -1,1 +1,1 @@
-"""Sweeps: cases solved in parallel, kept safe while they run, and put together as one labelled dataset."""
+"""Sweeps: cases solved in parallel, stored as they finish, and assembled into one labelled dataset."""

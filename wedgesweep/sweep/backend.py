@@ -1,6 +1,6 @@
-"""Where cases are solved: in threads or processes of this machine; ``cluster`` adds a Dask cluster.
+"""Backends: cases run in threads or processes of this machine; ``cluster`` adds a Dask cluster.
 
-Each gives a joblib.Parallel, so that results come out of all of them in one way.
+Each backend provides a joblib.Parallel.
 """
 
 from collections.abc import Callable, Iterator
@@ -14,7 +14,7 @@ from wedgesweep.errors import SweepError
 
 
 class Backend(Protocol):
-    """Opens a pool for ``run`` chunks at a time; ``fingerprint()`` tells what a worker would compute."""
+    """Opens a pool of ``n_jobs`` workers; ``fingerprint()`` shows whether a worker runs the same code."""
 
     def __call__(
         self, n_jobs: int, fingerprint: Callable[[], dict[str, str]]
@@ -22,20 +22,20 @@ class Backend(Protocol):
 
 
 def parallel(**options: Any) -> joblib.Parallel:
-    """A joblib.Parallel whose results come as they are ready."""
-    # Cases that go together are together already: joblib need not batch them again.
+    """Return a joblib.Parallel that yields results as they finish."""
+    # Chunks are batches already.
     return joblib.Parallel(return_as="generator_unordered", batch_size=1, **options)
 
 
 @contextmanager
 def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
-    """Threads of this process, for solvers that are compiled as a whole: they start at once."""
+    """Threads of this process: start at once, and suit compiled solvers, which release the GIL."""
     yield parallel(n_jobs=n_jobs, backend="threading")
 
 
 @contextmanager
 def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
-    """Processes of this machine; they run this very code."""
+    """Processes of this machine."""
     try:
         yield parallel(n_jobs=n_jobs)
     except BrokenExecutor as error:
@@ -44,10 +44,10 @@ def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[job
 
 
 def count_jobs(n_jobs: int | None) -> int:
-    """Number of jobs: as given, or one for each processor that this process may use."""
+    """Return the number of jobs: as given, or one for each processor that this process may use."""
     return n_jobs or joblib.cpu_count()
 
 
 def local(method: str) -> Backend:
-    """The backend of this machine that suits a solver."""
+    """Return the backend of this machine that suits a solver."""
     return threads if method == "event-driven" else loky

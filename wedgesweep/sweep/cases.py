@@ -1,4 +1,4 @@
-"""Cases to records: whatever becomes of a case, it is data."""
+"""Solving cases: each gives a record, also if it fails."""
 
 from dataclasses import replace
 from math import inf
@@ -20,24 +20,24 @@ from wedgesweep.systems.suspension import parameters
 
 
 def describe(law: str, beta: float, amplitude: float) -> str:
-    """A case in words; amplitude in m."""
+    """Describe a case in words; amplitude in m."""
     return f"{law}, beta {beta:.6g}, amplitude {amplitude * 1e3:.6g} mm"
 
 
 def is_compiled(method: str, extended: bool = False) -> bool:
-    """Whether a solver's compiled code is cached, that of effects with mechanics of their own too."""
+    """Whether the compiled code of a solver is cached, for the base or the extended mechanics."""
     return _compiled_mark(method, extended).exists()
 
 
 def compile_once(method: str, extended: bool = False) -> None:
-    """Fill numba's cache here, so that the jobs of a first run do not all compile the same.
+    """Fill numba's cache in this process, so that the jobs of a first run need not compile.
 
-    Nor does that take from the time limit of a case.
+    Nor does compile time count against the time limit of a case.
     """
     if is_compiled(method, extended):
         return
     short = Settings(method=method, settle_periods=1, kept_periods=2, samples_per_period=32)
-    # This case sticks and slips, so that nothing is left to compile.
+    # This case sticks and slips, so that it uses all compiled functions.
     effects = {"viscous_damping": {"coefficient": 1.0}} if extended else {}
     case = parameters.record("coulomb", 5e-3, 85.0, effects=effects)
     dtype = dataset.record_dtype({"phase": 64, "harmonic": dataset.HARMONICS, "part": 2})
@@ -46,14 +46,14 @@ def compile_once(method: str, extended: bool = False) -> None:
 
 
 def _compiled_mark(method: str, extended: bool) -> Path:
-    # That the folder exists says little: reading parameters compiles a first few functions.
+    # The cache folder itself exists earlier: reading parameters already compiles a few functions.
     return CACHE_DIR / f"{method}{'-extended' * extended}.complete"
 
 
 class Chunk(NamedTuple):
-    """Arguments of ``solve_cases``, as one that a cluster sends whole.
+    """Arguments of ``solve_cases`` as one object, which a cluster sends along with the task.
 
-    Arrays of their own Dask would place on one worker, and they would be lost if that was killed.
+    Dask would place separate arrays on one worker, and lose them if it is killed.
     """
 
     cases: np.ndarray
@@ -64,7 +64,7 @@ class Chunk(NamedTuple):
 
 
 def solve_chunk(chunk: Chunk) -> np.ndarray:
-    """``solve_cases`` of a chunk."""
+    """Solve the cases of a chunk; their records."""
     return solve_cases(*chunk)
 
 
@@ -75,9 +75,25 @@ def solve_cases(
     case_timeout: float,
     dtype: np.dtype,
 ) -> np.ndarray:
-    """Records of some cases; a case that fails is a status and a message, never an exception.
+    """Solve some cases; a case that fails gives a status and a message, never an exception.
 
-    In a continuation the cases are whole lines of the grid.
+    Parameters
+    ----------
+    cases : structured array, shape (n,)
+        Parameter records (see parameters.record); in a continuation whole lines of the grid.
+    indices : array, shape (n,)
+        Indices of the cases in the sweep.
+    settings : Settings
+        Solver and its settings.
+    case_timeout : float
+        Time limit per case (s); radau only.
+    dtype : dtype
+        Layout of the records (see dataset.record_dtype).
+
+    Returns
+    -------
+    structured array, shape (n,)
+        Records of the cases.
     """
     if settings.continuation:
         return solve_lines(cases, indices, settings, dtype)

@@ -1,4 +1,4 @@
-"""Cases on the workers of a Dask cluster: a ``backend.Backend``, loaded only where it is asked for."""
+"""The backend of a Dask cluster, imported only when requested."""
 
 import importlib.util
 from collections.abc import Callable, Iterator
@@ -16,17 +16,17 @@ from wedgesweep.sweep.fingerprint import differences
 if TYPE_CHECKING:
     from distributed import Client
 
-# How long (s) a scheduler may take to answer, and then to have a worker.
-PATIENCE = 10.0
+# Time (s) that a scheduler has to answer, and then to have a worker.
+TIMEOUT = 10.0
 
 
 @contextmanager
 def dask(
     n_jobs: int, fingerprint: Callable[[], dict[str, str]], scheduler: str | None = None
 ) -> Iterator[joblib.Parallel]:
-    """Workers of a running cluster, or of one with ``n_jobs`` processes here that ends with this run.
+    """Workers of a running cluster, or of a local one with ``n_jobs`` processes that ends with this run.
 
-    Raises SweepError if there is no cluster, or if its workers would compute other numbers.
+    Raises SweepError if there is no cluster, or if its workers run another version.
     """
     if importlib.util.find_spec("distributed") is None:
         message = "the dask backend needs Dask: pip install 'wedgesweep[dask]'"
@@ -56,10 +56,10 @@ def _connected(opened: ExitStack, scheduler: str) -> "Client":
     from distributed import Client
 
     class Connected(Client):
-        """Closed at once if nothing answers.
+        """A client that is closed at once if nothing answers.
 
-        Left to the garbage collector, it may be closed in the midst of another's start, under whose lock
-        its close waits forever.
+        If the garbage collector closed it during the start of another client, it would wait forever for the
+        lock of that start.
         """
 
         def start(self, **options: Any) -> None:
@@ -70,21 +70,21 @@ def _connected(opened: ExitStack, scheduler: str) -> "Client":
                 raise
 
     try:
-        client = opened.enter_context(Connected(scheduler, timeout=PATIENCE, set_as_default=False))
-        client.wait_for_workers(1, timeout=PATIENCE)
+        client = opened.enter_context(Connected(scheduler, timeout=TIMEOUT, set_as_default=False))
+        client.wait_for_workers(1, timeout=TIMEOUT)
     except (
         OSError,
         ValueError,
         AssertionError,
     ) as error:  # TimeoutError is an OSError; an address is asserted
-        reason = str(error) or f"no answer within {PATIENCE:g} s"
+        reason = str(error) or f"no answer within {TIMEOUT:g} s"
         message = f"{scheduler}: no Dask scheduler with a worker ({reason})"
         raise SweepError(message) from error
     return client
 
 
 def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -> None:
-    """Each worker must have the same wedgesweep and the same libraries, for the same bits."""
+    """Check that each worker has the same wedgesweep and libraries, so that results are the same bits."""
     here = fingerprint()
     for worker, there in client.run(fingerprint, on_error="return").items():
         if isinstance(there, BaseException):
@@ -96,9 +96,10 @@ def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -
 
 
 class _Dask(DaskDistributedBackend):
-    """joblib's own waits forever for a chunk that Dask gave up because its workers died each time.
+    """Corrects two cases in which joblib's own backend waits forever.
 
-    And for one that it scattered while there was no worker: chunks are small, and go along with their task.
+    A chunk that Dask gives up because its workers keep dying is reported as an error, and chunks are sent
+    with their task instead of scattered, which hangs while there is no worker.
     """
 
     async def _to_func_args(self, func: Any) -> tuple[Batch, list]:

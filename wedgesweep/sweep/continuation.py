@@ -1,9 +1,9 @@
 """Sweeps up and down in beta: each case starts from the steady state of its neighbour.
 
-A response that exists beside another one is found by where it came from. A line holds the cases of one law
-and one amplitude over all frequencies, up and down again in one chain: the way up starts from rest, the way
-down where the way up ended. The state at phase 0 of the input is handed on as it is; behind a case that
-failed comes rest.
+Which of several coexisting responses is found depends on the initial state. A line holds the cases of one
+law and one amplitude over all frequencies. It is run up and then down in beta: the sweep up starts from rest,
+the sweep down from the end of the sweep up. Each case starts from the state of the one before at phase 0 of
+the input, or from rest if that case failed.
 """
 
 from collections.abc import Iterator
@@ -18,9 +18,10 @@ COEXISTING, ALONE, NOT_TOLD = 1, 0, -1
 
 
 def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtype: np.dtype) -> np.ndarray:
-    """Records of whole lines, in any order: the way up, with the way down as ``dataset.CONTINUED``.
+    """Solve whole lines, given in any order, up and down in beta.
 
-    ``cases`` are parameter records, shape (n,). The lines do not depend on each other.
+    ``cases`` are parameter records, shape (n,). Lines do not depend on each other. The records returned are
+    those of the sweep up; their variables ``dataset.CONTINUED`` describe the sweep down.
     """
     records = dataset.blank(dtype, indices)
     for line in lines(cases):
@@ -35,7 +36,7 @@ def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtyp
 
 
 def lines(cases: np.ndarray) -> Iterator[np.ndarray]:
-    """Places of the cases of each law and amplitude, by frequency."""
+    """Yield the indices of the cases of each law and amplitude, sorted by frequency."""
     given, law = cases["input"], cases["friction"]["law"]
     order = np.lexsort((given["omega"], given["amplitude"], law))
     ends = (np.diff(law[order]) != 0) | (np.diff(given["amplitude"][order]) != 0.0)
@@ -43,15 +44,12 @@ def lines(cases: np.ndarray) -> Iterator[np.ndarray]:
 
 
 def there_and_back(line: np.ndarray) -> np.ndarray:
-    """Places (2 n,) of a line on its way up and down."""
+    """Return the indices of a line swept up and down, shape (2 n,)."""
     return np.concatenate([line, line[::-1]])
 
 
 def compared(records: np.ndarray, steady_tolerance: float) -> np.ndarray:
-    """Whether both ways lead to different responses, as the flag of the dataset; shape (n,).
-
-    Without a periodic answer on both ways there is nothing to compare.
-    """
+    """Flag whether both sweeps end in different responses, shape (n,); -1 if one of them is not periodic."""
     apart = np.abs(records["amplitude_ratio"] - records["amplitude_ratio_down"])
     differ = (apart > dataset.DISTINCT * steady_tolerance) | (records["period"] != records["period_down"])
     told = (records["period"] > 0) & (records["period_down"] > 0)

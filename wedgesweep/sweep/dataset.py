@@ -18,7 +18,7 @@ HARMONICS = 9
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the dataset; ``dims`` come after the dimensions that number the cases."""
+    """A variable of the dataset; ``dims`` follow the case dimensions."""
 
     name: str
     units: str
@@ -81,8 +81,8 @@ VARIABLES = (
 
 WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
 
-# A continuation has these, too; all other variables are those of its way up in beta. Two responses are
-# different ones if their amplitude ratios are this many steady_tolerance apart, or their periods differ.
+# Additional variables of a continuation; all others belong to its sweep up in beta. Two responses are
+# distinct if their amplitude ratios differ by more than DISTINCT times steady_tolerance, or their periods.
 DISTINCT = 1000.0
 CONTINUED = (
     Variable("amplitude_ratio_down", "1", "amplitude_ratio on the way down in beta"),
@@ -95,7 +95,7 @@ CONTINUED = (
         dtype="i1",
     ),
 )
-# Flags of the dataset: the values from the first on, in words.
+# Flag variables: first value, and the meanings of the values from there on.
 FLAGS = {"status": (0, STATUSES), "coexisting": (-1, ("not_told", "no", "yes"))}
 
 GRID = ("friction_law", "beta", "amplitude")
@@ -103,7 +103,7 @@ MESSAGE_BYTES = 200
 
 
 def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
-    """Layout of one finished case: its index and every variable, dimensions from ``sizes``.
+    """Layout of the record of a case: its index and every variable, with dimensions from ``sizes``.
 
     Without samples (``sizes["phase"]`` = 0) there are no waveforms; ``continued`` adds CONTINUED.
     """
@@ -117,7 +117,7 @@ def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
 
 
 def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
-    """Records of cases that have no numbers: NaN, zero counts, status not_run."""
+    """Records of cases without results: NaN, zero counts, status not_run."""
     records = np.zeros(len(indices), dtype)
     for name in dtype.names or ():
         if dtype[name].base.kind == "f":
@@ -132,10 +132,10 @@ def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
 def assemble(
     records: np.ndarray, coords: Mapping[str, Any], shape: tuple[int, ...], attrs: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Dataset from the records of all cases, in any order.
+    """Assemble the dataset from the records of all cases, in any order.
 
-    ``shape`` are the sizes of the dimensions that number the cases: three for a grid (friction_law,
-    beta, amplitude), one for a list (case).
+    ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), one
+    for a list (case).
     """
     case_dims = GRID if len(shape) == 3 else ("case",)
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
@@ -153,7 +153,7 @@ def assemble(
 
 
 def coordinates(case_coords: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Any]:
-    """All coordinates: those that number the cases (see ``assemble``) and those within one."""
+    """Return all coordinates: those of the cases (see ``assemble``) and those within a case."""
     coords = {
         **case_coords,
         "harmonic": ("harmonic", np.arange(1, sizes["harmonic"] + 1), {"long_name": "harmonic h"}),
@@ -179,11 +179,11 @@ def _attributes(variable: Variable) -> dict[str, Any]:
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write netCDF to a temporary file beside ``path`` and move it there when it is whole."""
+    """Write netCDF to a temporary file beside ``path``, and move it there when it is complete."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
     encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
     for name, variable in dataset.data_vars.items():
-        # Doubles shrink by a fifth, and would take longer over it than their cases took to solve.
+        # Compressing doubles saves a fifth of their size, and takes longer than solving the cases.
         if variable.dtype.kind in "fi" and variable.dtype != np.float64:
             encoding[str(name)] = compressed
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
@@ -195,7 +195,7 @@ def write(dataset: xr.Dataset, path: Path) -> None:
 
 
 def read(path: Path) -> xr.Dataset:
-    """Whole dataset from a netCDF file; raises SweepError if there is none."""
+    """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
     if not path.is_file():
         message = f"{path}: no such file"
         raise SweepError(message)

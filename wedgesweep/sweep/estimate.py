@@ -1,4 +1,4 @@
-"""What a sweep will cost, from a timed sample of its cases."""
+"""Estimate of the time and memory that a sweep needs, from a timed sample of its cases."""
 
 import resource
 import sys
@@ -17,7 +17,7 @@ GOLDEN = 0.6180339887498949
 
 @dataclass(frozen=True)
 class Estimate:
-    """Cost of all cases of a sweep; ``sampled`` are the records of the cases that were run."""
+    """Cost of all cases of a sweep; ``sampled`` holds the records of the cases that were timed."""
 
     sampled: np.ndarray
     seconds_on_one_job: float
@@ -26,10 +26,10 @@ class Estimate:
 
 
 def estimate(sweep: Sweep) -> Estimate:
-    """Run a few cases spread over the sweep, for some seconds, and scale their time up."""
+    """Time a few cases spread over the sweep, for some seconds, and extrapolate."""
     cases = len(sweep.parameters)
     compile_once(sweep.settings.method, sweep.extended)
-    sweep.solve(np.array([0]))  # the first case waits until its code is loaded
+    sweep.solve(np.array([0]))  # loads the compiled code
     started = perf_counter()
     records = []
     for index in _spread(cases):
@@ -42,12 +42,12 @@ def estimate(sweep: Sweep) -> Estimate:
 
 
 def _spread(count: int) -> list[int]:
-    """Some of ``count`` indices, any first few of them spread over all (golden section)."""
+    """Return up to MOST_CASES of ``count`` indices; any first few are spread over all (golden section)."""
     places = (0.5 + GOLDEN * np.arange(4 * MOST_CASES)) % 1.0
     return list(dict.fromkeys((places * count).astype(int).tolist()))[:MOST_CASES]
 
 
 def _peak_memory() -> int:
-    """Largest memory of this process so far; each job is about as large."""
+    """Return the peak memory (bytes) of this process; a job needs about as much."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak if sys.platform == "darwin" else peak * 1024

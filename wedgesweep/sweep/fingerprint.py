@@ -1,4 +1,4 @@
-"""What the numbers of a sweep depend on: runs that differ in it are not mixed."""
+"""Fingerprint of a sweep: what its results depend on. Runs with different fingerprints are never mixed."""
 
 import platform
 import tomllib
@@ -15,12 +15,12 @@ from wedgesweep.config.keys import show
 
 PACKAGE = Path(__file__).parents[1]
 SAME_RESULTS = ("numpy", "scipy", "numba")
-# Nothing in these folders changes a number.
+# Folders that do not affect results.
 PRESENTATION = ("cli", "figures", "reproduce", "validation")
 
 
 def fingerprint(config: Config) -> dict[str, str]:
-    """Config and versions of a sweep as it would run now."""
+    """Return the digests and versions with which a sweep would run now."""
     return {
         "config_sha256": config.sha256,
         "wedgesweep": __version__,
@@ -31,9 +31,9 @@ def fingerprint(config: Config) -> dict[str, str]:
 
 
 def differences(found: Mapping[str, str], expected: Mapping[str, str]) -> list[str]:
-    """In words, what sets two fingerprints apart.
+    """Describe how two fingerprints differ.
 
-    Both may also hold the ``config`` as TOML text, so that the keys that changed can be named.
+    Both may also hold the ``config`` as TOML text, so that changed keys can be named.
     """
     keys = [key for key in expected if found.get(key) != expected[key] and key != "config"]
     return [words for key in keys for words in _in_words(key, found, expected)]
@@ -71,7 +71,7 @@ def _flat(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]
 
 @cache
 def _source_digest() -> str:
-    # Read once: what was loaded stays loaded, whatever is edited while a sweep runs.
+    # Computed once: edits during a run do not affect the code that is already loaded.
     digest = sha256()
     for path in sorted(PACKAGE.rglob("*.py")):
         place = path.relative_to(PACKAGE)

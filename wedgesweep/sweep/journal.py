@@ -1,7 +1,7 @@
-"""Finished cases on disk while a sweep runs: an append-only file that survives a kill.
+"""The journal: finished cases of a running sweep, in an append-only file that survives a kill.
 
-The first line tells what is computed. Then come records of fixed size, each followed by its
-checksum, so that a record torn by a kill is recognised and dropped.
+The first line holds the fingerprint and the config. Records of fixed size follow, each with its checksum, so
+that a record that was cut off by a kill is recognised and dropped.
 """
 
 import json
@@ -17,15 +17,15 @@ from wedgesweep.sweep.fingerprint import differences
 
 try:
     import fcntl
-except ImportError:  # not on Windows; there two runs at once are not told apart
+except ImportError:  # Windows: two runs at once are not detected
     fcntl = None  # type: ignore[assignment]
 
 
 class Journal:
-    """Open journal of one sweep; ``records`` holds what earlier runs finished.
+    """Open journal of one sweep; ``records`` holds the cases that earlier runs finished.
 
-    ``header`` is the fingerprint and whatever else a reader of the journal needs. Raises
-    MismatchError, or SweepError if another run has it open or it is no journal.
+    ``header`` holds the fingerprint and whatever else a reader of the journal needs. Raises MismatchError if
+    the journal belongs to another sweep, SweepError if another run has it open or it is not a journal.
     """
 
     def __init__(self, path: Path, dtype: np.dtype, header: dict[str, str]) -> None:
@@ -41,7 +41,7 @@ class Journal:
             raise
 
     def append(self, records: np.ndarray) -> None:
-        """Add finished cases, a structured array of the journal's dtype."""
+        """Append finished cases, a structured array of the journal's dtype."""
         framed = np.empty(len(records), _framed(records.dtype))
         framed["record"] = records
         framed["checksum"] = _checksums(framed)
@@ -75,37 +75,37 @@ def discard(path: Path) -> None:
 
 
 def header(path: Path) -> dict[str, str]:
-    """First line of a journal that may be in use."""
+    """Read the header of a journal, which may be in use."""
     return _header(path, path.read_bytes())
 
 
 def read(path: Path, dtype: np.dtype) -> np.ndarray:
-    """Whole records of a journal that may be in use, the last one of each case."""
+    """Read the complete records of a journal, which may be in use; of each case the last one."""
     content = path.read_bytes()
     return _latest(_whole_records(content, content.index(b"\n") + 1, dtype)[1])
 
 
 def _locked(path: Path) -> int:
-    """Open file, held by this process alone until it is closed or the process ends."""
+    """Open a file and lock it, until it is closed or the process ends."""
     file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     try:
         if fcntl:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         os.close(file)
-        message = f"{path}: another run is writing it; wait for its end or stop it"
+        message = f"{path}: another run is writing it; wait until it ends, or stop it"
         raise SweepError(message) from error
     return file
 
 
 def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:
-    """Length of what is whole in the file, and its records; 0 if even the first line is torn."""
+    """Length of the complete part of the file, and its records; 0 if even the header is cut off."""
     content = path.read_bytes()
     if b"\n" not in content:
         return 0, np.zeros(0, dtype)
     differing = differences(_header(path, content), expected)
     if differing:
-        message = f"{path}: an unfinished sweep of another set-up ({'; '.join(differing)})"
+        message = f"{path}: an unfinished sweep with another config or version ({'; '.join(differing)})"
         raise MismatchError(message)
     whole, records = _whole_records(content, content.index(b"\n") + 1, dtype)
     return whole, _latest(records)
@@ -115,12 +115,12 @@ def _header(path: Path, content: bytes) -> dict[str, str]:
     try:
         return dict(json.loads(content[: content.index(b"\n")]))
     except (ValueError, TypeError) as error:
-        message = f"{path}: not the journal of a sweep, or broken in its first line"
+        message = f"{path}: not the journal of a sweep, or damaged in its first line"
         raise SweepError(message) from error
 
 
 def _latest(records: np.ndarray) -> np.ndarray:
-    """Drop records of cases that were run again."""
+    """Drop superseded records of cases that were run again."""
     _, last = np.unique(records["index"][::-1], return_index=True)
     return records[np.sort(len(records) - 1 - last)]
 
@@ -137,7 +137,7 @@ def _checksums(framed: np.ndarray) -> list[int]:
 
 
 def _whole_records(content: bytes, start: int, dtype: np.dtype) -> tuple[int, np.ndarray]:
-    """Length of the journal up to its first torn record, and the records before that."""
+    """Length of the journal up to its first damaged record, and the records before that."""
     framed = np.frombuffer(content, _framed(dtype), (len(content) - start) // _framed(dtype).itemsize, start)
     torn = np.flatnonzero(framed["checksum"] != _checksums(framed))
     whole = framed[: torn[0]] if torn.size else framed

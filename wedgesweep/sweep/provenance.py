@@ -1,4 +1,4 @@
-"""Where a dataset comes from: its global attributes."""
+"""Provenance: the global attributes of a dataset."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ REFERENCES = (
 
 
 def attributes(config: Config, started: datetime, command: str) -> dict[str, str]:
-    """Title, config, versions and time of a run, as netCDF takes them (text only)."""
+    """Return title, config, versions and time of a run as text, the only type that all of netCDF takes."""
     stamp = started.strftime("%Y-%m-%dT%H:%M:%SZ")
     commit = git_commit()
     return {
@@ -40,9 +40,9 @@ def attributes(config: Config, started: datetime, command: str) -> dict[str, str
 
 
 def git_commit(package: Path = PACKAGE) -> str | None:
-    """Commit of the checkout that holds the package, "-dirty" appended if files have changed.
+    """Return the commit of the checkout that holds the package, with "-dirty" appended if files have changed.
 
-    None for an installed package, even if its environment lies within some checkout.
+    None for an installed package, even if its environment lies within a checkout.
     """
     if _git(package, "ls-files", "__init__.py") is None:
         return None

@@ -1,4 +1,4 @@
-"""A sweep: config -> cases -> joblib -> dataset, with every finished case safe on disk at once."""
+"""A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
 import json
 import signal
@@ -28,17 +28,16 @@ from wedgesweep.sweep.journal import Journal
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
 from wedgesweep.systems.suspension.parameters import has_own_mechanics
 
-# Called with the records of cases as they finish and the number of all cases of the sweep.
+# Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
 
-
-# Cases of the event-driven solver that go to a worker, and into the journal, together; fewer in a
-# small sweep, which is cut into so many chunks.
+# The event-driven solver takes CHUNK cases at a time, which also go into the journal together; a small
+# sweep is divided into CHUNKS smaller chunks.
 CHUNK, CHUNKS = 200, 64
 
 
 class CaseFailedError(SweepError):
-    """A case failed in a sweep that is to stop at the first failure."""
+    """A case failed in a sweep that stops at the first failure."""
 
 
 @dataclass(frozen=True)
@@ -75,9 +74,9 @@ class Sweep:
 
     @property
     def together(self) -> np.ndarray:
-        """Indices of the cases that depend on each other, a row each, shape (n, m).
+        """Indices of cases, shape (n, m); those in a row depend on each other.
 
-        In a continuation these are lines, all frequencies of a law and an amplitude; else single cases.
+        In a continuation a row holds all frequencies of one law and amplitude, otherwise a single case.
         """
         indices = np.arange(len(self.parameters)).reshape(self.config.case_coordinates()[0])
         if self.settings.continuation:
@@ -90,12 +89,12 @@ class Sweep:
 
     @property
     def extended(self) -> bool:
-        """Whether its effects need the extended mechanics."""
+        """Whether effects of the config need the extended mechanics."""
         return bool(has_own_mechanics(self.parameters).any())
 
     @property
     def fingerprint(self) -> dict[str, str]:
-        """What the numbers depend on: runs that differ in it are not mixed."""
+        """What the results depend on; runs with different fingerprints are never mixed."""
         return fingerprint(self.config)
 
     @property
@@ -103,7 +102,7 @@ class Sweep:
         return {**self.fingerprint, "config": self.config.to_toml()}
 
     def stored(self) -> xr.Dataset | None:
-        """Dataset of an earlier run, if it is complete.
+        """Return the dataset of an earlier run if it is complete, else None.
 
         Raises MismatchError if ``out`` holds another sweep, SweepError if it is no sweep's dataset.
         """
@@ -118,7 +117,7 @@ class Sweep:
         return found
 
     def discard(self) -> None:
-        """Delete what earlier runs finished; raises SweepError if ``out`` is no sweep's dataset."""
+        """Delete the results of earlier runs; raises SweepError if ``out`` is not the dataset of a sweep."""
         if self.out.exists():
             _read_sweep(self.out)
         journal.discard(self.journal_path)
@@ -133,11 +132,34 @@ class Sweep:
         backend: Backend | None = None,
         fresh: bool = False,
     ) -> xr.Dataset:
-        """Run what is not finished yet, or all if ``fresh``, and write the dataset.
+        """Run the cases that are not finished yet, or all if ``fresh``, and write the dataset.
 
-        ``progress`` is called in this process, first with the records that earlier runs finished.
-        Raises CaseFailedError at the first failed case if ``fail_fast``; what is finished stays in
-        the journal.
+        Parameters
+        ----------
+        n_jobs : int
+            Number of parallel jobs.
+        case_timeout : float, optional
+            Time limit per case (s), instead of the config's.
+        fail_fast : bool
+            Whether to raise CaseFailedError at the first failed case; finished cases stay in the journal.
+        progress : callable
+            Called in this process, first with the records of earlier runs, then as cases finish.
+        backend : Backend, optional
+            Where the cases run; by default the backend of this machine that suits the solver.
+        fresh : bool
+            Whether to discard the results of earlier runs.
+
+        Returns
+        -------
+        xarray.Dataset
+            The dataset, as it is stored in ``out``.
+
+        Raises
+        ------
+        MismatchError
+            The journal belongs to another sweep.
+        SweepError
+            The sweep cannot start, go on or be stored.
         """
         started = datetime.now(UTC)
         with ExitStack() as opened:
@@ -158,13 +180,13 @@ class Sweep:
         return result
 
     def run_here(self, case_timeout: float | None = None) -> xr.Dataset:
-        """Run all cases in this process, one after the other; nothing is stored."""
+        """Run all cases one after the other in this process; nothing is stored."""
         started = datetime.now(UTC)
         indices = np.arange(len(self.parameters))
         return self.assembled(self.solve(indices, case_timeout), started)
 
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
-        """Records of the cases of these indices (in a continuation: whole lines), solved in this process."""
+        """Solve the cases with these indices (in a continuation: whole lines) in this process."""
         limit = self._limit(case_timeout)
         return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
 
@@ -175,7 +197,7 @@ class Sweep:
     def _all_records(
         self, kept: Journal, pool: joblib.Parallel, case_timeout: float | None
     ) -> Generator[np.ndarray, None, None]:
-        # A time limit depends on the machine and its load: those cases are tried again.
+        # Whether a case exceeds its time limit depends on the load of the machine: such cases are run again.
         whole = kept.records[kept.records["status"] != Outcome.TIME_LIMIT]
         rows = self.together
         todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
@@ -200,12 +222,12 @@ class Sweep:
                 for chunk in _chunks(rows, self.settings.method)
             )
         try:
-            # "yield from" would close it outside of the filter below.
+            # "yield from" would close the results outside of the filter below.
             for records in results:  # noqa: UP028
                 yield records
         finally:
             with warnings.catch_warnings():
-                # joblib finds it worth a warning that a run is stopped half-way.
+                # joblib warns when a run is stopped early.
                 warnings.simplefilter("ignore", UserWarning)
                 results.close()
 
@@ -220,7 +242,7 @@ class Sweep:
             raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:
-        """Dataset of all cases from their records."""
+        """Assemble the dataset from the records of all cases."""
         shape, coords = self.config.case_coordinates()
         return dataset.assemble(
             records,
@@ -230,10 +252,10 @@ class Sweep:
         )
 
     def _physics(self) -> dict[str, float]:
-        """Numbers of the suspension that figures refer to (SI)."""
+        """Properties of the suspension that figures refer to (SI)."""
         p = self.parameters[0]
         numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
-        if self.extended:  # effects with mechanics of their own have neither
+        if self.extended:  # not defined for the extended mechanics
             return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}
         coulomb = self.config.record(Case("coulomb", 1.0, 1e-3))[0]
         return numbers | {
@@ -243,9 +265,10 @@ class Sweep:
 
 
 def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
-    """Cases that a job solves at a time: one slow one, or whole rows of fast ones from all over the sweep.
+    """Divide the rows of cases into the chunks that jobs solve: one slow case, or many fast ones.
 
-    Cost changes along the grid, so that chunks of neighbours would leave some jobs idle at the end.
+    A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
+    neighbours would leave some jobs idle at the end.
     """
     size = min(CHUNK, -(-rows.size // CHUNKS)) if method == "event-driven" else 1
     count = -(-len(rows) // max(size // rows.shape[1], 1))
@@ -255,14 +278,14 @@ def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
 def _read_sweep(path: Path) -> xr.Dataset:
     found = dataset.read(path)
     if "fingerprint" not in found.attrs:
-        message = f"{path}: not the dataset of a sweep, and will not be overwritten"
+        message = f"{path}: not the dataset of a sweep; it is not overwritten"
         raise SweepError(message)
     return found
 
 
 @contextmanager
 def _interrupts_ignored() -> Iterator[None]:
-    """Jobs that start meanwhile ignore ctrl-C for good: this process ends them, quietly."""
+    """Let jobs that start meanwhile ignore ctrl-C; this process ends them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

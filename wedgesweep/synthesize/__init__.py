@@ -1,5 +1,5 @@
-"""Synthetic measured data of a known truth, in the form that ``measured`` reads.
+"""Synthetic measured data of a known system, in the form that ``measured`` reads.
 
-The true system is solved by Radau at a tight tolerance, never by the solver that a diagnosis fits with: data
-that come from the fitted model's own integrator flatter the fit.
+Radau solves the true system at a tight tolerance, never the solver that a diagnosis uses: a fit to data of
+its own integrator looks better than it is.
 """

@@ -1,4 +1,4 @@
-"""From a config and a plan of tests to a directory of measured data."""
+"""Makes a directory of measured data from a config and a plan of tests."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,19 +19,19 @@ from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
 from wedgesweep.systems.suspension.parameters import has_own_mechanics
 
-# A bolster that moves less than this share of the input sticks, or creeps to where it does.
+# A bolster that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
 
 
 class SynthesisError(InputError):
-    """Data that cannot be made."""
+    """The data cannot be made."""
 
 
 @dataclass(frozen=True)
 class Options:
     """How the data are made; ``level`` and ``amplitude_error`` are relative std.
 
-    ``sampling_hz`` None: near 2 kHz, another one in each test, so that it does not divide the period.
+    If ``sampling_hz`` is None, each test has a different rate near 2 kHz, which does not divide the period.
     """
 
     noise: str = "white"
@@ -46,13 +46,13 @@ class Options:
 def synthesize(
     config: Config, source: str, plan: Plan, options: Options, directory: Path, n_jobs: int
 ) -> list[str]:
-    """Make measured data of the system of a config, which was read from ``source``; what to know of them.
+    """Make measured data of the system of a config that was read from ``source``; return remarks on them.
 
     Raises
     ------
     InputError
-        If the config has several laws, a test cannot be simulated or the directory is not free; nothing
-        is written then.
+        If the config has several laws, a test cannot be simulated or the directory is not empty; then
+        nothing is written.
     """
     directory = directory.absolute()
     files.require_free(directory)
@@ -78,7 +78,7 @@ def _name(i: int, test: TrueTest) -> str:
 
 
 def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
-    """What happens in each test; raises SynthesisError with every test that fails."""
+    """Simulate the tests; raises SynthesisError with every test that fails."""
     compile_once("radau", bool(has_own_mechanics(truth.record(truth.tests[0]))[0]))
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
@@ -103,18 +103,18 @@ def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
 
 
 def _motion(record: np.ndarray, *arguments: Any) -> Motion | str:
-    """Motion of a test, or why there is none."""
+    """Return the motion of a test, or why there is none."""
     try:
         motion = steady(record, *arguments)
     except CaseError as error:
         return str(error)
     if np.ptp(motion.displacement) < STUCK * record["input"]["amplitude"][0]:
-        return "the bolster sticks all the time, so that there is nothing to measure; raise the amplitude"
+        return "the bolster sticks all the time and there is nothing to measure; raise the amplitude"
     return motion
 
 
 def _table(test: TrueTest, motion: Motion, options: Options) -> Table:
-    """Channels with offset and noise, as a file shows them; time from 0."""
+    """Channels with offset and noise, as in the CSV file; time starts at 0."""
     displacement = motion.displacement + test.offset * motion.displacement.std()
     channels = (displacement, motion.velocity)
     step = 1.0 / test.sampling_hz
@@ -142,7 +142,7 @@ def _measured(title: str, plan: Plan, options: Options) -> dict[str, Any]:
 
 
 def _told(truth: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
-    """The document of truth.json: what a diagnosis is to find, in the keys and units of a config."""
+    """The document of truth.json: what a diagnosis should find, in the keys and units of a config."""
     tests = [
         {
             "frequency_hz": test.plan.frequency_hz,

@@ -16,7 +16,7 @@ from wedgesweep.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """What stands in a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each."""
+    """Content of a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each."""
 
     time: np.ndarray
     displacement: np.ndarray
@@ -24,7 +24,7 @@ class Table:
 
 
 def require_free(directory: Path) -> None:
-    """Complain before the work about a directory that holds something; raises InputError."""
+    """Check before the work that a directory is empty or can be created; raises InputError."""
     if directory.exists() and (not directory.is_dir() or any(directory.iterdir())):
         raise InputError([f"{directory}: not an empty directory; choose another, or remove it"])
     if not directory.parent.is_dir():
@@ -34,7 +34,7 @@ def require_free(directory: Path) -> None:
 def write(
     directory: Path, measured: dict[str, Any], model: Config, tables: Sequence[Table], truth: dict[str, Any]
 ) -> None:
-    """Write everything into a directory, or nothing."""
+    """Write all files into a directory, or nothing."""
     partial = directory.with_name(f"{directory.name}.partial")
     rmtree(partial, ignore_errors=True)
     partial.mkdir()

@@ -1,4 +1,4 @@
-"""What the sensors see of the true system, before noise: its steady motion at given times."""
+"""Steady motion of the true system at given times, as the sensors give it without noise."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import TimedWindow
 
 RTOL = 1e-8
-# A period that changes the state by less than this share of the input ends the settling.
+# Settling ends when a period changes the state by less than this share of the input.
 SETTLED = 1e-6
 TIME_LIMIT = 600.0
-# The lag of the velocity channel is followed in steps this fine, from this many time constants before.
+# The lag of the velocity channel is integrated in such steps, starting this many time constants before.
 LAG_STEPS_PER_PERIOD = 4000
 LAG_MEMORY = 25.0
 
@@ -43,7 +43,7 @@ def steady(
     repeats: bool,
     effects: Mapping[str, Mapping[str, float]],
 ) -> Motion:
-    """Motion once it is steady, as the sensors give it.
+    """Simulate a test until it is steady, and sample it as the sensors do.
 
     Parameters
     ----------
@@ -52,11 +52,11 @@ def steady(
     clock : Clock
         When to sample.
     settle_periods : int
-        Periods after which it counts as steady, at the latest.
+        Number of periods after which the motion counts as steady at the latest.
     repeats : bool
-        Whether it can be periodic; else all settling periods are run.
+        Whether the motion can be periodic; otherwise all settling periods are run.
     effects : mapping
-        Those of the config in SI units; velocity_lag and displacement_gain act here, after the mechanics.
+        Effects of the config in SI units; velocity_lag and displacement_gain are applied here.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def steady(
     finer = ceil(clock.step / period * LAG_STEPS_PER_PERIOD) if lag > 0.0 else 1
     ahead = ceil(LAG_MEMORY * lag / clock.step) * finer
     fine = clock.step / finer
-    # Whole periods more, so that the times before the first sample are times of the window, too.
+    # Shifted by whole periods, so that the window also covers the times before the first sample.
     shift = period * ceil(ahead * fine / period)
     offsets = shift + clock.start + fine * np.arange(-ahead, (clock.count - 1) * finer + 1)
     window = TimedWindow(2.0 * pi / period, settle_periods, ceil(offsets[-1] / period) + 1, 0, offsets)
@@ -80,7 +80,7 @@ def steady(
 
 
 def _lagged(signal: np.ndarray, step: float, lag: float) -> np.ndarray:
-    """First-order lag (s) of a signal that is straight between its samples: lag y' = signal - y, exactly."""
+    """First-order lag (s), lag y' = signal - y, exact for a signal that is linear between its samples."""
     from scipy.signal import lfilter
 
     decay = exp(-step / lag)

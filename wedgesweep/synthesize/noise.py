@@ -1,7 +1,7 @@
-"""Noise of the sensors, and what they do to a signal before it is stored.
+"""Noise of sensors and analogue-to-digital converters.
 
-Each kind takes the channels free of noise, at an even sampling interval, and a level: std over the rms of a
-channel about its mean.
+Each kind takes noise-free channels at an even sampling interval and a level: the std of the noise over the
+rms of the channel about its mean.
 """
 
 from collections.abc import Callable
@@ -22,13 +22,13 @@ def white(channels: Channels, level: float, step: float, random: np.random.Gener
 
 
 def ar1(channels: Channels, level: float, step: float, random: np.random.Generator) -> Channels:
-    """Noise of a given correlation from sample to sample."""
+    """First-order autoregressive noise."""
     displacement, velocity = (each + level * each.std() * _correlated(each.size, random) for each in channels)
     return displacement, velocity
 
 
 def adc(channels: Channels, level: float, step: float, random: np.random.Generator) -> Channels:
-    """White noise of half the level, then a 12-bit converter whose range is the signal's."""
+    """White noise of half the level, and a 12-bit converter with the range of the signal."""
     displacement, velocity = map(_quantised, white(channels, 0.5 * level, step, random))
     return displacement, velocity
 
@@ -36,7 +36,7 @@ def adc(channels: Channels, level: float, step: float, random: np.random.Generat
 def differentiated(channels: Channels, level: float, step: float, random: np.random.Generator) -> Channels:
     """White noise on the displacement, and the velocity from its central differences.
 
-    The first and last sample, which have no central difference, are cut off.
+    The first and last samples, which have no central difference, are dropped.
     """
     displacement, _ = white(channels, level, step, random)
     return displacement[1:-1], (displacement[2:] - displacement[:-2]) / (2.0 * step)

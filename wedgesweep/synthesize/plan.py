@@ -1,4 +1,4 @@
-"""tests.toml: which tests are made, and what their measured.toml calls uncertain."""
+"""tests.toml: the tests to make, and the uncertain numbers of their measured.toml."""
 
 import tomllib
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import AMPLITUDE, AMPLITUDE_STD, FREQUENCY, UNCERTAIN
 
-KNOWN = Flag(key="known", meaning="whether measured.toml tells the amplitude", default=True)
+KNOWN = Flag(key="known", meaning="whether measured.toml states the amplitude", default=True)
 
 ROOT = table(
     "",
@@ -32,7 +32,7 @@ ROOT = table(
 
 @dataclass(frozen=True)
 class PlannedTest:
-    """One test; its amplitude is nominal. ``amplitude_std`` is relative, 0 where none is given."""
+    """One test with its nominal amplitude; ``amplitude_std`` is relative, 0 if not given."""
 
     frequency_hz: float
     amplitude_mm: float
@@ -49,7 +49,7 @@ class Plan:
 
 
 def load(path: Path) -> Plan:
-    """Read a tests.toml; raises InputError with all that is wrong."""
+    """Read a tests.toml; raises InputError with everything that is wrong."""
     try:
         given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:

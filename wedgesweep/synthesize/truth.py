@@ -1,4 +1,4 @@
-"""The true system: every number that chance decides, drawn once and known from then on."""
+"""The true system: all random numbers of a synthetic measurement, drawn once."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,14 +11,14 @@ from wedgesweep.effects import merge
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
 
-# Sampling rates that nobody asked for are near this one, and differ from test to test.
+# Default sampling rates: near SAMPLING_HZ, and different in each test.
 SAMPLING_HZ, SAMPLING_SPREAD = 2000.0, 0.03
 STRAY = "stray_vibration"
 
 
 @dataclass(frozen=True)
 class TrueTest:
-    """One test as it is: true amplitude, phase of the input at the first sample, offset over the rms.
+    """One test: true amplitude, phase of the input at the first sample, offset over the rms.
 
     ``stray_phase_deg`` is the phase of a spurious tone, None without one; ``random`` makes the noise.
     """
@@ -32,7 +32,7 @@ class TrueTest:
     random: np.random.Generator
 
     def clock(self, periods: float, more: int) -> Clock:
-        """When to sample; ``more`` samples than the periods need."""
+        """Sample times of some periods, and ``more`` samples."""
         period = 1.0 / self.plan.frequency_hz
         count = ceil(periods * period * self.sampling_hz) + more
         return Clock(self.phase_deg / 360.0 * period, 1.0 / self.sampling_hz, count)
@@ -40,7 +40,7 @@ class TrueTest:
 
 @dataclass(frozen=True)
 class Truth:
-    """The system behind the data: a config with effects, its law, and the true value of what is uncertain."""
+    """The true system: a config with effects, its law, and the true factors of uncertain numbers."""
 
     config: Config
     law: str
@@ -78,7 +78,7 @@ def draw(
     sampling_hz: float | None,
     seed: int,
 ) -> Truth:
-    """Draw what is random; each test has a source of its own, so that the others do not change it."""
+    """Draw all random numbers; each test has its own generator, so that it does not depend on the others."""
     seeds = np.random.SeedSequence(seed).spawn(len(plan.tests) + 1)
     random = np.random.default_rng(seeds[0])
     factors = {name: 1.0 + std * float(random.normal()) for name, std in plan.uncertain.items()}

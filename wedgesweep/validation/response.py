@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from wedgesweep.config import parse, toml
+from wedgesweep.config import from_document
 from wedgesweep.sweep.run import Sweep
 
 Effects = Mapping[str, Mapping[str, float]]
@@ -49,7 +49,7 @@ def run(system: System, tests: Sequence[Test]) -> xr.Dataset:
         "sweep": {"case": [{"friction_law": system.law, **test._asdict()} for test in tests]},
         "solver": {"method": "event-driven", "samples_per_period": SAMPLES, **window},
     }
-    return Sweep(parse(toml.dumps(document)), Path()).run_here()
+    return Sweep(from_document(document), Path()).run_here()
 
 
 def spectra(system: System, tests: Sequence[Test]) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wedgesweep.config import parse, toml
+from wedgesweep.config import from_document
 from wedgesweep.synthesize import files
 from wedgesweep.synthesize.noise import NOISES
 from wedgesweep.validation import response, simulator
@@ -76,7 +76,7 @@ def make(draft: "Draft", seed: int, directory: Path) -> None:
     }
     head = {"title": directory.name, "model": "model.toml", "columns": columns, "uncertain": draft.uncertain}
     truth = {"effects": {name_of(draft.unmodelled): draft.unmodelled}, "uncertain": factors}
-    model = parse(toml.dumps(draft.system({}).document()))
+    model = from_document(draft.system({}).document())
     files.write(directory, {"measurement": {**head, "test": stated}}, model, tables, truth)
 
 

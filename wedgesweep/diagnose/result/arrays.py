@@ -7,9 +7,9 @@ import xarray as xr
 
 from wedgesweep import __version__
 from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady import waveforms
-from wedgesweep.diagnose.steady.fit_data import FitData
-from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 CHANNELS = ("displacement", "velocity")
 # Dimensions, values, unit and meaning of a variable.
@@ -18,14 +18,14 @@ BY_TEST, BY_MODEL = ("test",), ("model", "test")
 PARTS = ("harmonic", "part")
 
 
-class Shown(NamedTuple):
-    """What is shown of a diagnosis; harmonics are complex, from phase 0 of the input.
+class Arrays(NamedTuple):
+    """What a diagnosis compares; harmonics are complex, from phase 0 of the input.
 
     ``fits``: base and extended model; ``measured`` (T, C, H), ``simulated`` (2, T, C, H), ``sampled`` (T, C)
     noise of a sample, NaN where a test does not have the channel.
     """
 
-    data: FitData
+    data: HarmonicData
     fits: tuple[Fit, Fit]
     measured: np.ndarray
     simulated: np.ndarray
@@ -33,18 +33,18 @@ class Shown(NamedTuple):
 
 
 def dataset(found: Diagnosis) -> xr.Dataset:
-    """Everything that a figure or a notebook wants to draw of a diagnosis."""
+    """Everything that a figure or a notebook draws of a diagnosis."""
     data = found.data
-    shown = _shown(found)
+    arrays = _arrays(found)
     variables = {
-        **_spectra(shown),
-        **_waveforms(shown),
-        **_inputs(shown),
-        **_energies(shown),
-        **_plateaus(shown),
-        **_misfit(shown),
+        **_spectra(arrays),
+        **_waveforms(arrays),
+        **_inputs(arrays),
+        **_energies(arrays),
+        **_dwells(arrays),
+        **_misfit(arrays),
     }
-    variables_with_attributes = {
+    data_variables = {
         name: (dims, values, {"units": unit, "long_name": meaning})
         for name, (dims, values, unit, meaning) in variables.items()
     }
@@ -62,28 +62,28 @@ def dataset(found: Diagnosis) -> xr.Dataset:
         "law": data.law,
         "wedgesweep_version": __version__,
     }
-    return xr.Dataset(variables_with_attributes, coordinates, attributes)
+    return xr.Dataset(data_variables, coordinates, attributes)
 
 
-def _shown(found: Diagnosis) -> Shown:
+def _arrays(found: Diagnosis) -> Arrays:
     data, fits = found.data, (found.base.fit, found.extended)
     sampled = np.full((data.tests, data.shape[0]), np.nan)
     for row, spectrum in zip(sampled, data.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise
-    simulated = np.array([fit.evaluation.harmonics for fit in fits])[..., : data.shape[1]]
-    return Shown(data, fits, waveforms.measured_from_phase_zero(fits[1]), simulated, sampled)
+    simulated = np.array([fit.evaluation.response.harmonics for fit in fits])[..., : data.shape[1]]
+    return Arrays(data, fits, waveforms.measured_from_phase_zero(data, fits[1]), simulated, sampled)
 
 
-def _where_measured(shown: Shown, values: np.ndarray) -> np.ndarray:
-    """Values (T, C, ...) with NaN for channels that a test does not have: they were nowhere near zero."""
-    return np.where(np.isnan(shown.sampled)[..., None], np.nan, values)
+def _where_measured(arrays: Arrays, values: np.ndarray) -> np.ndarray:
+    """Values (T, C, ...) with NaN for channels that a test does not have."""
+    return np.where(np.isnan(arrays.sampled)[..., None], np.nan, values)
 
 
-def _spectra(shown: Shown) -> Variables:
-    weight = shown.data.weight[..., : shown.data.shape[1]]
+def _spectra(arrays: Arrays) -> Variables:
+    weight = arrays.data.weight[..., : arrays.data.shape[1]]
     noise = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), np.nan)
-    measured = _parts(_where_measured(shown, shown.measured))
-    simulated = _parts(shown.simulated)
+    measured = _parts(_where_measured(arrays, arrays.measured))
+    simulated = _parts(arrays.simulated)
     return {
         "measured_harmonics": (("test", "channel", *PARTS), measured, "m or m/s", "measured harmonics"),
         "noise_std": (
@@ -96,14 +96,14 @@ def _spectra(shown: Shown) -> Variables:
     }
 
 
-def _waveforms(shown: Shown) -> Variables:
-    measured, simulated = waveforms.waveform(shown.measured), waveforms.waveform(shown.simulated)
-    measured = _where_measured(shown, measured)
+def _waveforms(arrays: Arrays) -> Variables:
+    measured, simulated = waveforms.waveform(arrays.measured), waveforms.waveform(arrays.simulated)
+    measured = _where_measured(arrays, measured)
     one_period = ("channel", "phase")
     return {
         "measured_waveform": (("test", *one_period), measured, "m or m/s", "measured over one period"),
         "simulated_waveform": ((*BY_MODEL, *one_period), simulated, "m or m/s", "simulated over one period"),
-        "waveform_noise": (("test", "channel"), shown.sampled, "m or m/s", "noise of one sample"),
+        "waveform_noise": (("test", "channel"), arrays.sampled, "m or m/s", "noise of one sample"),
         "measured_peak_to_peak": (
             BY_TEST,
             waveforms.peak_to_peak(measured[:, 0]),
@@ -119,8 +119,8 @@ def _waveforms(shown: Shown) -> Variables:
     }
 
 
-def _inputs(shown: Shown) -> Variables:
-    data, fitted = shown.data, np.array([fit.amplitudes() for fit in shown.fits])
+def _inputs(arrays: Arrays) -> Variables:
+    data, fitted = arrays.data, np.array([arrays.data.amplitudes(fit.point) for fit in arrays.fits])
     return {
         "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),
         "amplitude": (BY_TEST, data.amplitude, "m", "input amplitude as stated"),
@@ -128,11 +128,16 @@ def _inputs(shown: Shown) -> Variables:
     }
 
 
-def _energies(shown: Shown) -> Variables:
-    known = ~np.isnan(shown.data.amplitude)
-    measured = np.where(known, waveforms.input_energy(shown.fits[1], shown.measured[:, 0, 0]), np.nan)
+def _energies(arrays: Arrays) -> Variables:
+    known = ~np.isnan(arrays.data.amplitude)
+    measured = np.where(
+        known, waveforms.input_energy(arrays.data, arrays.fits[1], arrays.measured[:, 0, 0]), np.nan
+    )
     simulated = np.array(
-        [waveforms.input_energy(fit, fit.evaluation.harmonics[:, 0, 0]) for fit in shown.fits]
+        [
+            waveforms.input_energy(arrays.data, fit, fit.evaluation.response.harmonics[:, 0, 0])
+            for fit in arrays.fits
+        ]
     )
     meaning = "energy that the base puts in per period"
     return {
@@ -141,10 +146,10 @@ def _energies(shown: Shown) -> Variables:
     }
 
 
-def _plateaus(shown: Shown) -> Variables:
+def _dwells(arrays: Arrays) -> Variables:
     measured, *simulated = (
-        waveforms.dwell(waveforms.waveform(waveforms.velocity(shown.data, each)))
-        for each in (shown.measured, *shown.simulated)
+        waveforms.dwell(waveforms.waveform(waveforms.velocity(arrays.data, each)))
+        for each in (arrays.measured, *arrays.simulated)
     )
     meaning = "share of the period near rest"
     return {
@@ -153,18 +158,18 @@ def _plateaus(shown: Shown) -> Variables:
     }
 
 
-def _misfit(shown: Shown) -> Variables:
-    base = shown.fits[0]
-    force = waveforms.residual_force(base, waveforms.measured_from_phase_zero(base))
+def _misfit(arrays: Arrays) -> Variables:
+    base = arrays.fits[0]
+    force = waveforms.residual_force(arrays.data, base, waveforms.measured_from_phase_zero(arrays.data, base))
     return {
         "leftover_force": (("test", "phase"), force, "N", "force on the bolster that the base model lacks"),
         "q": (
             BY_MODEL,
-            np.array([fit.evaluation.chi2_by_test for fit in shown.fits]),
+            np.array([fit.evaluation.chi2_by_test for fit in arrays.fits]),
             "1",
             "squared misfit over noise",
         ),
-        "dof": (BY_TEST, shown.data.dof, "1", "degrees of freedom"),
+        "dof": (BY_TEST, arrays.data.dof, "1", "degrees of freedom"),
     }
 
 

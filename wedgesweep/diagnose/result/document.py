@@ -1,4 +1,4 @@
-"""The content of diagnosis.json, as DIAGNOSIS.md has it."""
+"""The content of diagnosis.json."""
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -10,10 +10,11 @@ import numpy as np
 from wedgesweep import __version__
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.next_test import SEPARATED, NextTest
+from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
-from wedgesweep.diagnose.search import PENALTY, POSSIBLE, SLIGHT, Explanation
-from wedgesweep.diagnose.verdict import ADEQUATE, where_it_shows
+from wedgesweep.diagnose.search import SLIGHT
+from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
+from wedgesweep.diagnose.verdict import ADEQUATE, p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
@@ -49,7 +50,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
 
 
 def _not_testable(found: Diagnosis) -> list[str]:
-    """Effects that the tests cannot show; what explains them all the same is so strong that it does show."""
+    """Effects that the tests cannot show, unless they explain the tests and so do show."""
     finding = found.finding
     explaining = {
         effect
@@ -61,7 +62,7 @@ def _not_testable(found: Diagnosis) -> list[str]:
 
 
 def _causes(each: Explanation | None) -> list[dict[str, Any]]:
-    """The causes of an explanation as DIAGNOSIS.md wants them."""
+    """The effects of an explanation with their parameters."""
     if each is None:
         return []
     numbers = parameters(each.fit)
@@ -86,21 +87,21 @@ def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
         "excess_base": finite(base.excess),
         "p_base": finite(base.p),
         "p_extended": finite(best.fit.p),
-        "p_where_it_shows": finite(where_it_shows(base, best.fit)),
+        "p_where_it_shows": finite(p_where_it_shows(base, best.fit)),
         **_constancy(best),
         "tests": _tests(found),
     }
 
 
 def _constancy(best: Explanation) -> dict[str, Any]:
-    """Whether the numbers are the same in all tests; null where the fit is out of the question anyhow."""
-    p, number = best.constancy if best.fit.p >= POSSIBLE else (None, None)
-    return {"p_constant": finite(p), "least_constant": number}
+    """Whether parameters are the same in all tests; null where the misfit alone rules the fit out."""
+    p, parameter = best.constancy if best.fit.p >= POSSIBLE else (None, None)
+    return {"p_constant": finite(p), "least_constant": parameter}
 
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
-    amplitude = best.amplitudes()
+    amplitude = data.amplitudes(best.point)
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
         noise = spectrum.sample_noise
@@ -126,7 +127,7 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
     if gain is None or not gain.held_out:
         numbers = ("scheme", "rmse_base", "rmse_extended", "rmse_noise", "gain", "excess_removed", "ci95")
         return {**dict.fromkeys(numbers), "held_out": []}
-    base, extended, noise = np.sqrt(gain.totals())
+    base, extended, noise = np.sqrt(gain.mean_squares())
     schemes = dict.fromkeys(each.scheme for each in gain.held_out)
     return {
         "scheme": " and ".join(f"leave-one-{scheme}-out" for scheme in schemes),
@@ -200,7 +201,7 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
 
 
 def _status(found: Diagnosis, each: Explanation, hidden: Sequence[str]) -> str:
-    """How a fit ended; one that ended above the base model that it contains has not found its minimum."""
+    """How a fit ended; one worse than the base model that it contains has not found its minimum."""
     if not isfinite(each.fit.chi2):
         return FAILED
     if each.fit.chi2 > found.base.fit.chi2 + SLIGHT:

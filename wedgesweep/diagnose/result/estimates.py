@@ -1,24 +1,23 @@
-"""Fitted numbers with their 95 % intervals."""
+"""Fitted parameters with their 95 % intervals."""
 
 from math import exp, inf, isfinite, log, sqrt
 from typing import Any
 
 import numpy as np
 
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.profile_likelihood import TWO_SIDED
-from wedgesweep.diagnose.search import TONE_FREQUENCY
-from wedgesweep.diagnose.steady.model import Fit
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 
 
 def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
-    """Fitted numbers of every effect with their 95 % intervals, in key units.
+    """Fitted parameters of every effect with their 95 % intervals, in key units.
 
-    Symmetric in the fit's coordinate: a number that is fitted as a logarithm has the interval of that. No
-    interval reaches beyond the range that was searched: of what lies there the fit knows nothing.
+    Intervals are symmetric in the fit parameter, which may be a logarithm, and end where the searched range
+    ends.
     """
-    hypothesis, size = fit.model.hypothesis, fit.model.size
+    hypothesis, size, known = fit.model.hypothesis, fit.model.size, fit.model.data.known
     x, covariance = fit.x[:size], fit.covariance[:size, :size]
     here = hypothesis.in_key_units(x)
     step = 1e-5 * hypothesis.scale
@@ -28,8 +27,8 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
         value = here[name][quantity.key]
         slope = np.array([change(quantity, value, m[name][quantity.key]) for m in moved]) / step
         std = sqrt(max(float(slope @ covariance @ slope), 0.0))
-        if f"{name}.{quantity.key}" == TONE_FREQUENCY:
-            std = change(quantity, value, value + fit.model.data.tone_std)
+        if f"{name}.{quantity.key}" in known:
+            std = change(quantity, value, value + known[f"{name}.{quantity.key}"][1])
         ends = interval(quantity, value, TWO_SIDED * std)
         return {"value": finite(value), "ci95": [finite(end) for end in ends]}
 
@@ -40,14 +39,14 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def change(quantity: Quantity, value: float, moved: float) -> float:
-    """Change of a number in the coordinate in which it is fitted."""
+    """Change of a number in the form in which it is fitted, logarithm or not."""
     if quantity.logarithmic:
         return log(moved / value)
     return quantity.nearest(moved, value) - value
 
 
 def interval(quantity: Quantity, value: float, half: float) -> tuple[float, float]:
-    """Ends of an interval of half a width ``half`` in the coordinate in which a number is fitted."""
+    """Ends of an interval; ``half`` of its width is in the form in which the number is fitted."""
     low, high = quantity.search or (-inf, inf)
     if quantity.angle:
         half = min(half, 0.5 * (high - low))
@@ -59,7 +58,7 @@ def interval(quantity: Quantity, value: float, half: float) -> tuple[float, floa
 
 
 def uncertain(fit: Fit) -> dict[str, dict[str, float]]:
-    """Uncertain numbers of the model as fitted."""
+    """Uncertain parameters of the base model as fitted."""
     size = fit.model.size
     return {
         name: {"scale": float(value), "std": float(sqrt(max(fit.covariance[size + i, size + i], 0.0)))}

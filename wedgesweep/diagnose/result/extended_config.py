@@ -15,7 +15,7 @@ def extended(found: Diagnosis) -> str:
     # Repeated tests are one case, and single cases do not continue one another.
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))
-        for spectrum, amplitude in zip(data.spectra, best.amplitudes(), strict=True)
+        for spectrum, amplitude in zip(data.spectra, data.amplitudes(best.point), strict=True)
     )
     document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {

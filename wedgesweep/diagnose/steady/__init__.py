@@ -1,1 +1,1 @@
-"""Records of steady responses, compared with simulations harmonic by harmonic."""
+"""Steady harmonics, one kind of record: a test is the harmonics of a response that repeats each period."""

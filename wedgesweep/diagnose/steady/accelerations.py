@@ -1,4 +1,4 @@
-"""What the model makes of a given motion."""
+"""Acceleration that the model predicts in the states of a given motion."""
 
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid.interface import cycle, initial_mode, rate

@@ -1,6 +1,6 @@
-"""The noise of a record, from what does not repeat: its smooth spectrum, and the coherence of both channels.
+"""Power spectral density of the noise of a record, from what does not repeat, and coherence of its channels.
 
-No noise model is assumed but that the spectrum is smooth (after Pintelon and Schoukens, System
+No noise model is assumed except that the spectrum is smooth (after Pintelon and Schoukens, System
 Identification, 2012, ch. 4).
 """
 
@@ -8,16 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Order of the polynomial, in log frequency, that the logarithm of the noise spectrum follows.
+# Order of the polynomial in log frequency that describes the logarithm of the noise spectrum.
 ORDER = 3
-# A line this many times above the smooth noise is something else (odds of 1e-5 in noise).
-FOREIGN = 11.5
+# A spectral line this many times above the smoothed PSD is not noise (probability 1e-5 in noise).
+OUTLIER = 11.5
+# A coherence is significant if its square times the number of lines exceeds this.
+SIGNIFICANT = 9.0
 
 
 class SmoothPSD:
-    """A noise spectrum whose logarithm is a polynomial in the logarithm of frequency.
+    """A PSD whose logarithm is a polynomial in the logarithm of frequency.
 
-    ``covariance`` (n, n): of its coefficients, where they are estimates.
+    ``covariance`` (n, n): of its coefficients, if they are estimates.
     """
 
     def __init__(
@@ -30,9 +32,9 @@ class SmoothPSD:
         return np.exp(self._powers(frequency) @ self.coefficients)
 
     def unbiased(self, frequency: np.ndarray) -> np.ndarray:
-        """Level by which squares of the same noise are 1 on average.
+        """Level by which squares of the same noise average to 1.
 
-        One over an estimate is too large on average, by the estimate's relative variance.
+        The reciprocal of an estimate is too large on average, by the estimate's relative variance.
         """
         powers = self._powers(frequency)
         return self(frequency) * (1.0 + ((powers @ self.covariance) * powers).sum(axis=-1))
@@ -42,45 +44,46 @@ class SmoothPSD:
 
 
 class SpectralLines(NamedTuple):
-    """Where the noise is looked at: ``frequency`` (m,) in Hz, and exp(2 pi i f t) there, ``turns`` (m, n).
+    """Where the noise is evaluated.
 
-    ``left`` (m,): share of white noise that is still there, as harmonics close by were taken out.
-    ``same``: so many lines say what one does.
+    ``frequency`` (m,) in Hz, with exp(2 pi i f t) there as ``phasors`` (m, n). ``remaining`` (m,): share of
+    white noise that remains after the harmonics were removed. ``redundancy``: number of lines that count as
+    one.
     """
 
     frequency: np.ndarray
-    turns: np.ndarray
-    left: np.ndarray
-    same: float
+    phasors: np.ndarray
+    remaining: np.ndarray
+    redundancy: float
 
 
 def levels(residual: np.ndarray, lines: SpectralLines) -> tuple[tuple[SmoothPSD, ...], complex]:
-    """Smooth noise of each channel of what is left of a record (channels, n), and their coherence."""
+    """Smoothed PSD of each channel of a residual (channels, n), and the coherence of the channels."""
     power, product = _periodograms(residual, lines)
-    level = tuple(_smooth(lines.frequency, each, lines.same) for each in power)
+    level = tuple(_smoothed(lines.frequency, each, lines.redundancy) for each in power)
     if len(level) == 1:
         return level, 0.0j
     smooth = np.array([each(lines.frequency) for each in level])
-    # A line that stands out in either channel is no noise.
-    kept = (power <= FOREIGN * smooth).all(axis=0)
+    # A line that stands out in either channel is not noise.
+    kept = (power <= OUTLIER * smooth).all(axis=0)
     return level, _coherence(product[kept] / np.sqrt(smooth[:, kept].prod(axis=0)))
 
 
 def _periodograms(residual: np.ndarray, lines: SpectralLines) -> tuple[np.ndarray, np.ndarray]:
-    """Power of each channel (channels, m) and product of the first two (m,), of all the noise."""
-    transform = residual @ lines.turns.conj().T
-    size = residual.shape[1] * lines.left
+    """Power of each channel (channels, m) and product of the first two (m,), as of the whole noise."""
+    transform = residual @ lines.phasors.conj().T
+    size = residual.shape[1] * lines.remaining
     return np.abs(transform) ** 2 / size, transform[-1] * transform[0].conj() / size
 
 
-def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> SmoothPSD:
-    """Maximum likelihood for powers that scatter exponentially around a smooth spectrum.
+def _smoothed(frequency: np.ndarray, power: np.ndarray, redundancy: float) -> SmoothPSD:
+    """Maximum-likelihood fit to powers (m,) that scatter exponentially about a smooth spectrum.
 
-    Lines that stand out are left out and the rest is fitted again. ``same``: lines that say what one does.
+    Lines that stand out are left out, and the rest is fitted again.
     """
-    reference = float(np.sqrt(lines[0] * lines[-1]))
-    design = np.polynomial.polynomial.polyvander(np.log(lines / reference), ORDER)
-    kept = np.ones(lines.size, bool)
+    reference = float(np.sqrt(frequency[0] * frequency[-1]))
+    design = np.polynomial.polynomial.polyvander(np.log(frequency / reference), ORDER)
+    kept = np.ones(frequency.size, bool)
     tiny = np.finfo(float).tiny
     coefficients = np.zeros(ORDER + 1)
     for _ in range(4):
@@ -92,14 +95,14 @@ def _smooth(lines: np.ndarray, power: np.ndarray, same: float) -> SmoothPSD:
             coefficients += np.clip(change, -1.0, 1.0)
             if np.abs(change).max() < 1e-10:
                 break
-        stands_out = power > FOREIGN * np.exp(design @ coefficients)
+        stands_out = power > OUTLIER * np.exp(design @ coefficients)
         if (kept == ~stands_out).all():
             break
         kept = ~stands_out
-    return SmoothPSD(coefficients, reference, same * np.linalg.inv(design[kept].T @ design[kept]))
+    return SmoothPSD(coefficients, reference, redundancy * np.linalg.inv(design[kept].T @ design[kept]))
 
 
 def _coherence(products: np.ndarray) -> complex:
-    """Mean of products (m,) of two channels' noise over its levels; 0 where it is no more than chance."""
+    """Mean of normalised products (m,) of two channels' noise; 0 if it is not significant."""
     value = complex(products.mean())
-    return value if abs(value) ** 2 * products.size > 9.0 else 0.0j
+    return value if abs(value) ** 2 * products.size > SIGNIFICANT else 0.0j

@@ -1,4 +1,4 @@
-"""Steady responses of the base model to the measured tests, each started from a neighbour's."""
+"""Simulated steady responses of the measured tests, each started from that of a neighbour."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -9,25 +9,26 @@ import numpy as np
 
 from wedgesweep import effects
 from wedgesweep.config import Config
+from wedgesweep.diagnose.fit_parameters import Values
+from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 from wedgesweep.systems.suspension import parameters
 
-# Errors (shares of the input amplitude, and of a step) that add nothing to the noise of 4 % data, those that
-# add nothing to derivatives either; rough ones do where it is only asked from where a fit should begin.
-TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
-# Periods run before a response with a foreign tone is evaluated, and more from rest; over which it is where
-# no record says, and of a record that is longer than need be: by then tone and input have met in all ways.
-TONE_SETTLING, FROM_REST, LONG, LONGEST_SIMULATED = 10, 30, 12.0, 60.0
+# Periods run before a response under a spurious tone is evaluated, and further ones if it starts at rest.
+TONE_SETTLING, FROM_REST = 10, 30
+# Periods over which such a response is evaluated if its relative timing is unknown, and at most: by then all
+# relative phases of tone and input have occurred.
+UNTIMED, LONGEST_SIMULATED = 12.0, 60.0
 
 
 class Responses(NamedTuple):
-    """Harmonics (n, 2, H) of displacement x - y (m) and its rate, complex, and where to go on from.
+    """Complex harmonics (n, 2, H) of displacement x - y (m) and its rate, and where to start neighbours from.
 
-    ``found`` (n,): whether there is such a response; it has none where the wedge locks, and then NaN.
+    ``found`` (n,): whether a response exists; it does not where the wedge locks, and harmonics are NaN then.
     """
 
     harmonics: np.ndarray
@@ -35,8 +36,8 @@ class Responses(NamedTuple):
     warm: Warm
 
 
-def records(model: Config, law: str, values: dict, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-    """Parameter records of some tests, shape (n,): ``omega`` (rad/s) and ``amplitude`` (m) of shape (n,)."""
+def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+    """Parameter records (n,) of tests with given angular frequencies (rad/s) and input amplitudes (m)."""
     numbers = effects.merge(model.effects, values)
     one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, numbers)
     rows = np.repeat(one, omega.size)
@@ -45,21 +46,21 @@ def records(model: Config, law: str, values: dict, omega: np.ndarray, amplitude:
 
 
 def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
-    """Steady responses of parameter records, shape (n,)."""
+    """Steady responses to parameter records (n,)."""
     found = periodic.respond(rows, warm, tolerance, MOST_PERIODS, SAMPLES_PER_PERIOD, harmonics, tolerance)
     return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
 
 
 class ToneTiming(NamedTuple):
-    """How input and foreign tone met in a record, ``periods`` of the input long.
+    """Relative timing of input and spurious tone in a record that is ``periods`` of the input long.
 
-    At its first sample the input was at the phase ``start`` (rad), the tone in the displacement at ``tone``
-    (rad; NaN where it does not show).
+    Phases in rad at its first sample: of the input, and of the tone in the displacement (NaN if it does not
+    show).
     """
 
     periods: float
-    start: float
-    tone: float
+    input_phase: float
+    tone_phase: float
 
 
 def respond_with_tone(
@@ -68,30 +69,47 @@ def respond_with_tone(
     harmonics: int,
     tone: float,
     timings: Sequence[ToneTiming],
-    tone_phase: np.ndarray,
+    source_phase: np.ndarray,
     tolerance: float = TOLERANCE,
 ) -> Responses:
-    """Responses under a foreign tone (Hz), which do not repeat: harmonics, and the tone in the last column.
+    """Responses under a spurious tone, which do not repeat; the tone is the last column of the harmonics.
 
-    Each row as in its record, with the vibration behind the tone ``tone_phase`` (n,) of the parameters' phase
-    (rad). Where that is not known (NaN), first with any phase, which tells how the response lags behind, then
-    with that at which both met; if no tone shows either, a span of ``LONG`` periods stands for all ways.
+    A response whose source phase is unknown is simulated twice: with any phase, which tells its lag, and
+    then with the phase that gives the measured one. If the record does not show the tone either, the
+    response is averaged over UNTIMED periods.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n,)
+        Parameter records.
+    warm : Warm, n rows
+        Where to start from.
+    harmonics : int
+        Number of harmonics H.
+    tone : float
+        Frequency of the tone in Hz.
+    timings : sequence of ToneTiming, n of them
+        Of the records to be reproduced.
+    source_phase : ndarray, shape (n,)
+        Phase (rad) of the vibration that causes the tone, beside that of the parameters; NaN where unknown.
+    tolerance : float
+        Relative tolerance.
     """
     rows = rows.copy()
-    rows["stray_vibration"]["phase"] += np.nan_to_num(tone_phase)
-    shown = np.array([timing.tone for timing in timings])
-    anyhow = np.isnan(tone_phase) & np.isnan(shown)
+    rows["stray_vibration"]["phase"] += np.nan_to_num(source_phase)
+    measured = np.array([timing.tone_phase for timing in timings])
+    untimed = np.isnan(source_phase) & np.isnan(measured)
     timings = tuple(
-        each._replace(periods=LONG) if one else each for each, one in zip(timings, anyhow, strict=True)
+        each._replace(periods=UNTIMED) if one else each for each, one in zip(timings, untimed, strict=True)
     )
     state = warm.state
     if not np.isfinite(state).all():
         state = periodic.samples(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance)[2]
     spectra, state = _recorded(rows, state, harmonics, tone, timings, tolerance)
-    late = np.where(np.isnan(tone_phase), shown, np.nan) - np.angle(spectra[:, 0, -1])
-    again = np.flatnonzero(np.isfinite(late))
+    lag = np.where(np.isnan(source_phase), measured, np.nan) - np.angle(spectra[:, 0, -1])
+    again = np.flatnonzero(np.isfinite(lag))
     if again.size:
-        rows["stray_vibration"]["phase"][again] += late[again]
+        rows["stray_vibration"]["phase"][again] += lag[again]
         chosen = tuple(timings[i] for i in again)
         spectra[again], state[again] = _recorded(
             rows[again], state[again], harmonics, tone, chosen, tolerance
@@ -108,23 +126,23 @@ def _recorded(
     timings: Sequence[ToneTiming],
     tolerance: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Harmonics and tone (n, 2, H + 1) over the span of each record, from phase 0 of the input, and states.
+    """Harmonics and tone (n, 2, H + 1) over the span of each record, and final states.
 
-    The tone's phase is that at the first sample of the record.
+    Harmonics are from phase 0 of the input; the tone's phase is that at the first sample of the record.
     """
     spectra = np.full((len(rows), 2, harmonics + 1), np.nan, complex)
     longest = ceil(max(timing.periods for timing in timings)) + 1
     x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, SAMPLES_PER_PERIOD, tolerance)
     turn = 2.0 * pi / SAMPLES_PER_PERIOD
     for i, timing in enumerate(timings):
-        start = timing.start % (2.0 * pi)
+        start = timing.input_phase % (2.0 * pi)
         first = round(start / turn)
         count = round(timing.periods * SAMPLES_PER_PERIOD)
         ratio = 2.0 * pi * tone / float(rows["input"]["omega"][i])
         signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
         found = signals @ _projection(ratio, harmonics, count).T
         found[:, :-1] *= np.exp(-1j * np.arange(1, harmonics + 1) * first * turn)
-        # The grid's first sample lies a little beside that of the record.
+        # The first sample of the grid lies a little beside that of the record.
         found[:, -1] *= np.exp(1j * ratio * (start - first * turn))
         spectra[i] = found
     return spectra, state
@@ -132,9 +150,9 @@ def _recorded(
 
 @lru_cache(maxsize=256)
 def _projection(ratio: float, harmonics: int, samples: int) -> np.ndarray:
-    """Least-squares fit of drift, harmonics and tone as a matrix (harmonics + 1, samples), complex.
+    """Least-squares fit of drift, harmonics and tone as a complex matrix (harmonics + 1, samples).
 
-    ``ratio``: the tone's frequency over the input's.
+    ``ratio``: frequency of the tone over that of the input.
     """
     time = np.arange(samples) / SAMPLES_PER_PERIOD
     turn = np.exp(2j * pi * ratio * time)[:, None]

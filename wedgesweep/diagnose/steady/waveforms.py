@@ -5,44 +5,44 @@ from math import pi
 import numpy as np
 from scipy.optimize import root_scalar
 
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady.accelerations import accelerations
-from wedgesweep.diagnose.steady.fit_data import FitData
-from wedgesweep.diagnose.steady.model import Fit
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
-from wedgesweep.systems.suspension.parameters import compact, driven_mass, has_own_mechanics, moving_mass
+from wedgesweep.systems.suspension.parameters import compact, has_own_mechanics
 
 PHASES = 256
-# A harmonic counts as far as its square is above this many times its noise.
+# A harmonic counts by the share of its square that exceeds this many times its noise.
 ABOVE_NOISE = 4.0
 # First guess at the mean of a motion, over its peak-to-peak.
-FIRST_PLACE = 0.01
-# Effects after the mechanics.
+FIRST_MEAN = 0.01
+# Effects on what the sensors show.
 SENSOR = tuple(name for name, effect in EFFECTS.items() if effect.family == "sensor")
-# A plateau is where the velocity stays below this share of its peak.
+# A dwell is where the velocity stays below this share of its peak.
 DWELL = 0.05
 
 
 def waveform(harmonics: np.ndarray) -> np.ndarray:
-    """Signals (..., PHASES) over one period of harmonics (..., H), from phase 0, their mean taken out."""
+    """Signals (..., PHASES) over one period of harmonics (..., H), from phase 0, without their mean."""
     phase = 2.0 * pi * np.arange(PHASES) / PHASES
     turn = np.exp(1j * np.outer(np.arange(1, harmonics.shape[-1] + 1), phase))
     return (harmonics @ turn).real
 
 
-def measured_from_phase_zero(fit: Fit) -> np.ndarray:
-    """Measured harmonics (T, C, H), a tone and images left out, turned to phase 0 of the input of a fit."""
-    data, evaluation = fit.model.data, fit.evaluation
-    return data.rotated(data.measured - evaluation.aliases, -evaluation.phase)[..., : data.shape[1]]
+def measured_from_phase_zero(data: HarmonicData, fit: Fit) -> np.ndarray:
+    """Measured harmonics (T, C, H) without tone and aliases, rotated to phase 0 of the input of a fit."""
+    response = fit.evaluation.response
+    return data.rotated(data.measured - response.aliases, -response.phase)[..., : data.shape[1]]
 
 
-def velocity(data: FitData, harmonics: np.ndarray) -> np.ndarray:
-    """Velocity harmonics (T, H), from the displacement where there is no velocity channel."""
+def velocity(data: HarmonicData, harmonics: np.ndarray) -> np.ndarray:
+    """Velocity harmonics (T, H), from the displacement if there is no velocity channel."""
     derived = 1j * data.omega[:, None] * data.orders * harmonics[:, 0]
     return np.where(_has_velocity(data), harmonics[:, -1], derived)
 
 
-def _has_velocity(data: FitData) -> np.ndarray:
+def _has_velocity(data: HarmonicData) -> np.ndarray:
     """Whether (T, 1) tests have a velocity channel."""
     return np.array([[s.mean.shape[0] == 2] for s in data.spectra])
 
@@ -57,64 +57,80 @@ def dwell(rate: np.ndarray) -> np.ndarray:
     return (np.abs(rate) < DWELL * np.abs(rate).max(axis=-1, keepdims=True)).mean(axis=-1)
 
 
-def input_energy(fit: Fit, fundamental: np.ndarray) -> np.ndarray:
-    """Energy (J, shape (T,)) that the base puts in per period, from the displacement's fundamental (T,).
+def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.ndarray:
+    """Energy (J) that the base puts in per period, shape (T,).
 
-    Amplitudes and the mass that moves are the fit's. So must be the phase of a fundamental that was measured:
-    no record tells the input's. It is the work of the inertia forces that PHYSICS.md balances with friction,
-    pi m a omega^2 Re D_1. NaN where the base is not what the data are relative to.
+    It is the work of the inertia forces that friction dissipates, pi m a omega^2 Re D_1, with the amplitudes
+    and the moving mass of the fit. NaN where the data are not relative to the base.
+
+    Parameters
+    ----------
+    data : HarmonicData
+        The measured tests.
+    fit : Fit
+        Any fit to them.
+    fundamental : ndarray, shape (T,)
+        Of the displacement, complex; a measured one from phase 0 of the input of this fit.
     """
-    one = _rows(fit)
-    fundamental = fundamental / one["displacement_gain"]["scale"]
-    fundamental = np.where(one["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
-    given = one["input"]
-    return pi * driven_mass(one) * given["amplitude"] * given["omega"] ** 2 * fundamental.real
+    rows = _rows(data, fit)
+    fundamental = fundamental / rows["displacement_gain_scale"]
+    fundamental = np.where(rows["fixture_resonance_frequency"] > 0.0, np.nan, fundamental)
+    moving = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] * rows["cos_column"]
+    return pi * moving * rows["amplitude"] * rows["omega"] ** 2 * fundamental.real
 
 
-def residual_force(fit: Fit, harmonics: np.ndarray) -> np.ndarray:
-    """Force on the bolster (N, shape (T, PHASES)) that the measured motion has and the model lacks.
+def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.ndarray:
+    """Force on the bolster that the model lacks (restoring-force method), N, shape (T, PHASES).
 
-    The measured acceleration less that of the model in the same state, times the mass that moves. Both in
-    the harmonics that stand above the noise: the others, times omega^2 h^2, would hide the force. The
-    bolster's mean place, which no test tells, is where the model has no mean acceleration. NaN for a model
-    with effects that need the extended mechanics, or on the sensors: what those do depends on more than the
-    motion, or the channels are not the motion.
+    The measured acceleration less that of the model in the same state, times the moving mass. Both are
+    weighted by harmonic (Wiener), as noise times omega^2 h^2 would hide the force. The mean position of the
+    bolster, which no test tells, is where the model has no mean acceleration. NaN for a model with effects
+    that need the extended mechanics or act on the sensors: these depend on more than the motion, or hide it.
+
+    Parameters
+    ----------
+    data : HarmonicData
+        The measured tests.
+    fit : Fit
+        Fit of the model in question.
+    harmonics : ndarray, shape (T, C, H)
+        Measured harmonics from phase 0 of its input.
     """
-    data, rows = fit.model.data, _rows(fit)
+    rows = _rows(data, fit)
     if has_own_mechanics(rows).any() or set(acting(data.model.effects)) & set(SENSOR):
         return np.full((data.tests, PHASES), np.nan)
-    heard = _wiener_weight(data)
+    weight = _wiener_weight(data)
     rate = velocity(data, harmonics)
-    x, v = -waveform(heard * harmonics[:, 0]), -waveform(heard * rate)
-    model = np.array([_in_place(rows[t : t + 1], x[t], v[t]) for t in range(data.tests)])
+    x, v = -waveform(weight * harmonics[:, 0]), -waveform(weight * rate)
+    model = np.array([_about_mean_position(rows[t : t + 1], x[t], v[t]) for t in range(data.tests)])
     simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : data.shape[1] + 1]
     measured = -1j * data.omega[:, None] * data.orders * rate
-    return moving_mass(rows)[:, None] * waveform(heard * (measured - simulated))
+    moving = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] ** 2
+    return moving[:, None] * waveform(weight * (measured - simulated))
 
 
-def _in_place(one: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """The model's acceleration about the mean place at which it averages to zero."""
+def _about_mean_position(row: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """The model's acceleration about the mean position at which it averages to zero."""
     acceleration, small = np.zeros_like(x), compact(one)
-    if not x.any():  # nothing was heard of the motion: no force is left either
+    if not x.any():  # no motion above the noise, and so no force
         return acceleration
 
-    def mean(place: float) -> float:
-        accelerations(small, x + place, v, acceleration)
+    def mean(position: float) -> float:
+        accelerations(row, x + position, v, acceleration)
         return float(acceleration.mean())
 
-    place = root_scalar(mean, x0=0.0, x1=FIRST_PLACE * np.ptp(x), method="secant", maxiter=20).root
-    mean(place)
+    position = root_scalar(mean, x0=0.0, x1=FIRST_MEAN * np.ptp(x), method="secant", maxiter=20).root
+    mean(position)
     return acceleration
 
 
-def _wiener_weight(data: FitData) -> np.ndarray:
-    """Share (T, H) of the harmonics of the velocity that is no noise, by Wiener's rule."""
+def _wiener_weight(data: HarmonicData) -> np.ndarray:
+    """Share (T, H) of the harmonics of the velocity that is not noise, by Wiener's rule."""
     above = 0.5 * (np.abs(data.measured) * data.weight)[..., : data.shape[1]] ** 2
     share = 1.0 - ABOVE_NOISE / np.maximum(above, ABOVE_NOISE)
     return np.where(_has_velocity(data), share[:, -1], share[:, 0])
 
 
-def _rows(fit: Fit) -> np.ndarray:
-    data = fit.model.data
-    values = fit.model.values(fit.x)
-    return records(data.model, data.law, values, data.omega, fit.amplitudes())
+def _rows(data: HarmonicData, fit: Fit) -> np.ndarray:
+    """Parameter records (T,) of a fit."""
+    return records(data.model, data.law, fit.model.values(fit.x), data.omega, data.amplitudes(fit.point))

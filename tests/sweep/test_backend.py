@@ -121,7 +121,7 @@ SILENT = pytest.mark.parametrize("scheduler", ["tcp://127.0.0.1:9", "nonsense://
 
 @SILENT
 def test_no_scheduler(tmp_path, monkeypatch, scheduler):
-    monkeypatch.setattr(clusters, "PATIENCE", 1.0)
+    monkeypatch.setattr(clusters, "TIMEOUT", 1.0)
     began = time.monotonic()
     told = refused(tmp_path, "--scheduler", scheduler)
     assert f"Error: {scheduler}: no Dask scheduler with a worker" in told
@@ -131,7 +131,7 @@ def test_no_scheduler(tmp_path, monkeypatch, scheduler):
 @SILENT
 def test_what_could_not_connect_does_not_wait_to_be_collected(tmp_path, monkeypatch, scheduler):
     """Collected while another client starts, it would wait forever for the lock of that one."""
-    monkeypatch.setattr(clusters, "PATIENCE", 0.5)
+    monkeypatch.setattr(clusters, "TIMEOUT", 0.5)
     held = []
     init = distributed.Client.__init__
     monkeypatch.setattr(
@@ -142,7 +142,7 @@ def test_what_could_not_connect_does_not_wait_to_be_collected(tmp_path, monkeypa
 
 
 def test_a_scheduler_without_workers(tmp_path, monkeypatch):
-    monkeypatch.setattr(clusters, "PATIENCE", 1.0)
+    monkeypatch.setattr(clusters, "TIMEOUT", 1.0)
     with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster:
         told = refused(tmp_path, "--scheduler", cluster.scheduler_address)
     assert "no Dask scheduler with a worker" in told

@@ -195,7 +195,7 @@ STEADY = '[solver]\nmethod = "event-driven"\nsettle = "steady"\ncontinuation = t
     [
         (SWEEP + "[solver]\ncontinuation = true\n", 'write method = "event-driven" and settle = "steady"'),
         (SWEEP + STEADY.replace('settle = "steady"\n', ""), 'settle = "steady"'),
-        (CASE + STEADY, "a list of cases has no neighbours"),
+        (CASE + STEADY, "needs a grid, not a list of cases"),
         (SWEEP + STEADY.replace("true", '"yes"'), "neither true nor false"),
     ],
 )

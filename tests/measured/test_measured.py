@@ -127,15 +127,15 @@ TOML_FAULTS = {
         ("0.01", "-0.01"),
         "test[0].amplitude_std: -0.01 is out of range; it must be at least 0",
     ),
-    "std of nothing": (("amplitude_mm = 0.3\n", ""), "test[0].amplitude_std: there is no amplitude_mm"),
+    "std of nothing": (("amplitude_mm = 0.3\n", ""), "test[0].amplitude_std: given without amplitude_mm"),
     "negative frequency": (("20.0", "-20.0"), "test[0].frequency_hz: -20.0 is out of range"),
     "text as frequency": (("20.0", '"20"'), 'test[0].frequency_hz: "20" is not a finite number'),
     "above Nyquist": (("20.0", "600.0"), "one.csv: has 1.67 samples per period of 600 Hz; at least 5 are"),
     "displacement's unit": (
         ('column = "d", unit = "mm"', 'column = "d", unit = "m"'),
-        "one.csv: velocity is 0.001 times what displacement makes at 20 Hz; correct the units",
+        "one.csv: velocity is 0.001 times the rate of displacement at 20 Hz; correct the units",
     ),
-    "velocity's unit": (('unit = "mm/s"', 'unit = "m/s"'), "one.csv: velocity is 1e+03 times what"),
+    "velocity's unit": (('unit = "mm/s"', 'unit = "m/s"'), "one.csv: velocity is 1e+03 times the rate"),
     "amplitude in m": (
         ("amplitude_mm = 0.3", "amplitude_mm = 0.0003"),
         "one.csv moves 3.34e+03 times its ampl",
@@ -156,9 +156,9 @@ CSV_FAULTS = {
     "header only": (["t,d,v"], "one.csv: no data below the header"),
     "duplicate header": (
         [f"{line},{'d' if i == 0 else 1}" for i, line in enumerate(lines())],
-        'one.csv:1: column "d" is there 2 times',
+        'one.csv:1: column "d" occurs 2 times',
     ),
-    "other separator": ([line.replace(",", ";") for line in lines()], "one.csv:1: one column only"),
+    "other separator": ([line.replace(",", ";") for line in lines()], "one.csv:1: only one column"),
     "text": (edited(8, joined(lambda c: [c[0], "n/a", c[2]])), 'one.csv:8: d: "n/a" is not a finite number'),
     "NaN": (edited(9, joined(lambda c: [c[0], c[1], "nan"])), 'one.csv:9: v: "nan" is not a finite number'),
     "empty cell": (edited(7, joined(lambda c: [c[0], "", c[2]])), "one.csv:7: d: an empty cell is not a"),
@@ -182,15 +182,15 @@ CSV_FAULTS = {
             ",".join([line.split(",")[0], line.split(",")[1], "1" if i else "v"])
             for i, line in enumerate(lines())
         ],
-        "one.csv: velocity never changes",
+        "one.csv: velocity is constant",
     ),
     "turned sign": (
         csv_lines(*(sign * each for sign, each in zip((1.0, 1.0, -1.0), vibration(), strict=True))),
-        "one.csv: velocity falls where displacement rises",
+        "one.csv: velocity and displacement have opposite signs",
     ),
     "swapped columns": (
         csv_lines(*(vibration()[i] for i in (0, 2, 1))),
-        "times what displacement makes at 20 Hz",
+        "times the rate of displacement at 20 Hz",
     ),
     "drift": (lines(drift=0.02), "one.csv: the frequency drifts by +2.1 %"),
     "too many samples": (
@@ -399,7 +399,7 @@ def test_files_that_are_not_netcdf_or_hold_no_test(tmp_path):
     (tmp_path / "text.nc").write_text("text")
     assert "give the path of a netCDF file" in problems(tmp_path / "text.nc")[0]
     netCDF4.Dataset(tmp_path / "empty.nc", "w").close()
-    assert "no measured data; each test would be a group" in "".join(problems(tmp_path / "empty.nc"))
+    assert "no measured data; each test must be a group" in "".join(problems(tmp_path / "empty.nc"))
 
 
 def test_which_files_are_measured_data(tmp_path):

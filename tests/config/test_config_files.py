@@ -14,7 +14,7 @@ from wedgesweep.config.declarations import ROOT
 from wedgesweep.effects import EFFECTS
 from wedgesweep.parameters import FRICTION, SUSPENSION
 
-CONFIGS = sorted((Path(__file__).parents[1] / "configs").glob("*.toml"))
+CONFIGS = sorted((Path(__file__).parents[2] / "configs").glob("*.toml"))
 GRID = {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 0.1}
 
 

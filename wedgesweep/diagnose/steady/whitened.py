@@ -1,8 +1,12 @@
-"""The measured tests as one vector of whitened differences, and what is unknown about each test."""
+"""Measured harmonics of all tests over their noise, and how simulated ones are brought to the same form.
+
+Arrays are padded to the same number of channels and harmonics; what a test does not have weighs nothing.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, nan, pi
+from typing import Self
 
 import numpy as np
 
@@ -10,19 +14,19 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.steady.simulation import LONGEST_SIMULATED, ToneTiming
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
-# Phases at which the best rotation is looked for.
-TURNS = 256
+# Phases tried for the start of a record, and Newton steps from the best one with their largest length (rad).
+PHASES, NEWTON_STEPS, NEWTON_LENGTH = 256, 4, 0.02
 
 
 @dataclass(frozen=True)
-class FitData:
-    """What the measurement says, with T tests, C channels and H harmonics (absent ones weigh nothing).
+class WhitenedHarmonics:
+    """T tests with up to C channels and H harmonics each.
 
-    ``amplitude`` (T,): input amplitude in m, NaN where unknown; ``amplitude_std`` (T,): relative, 0 where
-    exact, inf where unknown. ``uncertain``: numbers of the model with their relative standard deviations.
-    ``tone``: a foreign frequency (Hz) in the records, known to ``tone_std``; its complex amplitude is one
-    more column behind the harmonics, with a phase of its own in each test. ``start`` (T,): phase (rad) of the
-    input at the first sample of each record, as a first fit found it.
+    ``amplitude`` (T,): input amplitude in m, NaN where unknown. ``amplitude_std`` (T,): its relative
+    standard deviation, 0 where exact, inf where unknown. ``uncertain``: see FitData. ``tone``: frequency
+    (Hz) of a spurious tone in the records, with its standard deviation ``tone_std``; its complex amplitude
+    is one more column behind the harmonics, with a phase of its own in each test. ``input_phase`` (T,):
+    phase (rad) of the input at the first sample of each record, None before a first fit has found it.
     """
 
     model: Config
@@ -34,24 +38,16 @@ class FitData:
     uncertain: dict[str, float]
     tone: float | None = None
     tone_std: float = 0.0
-    start: np.ndarray | None = None
-
-    @cached_property
-    def timings(self) -> tuple[ToneTiming, ...]:
-        """How input and tone met in each test; the input starts at phase 0 where that is not known yet."""
-        starts = np.zeros(self.tests) if self.start is None else self.start
-        return tuple(
-            ToneTiming(min(s.periods, LONGEST_SIMULATED), float(start), _phase(s))
-            for s, start in zip(self.spectra, starts, strict=True)
-        )
-
-    @cached_property
-    def omega(self) -> np.ndarray:
-        return np.array([2.0 * pi * each.frequency for each in self.spectra])
+    input_phase: np.ndarray | None = None
 
     @property
     def tests(self) -> int:
         return len(self.spectra)
+
+    @cached_property
+    def omega(self) -> np.ndarray:
+        """Angular frequency of the input in rad/s, (T,)."""
+        return np.array([2.0 * pi * each.frequency for each in self.spectra])
 
     @cached_property
     def shape(self) -> tuple[int, int]:
@@ -60,18 +56,37 @@ class FitData:
 
     @property
     def columns(self) -> int:
-        """Harmonics, and the tone where there is one."""
+        """Number of harmonics, and of the tone if there is one."""
         return self.shape[1] + (self.tone is not None)
 
-    def subset(self, rows: np.ndarray) -> "FitData":
-        """The same problem with some of its tests."""
+    @cached_property
+    def orders(self) -> np.ndarray:
+        """1..H."""
+        return np.arange(1, self.shape[1] + 1)
+
+    @cached_property
+    def observations(self) -> np.ndarray:
+        """Real numbers that each test contributes, (T,)."""
+        return np.array([s.observations for s in self.spectra])
+
+    @cached_property
+    def tone_timings(self) -> tuple[ToneTiming, ...]:
+        """Relative timing of input and tone in each record."""
+        starts = np.zeros(self.tests) if self.input_phase is None else self.input_phase
+        return tuple(
+            ToneTiming(min(s.periods, LONGEST_SIMULATED), float(start), _tone_phase(s))
+            for s, start in zip(self.spectra, starts, strict=True)
+        )
+
+    def subset(self, rows: np.ndarray) -> Self:
+        """The same data with some of the tests."""
         return replace(
             self,
             names=tuple(self.names[i] for i in rows),
             spectra=tuple(self.spectra[i] for i in rows),
             amplitude=self.amplitude[rows],
             amplitude_std=self.amplitude_std[rows],
-            start=None if self.start is None else self.start[rows],
+            input_phase=None if self.input_phase is None else self.input_phase[rows],
         )
 
     def _padded(self, values: list[np.ndarray], fill: float) -> np.ndarray:
@@ -85,34 +100,35 @@ class FitData:
 
     @cached_property
     def measured(self) -> np.ndarray:
-        """Harmonics (T, C, H), complex; 0 where absent."""
+        """Measured harmonics (T, C, H), complex, in m and m/s; 0 where absent."""
         return self._padded([s.mean for s in self.spectra], 0.0)
 
     @cached_property
     def weight(self) -> np.ndarray:
-        """One over the noise of a real part, (T, C, H); 0 where absent or covered by a tone."""
+        """One over the noise of a real part, (T, C, H); 0 where absent or masked by a tone."""
         weight = np.sqrt(2.0 / self._padded([s.variance for s in self.spectra], inf))
         for row, spectrum in zip(weight, self.spectra, strict=True):
-            if spectrum.masked is not None:
-                row[:, spectrum.masked - 1] = 0.0
+            if spectrum.masked_harmonic is not None:
+                row[:, spectrum.masked_harmonic - 1] = 0.0
         return weight
 
     @cached_property
     def coherence(self) -> np.ndarray:
+        """Coherence of the noise of both channels, complex, (T,)."""
         return np.array([s.coherence for s in self.spectra])
 
     @cached_property
-    def observations(self) -> np.ndarray:
-        """Real numbers that each test contributes, (T,)."""
-        return np.array([s.observations for s in self.spectra])
+    def whitened(self) -> np.ndarray:
+        """The measured harmonics over their noise, (T, C, H)."""
+        return self.whiten(self.measured)
 
-    @property
-    def dof(self) -> np.ndarray:
-        """Points of each test less its start phase, and its amplitude where that is unknown, (T,)."""
-        return self.observations - 1 - np.isinf(self.amplitude_std)
+    @cached_property
+    def power(self) -> np.ndarray:
+        """Sum of squares of the whitened measurement, (T,)."""
+        return (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
 
     def whiten(self, harmonics: np.ndarray) -> np.ndarray:
-        """Harmonics (..., T, C, H) over their noise, complex, with the channels' common noise taken out."""
+        """Harmonics (..., T, C, H) over their noise, complex, the channels' common noise removed."""
         scaled = harmonics[..., : self.shape[0], :] * self.weight
         if self.shape[0] == 2 and self.coherence.any():
             share = self.coherence[:, None]
@@ -127,9 +143,14 @@ class FitData:
         return np.concatenate([simulated[..., : self.shape[1]], simulated[..., -1:]], axis=-1)
 
     def aliases(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
-        """What simulated harmonics (..., T, C, K) at phases (..., T) add to those compared (..., T, C, H).
+        """What harmonics above half the sampling rate add to those that are compared (..., T, C, H).
 
-        Nothing but by those above half the sampling rate, see folding.py.
+        Parameters
+        ----------
+        simulated : ndarray, shape (..., T, C, K)
+            Simulated harmonics; there are no aliases unless there are at least SIMULATED of them.
+        phase : ndarray, shape (..., T)
+            Phase (rad) of the input at the first sample.
         """
         found = np.zeros((*simulated.shape[:-1], self.columns), complex)
         if simulated.shape[-1] < SIMULATED:
@@ -144,39 +165,25 @@ class FitData:
                     found[..., i, :, -1] = read[..., -1]
         return found
 
-    @cached_property
-    def whitened(self) -> np.ndarray:
-        """The measured harmonics over their noise, (T, C, H)."""
-        return self.whiten(self.measured)
-
-    @cached_property
-    def power(self) -> np.ndarray:
-        """Sum of squares of what was measured, over its noise (T,)."""
-        return (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
-
-    @cached_property
-    def orders(self) -> np.ndarray:
-        return np.arange(1, self.shape[1] + 1)
-
-    def start_phase(self, simulated: np.ndarray, beside: np.ndarray | float = 0.0) -> np.ndarray:
+    def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
         """Rotation (rad) that brings whitened simulations (..., T, C, H) closest to the measurement.
 
-        ``beside``: what of the whitened measurement (..., T, C, H) is something else.
+        ``other``: part of the whitened measurement (..., T, C, H) that is not to be compared.
         """
-        overlap = ((self.whitened - beside) * simulated.conj()).sum(-2)[..., : self.shape[1]]
-        wave = np.fft.fft(overlap, TURNS, axis=-1)  # of orders 0..H-1: one turn too few, no matter to |.|
-        angles = 2.0 * pi * np.arange(TURNS) / TURNS
+        overlap = ((self.whitened - other) * simulated.conj()).sum(-2)[..., : self.shape[1]]
+        wave = np.fft.fft(overlap, PHASES, axis=-1)  # orders 0..H-1 in place of 1..H: corrected below
+        angles = 2.0 * pi * np.arange(PHASES) / PHASES
         phase = angles[np.argmax((wave * np.exp(-1j * angles)).real, axis=-1)]
-        for _ in range(4):
+        for _ in range(NEWTON_STEPS):
             turned = overlap * np.exp(-1j * self.orders * phase[..., None])
             slope = (self.orders * turned.imag).sum(-1)
-            bend = -(self.orders**2 * turned.real).sum(-1)
-            step = np.divide(-slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
-            phase = phase + np.clip(step, -0.02, 0.02)
+            curvature = -(self.orders**2 * turned.real).sum(-1)
+            step = np.divide(-slope, curvature, out=np.zeros_like(slope), where=curvature < 0.0)
+            phase = phase + np.clip(step, -NEWTON_LENGTH, NEWTON_LENGTH)
         return phase
 
     def rotated(self, simulated: np.ndarray, phase: np.ndarray) -> np.ndarray:
-        """Harmonics (..., T, C, H) turned by phases (..., T); a tone turns to suit the measurement."""
+        """Harmonics (..., T, C, H) rotated by phases (..., T); a tone rotates to match the measurement."""
         turn = np.exp(1j * self.orders * phase[..., None])
         if self.tone is not None:
             overlap = (self.whitened[..., -1] * simulated[..., -1].conj()).sum(-1)
@@ -184,8 +191,8 @@ class FitData:
         return simulated * turn[..., None, :]
 
 
-def _phase(spectrum: Spectrum) -> float:
-    """Phase (rad) of a tone in the displacement, NaN where there is none."""
+def _tone_phase(spectrum: Spectrum) -> float:
+    """Phase (rad) of a tone in the displacement at the first sample, NaN where there is none."""
     seen = spectrum.tone is not None and spectrum.mean[0, -1] != 0.0
     return float(np.angle(spectrum.mean[0, -1])) if seen else nan
 

@@ -1,0 +1,76 @@
+"""Full-size diagnoses of planted effects and of the examples of an independent simulator.
+
+They take a quarter of an hour, and run in ``make validate``, not with the tests.
+"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.validation import checks
+from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, Specimen, diagnose, make
+from wedgesweep.effects import EFFECTS
+from wedgesweep.validation.judge import ABSTAINING, NAMING
+
+UNCERTAIN = {"friction_level": 0.07}
+STRONG = (
+    GUIDE_FRICTION,
+    Specimen("lag", "exponential", {"velocity_lag": {"time_s": 4e-4}}, "adc", uncertain=UNCERTAIN),
+    Specimen(
+        "tone",
+        "static-dynamic",
+        {"stray_vibration": {"acceleration_m_per_s2": 1.0, "frequency_hz": 47.3}},
+        "adc",
+        tests=BENCH[::2],  # what does not repeat takes long to simulate
+        uncertain=UNCERTAIN,
+    ),
+    Specimen("spring", "coulomb", {"cubic_stiffness": {"coefficient_N_per_mm3": 0.6}}, "differentiated"),
+    Specimen(
+        "fixture", "static-dynamic", {"fixture_resonance": {"frequency_hz": 90.0, "damping_ratio": 0.1}}
+    ),
+    Specimen(
+        "pair",
+        "exponential",
+        {"viscous_damping": {"coefficient_N_s_per_m": 6.0}, "displacement_gain": {"scale": 1.06}},
+    ),
+)
+WITHHELD = "column_compliance"
+# Beside the checkout, where it is there.
+EXAMPLES = Path(__file__).parents[3] / "shared" / "blind-examples"
+TRUTH = json.loads((EXAMPLES / "truth.json").read_text()) if EXAMPLES.is_dir() else {}
+
+
+@pytest.mark.parametrize("specimen", STRONG, ids=lambda specimen: specimen.name)
+def test_a_strong_cause_is_named_with_its_numbers(specimen, tmp_path):
+    checks.strong_cause_is_named(specimen, tmp_path)
+
+
+def test_in_clean_data_nothing_is_named(tmp_path):
+    measured, _ = make(CLEAN, tmp_path)
+    assert diagnose(measured, tmp_path / "found").verdict == "nothing-missing"
+
+
+def test_an_effect_that_is_no_candidate_is_not_named(tmp_path):
+    withheld = Specimen("withheld", "static-dynamic", {WITHHELD: {"stiffness_N_per_mm": 60.0}})
+    measured, _ = make(withheld, tmp_path)
+    found = diagnose(measured, tmp_path / "found", [name for name in EFFECTS if name != WITHHELD])
+    assert found.document["misfit"]["excess_base"] >= 800.0
+    assert found.verdict in ABSTAINING
+
+
+@pytest.mark.parametrize("name", sorted(TRUTH))
+def test_example_comes_out_right(name, tmp_path):
+    truth = TRUTH[name]
+    found = diagnose(EXAMPLES / name / "measured.toml", tmp_path / "found")
+    hidden = set(truth["truth"])
+    if truth["kind"] == "clean":
+        assert found.verdict == "nothing-missing"
+    elif truth["kind"] == "unknown":
+        assert found.verdict == "none-of-mine"
+    elif truth["kind"] == "poor":
+        assert found.verdict in ABSTAINING or found.causes == hidden
+    else:
+        assert found.verdict in NAMING or found.verdict == "tied"
+        assert hidden in found.explanations
+        assert found.verdict == "tied" or found.causes == hidden

@@ -1,0 +1,261 @@
+"""What a fit needs to know of the measured tests: the interface that every kind of record implements.
+
+A kind of record (steady harmonics; later a transient, a hysteresis loop) says how its tests are simulated,
+how a simulation is compared with the measurement, and which nuisance parameters each test has. Everything
+else in this package (least squares, profile likelihood, score tests, search, verdict, cross-validation) sees
+the tests through ``FitData`` only. To add a kind, subclass ``FitData``; the methods with a body are
+optional.
+"""
+
+from abc import abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+
+import numpy as np
+
+from wedgesweep.diagnose.fit_parameters import Values
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.model import Model
+
+
+class WarmStart(Protocol):
+    """Where the simulations of T tests start from; opaque to the fit."""
+
+    def of(self, rows: Any) -> Any:
+        """The warm start of some tests."""
+
+    def where(self, chosen: np.ndarray, other: Any) -> Any:
+        """A warm start with the rows ``chosen`` (T,) from another."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """One guess of everything that is fitted by simulation.
+
+    ``x`` (k + u,): parameters of the hypothesis, then uncertain parameters of the base model as scales.
+    ``nuisance`` (T, N): nuisance parameters of each test, those with a prior first; NaN where not fitted.
+    """
+
+    x: np.ndarray
+    nuisance: np.ndarray
+    warm: Any
+
+    def moved(self, step: np.ndarray, nuisance_step: np.ndarray) -> "Point":
+        """The point after a step of x (k + u,) and of the first L nuisance parameters, (T, L) or (L,)."""
+        nuisance = self.nuisance.copy()
+        nuisance[:, : nuisance_step.shape[-1]] += nuisance_step
+        return replace(self, x=self.x + step, nuisance=nuisance)
+
+    def subset(self, rows: np.ndarray) -> "Point":
+        """The point for some of its tests."""
+        return Point(self.x, self.nuisance[rows], self.warm.of(rows))
+
+
+class Scenario(NamedTuple):
+    """What to simulate: the values of all effects (SI), and the point that they belong to."""
+
+    values: Values
+    point: Point
+
+
+class Comparison(NamedTuple):
+    """One simulated scenario compared with the measurement.
+
+    ``response``: what was simulated, in the terms of the kind of record. ``residual`` (T, m): measurement
+    less simulation, whitened: of unit variance and uncorrelated. ``found`` (T,): whether a response exists.
+    """
+
+    response: Any
+    residual: np.ndarray
+    found: np.ndarray
+    warm: Any
+
+
+class NuisanceParameter(NamedTuple):
+    """A nuisance parameter fitted by simulation: finite-difference step, largest step of one iteration."""
+
+    step: float
+    max_step: float
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A point with its simulation and its residuals.
+
+    ``prior``: standardised pulls on the priors, those of the nuisance parameters (T * P) before those of the
+    uncertain parameters (u).
+    """
+
+    point: Point
+    response: Any
+    residual: np.ndarray
+    prior: np.ndarray
+    found_tests: np.ndarray
+    priors_per_test: int
+
+    @property
+    def found(self) -> bool:
+        """Whether all tests have a response."""
+        return bool(self.found_tests.all())
+
+    @property
+    def nuisance_prior(self) -> np.ndarray:
+        """Pulls on the priors of nuisance parameters, (T, P)."""
+        tests = len(self.residual)
+        return self.prior[: tests * self.priors_per_test].reshape(tests, self.priors_per_test)
+
+    @property
+    def uncertain_prior(self) -> np.ndarray:
+        """Pulls on the priors of uncertain parameters, (u,)."""
+        return self.prior[len(self.residual) * self.priors_per_test :]
+
+    @cached_property
+    def chi2_by_test(self) -> np.ndarray:
+        """Squared misfit of each test, pulls on its own priors included, (T,)."""
+        return (self.residual**2).sum(-1) + (self.nuisance_prior**2).sum(-1)
+
+    @cached_property
+    def chi2(self) -> float:
+        """Squared misfit of all tests, pulls on priors included; infinite if a response does not exist."""
+        return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
+
+
+def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:
+    """Index (T,) of the evaluation that fits each test best."""
+    misfit = [np.where(each.found_tests, each.chi2_by_test, np.inf) for each in evaluations]
+    return np.argmin(misfit, axis=0)
+
+
+class FitData(Protocol):
+    """T measured tests of one kind of record.
+
+    ``eliminated``: number of nuisance parameters of each test whose best value has a closed form (start
+    phase). ``known``: numbers that the records tell directly, "effect.key" to value and standard deviation
+    in key units. ``uncertain``: effects that scale parameters of the base model, with their relative
+    standard deviations.
+    """
+
+    names: tuple[str, ...]
+    uncertain: dict[str, float]
+    eliminated: int
+
+    @property
+    @abstractmethod
+    def tests(self) -> int:
+        """Number of tests T."""
+
+    @property
+    @abstractmethod
+    def observations(self) -> np.ndarray:
+        """Real numbers that each test contributes, (T,)."""
+
+    @property
+    @abstractmethod
+    def dof(self) -> np.ndarray:
+        """Observations of each test less its nuisance parameters without a prior, (T,)."""
+
+    @property
+    @abstractmethod
+    def power(self) -> np.ndarray:
+        """Squared misfit of a simulation of nothing at all, (T,)."""
+
+    @property
+    @abstractmethod
+    def nuisance_std(self) -> np.ndarray:
+        """Prior standard deviation of the first P nuisance parameters (T, P): 0 exact, inf unknown."""
+
+    @property
+    def known(self) -> Mapping[str, tuple[float, float]]:
+        return {}
+
+    @abstractmethod
+    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+        """The first L nuisance parameters of a point: those that are fitted by simulation."""
+
+    @abstractmethod
+    def start(self) -> tuple[np.ndarray, WarmStart]:
+        """Nuisance parameters (T, N) as stated, and a start at rest."""
+
+    @abstractmethod
+    def subset(self, rows: np.ndarray) -> Self:
+        """The same data with some of the tests."""
+
+    @abstractmethod
+    def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
+        """Simulate scenarios and compare each with the measurement, eliminated nuisances at their best."""
+
+    @abstractmethod
+    def changes(
+        self, here: Evaluation, scenarios: Sequence[Scenario], tolerance: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Changes of the residual (n, T, m) from an evaluation to n scenarios, and whether they exist (n, T).
+
+        Eliminated nuisance parameters stay as they are in the evaluation.
+        """
+
+    @abstractmethod
+    def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
+        """Derivatives of the residual by the eliminated nuisance parameters, (T, m, eliminated)."""
+
+    @abstractmethod
+    def response_change(self, here: Evaluation, there: Evaluation) -> np.ndarray:
+        """Whitened response there less that here, (T, m), with the eliminated nuisances of the latter."""
+
+    @abstractmethod
+    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
+        """The data with a simulation and new noise in place of what was measured."""
+
+    @abstractmethod
+    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
+        """Groups of tests to leave out in cross-validation: name of the scheme, and rows."""
+
+    def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
+        """The effects that the records can tell of at all."""
+        return tuple(effects)
+
+    def with_undetected(self, effect: str) -> Self:
+        """The data as if one of the other effects had been looked for, and only noise been found."""
+        raise NotImplementedError(effect)
+
+    def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
+        """Number of nuisance parameters (T,) without a prior that these effects add to each test."""
+        return np.zeros(self.tests, int)
+
+    def brings_nuisances(self, effect: str) -> bool:
+        """Whether a fit without this effect knows nothing of nuisance parameters that come with it."""
+        return False
+
+    def extra_nuisance_points(self, effects: Iterable[str], point: Point) -> list[Point]:
+        """Points that try values of such nuisance parameters; empty if none are left to try."""
+        return []
+
+    def aligned_to(self, evaluation: Evaluation) -> Self:
+        """The data, with what an evaluation tells of the records' start."""
+        return self
+
+    def repeats(self, effects: Iterable[str]) -> bool:
+        """Whether responses repeat, so that a test may be left out of a fit and taken back in."""
+        return True
+
+    def insensitive(self, evaluation: Evaluation) -> np.ndarray:
+        """Whether (T,) a response does not react to small steps, though the measured one is not so."""
+        return np.zeros(self.tests, bool)
+
+    def search_nuisances(self, model: "Model", points: Sequence[Point]) -> list[Evaluation]:
+        """Evaluations of points, each test's nuisance parameters without a prior searched globally."""
+        return model.evaluate_all(points)
+
+    def held_as_stated(self) -> Self:
+        """The data with narrow priors of the nuisance parameters that have any."""
+        return self
+
+    def implausible(self, point: Point) -> bool:
+        """Whether nuisance parameters are so far from stated that they make up for a wrong model."""
+        return False
+
+    def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
+        """The step (T, L) of the nuisance parameters of a held-out test, which must remain a prediction."""
+        return step

@@ -1,0 +1,184 @@
+"""A hypothesis on measured tests: evaluates points, and knows what is free and within which bounds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.special import chdtrc
+
+from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point, Scenario
+from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
+
+# Relative errors of simulations: negligible beside the noise of 4 % data, negligible in derivatives as well,
+# and good enough to choose the points from which a fit starts.
+TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
+# The base model is also fitted from this many standard deviations of an uncertain parameter to either side.
+OFF = 1.5
+# Bounds and scale of uncertain parameters, which are factors.
+UNCERTAIN_LOW, UNCERTAIN_HIGH, UNCERTAIN_SCALE = 0.2, 5.0, 0.1
+# A nuisance parameter that is stated as exact has this standard deviation.
+EXACT = 1e-6
+
+
+@dataclass(frozen=True)
+class Model:
+    """A hypothesis on the tests of some data, simulated to a tolerance.
+
+    ``held``: index and value of a parameter that is not fitted but known.
+    """
+
+    data: FitData
+    hypothesis: Hypothesis
+    tolerance: float = TOLERANCE
+    held: tuple[int, float] | None = None
+
+    @property
+    def size(self) -> int:
+        """Number k of parameters of the hypothesis."""
+        return len(self.hypothesis.parameters)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return self.hypothesis.effects
+
+    @cached_property
+    def uncertain(self) -> dict[str, float]:
+        """Uncertain parameters of the base model with their priors; a candidate effect has no prior."""
+        return {k: s for k, s in self.data.uncertain.items() if k not in self.effects}
+
+    @cached_property
+    def prior_std(self) -> np.ndarray:
+        """Standard deviations of the uncertain parameters, (u,)."""
+        return np.array(list(self.uncertain.values()))
+
+    @cached_property
+    def low(self) -> np.ndarray:
+        """Lower bounds of x, (k + u,)."""
+        return self._bound(self.hypothesis.low, UNCERTAIN_LOW)
+
+    @cached_property
+    def high(self) -> np.ndarray:
+        """Upper bounds of x, (k + u,)."""
+        return self._bound(self.hypothesis.high, UNCERTAIN_HIGH)
+
+    def _bound(self, own: np.ndarray, uncertain: float) -> np.ndarray:
+        bound = np.r_[own, [uncertain] * len(self.uncertain)]
+        if self.held is not None:
+            bound[self.held[0]] = self.held[1]
+        return bound
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """Changes of x that matter, (k + u,)."""
+        return np.r_[self.hypothesis.scale, [UNCERTAIN_SCALE] * len(self.uncertain)]
+
+    @cached_property
+    def nuisance_weight(self) -> np.ndarray:
+        """One over the prior standard deviation of nuisance parameters, (T, P); 0 without a prior."""
+        return 1.0 / np.maximum(self.data.nuisance_std, EXACT)
+
+    @property
+    def dof(self) -> int:
+        """Observations less everything that is fitted without a prior."""
+        return int(self.data.dof.sum()) - int(self.data.extra_nuisances(self.effects).sum()) - self.size
+
+    def holding(self, parameter: int, value: float) -> "Model":
+        """The model with one of its parameters known."""
+        return replace(self, held=(parameter, value))
+
+    def uncertain_starts(self) -> np.ndarray:
+        """Uncertain parameters (1 + 2 u, u) as stated, and each of them well off to either side."""
+        off = OFF * np.diag(self.prior_std)
+        stated = np.ones((1, self.prior_std.size))
+        return np.maximum(np.concatenate([stated, stated + off, stated - off]), self.low[self.size :])
+
+    def values(self, x: np.ndarray) -> Values:
+        """Values of all effects in SI."""
+        nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}
+        return {**nuisance, **self.hypothesis.values(x[: self.size])}
+
+    def scenario(self, point: Point) -> Scenario:
+        return Scenario(self.values(point.x), point)
+
+    def evaluate(self, point: Point) -> Evaluation:
+        """Simulate a point and compare it with the measurement."""
+        return self.evaluate_all([point])[0]
+
+    def evaluate_all(self, points: Sequence[Point]) -> list[Evaluation]:
+        """Simulate many points at once."""
+        compared = self.data.compare([self.scenario(point) for point in points], self.tolerance)
+        priors = self.nuisance_weight.shape[1]
+        return [
+            Evaluation(
+                replace(point, warm=each.warm),
+                each.response,
+                each.residual,
+                self._prior(point),
+                each.found,
+                priors,
+            )
+            for point, each in zip(points, compared, strict=True)
+        ]
+
+    def _prior(self, point: Point) -> np.ndarray:
+        nuisance = point.nuisance[:, : self.nuisance_weight.shape[1]] * self.nuisance_weight
+        return np.r_[nuisance.ravel(), (point.x[self.size :] - 1.0) / self.prior_std]
+
+    def start(self, base: "Fit | None", x: np.ndarray) -> Point:
+        """The point with parameters x (k,) of the hypothesis and everything else as a base fit has it."""
+        if base is None:
+            return Point(np.r_[x, np.ones(len(self.uncertain))], *self.data.start())
+        known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
+        rest = [known.get(name, 1.0) for name in self.uncertain]
+        return replace(base.evaluation.point, x=np.r_[x, rest])
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Where a fit ended; ``covariance`` (k + u, k + u) is that of x."""
+
+    model: Model
+    evaluation: Evaluation
+    covariance: np.ndarray
+    converged: bool
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return self.model.effects
+
+    @property
+    def chi2(self) -> float:
+        return self.evaluation.chi2
+
+    @property
+    def dof(self) -> int:
+        return self.model.dof
+
+    @property
+    def excess(self) -> float:
+        """Chi-squared less its expectation."""
+        return self.chi2 - self.dof
+
+    @property
+    def point(self) -> Point:
+        return self.evaluation.point
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.evaluation.point.x
+
+    @property
+    def p(self) -> float:
+        """Probability of a misfit this large if the model is right."""
+        return float(chdtrc(self.dof, self.chi2))
+
+    @property
+    def values(self) -> Values:
+        """Numbers of the hypothesis in key units."""
+        return self.model.hypothesis.in_key_units(self.x[: self.model.size])
+
+
+def unfitted(model: Model, evaluation: Evaluation) -> Fit:
+    """An evaluation as a fit that has not begun."""
+    return Fit(model, evaluation, np.zeros((evaluation.point.x.size,) * 2), False)

@@ -1,0 +1,261 @@
+"""Steady harmonics as data of a fit.
+
+Each test has a start phase, eliminated in closed form, and an input amplitude, fitted as its logarithm over
+the stated one. Under a spurious tone the phase of the tone is a third nuisance parameter.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone, tone_phase
+from wedgesweep.diagnose.steady.bootstrap import resampled
+from wedgesweep.diagnose.steady.spectra import SIMULATED
+from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
+from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
+from wedgesweep.effects import acting
+from wedgesweep.solvers.periodic import Warm, at_rest, joined
+
+# Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
+AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
+TONE_PHASE = NuisanceParameter(step=1e-2, max_step=0.3)
+# A record was low-passed before it was sampled if leaving out aliases takes this much off chi-squared.
+FILTERED = 1.0
+# A bolster that moves less than this share of the measured motion sticks.
+STICKS = 0.01
+# A relative error of a stated amplitude that is not the measurement's, but the base model's.
+IMPLAUSIBLE = 0.3
+# Relative standard deviation of an amplitude that is held as stated.
+HELD = 1e-4
+# Frequencies or amplitudes closer than this (relative) are left out together in cross-validation.
+SAME_GROUP = 0.02
+
+
+class SteadyResponse(NamedTuple):
+    """Simulated harmonics of all tests.
+
+    ``harmonics`` (T, C, H): those that are compared, from phase 0 of the input (m, m/s); ``whitened``: over
+    the noise. ``phase`` (T,): start phase (rad) of each record. ``aliases`` (T, C, H): what sampling adds, 0
+    in a record that looks as if it had been low-passed before it was sampled.
+    """
+
+    harmonics: np.ndarray
+    whitened: np.ndarray
+    phase: np.ndarray
+    aliases: np.ndarray
+
+    @property
+    def aliased(self) -> np.ndarray:
+        """Whether (T, 1, 1) aliases are part of what is compared."""
+        return (self.aliases != 0.0).any(axis=(-2, -1), keepdims=True)
+
+
+class _Simulated(NamedTuple):
+    """Harmonics (n, T, C, K) of n scenarios, whether they exist (n, T), and final states (n T rows)."""
+
+    harmonics: np.ndarray
+    found: np.ndarray
+    warm: Warm
+
+
+@dataclass(frozen=True)
+class HarmonicData(WhitenedHarmonics, FitData):
+    """Harmonics of steady tests; see WhitenedHarmonics for the attributes."""
+
+    eliminated = 1
+
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """Input amplitudes (T,) in m about which a fit looks: stated, or the fundamental's where unknown."""
+        fundamental = np.abs(self.measured[:, 0, 0])
+        return np.where(np.isinf(self.amplitude_std), fundamental, self.amplitude)
+
+    def amplitudes(self, point: Point) -> np.ndarray:
+        """Input amplitudes (T,) in m at a point."""
+        return self.reference * np.exp(point.nuisance[:, 0])
+
+    @property
+    def dof(self) -> np.ndarray:
+        """Observations of each test less its start phase, and its amplitude where that is unknown, (T,)."""
+        return self.observations - 1 - np.isinf(self.amplitude_std)
+
+    @property
+    def nuisance_std(self) -> np.ndarray:
+        return self.amplitude_std[:, None]
+
+    @property
+    def known(self) -> dict[str, tuple[float, float]]:
+        return {} if self.tone is None else {TONE_FREQUENCY: (self.tone, self.tone_std)}
+
+    def has_tone(self, effects: Iterable[str]) -> bool:
+        """Whether responses under these effects contain the tone."""
+        return self.tone is not None and TONE in {*acting(self.model.effects), *effects}
+
+    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+        both = self.has_tone(effects) and bool(np.isfinite(point.nuisance[:, 1]).any())
+        return (AMPLITUDE, TONE_PHASE) if both else (AMPLITUDE,)
+
+    def start(self) -> tuple[np.ndarray, Warm]:
+        stated = np.column_stack([np.zeros(self.tests), np.full(self.tests, np.nan)])
+        return stated, at_rest(self.tests)
+
+    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> _Simulated:
+        rows = [
+            simulation.records(self.model, self.law, each.values, self.omega, self.amplitudes(each.point))
+            for each in scenarios
+        ]
+        phase = np.concatenate([each.point.nuisance[:, 1] for each in scenarios])
+        warm = joined([each.point.warm for each in scenarios])
+        toned = self.has_tone(scenarios[0].values)
+        done = self._respond(np.concatenate(rows), phase if toned else None, warm, tolerance)
+        shape = (len(scenarios), self.tests)
+        harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : self.shape[0]]
+        return _Simulated(harmonics, done.found.reshape(shape), done.warm)
+
+    def _respond(
+        self, rows: np.ndarray, phase: np.ndarray | None, warm: Warm, tolerance: float
+    ) -> simulation.Responses:
+        """Responses to parameter records, under the tone at some phase, or without a tone."""
+        if phase is not None and self.tone is not None:
+            timings = self.tone_timings * (len(rows) // self.tests)
+            return simulation.respond_with_tone(
+                rows, warm, self.shape[1], self.tone, timings, phase, tolerance
+            )
+        done = simulation.respond(rows, warm, SIMULATED, tolerance)
+        if self.tone is None:
+            return done
+        silent = np.zeros((len(rows), 2, 1))  # a periodic response has no tone
+        return done._replace(harmonics=np.concatenate([done.harmonics, silent], axis=-1))
+
+    def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
+        simulated, found, warm = self._simulate(scenarios, tolerance)
+        simulated = np.where(found[:, :, None, None], simulated, 0.0)
+        harmonics = self.compared(simulated)
+        whitened = self.whiten(harmonics)
+        phase, aliases = self._aligned(simulated, whitened)
+        residual = real(self.whitened - self.whiten(aliases) - self.rotated(whitened, phase))
+        return [
+            Comparison(
+                SteadyResponse(harmonics[i], whitened[i], phase[i], aliases[i]),
+                residual[i],
+                found[i],
+                warm.of(slice(i * self.tests, (i + 1) * self.tests)),
+            )
+            for i in range(len(scenarios))
+        ]
+
+    def _aligned(self, simulated: np.ndarray, whitened: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Start phases (n, T), and aliases (n, T, C, H) in each record unless something kept them out."""
+        phase = self.start_phase(whitened)
+        aliases = self.aliases(simulated, phase)
+        if not aliases.any():
+            return phase, aliases
+        left = self.whitened - self.rotated(whitened, phase)
+        both = np.stack([left - self.whiten(aliases), left])
+        with_aliases, without = (np.abs(both) ** 2).sum((-2, -1), keepdims=True)
+        aliases[np.broadcast_to(with_aliases > without + FILTERED, aliases.shape)] = 0.0
+        phase = self.start_phase(whitened, self.whiten(aliases))
+        return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
+
+    def changes(
+        self, here: Evaluation, scenarios: Sequence[Scenario], tolerance: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        simulated, found, _ = self._simulate(scenarios, tolerance)
+        response: SteadyResponse = here.response
+        phase = np.repeat(response.phase[None], len(scenarios), axis=0)
+        there = self.rotated(self.whiten(self.compared(simulated)), phase)
+        aliases = np.where(response.aliased, self.aliases(simulated, phase), 0.0) - response.aliases
+        change = self.rotated(response.whitened, response.phase) - there - self.whiten(aliases)
+        return real(change), found
+
+    def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
+        """Derivative of the residual by the start phase, (T, m, 1)."""
+        orders = np.r_[self.orders, [0] * (self.columns - self.orders.size)]
+        rotated = self.rotated(here.response.whitened, here.response.phase)
+        return real(-1j * orders * rotated)[..., None]
+
+    def response_change(self, here: Evaluation, there: Evaluation) -> np.ndarray:
+        both = np.stack([there.response.whitened, here.response.whitened])
+        both = self.rotated(both, np.stack([here.response.phase] * 2))
+        return real(both[0] - both[1])
+
+    def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
+        return tuple(name for name in effects if name != TONE or self.tone is not None)
+
+    def with_undetected(self, effect: str) -> Self:
+        """The data as if a tone had been looked for, between the harmonics, and only noise been found."""
+        frequency = tone.between(self.spectra)
+        spectra = tuple(s.with_undetected_tone(frequency) for s in self.spectra)
+        return replace(self, spectra=spectra, tone=frequency)
+
+    def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
+        """One in each test with a tone that these effects explain: its phase."""
+        return np.array([self.has_tone(effects) and s.has_tone for s in self.spectra])
+
+    def brings_nuisances(self, effect: str) -> bool:
+        return effect == TONE
+
+    def extra_nuisance_points(self, effects: Iterable[str], point: Point) -> list[Point]:
+        if not self.has_tone(effects) or len(self.nuisances(effects, point)) > 1:
+            return []
+        return tone_phase.points(point, self.extra_nuisances(effects))
+
+    def aligned_to(self, evaluation: Evaluation) -> Self:
+        return replace(self, input_phase=evaluation.response.phase)
+
+    def repeats(self, effects: Iterable[str]) -> bool:
+        return not self.has_tone(effects)
+
+    def insensitive(self, evaluation: Evaluation) -> np.ndarray:
+        """Whether (T,) a test was measured to move, and sticks in the simulation."""
+        moved = (np.abs(evaluation.response.whitened) ** 2).sum(axis=(-2, -1))
+        return evaluation.found_tests & (moved < STICKS**2 * self.power)
+
+    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+        return amplitude_grid.best_amplitudes(model, points)
+
+    def held_as_stated(self) -> Self:
+        std = self.amplitude_std
+        return replace(self, amplitude_std=np.where(np.isinf(std), std, np.minimum(std, HELD)))
+
+    def implausible(self, point: Point) -> bool:
+        stated = np.isfinite(self.amplitude_std)
+        return bool((np.abs(point.nuisance[stated, 0]) > IMPLAUSIBLE).any())
+
+    def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
+        """A stated amplitude moves within its prior; an unknown one is matched to the fundamental alone."""
+        measured = np.abs(self.measured[:, 0, 0])
+        simulated = np.abs(evaluation.response.harmonics[:, 0, 0])
+        match = np.log(measured / np.where(simulated > 0.0, simulated, measured))
+        unknown = np.isinf(self.amplitude_std)
+        return np.column_stack([np.where(unknown, match, step[:, 0]), step[:, 1:]])
+
+    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
+        """All tests of one frequency, and of one amplitude if all amplitudes are known."""
+        found = [("frequency", rows) for rows in groups(self.omega)]
+        if not np.isinf(self.amplitude_std).any():
+            found += [("amplitude", rows) for rows in groups(self.amplitude)]
+        return found
+
+    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
+        response: SteadyResponse = truth.response
+        exact = self.rotated(response.harmonics, response.phase) + response.aliases
+        spectra = (resampled(s, mean, rng) for s, mean in zip(self.spectra, exact, strict=True))
+        return replace(self, spectra=tuple(spectra))
+
+
+def groups(values: np.ndarray) -> list[np.ndarray]:
+    """Indices of values that are the same to within SAME_GROUP, group by group."""
+    order = np.argsort(values)
+    found = [[order[0]]]
+    for place in order[1:]:
+        # Compared with the first of the group: in a fine sweep each is close to its neighbour.
+        if np.log(values[place] / values[found[-1][0]]) > SAME_GROUP:
+            found.append([])
+        found[-1].append(place)
+    return [np.array(group) for group in found]
