@@ -11,6 +11,7 @@ from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
 from wedgesweep.systems.suspension.parameters import compact, has_own_mechanics
+from wedgesweep.systems.suspension.parameters import compact, driven_mass, has_own_mechanics, moving_mass
 
 PHASES = 256
 # A harmonic counts by the share of its square that exceeds this many times its noise.
