@@ -47,7 +47,7 @@ def put_node(t, y, weight, mode, recorder, p):
         accumulators.add_motion(recorder.sums[0], y, weight, mode, p)
 
 
-@inner
+@inlined
 def put_sample(i, y, mode, recorder, p):
     """Store sample i if the grid has it."""
     if i >= recorder.x.size:

@@ -141,7 +141,9 @@ def _settled(y, near, settle_periods, case, settings, room, period_map):
     """Settle a case, from near a response of a known period (0: unknown); outcome, period, periods; y moves."""
     if settings.steady:
         unknown = np.full((y.size, y.size), np.nan)
-        shooting = Shooting(case, period_map, settings.tolerance, settings.max_periods, room)
+        shooting = Shooting(
+            case, period_map, settings.tolerance, settings.max_periods, room, np.array(scales(case[0]))
+        )
         found = settle(y, near, unknown, shooting)
         return found.outcome, found.period, found.run
     outcome = OK

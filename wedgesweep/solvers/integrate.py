@@ -115,7 +115,7 @@ def _first_zero(place, start, end, from_zero):
     return 2.0
 
 
-@inner
+@inlined
 def first_event(step, mode, last_event, forces, p, work):
     """Share and place of the first event of a step; (1, NO_EVENT) if there is none.
 

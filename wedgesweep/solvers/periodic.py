@@ -147,7 +147,9 @@ def _respond_all(cases, rows, search, room, found, motion, period_map):
         n = len(scales(case[0]))
         y, before = found.warm.state[i, :n].copy(), found.warm.period[i]
         jacobian = found.warm.map[i, :n, :n].copy()
-        shooting = Shooting(case, period_map, search.tolerance, search.most_periods, room)
+        shooting = Shooting(
+            case, period_map, search.tolerance, search.most_periods, room, np.array(scales(case[0]))
+        )
         outcome, period, run, kept = settle(y, before, jacobian, shooting)
         if outcome == OK and not kept:
             # Of a response that does not repeat, the mean over as many periods as there is room for.

@@ -47,6 +47,7 @@ class Shooting(NamedTuple):
     tolerance: float
     most_periods: int
     memory: Any
+    size: Any  # natural sizes of the states (n,)
 
 
 class Found(NamedTuple):
@@ -59,12 +60,6 @@ class Found(NamedTuple):
     period: int
     run: int
     kept: int
-
-
-@inner
-def _sizes(p):
-    """Natural sizes of the states, shape (n,)."""
-    return np.array(scales(p))
 
 
 @inner
@@ -108,7 +103,7 @@ def _run(y, periods, keeping, shooting):
     for i in range(len(counts)):
         if counts[i] and y[i] >= periods * GROWN * cycle(p):
             before[i] = y[i]
-            if y[i] >= LONGEST_PERIOD * GROWN * cycle(p) or _distance(y, before, _sizes(p)) <= KEPT_BELOW:
+            if y[i] >= LONGEST_PERIOD * GROWN * cycle(p) or _distance(y, before, shooting.size) <= KEPT_BELOW:
                 y[i] = CONTACT_TIME_LIMIT * cycle(p)
     return outcome
 
@@ -117,7 +112,7 @@ def _run(y, periods, keeping, shooting):
 def monodromy(y, image, periods, moves, jacobian, shooting):
     """Write J at y, whose image is known; returns the outcome and the periods it took."""
     jacobian[:] = 0.0
-    size = _sizes(shooting.case[0])
+    size = shooting.size
     run = 0
     share = max(PERTURBATION, NOISE * shooting.memory.work.rtol)
     for column in range(size.size):
@@ -192,7 +187,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     Where it fails y is the state with the shortest way to its own image that it has come to.
     """
     p = shooting.case[0]
-    size = _sizes(p)
+    size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
     shortest, last, fresh, run = np.inf, np.inf, False, 0
     while run < most:
@@ -240,7 +235,7 @@ def _shoot(y, periods, jacobian, most, shooting):
     found, outcome, run = newton_shooting(y, periods, jacobian, most, shooting)
     if not found:
         return Found(outcome, 0, run, periods)
-    size = _sizes(shooting.case[0])
+    size = shooting.size
     for shorter in range(1, periods):
         if periods % shorter:
             continue
@@ -273,7 +268,7 @@ def _extrapolated(y, last, before, moves):
 def _creep(y, past, count, shooting):
     """Jump ahead in a creep of states that a contact holds at phase 0; the periods it took."""
     p = shooting.case[0]
-    size, moves = _sizes(p), np.array(free(vector(y, scales(p)), p))
+    size, moves = shooting.size, np.array(free(vector(y, scales(p)), p))
     last, before = past[(count - 1) % LONGEST_PERIOD], past[(count - 2) % LONGEST_PERIOD]
     trial = _extrapolated(y, last, before, moves)
     image = trial.copy()
@@ -291,7 +286,7 @@ def settle(y, periods, jacobian, shooting):
     takes there; else 0. y and J move along; J is that over a period of the response.
     """
     p = shooting.case[0]
-    size, most, run = _sizes(p), shooting.most_periods, 0
+    size, most, run = shooting.size, shooting.most_periods, 0
     if not np.isfinite(y).all():
         y[:], periods = 0.0, 0
         jacobian[:] = np.nan

@@ -52,7 +52,7 @@ def slope(share, step):
     return combination(1.0, weights, (step.rise, step.bend, step.turn, step.quartic))
 
 
-@inner
+@inlined
 def over_tolerance(error, y, end, rtol, p):
     """Root mean square, over the states that move, of errors over what the tolerance allows."""
     scales = error_scales(p)

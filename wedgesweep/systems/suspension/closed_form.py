@@ -309,29 +309,57 @@ def _fastest(phase, low, high, rate, following, o, p):
     return time
 
 
+@inlined
+def _angles(time, o, p):
+    """Cosine and sine by which input and free vibration turn in some time (s)."""
+    a, b = p.input.omega * time, o.frequency * time
+    return cos(a), sin(a), cos(b), sin(b)
+
+
+@inner
+def _keep_nodes(state, end, o, recorder, p):
+    """Add the nodes of a piece to the sums, its ends, and where the velocity is extreme."""
+    t, (x, velocity), mode, _, _ = state
+    start = _phase(t, x, velocity, o, p)
+    put_node(t, (x, velocity), 0.0, mode, recorder, p)
+    earlier, rate = 0.0, _acceleration(start, o, p)
+    parts = int((end - t) * max(p.input.omega, o.frequency) / (2.0 * pi) * INTERVALS) + 1
+    span = (end - t) / parts
+    turn = _angles(span, o, p)
+    turns = (
+        _angles(span * NODES[0], o, p),
+        _angles(span * NODES[1], o, p),
+        _angles(span * NODES[2], o, p),
+        _angles(span * NODES[3], o, p),
+    )
+    phase = start
+    for i in range(parts * len(NODES) + 1):
+        part, node = i // len(NODES), i % len(NODES)
+        if i > 0 and node == 0:
+            phase = _rotated(phase, *turn)
+        there, time, weight = phase, span * part, 0.0
+        if part < parts:
+            there = _rotated(phase, *turns[node])
+            time, weight = span * (part + NODES[node]), span * WEIGHTS[node]
+        now = _acceleration(there, o, p)
+        if rate * now < 0.0:
+            fastest = _fastest(start, earlier, time, rate, now, o, p)
+            put_node(t + fastest, motion(advanced(start, fastest, o, p), o, p), 0.0, mode, recorder, p)
+        put_node(t + time, motion(there, o, p), weight, mode, recorder, p)
+        earlier, rate = time, now
+
+
 @inner
 def keep(state, end, o, recorder, p):
     """Keep a piece that ``slide`` has followed from a state to ``end``."""
+    _keep_nodes(state, end, o, recorder, p)
     t, (x, velocity), mode, _, _ = state
-    phase = _phase(t, x, velocity, o, p)
-    put_node(t, (x, velocity), 0.0, mode, recorder, p)
-    earlier, rate = 0.0, _acceleration(phase, o, p)
-    parts = int((end - t) * max(p.input.omega, o.frequency) / (2.0 * pi) * INTERVALS) + 1
-    span = (end - t) / parts
-    for i in range(parts * len(NODES) + 1):
-        last = i == parts * len(NODES)
-        node = i % len(NODES)
-        time = end - t if last else span * (i // len(NODES) + NODES[node])
-        there = advanced(phase, time, o, p)
-        now = _acceleration(there, o, p)
-        if rate * now < 0.0:
-            fastest = _fastest(phase, earlier, time, rate, now, o, p)
-            put_node(t + fastest, motion(advanced(phase, fastest, o, p), o, p), 0.0, mode, recorder, p)
-        put_node(t + time, motion(there, o, p), 0.0 if last else span * WEIGHTS[node], mode, recorder, p)
-        earlier, rate = time, now
-    for i in range(first_sample(t, recorder), first_sample(end, recorder)):
-        there = advanced(phase, recorder.start + i * recorder.step - t, o, p)
+    first = first_sample(t, recorder)
+    there = advanced(_phase(t, x, velocity, o, p), recorder.start + first * recorder.step - t, o, p)
+    turn = _angles(recorder.step, o, p)
+    for i in range(first, first_sample(end, recorder)):
         put_sample(i, motion(there, o, p), mode, recorder, p)
+        there = _rotated(there, *turn)
 
 
 @implement(closed_form, "base")

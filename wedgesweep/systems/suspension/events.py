@@ -101,7 +101,7 @@ def _kinematic_events(t, y, mode, p, out):
         _slip_events(t, y, mode, p, out)
 
 
-@inner
+@inlined
 def events(now, t, y, mode, p, out):
     """Write the event functions, shape (EVENTS,), under the forces ``now`` (unused if held or stuck).
 
