@@ -124,6 +124,11 @@ def well_posed(t, y, mode, p):
 
 
 @declared
+def never_locks(p):
+    """Whether it is proved that every state of the case is well-posed."""
+
+
+@declared
 def clocks(p):
     """Which states only count time between events, a vector of booleans: they may grow for ever."""
 

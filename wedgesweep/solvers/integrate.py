@@ -19,6 +19,7 @@ from wedgesweep.hybrid.interface import (
     fastest,
     holds,
     initial_mode,
+    never_locks,
     observed,
     outruns,
     provided,
@@ -120,9 +121,13 @@ def first_event(step, mode, last_event, forces, p, work):
     """Share and place of the first event of a step; (1, NO_EVENT) if there is none.
 
     ``forces``: near the middle of the step, where they tell which event functions are worth a closer look, and
-    at its end.
+    at its end. Where the system may lock the middle is looked at itself: an event that is missed there could
+    hide that it does.
     """
-    events(forces[0], step.t + 0.5 * step.h, inside(0.5, step), mode, p, work.at_middle)
+    middle, within = inside(0.5, step), forces[0]
+    if not never_locks(p):
+        within = rate(step.t + 0.5 * step.h, middle, mode, p)[1]
+    events(within, step.t + 0.5 * step.h, middle, mode, p, work.at_middle)
     events(forces[1], step.t + step.h, step.end, mode, p, work.at_end)
     earliest, first = 1.0, NO_EVENT
     for number in range(event_count(p)):

@@ -66,6 +66,13 @@ def repeats(p):
     return not stray_vibration.acts(p)
 
 
+@implement(interface.never_locks, SUSPENSION)
+@inlined
+def never_locks(p):
+    """See parameters.prepare."""
+    return p.geometry.always_well_posed != 0
+
+
 @implement(interface.free, SUSPENSION)
 @inlined
 def free(y, p):
