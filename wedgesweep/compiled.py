@@ -51,7 +51,8 @@ OPTIONS: dict[str, Any] = {
     "no_cfunc_wrapper": True,
     "forceinline": False,
 }
-INNER: dict[str, Any] = {**OPTIONS, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
+# Any: stubs of numba know other options of ``overload``.
+INNER: Any = {**OPTIONS, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
 
 
 def compiled(function: Function) -> Function:

@@ -38,7 +38,7 @@ def declared(function: Function) -> Function:
 
 
 def implement(what: Callable, owner: str) -> Callable[[Function], Function]:
-    """Write one of the functions below for the records that have a field ``owner``; the code must be compiled."""
+    """Write one of the functions below, compiled, for the records that have a field ``owner``."""
 
     def decorate(written: Function) -> Function:
         _IMPLEMENTED[what][owner] = written
@@ -49,13 +49,10 @@ def implement(what: Callable, owner: str) -> Callable[[Function], Function]:
 
 def provided(what: Callable, fields: Mapping[str, Any]) -> bool:
     """Whether the system with these records writes one of the functions that it may leave out."""
-    return (
-        next((written for owner, written in _IMPLEMENTED[what].items() if owner in fields), None) is not None
-    )
+    return any(owner in fields for owner in _IMPLEMENTED[what])
 
 
-# What every system writes
-# ---------------------------------------------------------------------------------------
+# What every system writes.
 
 
 @declared
@@ -160,11 +157,10 @@ def contact_forces(t, y, mode, p):
 
 @declared
 def powers(t, y, mode, p):
-    """Power that friction and damping take, power of the input (W), and the normal forces (N; NaN as above)."""
+    """Power that friction and damping take, power of the input (W), and the normal forces (N, or NaN)."""
 
 
-# What a system may leave out
-# ------------------------------------------------------------------------------------
+# What a system may leave out.
 
 
 @declared
@@ -199,4 +195,7 @@ def stiff_error(error, mode, p):
 
 @declared
 def closed_form(state, stop, p, keeping, recorder):
-    """Follow a mode to its event or ``stop`` if it has a closed form: whether it has, time, state vector, event."""
+    """Follow a mode that has a closed form to its event or ``stop``.
+
+    Returns whether it has one, the time and state vector reached, and the event or NO_EVENT.
+    """

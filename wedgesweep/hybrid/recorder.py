@@ -1,4 +1,4 @@
-"""Keeps the kept window of a compiled run: quadrature nodes into running sums, states onto the phase grid."""
+"""Records the kept window of a run: quadrature nodes into running sums, states onto an even grid of times."""
 
 from typing import Any, NamedTuple
 
@@ -14,12 +14,12 @@ WEIGHTS = tuple(float(0.5 * weight) for weight in np.polynomial.legendre.leggaus
 
 
 class Recorder(NamedTuple):
-    """Where a run is kept: sums of shape (1,) and samples at ``start + i step`` (s); nothing before ``start``.
+    """Where a run is kept: sums of shape (1,), and samples at ``start + i step`` (s).
 
     ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks.
     ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), or has shape (2, 0):
-    then none are kept. Without ``energies`` the sums do not tell of forces and energies either, which
-    saves half of the time.
+    then none are kept. Without ``energies`` the sums leave out forces and energies, which saves half of
+    the time.
     """
 
     start: float

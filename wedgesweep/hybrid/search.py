@@ -23,7 +23,7 @@ _FUNCTIONS: dict[type, Callable] = {}
 def searched(context: type) -> Callable[[Function], Function]:
     """Make a compiled function of (place, context) the one of a type of context.
 
-    It returns its value and its slope, NaN where that is not known.
+    It returns its value and its slope, or NaN for an unknown slope.
     """
 
     def decorate(function: Function) -> Function:
@@ -57,8 +57,8 @@ class Bracket(NamedTuple):
 def zero(context, bracket, close):
     """Place in a bracket at which a function is zero, to within ``close``.
 
-    Newton's method, or the secant method where a function does not know its slope; where these leave the bracket
-    the Illinois method.
+    Newton's method, or the secant method where the slope is unknown. The Illinois method replaces a step
+    that leaves the bracket.
     """
     low, at_low, high, at_high = bracket
     place = high - at_high * (high - low) / (at_high - at_low)

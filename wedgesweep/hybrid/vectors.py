@@ -9,9 +9,10 @@ from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import overload
 
-from wedgesweep.compiled import INNER, inlined, inner
+from wedgesweep.compiled import INNER, inlined
 
-INLINE: dict[str, Any] = INNER | {"forceinline": True}
+_set_item: Any = tuple_setitem
+INLINE: Any = INNER | {"forceinline": True}
 
 
 def weighted(start, scale, weights, vectors):
@@ -71,13 +72,4 @@ def store(y, out):
 @inlined
 def replaced(y, place, value):
     """The vector with another number at a place."""
-    return tuple_setitem(y, place, value)
-
-
-@inner
-def finite(y):
-    """Whether all numbers of a vector are finite."""
-    total = 0.0
-    for i in range(len(y)):
-        total += y[i] - y[i]
-    return total == 0.0
+    return _set_item(y, place, value)

@@ -1,7 +1,7 @@
-"""Compiled solver that goes from event to event, for one case or for many.
+"""Compiled solver that goes from event to event, for one case or for many in one compiled loop.
 
-The same modes, rates and event functions as the Radau solver; only the way from one event to the next is
-another. Many cases run in one compiled loop.
+It asks the system for the same modes, rates and event functions as the Radau solver, and integrates
+between events by its own methods (integrate.py).
 """
 
 from typing import Any, NamedTuple
@@ -18,11 +18,10 @@ from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, period_map, run_periods
 from wedgesweep.solvers.shooting import Shooting, settle
 from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, Window
-from wedgesweep.systems import state_count
-from wedgesweep.systems.suspension.parameters import compact
+from wedgesweep.systems import compact, state_count
 
 MESSAGES = {
-    LOCKED: ("locked", "normal forces not unique: the wedge locks"),
+    LOCKED: ("locked", "normal forces not unique: the system locks"),
     FAILED: ("solver_failure", "the steps became too small, or too many"),
     CHATTERING: ("solver_failure", f"more than {EVENTS_PER_PERIOD} switches per period"),
 }
@@ -85,7 +84,7 @@ class BatchSettings(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """What a batch comes to, a row a case; ``waveforms`` may have no rows, and then none are kept.
+    """Results of a batch, one row per case; ``waveforms`` without rows: none are kept.
 
     ``numbers`` (n,) is of ``response.NUMBERS``; ``spectra`` (n, 2, harmonics, 2), ``waveforms`` (n, 5,
     samples): displacement from rest, velocity, both normal forces, sticks; ``outcome``, ``time`` (s)
@@ -138,7 +137,10 @@ def run_batch(
 
 @compiled
 def _settled(y, near, settle_periods, case, settings, room, period_map):
-    """Settle a case, from near a response of a known period (0: unknown); outcome, period, periods; y moves."""
+    """Settle a case; y moves along. Returns the outcome, the period of the response and the periods run.
+
+    ``near``: period of the response that y lies close to, 0 if unknown.
+    """
     if settings.steady:
         unknown = np.full((y.size, y.size), np.nan)
         shooting = Shooting(
@@ -178,7 +180,7 @@ def _run_all(cases, settle_periods, settings, room, batch, period_map):
 
 @compiled
 def _reduce(i, case, periods, room, batch):
-    """Write what the kept periods of a case come to."""
+    """Write the results of the kept periods of a case."""
     n = periods * room.samples_per_period
     x, velocity = room.x[:n], room.velocity[:n]
     response.reduce(room.sums[0], x, velocity, periods, case[0], batch.numbers[i], batch.spectra[i])

@@ -1,7 +1,7 @@
 """Explicit Runge-Kutta steps with dense output: Dormand and Prince's 5(4) pair (1980).
 
 The continuous extension of order 4 is Hairer's (Hairer, Norsett and Wanner, Solving ODEs I, 1993). Zeros
-of the tableau are left out: each weight belongs to the stage that stands in its place below.
+of the tableau are left out: each weight belongs to the stage at the same place in the calls below.
 """
 
 from wedgesweep.compiled import inner
@@ -30,11 +30,12 @@ DENSE = (
 
 
 @inner
-def step(t, h, y, k1, mode, p, rtol):
-    """One step from y, whose rate is k1.
+def step(start, h, mode, p, rtol):
+    """One step from a ``Start``.
 
-    The step, forces near its middle (of a stage) and at its end, and its error over the tolerance.
+    Returns the step, forces near its middle (of a stage) and at its end, and its error over the tolerance.
     """
+    t, y, k1 = start
     k2 = rate(t + TIMES[1] * h, weighted(y, h, A2, (k1,)), mode, p)[0]
     k3, within = rate(t + TIMES[2] * h, weighted(y, h, A3, (k1, k2)), mode, p)
     k4 = rate(t + TIMES[3] * h, weighted(y, h, A4, (k1, k2, k3)), mode, p)[0]

@@ -112,11 +112,12 @@ def _active_places(p):
 
 
 @inner
-def step(t, h, y, k1, mode, p, rtol):
+def step(start, h, mode, p, rtol):
     """As ``explicit.step``."""
+    t, y, k1 = start
     n, places = len(y), _active_places(p)
     by_state, by_time = _derivatives(t, y, k1, mode, p)
-    now, forces = rate(t, y, mode, p)
+    forces = rate(t, y, mode, p)[1]
     failed = connected(t, h, y, y, k1, k1, combination(0.0, (1.0,), (y,)))
     if h * growth(by_state, p) > LARGEST_GROWTH:
         return failed, forces, forces, inf

@@ -1,7 +1,7 @@
 """A run from one event to the next: closed form where the system has one, Runge-Kutta steps elsewhere.
 
-After each step the event functions are known at its start, middle and end; one that may have dipped below
-zero between them is looked for. Each event is located on the step's dense output.
+After each step the event functions are known at its start, middle and end. Where one may have been zero in
+between, its minimum is sought. Each event is located on the step's dense output.
 """
 
 from collections.abc import Callable, Mapping
@@ -33,27 +33,27 @@ from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, put_node, p
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
 from wedgesweep.solvers import explicit, implicit
-from wedgesweep.solvers.step import inside, slope
+from wedgesweep.solvers.step import Start, inside, slope
 
 EVENTS_PER_PERIOD = 1000
-# The first step of a run is cautious: this share of a period.
+# First step of a run, as a share of a period.
 FIRST_STEP = 1e-3
-# Steps per period of the fastest input at the least; a longer one could step over a whole motion. While
-# contacts hold the mass nothing else limits them.
-LEAST, LEAST_HELD = 12, 64
+# Least number of steps per period of the fastest input: a longer step could miss a whole motion. While
+# contacts hold the mass nothing else limits its length.
+LEAST_STEPS, LEAST_STEPS_HELD = 12, 64
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 SHORTEST = 1e-13
 # A mode that needs more steps than this per period of the fastest input will not end.
 MOST_STEPS = 100_000
 # A minimum is looked for where the parabola through three values falls below this share of the least.
 SUSPECT = 0.3
-# Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; phase (rad) in which
-# nothing is seen.
+# Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; and the phase (rad) after
+# an event in which no other one is sought.
 CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
 
 
 class Workspace(NamedTuple):
-    """What a run carries along: tolerance, counts (rate evaluations, steps, events), room for event functions."""
+    """Tolerance of a run, counts of its rate evaluations, steps and events, and room for event functions."""
 
     rtol: float
     counts: Any
@@ -100,7 +100,10 @@ def _may_graze(before, now, following):
 
 @inner
 def _first_zero(place, start, end, from_zero):
-    """Share of a step at which an event function is first zero, from its values at both ends; 2 if nowhere."""
+    """Share of a step at which an event function is first zero; 2 if nowhere.
+
+    ``start``, ``end``: its values at the ends of the step.
+    """
     nearest = UNSEEN / (place.step.h * fastest(place.p))
     high, at_high = 0.5, _value(0.5, place)[0]
     if at_high > 0.0 and start > 0.0 and _may_graze(start, at_high, end):
@@ -161,9 +164,8 @@ class _Acceleration(NamedTuple):
 @inner
 def _velocity(share, context):
     step, p = context.step, context.p
-    return context.sign * observed(inside(share, step), p)[1], context.sign * observed(slope(share, step), p)[
-        1
-    ]
+    velocity, rate_of_share = observed(inside(share, step), p)[1], observed(slope(share, step), p)[1]
+    return context.sign * velocity, context.sign * rate_of_share
 
 
 @searched(_Acceleration)
@@ -174,16 +176,14 @@ def _acceleration(share, context):
 
 @inner
 def _keep_extremes(share, step, mode, recorder, p):
-    """Keep where displacement and velocity are extreme below a share of a step, if they are."""
+    """Record the extremes of displacement and velocity below a share of a step."""
     first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
     if first * last < 0.0:
         turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
         there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
         put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
-    first, last = (
-        _acceleration(0.0, _Acceleration(1.0, step, p))[0],
-        _acceleration(share, _Acceleration(1.0, step, p))[0],
-    )
+    upward = _Acceleration(1.0, step, p)
+    first, last = _acceleration(0.0, upward)[0], _acceleration(share, upward)[0]
     if first * last < 0.0:
         fastest = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
         there = zero(fastest, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
@@ -192,7 +192,7 @@ def _keep_extremes(share, step, mode, recorder, p):
 
 @inner
 def keep(step, share, mode, recorder, p):
-    """Keep a step up to some share of it."""
+    """Record a step up to a share of it."""
     t, h, end = step.t, step.h, inside(share, step)
     put_node(t, step.start, 0.0, mode, recorder, p)
     for node in range(len(NODES)):
@@ -205,18 +205,18 @@ def keep(step, share, mode, recorder, p):
         put_sample(i, inside(place, step), mode, recorder, p)
 
 
-def _take_step(t, h, y, k1, mode, implicitly, p, rtol):
+def _take_step(start, h, mode, implicitly, p, rtol):
     """One step, by the method that the mode needs."""
 
 
-def _explicit_step(t, h, y, k1, mode, implicitly, p, rtol):
-    return explicit.step(t, h, y, k1, mode, p, rtol)
+def _explicit_step(start, h, mode, implicitly, p, rtol):
+    return explicit.step(start, h, mode, p, rtol)
 
 
-def _either_step(t, h, y, k1, mode, implicitly, p, rtol):
+def _either_step(start, h, mode, implicitly, p, rtol):
     if implicitly:
-        return implicit.step(t, h, y, k1, mode, p, rtol)
-    return explicit.step(t, h, y, k1, mode, p, rtol)
+        return implicit.step(start, h, mode, p, rtol)
+    return explicit.step(start, h, mode, p, rtol)
 
 
 def _if_stiff(some: Callable, none: Callable) -> Callable[[Mapping[str, Any]], Callable]:
@@ -229,11 +229,11 @@ def _begins_stiff(mode, p):
 
 
 def _becomes_stiff(h, y, p):
-    """Whether a state does."""
+    """Whether a state needs implicit steps."""
 
 
 def _after_event(h, p):
-    """The first step (s) of a stiff mode after an event."""
+    """First step (s) of a stiff mode after an event."""
 
 
 by_record(_take_step, _if_stiff(_either_step, _explicit_step))
@@ -243,7 +243,7 @@ by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda 
 
 
 def _closed_form(state, stop, p, keeping, recorder):
-    """The system's closed form of a mode, if it has any."""
+    """The closed form of a mode, if the system has one."""
 
 
 by_record(
@@ -263,7 +263,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     In place of an event NO_EVENT, LOCKED or FAILED.
     """
     t, y, mode, last_event, h = state
-    per_period = LEAST_HELD if holds(mode, p) else LEAST
+    per_period = LEAST_STEPS_HELD if holds(mode, p) else LEAST_STEPS
     period = 2.0 * pi / fastest(p)
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
@@ -274,7 +274,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     while t < stop:
         h = min(h, period / per_period)
         taken = min(h, stop - t)
-        step, within, forces, error = _take_step(t, taken, y, k1, mode, implicitly, p, work.rtol)
+        step, within, forces, error = _take_step(Start(t, y, k1), taken, mode, implicitly, p, work.rtol)
         exponent = -1.0 / implicit.ORDER if implicitly else -1.0 / explicit.ORDER
         work.counts[0] += implicit.STAGES if implicitly else explicit.STAGES - 1
         if not error <= 1.0:
@@ -312,7 +312,7 @@ def begin(t, y, p):
 
 @inner
 def integrate(state, keep_from, stop, p, recorder, work):
-    """Follow a run from one event to the next up to ``stop``, and keep the part from a time on.
+    """Follow a run from event to event up to ``stop``, and keep the part from a time on.
 
     Returns how it ended (OK, LOCKED, FAILED, CHATTERING) and the state reached.
     """
@@ -341,7 +341,7 @@ def integrate(state, keep_from, stop, p, recorder, work):
 
 @inner
 def run(t, y, keep_from, stop, p, recorder, work):
-    """A run from a state vector to ``stop``, of which the part from a time on is kept: how it ended, and where."""
+    """As ``integrate``, from a state vector."""
     state, unique = begin(t, y, p)
     if not unique:
         return LOCKED, state

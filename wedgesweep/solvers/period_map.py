@@ -1,4 +1,4 @@
-"""Whole periods of the input, from phase 0 to phase 0: the Poincare map of a case, and what is kept on the way."""
+"""The Poincare map of a case: whole periods of the input, from phase 0 to phase 0."""
 
 from functools import cache
 from typing import Any, NamedTuple

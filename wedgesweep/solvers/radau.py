@@ -1,7 +1,7 @@
-"""scipy's Radau, mode by mode: it never steps across a corner of the friction law.
+"""scipy's Radau, mode by mode: it never steps across a corner of the equations.
 
-Each piece runs on one mode until one of its event functions reaches zero. What modes there are is the
-business of the system; right-hand side and event functions are compiled, what remains is scipy's.
+Each call of ``solve_ivp`` follows one mode until one of its event functions reaches zero. Right-hand side
+and event functions are compiled; what remains is scipy's.
 """
 
 from collections import Counter
@@ -19,22 +19,22 @@ from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import accumulators
 from wedgesweep.solvers import radau_system as system
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
-from wedgesweep.systems.suspension.parameters import compact
+from wedgesweep.systems import compact
 
 # A mode of the system, a tuple of integers.
 Mode = Any
 # Absolute tolerances, as a share of rtol times input amplitude and input velocity: motions far smaller
 # than the input, as they occur near breakaway, are resolved as well.
 ABSOLUTE = 1e-2
-# Steps per period of the fastest input: one as long cannot hold a stop and the start after it. While contacts
-# hold the mass nothing else limits them.
+# Least number of steps per period of the fastest input: a step is too short for a stop and the start after
+# it. While contacts hold the mass nothing else limits its length.
 STEPS_PER_PERIOD, STEPS_HELD = 16, 64
 EVENTS_PER_PERIOD = 1000
 # Phase (rad) after which an event function that is passing zero is safely away from it.
 LOOK_AHEAD = 1e-8
 # Error of the place of a minimum, as a share of a step.
 CLOSE = 1e-9
-# When a piece ends where it began, its first step is made shorter, down to this share of a period.
+# When a mode ends where it began, its first step is made shorter, down to this share of a period.
 SHORTER, SHORTEST = 10.0, 1e-13
 # While a run settles, its tolerance may be this much coarser.
 COARSER = 100.0
@@ -78,7 +78,7 @@ def solve(
     Parameters
     ----------
     parameters : structured array, shape (1,)
-        See systems.suspension.parameters.record.
+        Full record of a case, as its system makes it.
     window : Window
         Time span and what to keep of it.
     rtol : float
@@ -94,7 +94,7 @@ def solve(
     Raises
     ------
     CaseError
-        If the wedge locks, the time limit passes or the integrator fails.
+        If the system locks, the time limit passes or the integrator fails.
     """
     return _Run(parameters, window, rtol, time_limit).trajectory(start, settled)
 
@@ -178,11 +178,11 @@ class _Run:
         return result.t[-1], result.y[:, -1], reached[0] if reached else -1
 
     def _just_passed(self, place: int) -> bool:
-        """Whether an event belongs to the face, or the forces, of the last one: it begins at 0."""
+        """Whether an event is of the same pair as the last one: then its function begins at 0."""
         return place // 2 == self.last_event // 2
 
     def _shorten_first_step(self, t: float) -> None:
-        """Begin again where one step saw nothing of a short slip but its end."""
+        """Begin the mode again with a shorter first step: the last one saw only the end of a short motion."""
         self.first_step = (self.first_step or self.period) / SHORTER
         if self.first_step < SHORTEST * self.period:
             message = f"no progress at t = {t:.6g} s"
@@ -252,7 +252,7 @@ class _Run:
 
     def _require(self, unique: bool, t: float) -> None:
         if not unique:
-            message = f"normal forces not unique at t = {t:.6g} s: the wedge locks"
+            message = f"normal forces not unique at t = {t:.6g} s: the system locks"
             raise CaseError(message, "locked")
 
     def _keep(self, result: Any, mode: Mode) -> None:

@@ -86,10 +86,10 @@ def first_locked(t, y, mode, case):
 @compiled
 def missed_event(t, y, mode, case):
     """Whether an event function is negative at any of the states, shape (n, k), but the ends."""
+    lowest = np.inf
     for i in range(1, t.size - 1):
-        if events(t[i], y[:, i], mode, case).min() < 0.0:
-            return True
-    return False
+        lowest = min(lowest, events(t[i], y[:, i], mode, case).min())
+    return lowest < 0.0
 
 
 @compiled
@@ -114,6 +114,6 @@ def sample(t, y, mode, case):
 
 @compiled
 def moment_later(t, y, moment, mode, case):
-    """Event functions a moment (s) later, when one that is passing zero has left the rounding behind."""
+    """Event functions a moment (s) later, when one that passes zero now is beyond rounding errors."""
     # Half-way: where a run begins the rate itself is rounding.
     return events(t + moment, y + moment * rate(t + 0.5 * moment, y, mode, case), mode, case)

@@ -40,7 +40,7 @@ EXTRAPOLATION_GAIN = 0.5
 
 
 class Shooting(NamedTuple):
-    """What a search for a steady state goes by: the case (1,), the map, how close and for how long, and room."""
+    """A search for a steady state: the case (1,), its map, tolerance, limit of periods, and workspace."""
 
     case: Any
     period_map: Any
@@ -51,9 +51,10 @@ class Shooting(NamedTuple):
 
 
 class Found(NamedTuple):
-    """How a search ended: outcome, period of the response in forcing periods (0: it did not repeat), periods run.
+    """How a search ended.
 
-    ``kept``: how many of them, the last ones but for checks, the memory has kept.
+    ``period`` of the response in forcing periods (0: it did not repeat), periods ``run``, and how many of
+    them the memory has kept (the last ones but for checks).
     """
 
     outcome: int

@@ -11,6 +11,14 @@ from wedgesweep.hybrid.vectors import combination, weighted
 ABSOLUTE = 1e-2
 
 
+class Start(NamedTuple):
+    """Where a step begins: time (s), state vector and its rate."""
+
+    t: float
+    y: Any
+    rate: Any
+
+
 class Step(NamedTuple):
     """A step from t, h (s) long: states and rates at both ends, and the coefficients of its dense output."""
 

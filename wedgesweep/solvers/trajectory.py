@@ -49,8 +49,8 @@ class Samples:
     """States at the sample times of the kept window.
 
     ``t`` (s), ``x`` (m, displacement from rest) and ``velocity`` (m/s) have shape (n,), ``sticks`` (n,)
-    says whether the column face sticks, ``normal`` (2, n) holds the normal forces on column and bolster
-    (N; NaN while stuck).
+    says whether the observed contact sticks, ``normal`` (2, n) holds the normal forces of both contacts
+    (N; NaN while not determined).
     """
 
     t: np.ndarray

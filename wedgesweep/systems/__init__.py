@@ -15,7 +15,7 @@ def state_count() -> int:
 
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Records, shape (n,), by the mechanics that they need: their places, and the records for compiled code."""
+    """Records, shape (n,), by the kit that they need: their places, and the compact records."""
     kits = parameters["geometry"]["kit"]
     for kit in np.unique(kits):
         rows = np.flatnonzero(kits == kit)

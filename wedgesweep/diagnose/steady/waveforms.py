@@ -10,7 +10,6 @@ from wedgesweep.diagnose.steady.accelerations import accelerations
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
-from wedgesweep.systems.suspension.parameters import compact, has_own_mechanics
 from wedgesweep.systems.suspension.parameters import compact, driven_mass, has_own_mechanics, moving_mass
 
 PHASES = 256

@@ -219,9 +219,10 @@ def _value(time, piece):
 
 @inlined
 def _may_graze(which, before, after, span):
-    """Whether an event function may be negative between two positive samples: tangents meet near zero or below.
+    """Whether an event function may be negative between two positive samples.
 
-    Between samples so close a function with a minimum is convex, so that it lies above its tangents.
+    It may if its tangents meet near zero or below: between samples this close a function with a minimum is
+    convex, and lies above its tangents.
     """
     now, falling = before.values[which], before.slopes[which]
     following, rising = after.values[which], after.slopes[which]
@@ -265,7 +266,7 @@ def _any_event(before, after, span):
 
 @inner
 def slide(state, stop, o, p):
-    """Follow slip until its first event or ``stop``: time, displacement, velocity and the event (NO_EVENT)."""
+    """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
     t, (x, velocity), mode, last_event, _ = state
     step = 2.0 * pi / max(p.input.omega, o.frequency) / SCAN
     a, b = p.input.omega * step, o.frequency * step

@@ -24,8 +24,8 @@ from wedgesweep.systems.suspension.modes import (
 from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
 from wedgesweep.systems.suspension.set_valued import breakaway
 
-# Places of the event functions beside those of the axes: normal forces, end stops (two), time at rest. The base
-# model has none behind the normal forces.
+# Places of the event functions beside those of the axes: normal forces, end stops (two), time at rest. Those
+# of the base model end with the normal forces.
 COLUMN_NORMAL, BOLSTER_NORMAL, BASE_EVENTS = 6, 7, 8
 STOP, CLOCK = 2 * AXES, 2 * AXES + 2
 EVENTS = CLOCK + 1
@@ -124,7 +124,7 @@ def events(now, t, y, mode, p, out):
 
 @inlined
 def _is_kinematic(place, mode, p):
-    if stuck(mode, p) or place == COLUMN_NORMAL or place == BOLSTER_NORMAL:
+    if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         return False
     return place >= STOP or abs(branch(mode, place // 2)) != HELD
 

@@ -134,10 +134,8 @@ def record(
     p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
     p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
     for name, effect in known.EFFECTS.items():
-        numbers = {each.name: each.neutral * each.factor for each in effect.quantities} | effects.get(
-            name, {}
-        )
-        _set(p, name, numbers)
+        neutral = {each.name: each.neutral * each.factor for each in effect.quantities}
+        _set(p, name, {**neutral, **effects.get(name, {})})
     p["geometry"]["kit"] = _kit_of(p)
     if is_regularised(p):
         _regularise(p)

@@ -175,7 +175,7 @@ def _next_stop(mode, place, p):
 
 @inner
 def _transition(t, y, mode, place, p):
-    if place == COLUMN_NORMAL or place == BOLSTER_NORMAL:
+    if place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         found, certain = _after_zero_force(t, y, mode, p)
         return y, found, certain
     if place >= STOP:
