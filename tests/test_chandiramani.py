@@ -259,7 +259,7 @@ def by_radau(row):
     run = radau.solve(row, Window(float(row["omega"][0]), 60, 1, 256), 1e-8, 600.0)
     found = response.evaluate(run, row, 40)
     spectra = [found.spectra[f"{each}_harmonics"] for each in ("displacement", "velocity")]
-    extremes = np.array([[run.tally["lowest"][0], run.tally["highest"][0]]])
+    extremes = np.array([[run.sums["lowest"][0], run.sums["highest"][0]]])
     assert found.numbers["periodicity"] < 1e-6
     assert found.numbers["lift_off_fraction"] == 0.0
     return observations.recording((np.array(spectra) @ [1.0, 1j])[None], extremes)

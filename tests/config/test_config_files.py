@@ -12,7 +12,8 @@ from wedgesweep import config
 from wedgesweep.config import Case
 from wedgesweep.config.declarations import ROOT
 from wedgesweep.effects import EFFECTS
-from wedgesweep.parameters import FRICTION, SUSPENSION
+from wedgesweep.friction.quantities import FRICTION
+from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 CONFIGS = sorted((Path(__file__).parents[2] / "configs").glob("*.toml"))
 GRID = {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 0.1}
