@@ -93,10 +93,10 @@ def test_record_holds_the_case_in_si():
     read = config.parse(text)
     record = read.record(read.case_list()[0])
     assert record.shape == (1,)
-    assert record["amplitude"] == 1e-4
+    assert record["input"]["amplitude"] == 1e-4
     assert record["input"]["omega"] == read.sweep.omega_n
-    assert record["wedge_angle"] == pytest.approx(pi / 6)
-    assert record["guide_friction_force"] == 2.0
+    assert record["suspension"]["wedge_angle"] == pytest.approx(pi / 6)
+    assert record["guide_friction"]["force"] == 2.0
 
 
 def test_resolved_config_reads_back_exactly():

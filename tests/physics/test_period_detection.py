@@ -14,7 +14,7 @@ TOLERANCE = 1e-6
 
 def back(states):
     """Distances of the last state (complex) from those before it."""
-    found = np.full(LONGEST, np.inf)
+    found = np.full(LONGEST_PERIOD, np.inf)
     before = np.abs(states[-1] - states[-2 : -2 - LONGEST_PERIOD : -1])
     found[: before.size] = before
     return found
