@@ -18,8 +18,7 @@ from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, period_map, run_periods
 from wedgesweep.solvers.shooting import Shooting, settle
 from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, Window
-from wedgesweep.systems import state_count
-from wedgesweep.systems.suspension.parameters import compact
+from wedgesweep.systems import compact, state_count
 
 MESSAGES = {
     LOCKED: ("locked", "normal forces not unique: the wedge locks"),

@@ -19,7 +19,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import accumulators
 from wedgesweep.solvers import radau_system as system
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
-from wedgesweep.systems.suspension.parameters import compact
+from wedgesweep.systems import compact
 
 # A mode of the system, a tuple of integers.
 Mode = Any
