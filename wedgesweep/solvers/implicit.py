@@ -82,21 +82,21 @@ def _inverse(by_state, places, h):
             matrix[i, j] = -by_state[places[i], places[j]]
         matrix[i, i] += 1.0 / (GAMMA * h)
         inverse[i, i] = 1.0
-    for column in range(n):
-        largest = column
-        for i in range(column + 1, n):
-            if abs(matrix[i, column]) > abs(matrix[largest, column]):
+    for k in range(n):
+        largest = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[largest, k]):
                 largest = i
-        pivot = matrix[largest, column]
+        pivot = matrix[largest, k]
         for j in range(n):
-            matrix[largest, j], matrix[column, j] = matrix[column, j], matrix[largest, j] / pivot
-            inverse[largest, j], inverse[column, j] = inverse[column, j], inverse[largest, j] / pivot
+            matrix[largest, j], matrix[k, j] = matrix[k, j], matrix[largest, j] / pivot
+            inverse[largest, j], inverse[k, j] = inverse[k, j], inverse[largest, j] / pivot
         for i in range(n):
-            factor = matrix[i, column]
-            if i != column:
+            factor = matrix[i, k]
+            if i != k:
                 for j in range(n):
-                    matrix[i, j] -= factor * matrix[column, j]
-                    inverse[i, j] -= factor * inverse[column, j]
+                    matrix[i, j] -= factor * matrix[k, j]
+                    inverse[i, j] -= factor * inverse[k, j]
     return inverse
 
 

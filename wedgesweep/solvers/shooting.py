@@ -116,16 +116,16 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
     size = shooting.size
     run = 0
     share = max(PERTURBATION, NOISE * shooting.memory.work.rtol)
-    for column in range(size.size):
-        if moves[column]:
+    for k in range(size.size):
+        if moves[k]:
             shifted = y.copy()
-            shifted[column] += share * size[column]
+            shifted[k] += share * size[k]
             outcome = _run(shifted, periods, False, shooting)
             run += periods
             if outcome != OK:
                 jacobian[:] = np.nan
                 return outcome, run
-            jacobian[:, column] = (shifted - image) / size / share
+            jacobian[:, k] = (shifted - image) / size / share
     return OK, run
 
 

@@ -4,17 +4,18 @@ import numpy as np
 import pytest
 
 from tests.physics.cases import OMEGA_N
-from wedgesweep import parameters
+from tests.physics.compiled_mechanics import detected_period
 from wedgesweep.solvers import periodic
-from wedgesweep.solvers.repetition import LONGEST, repetition
+from wedgesweep.solvers.period_detection import LONGEST_PERIOD
+from wedgesweep.systems.suspension import parameters
 
 TOLERANCE = 1e-6
 
 
 def back(states):
     """Distances of the last state (complex) from those before it."""
-    found = np.full(LONGEST, np.inf)
-    before = np.abs(states[-1] - states[-2 : -2 - LONGEST : -1])
+    found = np.full(LONGEST_PERIOD, np.inf)
+    before = np.abs(states[-1] - states[-2 : -2 - LONGEST_PERIOD : -1])
     found[: before.size] = before
     return found
 
@@ -23,19 +24,19 @@ def back(states):
 @pytest.mark.parametrize("size", [1.0, 2e-3])
 def test_a_cycle_has_its_length(n, size):
     cycle = size * np.exp(2j * np.pi * np.arange(30) / n)
-    assert repetition(back(cycle), TOLERANCE) == n
+    assert detected_period(back(cycle), TOLERANCE) == n
 
 
 def test_a_spiral_that_closes_slowly_is_no_cycle():
     for turns in (2, 3, 5):
         spiral = (0.99 * np.exp(2j * np.pi / turns)) ** np.arange(3000)
         for end in range(10, 3000):
-            assert repetition(back(spiral[:end]), TOLERANCE) <= 1
+            assert detected_period(back(spiral[:end]), TOLERANCE) <= 1
 
 
 def test_a_state_that_wanders_does_not_repeat():
     states = np.random.default_rng(0).normal(size=(50, 2)) @ [1.0, 1j]
-    assert repetition(back(states), TOLERANCE) == 0
+    assert detected_period(back(states), TOLERANCE) == 0
 
 
 def test_the_mean_over_a_doubled_period_does_not_depend_on_the_tolerance():

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
+from tests.physics import compiled_mechanics as mechanics
 from tests.physics.cases import OMEGA_N
-from wedgesweep import parameters
-from wedgesweep.extended.mode import SIZE, Mode
-from wedgesweep.extended.switching import rate
-from wedgesweep.solvers import dormand_prince, extended, periodic, rosenbrock
-from wedgesweep.solvers.dormand_prince import inside, room
+from wedgesweep.solvers import event_driven, periodic
 from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.modes import ContactMode
 
-ON_RAMPS = Mode(0, 0, 0, 1, 1, 0, 0, 1)
+ON_RAMPS = ContactMode(0, 0, 0, 1, 1, 0, 0, 1)
+COLUMN = "column_compliance"
 
 
 def record(law="static-dynamic", **friction):
@@ -19,40 +19,43 @@ def record(law="static-dynamic", **friction):
     return parameters.record(law, 1e-4, OMEGA_N, {}, friction, effects)
 
 
-def after(method, record, start, duration, steps):
+def moving(record, **velocities):
+    """State with only velocities: of the mass, of the column."""
+    return mechanics.initial_state(
+        record[0], {("", 1): velocities.get("mass", 0.0), (COLUMN, 1): velocities.get("column", 0.0)}
+    )
+
+
+def after(step, record, start, duration, steps):
     """State after some even steps, and halfway through the last by the dense output."""
-    y, t, h, tools, p = start.copy(), 0.0, duration / steps, room(1e-6), record[0]
+    y, t, h = start, 0.0, duration / steps
     for _ in range(steps):
-        rate(t, y, ON_RAMPS, p, tools.stages[0])
-        method.step(t, h, y, ON_RAMPS, p, tools)
-        if method is dormand_prince:
-            dormand_prince.connect(h, y, tools)
-        middle = inside(0.5, tools).copy()
-        y, t = tools.end.copy(), t + h
-    return y, middle
+        y, middle, _ = step(t, h, y, ON_RAMPS, record[0], 1e-6)
+        t += h
+    return np.array(y), np.array(middle)
 
 
 @pytest.mark.parametrize(("place", "order"), [(0, 4), (1, 3)], ids=["end", "dense output"])
 def test_order_on_a_gentle_ramp(place, order):
-    gentle, start = record(threshold_velocity=1.0), np.zeros(SIZE)
-    start[1], start[4] = 0.02, -0.01
-    true = [after(dormand_prince, gentle, start, 4e-3, 4 * n)[0] for n in (64, 128)]
+    gentle = record(threshold_velocity=1.0)
+    start = moving(gentle, mass=0.02, column=-0.01)
+    true = [after(mechanics.explicit_step, gentle, start, 4e-3, 4 * n)[0] for n in (64, 128)]
     assert np.abs(true[0] - true[1]).max() < 1e-12
     errors = []
     for steps in (16, 32):
-        end, middle = after(rosenbrock, gentle, start, 4e-3, steps)
+        end, middle = after(mechanics.implicit_step, gentle, start, 4e-3, steps)
         if place == 0:
             errors.append(np.abs(end - true[1]).max())
         else:
-            half = after(dormand_prince, gentle, start, 4e-3 * (1 - 0.5 / steps), 512)[0]
+            half = after(mechanics.explicit_step, gentle, start, 4e-3 * (1 - 0.5 / steps), 512)[0]
             errors.append(np.abs(middle - half).max())
     assert np.log2(errors[0] / errors[1]) > order - 0.3
 
 
 def work(case, rtol):
     """Rate evaluations of five periods from rest."""
-    window = Window(float(case["omega"][0]), 0, 5, 64)
-    return extended.run(case, window, rtol, (0.0, 0.0))[2].statistics["rate_evaluations"]
+    window = Window(float(case["input"]["omega"][0]), 0, 5, 64)
+    return event_driven.solve(case, window, rtol, 60.0).statistics["rate_evaluations"]
 
 
 def test_steps_become_shorter_with_the_tolerance_as_the_order_says():
@@ -86,18 +89,24 @@ def test_short_bristles_are_friction_that_holds_but_for_the_time_of_their_way():
 
 
 def test_long_steps_on_a_steep_ramp_end_where_short_ones_do():
-    steep, start = record("coulomb"), np.zeros(SIZE)
-    short, _ = after(dormand_prince, steep, start, 2e-4, 4000)
-    long, _ = after(rosenbrock, steep, start, 2e-4, 40)
-    assert long[[0, 1, 3, 4]] == pytest.approx(short[[0, 1, 3, 4]], rel=1e-3, abs=1e-12)
+    steep = record("coulomb")
+    start = moving(steep)
+    ends = []
+    for step, steps in ((mechanics.explicit_step, 4000), (mechanics.implicit_step, 40)):
+        end = mechanics.owned(after(step, steep, start, 2e-4, steps)[0], steep[0])
+        ends.append([*end[""], *end[COLUMN]])
+    assert ends[1] == pytest.approx(ends[0], rel=1e-3, abs=1e-12)
 
 
 def test_what_runs_away_is_not_stepped_over():
-    slopes = np.zeros((SIZE, SIZE))
-    slopes[np.ix_((1, 4), (1, 4))] = [[-2e6, 1e6], [3e6, -1e6]]  # eigenvalues (-3 +- sqrt(13)) / 2 in 1e6
-    assert rosenbrock._growth(slopes) == pytest.approx(0.5 * (13**0.5 - 3) * 1e6)
+    p = record()[0]
+    velocities = np.flatnonzero(moving(record(), mass=1.0, column=1.0))
+    slopes = np.zeros((len(moving(record())),) * 2)
+    # Eigenvalues (-3 +- sqrt(13)) / 2 in 1e6.
+    slopes[np.ix_(velocities, velocities)] = [[-2e6, 1e6], [3e6, -1e6]]
+    assert mechanics.growth(slopes, p) == pytest.approx(0.5 * (13**0.5 - 3) * 1e6)
     slopes[1, 1] = -9e6
-    assert rosenbrock._growth(slopes) < 0.0
+    assert mechanics.growth(slopes, p) < 0.0
 
 
 def test_a_step_that_would_damp_what_runs_away_is_refused():
@@ -105,10 +114,11 @@ def test_a_step_that_would_damp_what_runs_away_is_refused():
         "static-dynamic",
         1e-4,
         OMEGA_N,
-        effects={"column_compliance": {"stiffness": 3e5}, "viscous_damping": {"coefficient": -1e6}},
+        effects={COLUMN: {"stiffness": 3e5}, "viscous_damping": {"coefficient": -1e6}},
     )
-    tools, start = room(1e-6), np.zeros(SIZE)
-    rate(0.0, start, ON_RAMPS, driven[0], tools.stages[0])
-    refused, made = (rosenbrock.step(0.0, h, start, ON_RAMPS, driven[0], tools)[0] for h in (1e-4, 1e-8))
+    start = moving(driven)
+    refused, made = (
+        mechanics.implicit_step(0.0, h, start, ON_RAMPS, driven[0], 1e-6)[2] for h in (1e-4, 1e-8)
+    )
     assert refused == np.inf
     assert made < np.inf
