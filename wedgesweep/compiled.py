@@ -42,9 +42,9 @@ numba.config.CACHE_DIR = str(CACHE_DIR)  # type: ignore[attr-defined]
 Function = TypeVar("Function", bound=Callable)
 
 
-# A division by zero gives inf or NaN, as in numpy; threads run at once; nobody calls these from C, and
-# without a way to do so they compile in nine tenths of the time.
-# Unless it is said, functions inherit ``forceinline`` from those that call them.
+# A division by zero gives inf or NaN, as in numpy. Threads run without the interpreter's lock. Nothing calls
+# these functions from C, and without C wrappers they compile in nine tenths of the time.
+# Without the last option a function inherits ``forceinline`` from its callers.
 OPTIONS: dict[str, Any] = {
     "error_model": "numpy",
     "nogil": True,
@@ -56,22 +56,22 @@ INNER: Any = {**OPTIONS, "no_cpython_wrapper": True, "pipeline_class": InnerComp
 
 
 def compiled(function: Function) -> Function:
-    """Compile with numba: for what Python calls."""
+    """Compile a function that Python calls."""
     return cast(Function, numba.njit(cache=True, **OPTIONS)(function))
 
 
 def inner(function: Function) -> Function:
-    """Compile for other compiled functions alone: their code holds it, see inner_code.py."""
+    """Compile a function that only compiled functions call; see inner_code.py."""
     return cast(Function, numba.njit(**INNER)(function))
 
 
 def inlined(function: Function) -> Function:
-    """``inner``, and copied into its callers: for what is short and called in the innermost loops."""
+    """As ``inner``, and copied into its callers: for short functions in the innermost loops."""
     return cast(Function, numba.njit(**INNER | {"forceinline": True})(function))
 
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """LLVM code of an array, or of a tuple of such, that nobody counts the users of."""
+    """LLVM value of an array, or of a tuple of arrays, without reference counting."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)
@@ -84,10 +84,10 @@ def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
 
 
 def _borrowed(typing_context: Any, value: Any) -> Any:
-    """The same array, or tuple of arrays, of which the caller keeps the original while it is in use.
+    """The same array, or tuple of arrays, without reference counting; the caller keeps the original alive.
 
-    numba counts the users of an array at every call, in steps that hold up the processor: for short functions
-    that took two thirds of their time. What is borrowed is not counted.
+    numba counts references to an array at every call, with atomic operations: they took two thirds of the
+    time of short functions.
     """
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -102,8 +102,8 @@ borrowed = cast(Callable[[Any], Any], intrinsic(_borrowed))
 class Pointer(types.WrapperAddressProtocol):
     """A compiled function as an argument of compiled code.
 
-    Its callers hold an address, not another copy of all that it calls: they compile in a fraction of
-    the time. ``arguments`` are examples of its arguments, ``result`` is numba's type of what it returns.
+    Its callers hold its address instead of a copy of its code, and compile in a fraction of the time.
+    ``arguments`` are examples of its arguments, ``result`` is numba's type of what it returns.
     """
 
     def __init__(self, function: Callable, result: Any, arguments: tuple) -> None:
@@ -126,7 +126,7 @@ def _named(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
 def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
     """A function for compiled code, made anew for every type of its parameter record ``p``.
 
-    ``choose`` gets the fields of the record's type and returns the plain function that is compiled then:
+    ``choose`` gets the fields of the record's type and returns the plain function to compile, so that
     what a record has no fields for costs nothing. Python calls ``function`` itself.
     """
     arguments = list(inspect.signature(function).parameters)
@@ -149,7 +149,7 @@ def forward(arguments: Sequence[str], target: Callable) -> Callable:
 def term(owner: str, off: str) -> Callable[[Function], Function]:
     """Let a function of a record p act where the record has a part named ``owner``.
 
-    Elsewhere it is the expression ``off`` of its arguments, which a compiler removes.
+    For other records it is the expression ``off`` of its arguments, which costs nothing.
     """
 
     def decorate(function: Function) -> Function:

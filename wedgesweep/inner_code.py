@@ -1,9 +1,9 @@
 """How numba compiles functions that only other compiled functions call.
 
 numba optimises every function together with all that it calls, turns it into machine code, and does the
-same again for each of its callers. Code in layers then costs the square of its depth: this package took
-four times as long to compile. A function made with ``InnerCompiler`` stays unoptimised, and becomes part
-of the functions that Python calls (``compiled.compiled``), which are optimised whole.
+same again for each of its callers: compile time grows with the square of the depth of calls, and was four
+times as long for this package. A function made with ``InnerCompiler`` is not optimised by itself. It becomes
+part of the functions that Python calls (``compiled.compiled``), which are optimised as a whole.
 """
 
 from typing import Any
@@ -38,11 +38,11 @@ class _InnerLowering(NativeLowering):
         state.library = _InnerLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         super().run_pass(state)
-        # numba knows compiled code by its entry point. This one is unlike any other, and whoever calls it
-        # from Python gets an exception.
+        # numba identifies compiled code by its entry point. This one is unique, and raises an exception if
+        # Python calls it.
         entry = (object(),).index
         if not state.flags.forceinline:
-            # Copied into each of its callers, an integrator grows a hundredfold and takes minutes to
+            # An integrator with copies of all that it calls is a hundred times as long and takes minutes to
             # optimise.
             name = state["cr"].fndesc.llvm_func_name
             state.library.get_function(name).add_function_attribute("noinline")

@@ -97,7 +97,7 @@ def initial_mode(t, y, p):
 
 @declared
 def rate(t, y, mode, p):
-    """dy/dt, a vector, and what else follows from the state: forces, whatever the system makes of them."""
+    """dy/dt, a vector, and the forces, in the form in which the system's ``events`` takes them."""
 
 
 @declared
@@ -170,27 +170,27 @@ def stiff(mode, p):
 
 @declared
 def outruns(h, y, p):
-    """Whether an explicit step h (s) is limited by something stiff in the state alone."""
+    """Whether the state is so stiff that it limits an explicit step h (s)."""
 
 
 @declared
 def settling_step(p):
-    """A step (s) that resolves how a stiff mode begins."""
+    """A step (s) that resolves the beginning of a stiff mode."""
 
 
 @declared
 def perturbation(place, y, p):
-    """Step of a state for a derivative of the rate by differences, and whether it goes to both sides."""
+    """Step of a state for the derivative of the rate by differences, and whether these are central."""
 
 
 @declared
 def growth(by_state, p):
-    """Largest rate (1/s) at which a derivative of the rate, an array, says that velocities run away."""
+    """Growth rate (1/s) of velocities, from the derivative of the rate by the states, shape (n, n)."""
 
 
 @declared
 def stiff_error(error, mode, p):
-    """Largest error of a stiff slip velocity, over the width in which it is stiff."""
+    """Largest error of a velocity on which the mode is stiff, over the width of the stiff range."""
 
 
 @declared

@@ -1,8 +1,8 @@
-"""Where a function of one variable is zero, or smallest: the one way to locate an event.
+"""Zeros and minima of functions of one variable: how all events are located.
 
-A function is a compiled one of the arguments (place, context), known by the type of its context (a
-NamedTuple): numba could not cache code that passes functions along. So one search serves event functions
-on the dense output of a step, of a closed form, and of a system at rest.
+A function has the arguments (place, context) and is found by the type of its context, a NamedTuple: numba
+cannot cache code that takes functions as arguments. The same search serves event functions on the dense
+output of a step, on a closed form, and of a system at rest.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ _FUNCTIONS: dict[type, Callable] = {}
 
 
 def searched(context: type) -> Callable[[Function], Function]:
-    """Make a compiled function of (place, context) the one of a type of context.
+    """Register a compiled function of (place, context) for a type of context.
 
     It returns its value and its slope, or NaN for an unknown slope.
     """
@@ -45,7 +45,7 @@ def _of_context(place, context):
 
 
 class Bracket(NamedTuple):
-    """Two places, and what a function is there: positive at ``low``, not positive at ``high``."""
+    """Two places and the values of a function: positive at ``low``, not positive at ``high``."""
 
     low: float
     at_low: float
@@ -94,9 +94,9 @@ def zero(context, bracket, close):
 
 @inner
 def zero_after_start(context, bracket, nearest, close):
-    """``zero`` of a function that begins at its zero, before a positive part; the low end if none is seen.
+    """As ``zero``, of a function that is zero at the low end and positive after it.
 
-    ``nearest``: distance from the low end below which nothing is looked for.
+    The low end itself if no positive value is found farther than ``nearest`` from it.
     """
     start, _, high, at_high = bracket
     place = 0.5 * (start + high)

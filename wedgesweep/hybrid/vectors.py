@@ -1,6 +1,6 @@
-"""Small vectors as tuples of floats: compiled code keeps them in registers, and their length is a type.
+"""Small vectors as tuples of floats, which compiled code keeps in registers; their type includes the length.
 
-Python hands them over as tuples; ``vector`` and ``store`` go between them and arrays.
+``vector`` and ``store`` convert from and to arrays.
 """
 
 from typing import Any

@@ -30,12 +30,11 @@ DENSE = (
 
 
 @inner
-def step(start, h, mode, p, rtol):
-    """One step from a ``Start``.
+def step(t, h, y, k1, mode, p, rtol):
+    """One step from y, whose rate is k1.
 
     Returns the step, forces near its middle (of a stage) and at its end, and its error over the tolerance.
     """
-    t, y, k1 = start
     k2 = rate(t + TIMES[1] * h, weighted(y, h, A2, (k1,)), mode, p)[0]
     k3, within = rate(t + TIMES[2] * h, weighted(y, h, A3, (k1, k2)), mode, p)
     k4 = rate(t + TIMES[3] * h, weighted(y, h, A4, (k1, k2, k3)), mode, p)[0]

@@ -112,9 +112,8 @@ def _active_places(p):
 
 
 @inner
-def step(start, h, mode, p, rtol):
+def step(t, h, y, k1, mode, p, rtol):
     """As ``explicit.step``."""
-    t, y, k1 = start
     n, places = len(y), _active_places(p)
     by_state, by_time = _derivatives(t, y, k1, mode, p)
     forces = rate(t, y, mode, p)[1]

@@ -33,7 +33,7 @@ from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, put_node, p
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
 from wedgesweep.solvers import explicit, implicit
-from wedgesweep.solvers.step import Start, inside, slope
+from wedgesweep.solvers.step import inside, slope
 
 EVENTS_PER_PERIOD = 1000
 # First step of a run, as a share of a period.
@@ -205,18 +205,8 @@ def keep(step, share, mode, recorder, p):
         put_sample(i, inside(place, step), mode, recorder, p)
 
 
-def _take_step(start, h, mode, implicitly, p, rtol):
-    """One step, by the method that the mode needs."""
-
-
-def _explicit_step(start, h, mode, implicitly, p, rtol):
-    return explicit.step(start, h, mode, p, rtol)
-
-
-def _either_step(start, h, mode, implicitly, p, rtol):
-    if implicitly:
-        return implicit.step(start, h, mode, p, rtol)
-    return explicit.step(start, h, mode, p, rtol)
+def _implicit_step(t, h, y, k1, mode, p, rtol):
+    """``implicit.step`` where the system may be stiff; elsewhere nothing calls it."""
 
 
 def _if_stiff(some: Callable, none: Callable) -> Callable[[Mapping[str, Any]], Callable]:
@@ -236,7 +226,13 @@ def _after_event(h, p):
     """First step (s) of a stiff mode after an event."""
 
 
-by_record(_take_step, _if_stiff(_either_step, _explicit_step))
+by_record(
+    _implicit_step,
+    _if_stiff(
+        lambda t, h, y, k1, mode, p, rtol: implicit.step(t, h, y, k1, mode, p, rtol),
+        lambda t, h, y, k1, mode, p, rtol: explicit.step(t, h, y, k1, mode, p, rtol),
+    ),
+)
 by_record(_begins_stiff, _if_stiff(lambda mode, p: stiff(mode, p), lambda mode, p: False))
 by_record(_becomes_stiff, _if_stiff(lambda h, y, p: outruns(h, y, p), lambda h, y, p: False))
 by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda h, p: h))
@@ -274,9 +270,13 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     while t < stop:
         h = min(h, period / per_period)
         taken = min(h, stop - t)
-        step, within, forces, error = _take_step(Start(t, y, k1), taken, mode, implicitly, p, work.rtol)
-        exponent = -1.0 / implicit.ORDER if implicitly else -1.0 / explicit.ORDER
-        work.counts[0] += implicit.STAGES if implicitly else explicit.STAGES - 1
+        if implicitly:
+            step, within, forces, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
+            exponent, evaluations = -1.0 / implicit.ORDER, implicit.STAGES
+        else:
+            step, within, forces, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
+            exponent, evaluations = -1.0 / explicit.ORDER, explicit.STAGES - 1
+        work.counts[0] += evaluations
         if not error <= 1.0:
             h = taken * max(SHRINK, SAFETY * error**exponent) if error < inf else taken * SHRINK
             if h < SHORTEST * period:

@@ -78,7 +78,7 @@ def solve(
     Parameters
     ----------
     parameters : structured array, shape (1,)
-        Full record of a case, as its system makes it.
+        Of the suspension (see systems.suspension.parameters.record), or of another system.
     window : Window
         Time span and what to keep of it.
     rtol : float

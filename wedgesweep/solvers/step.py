@@ -3,20 +3,12 @@
 from math import sqrt
 from typing import Any, NamedTuple
 
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import inlined
 from wedgesweep.hybrid.interface import error_scales
 from wedgesweep.hybrid.vectors import combination, weighted
 
 # Share of a state's natural size, times rtol, that an error may always have.
 ABSOLUTE = 1e-2
-
-
-class Start(NamedTuple):
-    """Where a step begins: time (s), state vector and its rate."""
-
-    t: float
-    y: Any
-    rate: Any
 
 
 class Step(NamedTuple):
