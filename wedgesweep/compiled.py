@@ -117,7 +117,7 @@ class Pointer(types.WrapperAddressProtocol):
         return self._signature
 
 
-def _named(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
+def function_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
     """A function of these arguments that returns an expression: numba compiles it like any other."""
     exec(f"def function({', '.join(arguments)}):\n    return {body}", scope)
     return cast(Callable, scope["function"])
@@ -136,14 +136,14 @@ def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable
         record = kinds[place]
         return choose(record.fields) if isinstance(record, types.Record) else None
 
-    listed = _named(arguments, f"chosen({', '.join(arguments)})", chosen=chosen)
+    listed = function_of(arguments, f"chosen({', '.join(arguments)})", chosen=chosen)
     overload(function, jit_options=INNER | {"forceinline": True})(listed)
     return function
 
 
 def forward(arguments: Sequence[str], target: Callable) -> Callable:
     """A plain function that passes its arguments on to compiled code."""
-    return _named(arguments, f"target({', '.join(arguments)})", target=target)
+    return function_of(arguments, f"target({', '.join(arguments)})", target=target)
 
 
 def term(owner: str, off: str) -> Callable[[Function], Function]:
@@ -154,7 +154,7 @@ def term(owner: str, off: str) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         arguments = list(inspect.signature(function).parameters)
-        present, absent = forward(arguments, inlined(function)), _named(arguments, off)
+        present, absent = forward(arguments, inlined(function)), function_of(arguments, off)
         return by_record(function, lambda fields: present if owner in fields else absent)
 
     return decorate

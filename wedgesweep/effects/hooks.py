@@ -1,14 +1,14 @@
-"""Where effects act: each hook is all the functions of its name in the effects of a record, as one.
+"""Where effects act: a hook combines the functions of its name in the files of all effects of a record.
 
-An effect takes part by a compiled function of the hook's name and arguments in its own file; records
-without the effect are compiled without it. Units are SI.
+An effect takes part by a compiled function with the name and arguments of the hook in its own file. Code for
+records without the effect does not contain it. Units are SI.
 """
 
 from collections.abc import Callable, Mapping
 from inspect import signature
 from typing import Any
 
-from wedgesweep.compiled import by_record
+from wedgesweep.compiled import by_record, function_of
 
 
 def _functions(name: str, fields: Mapping[str, Any]) -> list[Callable]:
@@ -19,13 +19,11 @@ def _functions(name: str, fields: Mapping[str, Any]) -> list[Callable]:
 
 
 def _built(arguments: list[str], expression: str, functions: list[Callable]) -> Callable:
-    scope: dict[str, Any] = {f"f{i}": each for i, each in enumerate(functions)}
-    exec(f"def function({', '.join(arguments)}):\n    return {expression}", scope)
-    return scope["function"]
+    return function_of(arguments, expression, **{f"f{i}": each for i, each in enumerate(functions)})
 
 
 def _sum(nothing: str) -> Callable[[Callable], Callable]:
-    """A hook that adds what the effects return; ``nothing`` is what none of them give."""
+    """A hook that adds what the effects return; ``nothing``: the sum without effects."""
 
     def decorate(hook: Callable) -> Callable:
         arguments = list(signature(hook).parameters)
@@ -41,7 +39,7 @@ def _sum(nothing: str) -> Callable[[Callable], Callable]:
 
 
 def _chain(hook: Callable) -> Callable:
-    """A hook whose first argument goes from one effect to the next."""
+    """A hook whose first argument each effect changes in turn."""
     arguments = list(signature(hook).parameters)
 
     def choose(fields: Mapping[str, Any]) -> Callable:

@@ -36,8 +36,8 @@ EFFECT = Effect(
 
 
 STATES = (SHARE,)
-# The few long implicit steps are done sooner than many short explicit ones where bristles answer this many
-# times faster than the input.
+# Where bristles settle this many times faster than the input, a few long implicit steps take less time than
+# many short explicit ones.
 STIFF = 300.0
 
 

@@ -1,14 +1,14 @@
-"""States that effects bring with them, behind the displacement and velocity of the mass.
+"""States of effects, which follow the displacement and velocity of the mass in a state vector.
 
-An effect lists the kinds of its own as ``STATES``. Where they stand in a state vector depends on which
-effects a record has; the accessors made here find their place when they are compiled.
+An effect lists the kinds of its states as ``STATES``. Their places depend on the effects that a record has;
+the accessors made here find them when they are compiled.
 """
 
 from collections.abc import Callable, Mapping
 from math import inf, pi
 from typing import Any
 
-from wedgesweep.compiled import by_record
+from wedgesweep.compiled import by_record, function_of
 from wedgesweep.hybrid.vectors import replaced
 
 # Kinds, and their natural sizes.
@@ -38,18 +38,13 @@ def _place(owner: str, number: int, fields: Mapping[str, Any]) -> int:
     return [each for each, _ in kinds(fields)].index(owner) + number
 
 
-def _plain(arguments: str, expression: str, **scope: Any) -> Callable:
-    exec(f"def function({arguments}):\n    return {expression}", scope)
-    return scope["function"]
-
-
 def state(owner: str, number: int) -> Callable:
     """Accessor (y, p) of one of an effect's states; 0 where a record does not have the effect."""
 
     def get(y, p): ...
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        return _plain("y, p", f"y[{_place(owner, number, fields)}]" if owner in fields else "0.0")
+        return function_of(["y", "p"], f"y[{_place(owner, number, fields)}]" if owner in fields else "0.0")
 
     return by_record(get, choose)
 
@@ -60,11 +55,8 @@ def set_state(owner: str, number: int) -> Callable:
     def put(y, value, p): ...
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        if owner not in fields:
-            return _plain("y, value, p", "y")
-        return _plain(
-            "y, value, p", f"replaced(y, {_place(owner, number, fields)}, value)", replaced=replaced
-        )
+        body = f"replaced(y, {_place(owner, number, fields)}, value)" if owner in fields else "y"
+        return function_of(["y", "value", "p"], body, replaced=replaced)
 
     return by_record(put, choose)
 
@@ -74,42 +66,37 @@ def place_of(owner: str, number: int) -> Callable:
 
     def place(p): ...
 
-    return by_record(place, lambda fields: _plain("p", str(_place(owner, number, fields))))
+    return by_record(place, lambda fields: function_of(["p"], str(_place(owner, number, fields))))
 
 
-def _of_all(function: Callable, expressions: Mapping[str, str]) -> Callable:
+def _of_all(expressions: Mapping[str, str]) -> Callable[[Callable], Callable]:
     """A function (p) that is a vector: for each state of a record the expression of its kind."""
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        return _plain("p", f"({', '.join(expressions[kind] for _, kind in kinds(fields))},)", pi=pi, inf=inf)
+        parts = ", ".join(expressions[kind] for _, kind in kinds(fields))
+        return function_of(["p"], f"({parts},)", pi=pi, inf=inf)
 
-    return by_record(function, choose)
+    return lambda function: by_record(function, choose)
 
 
+@_of_all(SIZES)
 def scales(p):
     """Natural size of each state."""
 
 
+@_of_all(SIZES | {TIME: "inf"})
 def error_scales(p):
     """What an integration error of each state is compared with; inf where there is none."""
 
 
-scales = _of_all(scales, SIZES)
-error_scales = _of_all(error_scales, SIZES | {TIME: "inf"})
-
-
+@_of_all(dict.fromkeys(SIZES, "False") | {TIME: "True"})
 def clocks(p):
     """Whether each state only counts time."""
 
 
-clocks = _of_all(clocks, dict.fromkeys(SIZES, "False") | {TIME: "True"})
-
-
+@_of_all(dict.fromkeys(SIZES, "False") | {VELOCITY: "True"})
 def velocities(p):
     """Whether each state is a velocity."""
-
-
-velocities = _of_all(velocities, dict.fromkeys(SIZES, "False") | {VELOCITY: "True"})
 
 
 def active(p):
@@ -122,7 +109,7 @@ def _choose_active(fields: Mapping[str, Any]) -> Callable:
     owners = list(dict.fromkeys(owner for owner, _ in kinds(fields) if owner))
     scope = {f"acts_{owner}": REGISTERED[owner].acts for owner in owners}
     parts = [f"acts_{owner}(p)" if owner else "True" for owner, _ in kinds(fields)]
-    return _plain("p", f"({', '.join(parts)},)", **scope)
+    return function_of(["p"], f"({', '.join(parts)},)", **scope)
 
 
-active = by_record(active, _choose_active)
+by_record(active, _choose_active)

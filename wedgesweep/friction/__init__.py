@@ -3,8 +3,8 @@
 A law is a file of its own with two smooth functions, ``static`` (the coefficient at the end of the
 sticking branch, or at which set-valued friction lets go) and ``sliding`` (beyond it), and the ``bound`` of
 both. It has three branches, -1, 0 and 1: sliding backward, the branch around v = 0, and sliding forward.
-Which branch holds is decided outside, so that no integrator ever steps across a corner. Under a set-valued
-law branch 0 means stuck.
+The contact mode says which branch holds, so that no integrator ever steps across a corner. Under a
+set-valued law branch 0 means stuck.
 """
 
 from collections.abc import Callable, Mapping
@@ -13,18 +13,18 @@ from inspect import signature
 from types import ModuleType
 from typing import Any
 
-from wedgesweep.compiled import by_record, inlined
+from wedgesweep.compiled import by_record, function_of, inlined
 from wedgesweep.effects import hooks
 from wedgesweep.friction.names import LAW_NAMES
 
-# The laws by name; a law's place is its code in parameter records. ``register`` adds one of one's own.
+# The laws by name; a law's place is its code in parameter records. ``register`` adds another.
 LAWS: dict[str, ModuleType] = {
     name: import_module(f"{__name__}.{name.replace('-', '_')}") for name in LAW_NAMES
 }
 
 
 def register(name: str, module: ModuleType) -> None:
-    """Add a law from a module of one's own."""
+    """Add a law that is not part of this package."""
     LAWS[name] = module
 
 
@@ -34,7 +34,7 @@ def code(name: str) -> int:
 
 
 def _of_the_law(function: Callable) -> Callable:
-    """A function of the law that a record names."""
+    """A function that calls that of the law which a record names."""
     arguments = list(signature(function).parameters)
 
     def choose(fields: Mapping[str, Any]) -> Callable:
@@ -42,11 +42,8 @@ def _of_the_law(function: Callable) -> Callable:
         chosen = calls[-1]
         for i in reversed(range(len(LAWS) - 1)):
             chosen = f"{calls[i]} if p.friction.law == {i} else ({chosen})"
-        scope: dict[str, Any] = {
-            f"f{i}": getattr(law, function.__name__) for i, law in enumerate(LAWS.values())
-        }
-        exec(f"def function({', '.join(arguments)}):\n    return {chosen}", scope)
-        return scope["function"]
+        functions = {f"f{i}": getattr(law, function.__name__) for i, law in enumerate(LAWS.values())}
+        return function_of(arguments, chosen, **functions)
 
     return by_record(function, choose)
 

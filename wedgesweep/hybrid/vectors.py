@@ -9,7 +9,7 @@ from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import overload
 
-from wedgesweep.compiled import INNER, inlined
+from wedgesweep.compiled import INNER, function_of, inlined
 
 _set_item: Any = tuple_setitem
 INLINE: Any = INNER | {"forceinline": True}
@@ -57,9 +57,7 @@ def _vector(array, like):
     if not isinstance(like, types.BaseTuple):
         return None
     parts = ", ".join(f"array[{i}]" for i in range(len(like)))
-    scope: dict[str, Any] = {}
-    exec(f"def parts(array, like):\n    return ({parts},)", scope)
-    return scope["parts"]
+    return function_of(("array", "like"), f"({parts},)")
 
 
 @inlined

@@ -29,7 +29,7 @@ MATRIX = np.array(
         [1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895, 1.0],
     ]
 )
-# What earlier increments, over the step, add to the right-hand side of a stage.
+# Right-hand side of a stage: coefficients of earlier increments, divided by the step.
 COUPLING = np.array(
     [
         [0.0, 0.0, 0.0, 0.0, 0.0],
@@ -40,12 +40,12 @@ COUPLING = np.array(
         [8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054],
     ]
 )
-# Share of the radian by which time is moved for a derivative.
+# Step of time for the derivative by differences (rad).
 MOVED = 1e-7
-# Share of the tolerance that a steady response wants of these long steps, and the error of a stiff slip
-# velocity that it allows, over the width in which it is stiff.
+# These steps are long: a steady response needs this share of the tolerance in them. The error of a stiff
+# velocity, over the width of the stiff range, may be larger by the second factor.
 TIGHTER, ON_RAMP = 0.1, 3000.0
-# Growth over a step that is still followed.
+# Largest growth of velocities over a step: an implicit method would damp what in truth runs away.
 LARGEST_GROWTH = 0.5
 
 
@@ -73,7 +73,7 @@ def _derivatives(t, y, k1, mode, p):
 def _inverse(by_state, places, h):
     """Inverse of the matrix of all stages, of the active states (Gauss and Jordan, largest pivots first).
 
-    Two to five states: the call of a library took a third of the whole step.
+    For two to five states a call of LAPACK would take a third of the time of a step.
     """
     n = places.size
     matrix, inverse = np.empty((n, n)), np.zeros((n, n))
@@ -148,7 +148,6 @@ def step(t, h, y, k1, mode, p, rtol):
     over = max(
         over_tolerance(error, y, last, tolerance, p), stiff_error(error, mode, p) / (ON_RAMP * tolerance)
     )
-    # RODAS's own polynomial is wrong by 1e-5 in the middle of steps whose ends are wrong by 1e-9: a cubic
-    # serves.
+    # RODAS's own dense output has errors of 1e-5 in steps whose ends have errors of 1e-9: a cubic is better.
     made = connected(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,)))
     return made, rate(t + 0.5 * h, inside(0.5, made), mode, p)[1], forces, over

@@ -2,12 +2,12 @@
 
 from wedgesweep.compiled import inner
 
-# Periods that are told apart from a response that does not repeat.
+# Longest period that is detected, in forcing periods.
 LONGEST_PERIOD = 8
-# A state of a longer period comes back this many times closer than it goes away in between.
+# With a period above one, a state comes back this many times closer than it moves in one forcing period.
 CLOSER = 1e3
-# A response seems to take several periods where its state comes back this many times closer after them than
-# after one.
+# A response may have a longer period if its state comes back this many times closer after that than after one
+# forcing period.
 SEEMS = 10.0
 
 
@@ -15,9 +15,9 @@ SEEMS = 10.0
 def detected_period(distances, tolerance):
     """Number of periods after which a state came back within the tolerance, 0 if it did not.
 
-    ``distances`` (LONGEST_PERIOD,): from where it was one period before, two, and so on. A spiral into a
-    fixed point comes close to itself every few turns, but ever closer to its last state, too: a longer
-    period counts only where the state goes far away in between.
+    ``distances`` (LONGEST_PERIOD,): from the state one period before, two periods before, and so on. A
+    spiral into a fixed point also comes close to itself after a few periods: a longer period counts only
+    where the state moves far away in between.
     """
     if distances[0] <= tolerance:
         return 1
@@ -29,7 +29,7 @@ def detected_period(distances, tolerance):
 
 @inner
 def guessed_period(distances):
-    """Periods that a response seems to take, from the same distances."""
+    """Likely period of a response that has not settled yet, from the same distances."""
     for n in range(2, LONGEST_PERIOD + 1):
         if distances[n - 1] * SEEMS < distances[0]:
             return n

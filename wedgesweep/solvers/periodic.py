@@ -1,7 +1,4 @@
-"""Steady responses of many cases, each started from a state nearby: what a fit asks for.
-
-See shooting.py for the way to a steady state.
-"""
+"""Steady responses of many cases by shooting (shooting.py), each from a state nearby: for fits."""
 
 from collections.abc import Sequence
 from math import ceil, pi
@@ -21,12 +18,12 @@ from wedgesweep.systems import grouped, state_count
 
 __all__ = ["OK", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
 
-# Time constants after which the lag of the velocity channel has forgotten how it began.
+# Time constants after which the lag of the velocity channel no longer depends on its start.
 LAG_TIMES = 16.0
 
 
 class Warm(NamedTuple):
-    """Where steady responses were found, a row a case, and so where to look for those of their neighbours.
+    """Start of a search for steady responses, one row per case: where those of neighbours were found.
 
     ``state`` (n, S) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
     periods (0: it does not repeat), ``map`` (n, S, S) the derivative of the state a period later by
@@ -38,7 +35,7 @@ class Warm(NamedTuple):
     map: Any
 
     def repeated(self, times: int) -> "Warm":
-        """All rows so many times, one after the other."""
+        """All rows, repeated as a block."""
         return Warm(*(np.concatenate([each] * times) for each in self))
 
     def of(self, rows: Any) -> "Warm":
@@ -46,7 +43,7 @@ class Warm(NamedTuple):
         return Warm(*(each[rows] for each in self))
 
     def where(self, chosen: np.ndarray, other: "Warm") -> "Warm":
-        """Rows from another where they are chosen (n,), else the own ones."""
+        """Rows from another where ``chosen`` (n,), else from this one."""
         found = Warm(*(each.copy() for each in self))
         for mine, its in zip(found, other, strict=True):
             mine[chosen] = its[chosen]
@@ -54,7 +51,7 @@ class Warm(NamedTuple):
 
 
 def at_rest(cases: int) -> Warm:
-    """No neighbour."""
+    """Start without neighbours."""
     n = state_count()
     return Warm(np.full((cases, n), np.nan), np.zeros(cases, np.int64), np.full((cases, n, n), np.nan))
 
@@ -65,7 +62,7 @@ def joined(some: Sequence[Warm]) -> Warm:
 
 
 class Periodic(NamedTuple):
-    """Steady responses, a row a case (SI units); NaN where there is none.
+    """Steady responses, one row per case (SI units); NaN where there is none.
 
     ``spectra`` (n, 2, H), complex: D_h, h = 1..H, of displacement x - y = -z and of its rate, as the sensors
     show them; ``warm``: where they were found. ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
@@ -97,7 +94,7 @@ def respond(
     Parameters
     ----------
     parameters : structured array, shape (n,)
-        See parameters.record.
+        See systems.suspension.parameters.record.
     warm : Warm, n rows
         Where to start from.
     tolerance : float
@@ -109,7 +106,7 @@ def respond(
     rtol : float
         Relative tolerance of a step.
     forces : bool
-        Look at the normal forces, too, which takes an extended case twice the time.
+        Also determine ``lifted``; with effects that have their own mechanics this doubles the time.
     """
     n = len(parameters)
     found = Periodic(
@@ -133,7 +130,7 @@ def respond(
 
 
 class Search(NamedTuple):
-    """When a response counts as steady, and after how many periods as one that is not."""
+    """When a response counts as steady, and after how many periods as not periodic."""
 
     tolerance: float
     most_periods: int
@@ -141,7 +138,7 @@ class Search(NamedTuple):
 
 @compiled
 def _respond_all(cases, rows, search, room, found, motion, period_map):
-    """Respond to the cases, which stand in these rows of all that is found."""
+    """Write the steady responses of the cases into these rows of ``found``."""
     for k in range(cases.size):
         i, case = rows[k], cases[k : k + 1]
         n = len(scales(case[0]))
@@ -152,7 +149,7 @@ def _respond_all(cases, rows, search, room, found, motion, period_map):
         )
         outcome, period, run, kept = settle(y, before, jacobian, shooting)
         if outcome == OK and not kept:
-            # Of a response that does not repeat, the mean over as many periods as there is room for.
+            # If the response does not repeat, its mean over as many periods as there is room for.
             kept = period if period else LONGEST_PERIOD
             clear(room.sums)
             outcome = period_map(run if period == 0 else 0, kept, y, case, True, room)
@@ -168,7 +165,7 @@ def _respond_all(cases, rows, search, room, found, motion, period_map):
 
 @compiled
 def _reduce(i, periods, room, found, motion):
-    """Write what the kept periods come to; ``motion`` (2, samples): displacement x - y and its rate."""
+    """Write the results of the kept periods; ``motion`` (2, samples): displacement x - y and its rate."""
     n = periods * room.samples_per_period
     response.mean_period(-room.x[:n], motion[0])
     response.mean_period(-room.velocity[:n], motion[1])
@@ -195,7 +192,7 @@ def samples(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Deflection (m) and velocity (m/s) as the sensors show them, shape (n, samples), and states at the end.
 
-    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, SIZE; a row with NaN
+    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, S; a row with NaN:
     at rest) and runs ``settle_periods`` before the kept ones. NaN where the case has no answer.
     """
     n, kept = len(parameters), periods * samples_per_period
@@ -221,7 +218,7 @@ class Sampled(NamedTuple):
 
 @compiled
 def _sample_all(cases, rows, spans, room, out, period_map):
-    """Run the cases, which stand in these rows: periods that are not kept, and those that are."""
+    """Run the cases of these rows; ``spans``: periods that are not kept, and periods that are."""
     for k in range(cases.size):
         i, case = rows[k], cases[k : k + 1]
         p = case[0]

@@ -1,11 +1,11 @@
-"""The way to a steady state: march, and Newton's method on the map from one phase 0 to another (shooting).
+"""Steady states by shooting: Newton's method for fixed points of the Poincare map, and plain integration.
 
-The map goes over as many forcing periods as the response seems to take, or a neighbour's does: one case
-may have several responses that all are stable, and a state belongs to the one to which it goes by itself.
-The map's derivative J (monodromy matrix) comes from differences, or from a neighbour; Broyden's update
-(1965) keeps it right from one step to the next. Steps of Newton's method must bring the state ever closer
-to its own image, or the run goes back to where marching had come. A response that J calls unstable, or
-whose mean position is free, is left to marching.
+The map spans as many forcing periods as the response seems to repeat after, or as a neighbour's does. A case
+may have several stable responses; plain integration decides which of them a start leads to. The derivative J
+of the map (monodromy matrix) comes from differences or from a neighbour, and Broyden's update (1965) adapts
+it from step to step. If a Newton step does not bring the state closer to its image, integration goes on from
+where it had stopped. It also finds the responses that Newton's method cannot: those that J shows to be
+unstable, and those whose mean position is not determined.
 """
 
 from typing import Any, NamedTuple
@@ -19,23 +19,24 @@ from wedgesweep.hybrid.state import OK
 from wedgesweep.hybrid.vectors import vector
 from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
 
-# Perturbation of the scaled state for J, at least NOISE times an integrator's tolerance, and the least step
-# that teaches J anything.
+# Perturbation of the scaled state for J, at least NOISE times the tolerance of a step, and the least step
+# after which J is updated.
 PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e2, 1e-4
-# Where Newton's method is not to be trusted: determinant of I - J, largest eigenvalue of J.
+# Limits of Newton's method: least determinant of I - J, largest eigenvalue of J.
 SINGULAR, UNSTABLE = 1e-3, 0.9999
-# Periods that are marched before Newton's method is tried, from rest and after it has failed.
+# Periods of plain integration before Newton's method is tried, from rest and after it has failed.
 NEWTON_INTERVAL = 8
-# Above STALE times the last distance J is made anew; with a fresh one more than GAIN is a failure.
+# If the distance is above STALE times the last one, J is computed again; with a new J, Newton's method has
+# failed if it is above GAIN times the last one.
 STALE, GAIN = 0.2, 0.5
-# Share of a period by which a clock grows if nothing resets it, less rounding; and what it reads, in
-# periods, in a response in which nothing does. It would grow for ever.
+# Share of a period by which a clock grows if nothing resets it, less rounding; and its reading, in periods,
+# in a response in which nothing ever does.
 GROWN, CONTACT_TIME_LIMIT = 1.0 - 1e-9, 100.0
 # Below this distance the next period may be the last one, and is kept.
 KEPT_BELOW = 1e-3
-# Periods marched of a response to an input that does not repeat.
+# Periods of integration of a response to an input that does not repeat.
 PERIODS_OF_NO_RESPONSE = 30
-# An extrapolated creep is taken where it repeats so much more closely.
+# An extrapolated state is taken if it reduces the distance to its image by this factor.
 EXTRAPOLATION_GAIN = 0.5
 
 
@@ -76,10 +77,7 @@ def _distance(a, b, size):
 
 @inner
 def _moving(y, periods, p):
-    """Which states carry over from phase 0 to the one some periods later.
-
-    A clock does if it was reset in between.
-    """
+    """Which states at phase 0 affect those some periods later; a clock does if it was reset in between."""
     now = vector(y, scales(p))
     moves = np.array(free(now, p))
     counts = clocks(p)
@@ -91,10 +89,10 @@ def _moving(y, periods, p):
 
 @inner
 def _run(y, periods, keeping, shooting):
-    """Run some periods; y moves along.
+    """Run some periods; y moves along. Returns the outcome.
 
-    A clock that was not reset in periods after which all else came back never will be, and neither will one
-    that was not in as many periods as a response may have.
+    A clock that was not reset although all other states came back never will be; nor will one that was not
+    reset in as many periods as a response may have.
     """
     before = y.copy()
     case = shooting.case
@@ -111,7 +109,7 @@ def _run(y, periods, keeping, shooting):
 
 @inner
 def monodromy(y, image, periods, moves, jacobian, shooting):
-    """Write J at y, whose image is known; returns the outcome and the periods it took."""
+    """Write J at y, whose image is known; returns the outcome and the periods run."""
     jacobian[:] = 0.0
     size = shooting.size
     run = 0
@@ -142,7 +140,7 @@ def _part(jacobian, moves):
 
 @inner
 def _stable_and_regular(jacobian, moves):
-    """Whether a derivative is known and calls the response stable, and its place determined."""
+    """Whether J is known, the response stable by it, and its position determined."""
     part = _part(jacobian, moves)
     n = part.shape[0]
     if not np.isfinite(part).all():
@@ -182,10 +180,10 @@ def _update(jacobian, y, image, before, image_before, size):
 
 @inner
 def newton_shooting(y, periods, jacobian, most, shooting):
-    """Newton's method from y for a state that comes back, with J made where it is not known or not right.
+    """Newton's method from y for a state that comes back; J is computed where it is unknown or out of date.
 
-    Returns whether y repeats now, the outcome and the periods run, of which the last ones are kept if so.
-    Where it fails y is the state with the shortest way to its own image that it has come to.
+    Returns whether y repeats now, the outcome and the periods run; if y repeats the last of them are kept.
+    If the method fails, y is the state closest to its own image so far.
     """
     p = shooting.case[0]
     size = shooting.size
@@ -229,10 +227,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
 
 @inner
 def _shoot(y, periods, jacobian, most, shooting):
-    """The response that Newton's method finds from y when it looks for one of so many periods.
-
-    Where it has a shorter period, the state hardly goes away in between: then that is looked for.
-    """
+    """Newton's method from y for a response of some periods, or of a divisor of them."""
     found, outcome, run = newton_shooting(y, periods, jacobian, most, shooting)
     if not found:
         return Found(outcome, 0, run, periods)
@@ -252,10 +247,10 @@ def _shoot(y, periods, jacobian, most, shooting):
 
 @inner
 def _extrapolated(y, last, before, moves):
-    """Limit of three states in a row (Aitken); the last of them where there is none in sight.
+    """Limit of three successive states (Aitken); the last of them where they do not converge.
 
-    What is at rest at phase 0 creeps by a slip per period, near breakaway ever more slowly: as 1/k after k
-    periods. There each extrapolation halves what is left, and does not overshoot.
+    A state at rest at phase 0 may creep by one slip per period, near breakaway ever more slowly: as 1/k after
+    k periods. There each extrapolation halves the distance to the limit and does not overshoot.
     """
     limit = y.copy()
     for i in range(y.size):
@@ -267,7 +262,7 @@ def _extrapolated(y, last, before, moves):
 
 @inner
 def _creep(y, past, count, shooting):
-    """Jump ahead in a creep of states that a contact holds at phase 0; the periods it took."""
+    """Extrapolate the creep of states that a contact holds at phase 0; returns the periods run."""
     p = shooting.case[0]
     size, moves = shooting.size, np.array(free(vector(y, scales(p)), p))
     last, before = past[(count - 1) % LONGEST_PERIOD], past[(count - 2) % LONGEST_PERIOD]
@@ -283,8 +278,8 @@ def _creep(y, past, count, shooting):
 def settle(y, periods, jacobian, shooting):
     """Find a state at phase 0 that repeats, from y (rest where it is NaN) and J (NaN: unknown).
 
-    ``periods``: if y is thought to lie close to it, so that Newton's method comes first, what the response
-    takes there; else 0. y and J move along; J is that over a period of the response.
+    ``periods``: period of the response that y should be close to, for which Newton's method is tried first;
+    0 if none is known. y and J are updated in place; J is that over one period of the response.
     """
     p = shooting.case[0]
     size, most, run = shooting.size, shooting.most_periods, 0
@@ -301,7 +296,7 @@ def settle(y, periods, jacobian, shooting):
             return found
         run = found.run
         if found.outcome != OK:
-            # The neighbour's state may lie where this case cannot go: rest is the start that decides.
+            # The neighbour's state may be impossible in this case: rest decides.
             y[:] = 0.0
     past, back = np.full((LONGEST_PERIOD, size.size), np.inf), np.empty(LONGEST_PERIOD)
     count = 0

@@ -1,4 +1,4 @@
-"""A step of an integrator with its dense output, and what its error comes to."""
+"""A step of an integrator with its dense output, and its error against the tolerance."""
 
 from math import sqrt
 from typing import Any, NamedTuple
@@ -28,7 +28,7 @@ class Step(NamedTuple):
 
 @inlined
 def connected(t, h, start, end, start_rate, end_rate, quartic):
-    """A step with Hermite's cubic through both ends, and a term of order 4 beyond it."""
+    """A step whose dense output is Hermite's cubic through both ends plus a term of order 4."""
     rise = combination(1.0, (1.0, -1.0), (end, start))
     bend = combination(1.0, (h, -1.0), (start_rate, rise))
     turn = combination(1.0, (1.0, -h, -1.0), (rise, end_rate, bend))
@@ -54,7 +54,7 @@ def slope(share, step):
 
 @inlined
 def over_tolerance(error, y, end, rtol, p):
-    """Root mean square, over the states that move, of errors over what the tolerance allows."""
+    """Error over the tolerance: root mean square over all states that are not zero."""
     scales = error_scales(p)
     total, count = 0.0, 0
     for i in range(len(y)):

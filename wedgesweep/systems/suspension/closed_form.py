@@ -27,7 +27,7 @@ from wedgesweep.systems.suspension.release import release
 
 # Scanned intervals per period of input or free vibration, whichever is shorter.
 SCAN = 16
-# Closer to the input frequency than this the forced and the free part nearly cancel.
+# Relative distance of both squared frequencies below which the forced and the free part nearly cancel.
 RESONANT = 1e-6
 # Nodes of the sums: quadrature intervals per period.
 INTERVALS = 12.0
@@ -142,11 +142,17 @@ def _rotated(phase, input_cos, input_sin, free_cos, free_sin):
     )
 
 
+@inlined
+def _angles(time, o, p):
+    """Cosine and sine of the angles by which input and free vibration turn in some time (s)."""
+    a, b = p.input.omega * time, o.frequency * time
+    return cos(a), sin(a), cos(b), sin(b)
+
+
 @inner
 def advanced(phase, time, o, p):
     """Phase some time (s) later."""
-    a, b = p.input.omega * time, o.frequency * time
-    return _rotated(phase, cos(a), sin(a), cos(b), sin(b))
+    return _rotated(phase, *_angles(time, o, p))
 
 
 @inlined
@@ -269,8 +275,7 @@ def slide(state, stop, o, p):
     """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
     t, (x, velocity), mode, last_event, _ = state
     step = 2.0 * pi / max(p.input.omega, o.frequency) / SCAN
-    a, b = p.input.omega * step, o.frequency * step
-    turn_a, turn_b, turn_c, turn_d = cos(a), sin(a), cos(b), sin(b)
+    turn = _angles(step, o, p)
     at_zero = last_event - COLUMN_NORMAL + COLUMN_FORCE if last_event >= COLUMN_NORMAL else -1
     if velocity == 0.0 or last_event == o.event:
         at_zero = SLIP
@@ -278,10 +283,7 @@ def slide(state, stop, o, p):
     now = _sample(phase, o, mode, p)
     while t < stop:
         span = min(step, stop - t)
-        if span == step:
-            later = _rotated(phase, turn_a, turn_b, turn_c, turn_d)
-        else:
-            later = advanced(phase, span, o, p)
+        later = _rotated(phase, *turn) if span == step else advanced(phase, span, o, p)
         following = _sample(later, o, mode, p)
         if _any_event(now, following, span):
             found, which = _first_event(phase, o, mode, span, (now, following), at_zero, p)
@@ -308,13 +310,6 @@ def _fastest(phase, low, high, rate, following, o, p):
         if jerk != 0.0:
             time = min(max(time - _acceleration(there, o, p) / jerk, low), high)
     return time
-
-
-@inlined
-def _angles(time, o, p):
-    """Cosine and sine by which input and free vibration turn in some time (s)."""
-    a, b = p.input.omega * time, o.frequency * time
-    return cos(a), sin(a), cos(b), sin(b)
 
 
 @inner
@@ -384,5 +379,5 @@ def follow(state, stop, p, keeping, recorder):
 @implement(closed_form, "suspension")
 @inlined
 def no_closed_form(state, stop, p, keeping, recorder):
-    """Effects with mechanics of their own are integrated."""
+    """No closed form: effects with their own mechanics are integrated."""
     return False, state.t, state.y, NO_EVENT

@@ -23,8 +23,7 @@ def determinant(column_mu, bolster_mu, p):
 def _response(wedge, vertical, lateral, mu, p):
     """Accelerations z'' and Q'' under forces on wedge (up), bolster and column (outward).
 
-    At rest the side frame does not accelerate, whatever carries it: with a fixture its acceleration is
-    part of what must vanish, and both statements have the same root.
+    At rest the side frame does not accelerate, so that its own support changes nothing.
     """
     g = p.geometry
     load = Loads(wedge * g.cos_column, wedge * g.sin_column, vertical, lateral, 0.0, 0.0)

@@ -1,7 +1,7 @@
 """Slip and friction coefficients of both wedge faces, with every effect on them.
 
-A face's own measure of slip is its velocity v in the plane, or with ``cross_slip`` the magnitude of the
-whole: that measure decides on its branch.
+The measure of slip of a face decides its branch: its velocity v in the plane, or with ``cross_slip`` the
+magnitude of the whole slip velocity.
 """
 
 from wedgesweep import friction
@@ -9,7 +9,7 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import column_compliance, cross_slip, directional_friction, presliding
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE, VELOCITY
 
-# Share of the threshold velocity below which a speed is not divided by.
+# Least speeds to divide by, as shares of the threshold velocity.
 SLOWEST, SLOWEST_RATE = 1e-3, 1e-12
 
 
@@ -27,13 +27,13 @@ def bolster_slip(y, p):
 
 @inlined
 def _yielding(ratio, y, p):
-    """Share of a slip velocity that the column's own motion makes."""
+    """Part of a slip velocity due to the motion of the column."""
     return ratio * column_compliance.velocity(y, p) if column_compliance.acts(p) else 0.0
 
 
 @inner
 def _out_of_plane(slip, t, p):
-    """Coefficient of a sliding face whose slip has a part out of the plane."""
+    """Coefficient in the plane of a face that slips out of the plane, too."""
     speed = max(cross_slip.speed(slip, t, p), SLOWEST * p.friction.v_t)
     return friction.sliding(speed, p) * slip / speed
 

@@ -1,4 +1,4 @@
-"""Jumps of friction that hold a velocity: Filippov's (1988) convex combination of both sides.
+"""Jumps of friction that hold a velocity: Filippov's convex combination of both sides (1988).
 
 A jump holds the slip of a face at its threshold, or the bolster at rest where friction depends on the sign
 of z'. Several may hold at once: then each vertex of the combination is a mode of its own, and the jumps
@@ -19,7 +19,7 @@ WIDTH, POWER = 6, 5
 
 @inner
 def _vertex(mode, bits, order, p):
-    """Mode at a vertex: bit i says on which side of the jump of ``order[i]`` it lies."""
+    """Mode at a vertex: bit i is the side of the jump of axis ``order[i]``."""
     for i in range(order.size):
         axis = order[i]
         mode = with_branch(mode, axis, side(branch(mode, axis), axis, (bits >> i) & 1), p)
@@ -57,7 +57,7 @@ def both_sides(t, y, mode, first, p, out):
 
 @inner
 def _resolve(axis, t, y, low, high, p):
-    """Combine two sides of a jump, into the first, so that its measure of slip stays."""
+    """Combine both sides of a jump, into the first, so that its measure of slip stays constant."""
     below = slip_rate(axis, t, y, low[0], low[1], p)
     above = slip_rate(axis, t, y, high[0], high[1], p)
     share = above / (above - below) if above != below else 0.5

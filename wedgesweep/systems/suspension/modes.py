@@ -7,8 +7,8 @@ from wedgesweep.effects import directional_friction, presliding
 
 # Displacement x from the frictionless equilibrium (m) and its rate: the first two states.
 X, VELOCITY = 0, 1
-# Friction axes: what a jump of friction can hold. Two event functions each: leave the branch toward lower,
-# toward higher slip velocity.
+# Friction axes: velocities that a jump of friction can hold. Each has two event functions: the branch ends
+# toward lower, or toward higher slip velocity.
 COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 4  # the event functions of the normal forces stand between
 AXES = 5
 # Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
@@ -104,7 +104,7 @@ def with_clock(mode, clock):
 
 @inner
 def slipping(direction, stop, clock, p):
-    """Mode of a set-valued law as z' has the given sign; ``clock`` = 1: about to, still at rest."""
+    """Mode of a set-valued law while z' has the given sign; ``clock`` = 1: about to slip, still at rest."""
     ratio = p.geometry.bolster_ratio
     bolster = direction if ratio > 0.0 else -direction
     if ratio == 0.0:
@@ -123,7 +123,7 @@ def side(value, axis, higher):
 
 @inner
 def next_branch(mode, place, to_jump, p):
-    """Mode behind a lower (even) or upper (odd) event of an axis, or held at the jump between both."""
+    """Mode after a lower (even) or upper (odd) event of an axis: the next branch, or held at the jump."""
     axis, upward = place // 2, place % 2
     now = branch(mode, axis)
     if abs(now) == HELD:

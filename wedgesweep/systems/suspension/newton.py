@@ -31,10 +31,10 @@ from wedgesweep.systems.suspension.modes import VELOCITY, X, with_signs
 
 # Normal forces below this share of the loads count as zero when the consistent signs are sought.
 ROUNDING = 1e-11
-# Newton's method for coefficients that depend on the load. As its error is squared at each step, a change of
-# both normal forces by this share is the last one that shows. Next to lift-off a force is rounding, and never
-# settles: then changes that end below this share of both will do.
-LOAD_ITERATIONS, LAST_CHANGE, NEXT_TO_NOTHING = 40, 1e-7, 1e-11
+# Newton's method for coefficients that depend on the load: most iterations, and the relative change of each
+# normal force at which it ends, as the error is squared in each iteration. Near lift-off one force is no more
+# than rounding error: then the changes together must be below the last number times both forces.
+LOAD_ITERATIONS, LAST_CHANGE, LIFT_OFF_CHANGE = 40, 1e-7, 1e-11
 
 
 class Forces(NamedTuple):
@@ -192,7 +192,7 @@ def _loaded_reactions(load, column_mu, bolster_mu, p):
         now = following
         if of_column <= LAST_CHANGE * abs(now.column) and of_bolster <= LAST_CHANGE * abs(now.bolster):
             return now, determinant
-    if of_column + of_bolster <= NEXT_TO_NOTHING * (abs(now.column) + abs(now.bolster)):
+    if of_column + of_bolster <= LIFT_OFF_CHANGE * (abs(now.column) + abs(now.bolster)):
         return now, determinant
     return UNDETERMINED, 0.0
 

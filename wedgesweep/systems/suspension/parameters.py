@@ -2,7 +2,7 @@
 
 The record is a one-element structured array with a part for each subject (``suspension``, ``friction``,
 ``input``, one for each effect, and ``geometry`` for what follows from them). Python always holds the full
-record; compiled code gets the smallest kit of parts that serves (``compact``), so that effects which are
+record; compiled code gets the smallest sufficient kit of parts (``compact``), so that effects which are
 off cost nothing.
 """
 
@@ -53,7 +53,7 @@ GEOMETRY = (
     "rest",  # z of the frictionless equilibrium (m)
 )
 
-# Kits of effects: none that need mechanics of their own; those that ``effects.register`` added alone; all.
+# Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects.
 BASE, OWN, ALL = 0, 1, 2
 # Coulomb friction that is regularised reaches mu_d at this velocity (m/s).
 REGULARISED_VELOCITY = 1e-6
@@ -61,7 +61,7 @@ REGULARISED_VELOCITY = 1e-6
 
 @cache
 def _kits(names: tuple[str, ...]) -> tuple[np.dtype, np.dtype, np.dtype]:
-    """Record types by kit. No type is the beginning of another: numba would take one for the other."""
+    """Record types by kit. No type is the beginning of another: numba would mistake one for the other."""
     simple = [name for name in names if not known.EFFECTS[name].extends]
     own = [name for name in names if name not in known.NAMES]
     plain = [name for name in simple if name not in own]
@@ -144,7 +144,7 @@ def record(
 
 
 def _set(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
-    """Put the numbers (SI) of an effect into a record: into its part, or what it adjusts."""
+    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
     module = known.REGISTERED[effect]
     if hasattr(module, "adjust"):
         module.adjust(p, **numbers)
@@ -211,8 +211,8 @@ def _always_well_posed(p: np.void, small: np.void) -> bool:
 
     Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one if
     and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They are
-    linear in each coefficient of friction, so that the extreme coefficients decide. Without a bound of
-    these it is not proved.
+    linear in each coefficient of friction, so that the extreme coefficients decide. Where no bound of these
+    is known the answer is no.
     """
     most = list(laws.LAWS.values())[p["friction"]["law"]].bound(p)
     for name in _acting(p):
@@ -225,7 +225,7 @@ def _always_well_posed(p: np.void, small: np.void) -> bool:
 
 
 def compact(rows: np.ndarray) -> np.ndarray:
-    """Full records, shape (n,), as the smallest kit that serves them all: what compiled code gets."""
+    """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
     kits = _kits(tuple(known.EFFECTS))
     kind = kits[int(rows["geometry"]["kit"].max(initial=BASE))]
     if kind == rows.dtype:

@@ -1,8 +1,8 @@
-"""How long set-valued friction holds the bolster of the base model: the release needs no integration.
+"""Time of breakaway of the base model from rest under set-valued friction, without integration.
 
-While it sticks only the base moves, so that the event functions are known functions of time: in closed
-form while both faces stay closed, else sampled over short intervals, with a look for a minimum between
-samples where the samples turn.
+While the bolster sticks only the base moves, so that the event functions are known functions of time. The
+time of breakaway has a closed form while both normal forces stay positive. Elsewhere the event functions
+are sampled, and their minimum is sought between samples where it may be negative.
 """
 
 from math import asin, ceil, inf, nan, pi, sin
@@ -44,7 +44,7 @@ def _lowest(t, held):
 
 @inner
 def _breakaway_input(state, direction, p):
-    """Base acceleration at which a stuck bolster slips in a direction; NaN if a face opens there."""
+    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative."""
     mode = slipping(direction, 0, 1, p)
     column_mu, bolster_mu = coefficients(0.0, state.y, mode, p)
     mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
@@ -58,11 +58,11 @@ def _breakaway_input(state, direction, p):
 
 @inner
 def release(state, stop, p):
-    """Time at which a stuck bolster lets go, and the event that says so.
+    """Time at which a stuck bolster breaks away, and the event.
 
-    The event is NO_EVENT if nothing happens before ``stop``, and LOCKED where release has no unique answer.
-    Between the two base accelerations that free the bolster it is stuck; with both faces closed there
-    these are known, and so are the phases at which a harmonic base motion reaches them.
+    The event is NO_EVENT if nothing happens before ``stop``, and LOCKED where breakaway is not unique. The
+    bolster sticks between two base accelerations. With positive normal forces these are known, and so are
+    the phases at which a harmonic base motion reaches them.
     """
     forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
     if not (p.geometry.always_well_posed and forward < backward):
@@ -91,7 +91,7 @@ def release(state, stop, p):
 
 @inner
 def scanned_release(state, stop, p):
-    """``release`` for any base motion and for normal forces of either sign: sampled, then bisected."""
+    """As ``release``, from samples: for any base motion and for normal forces of either sign."""
     out = np.empty(EVENTS)
     context = _Held(state.y, state.mode, p, out)
     step = 2.0 * np.pi / p.input.omega / SAMPLES_PER_PERIOD

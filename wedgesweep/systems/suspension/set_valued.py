@@ -1,4 +1,4 @@
-"""Rest under a set-valued law: what holds the bolster, and which way it goes when friction lets go."""
+"""A bolster at rest under a set-valued law: whether it sticks, and in which direction it breaks away."""
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
@@ -6,19 +6,19 @@ from wedgesweep.excitation import acceleration
 from wedgesweep.systems.suspension.modes import ContactMode, slipping, with_clock
 from wedgesweep.systems.suspension.newton import ROUNDING, solve_for_signs
 
-# Phase (rad) after which what has just passed zero is safely away from it.
+# Phase (rad) after which a quantity that passes zero now exceeds rounding errors.
 LOOK_AHEAD = 1e-8
 
 
 @inner
 def about_to_slip(t, y, direction, stop, p):
-    """Mode in which set-valued friction lets go in a direction, its forces, and whether they are unique."""
+    """Mode on the verge of slip in a direction, its forces, and whether they are unique."""
     return solve_for_signs(t, y, slipping(direction, stop, 1, p), p)
 
 
 @inlined
 def breakaway(t, y, direction, stop, p):
-    """Acceleration z'' (m/s^2) if set-valued friction let go in a direction."""
+    """Acceleration z'' (m/s^2) if the bolster broke away in a direction."""
     return about_to_slip(t, y, direction, stop, p)[1].acceleration
 
 
@@ -41,7 +41,7 @@ def mode_at_zero_velocity(t, y, stop, p):
 
 @inner
 def breakaway_direction(t, y, direction, stop, p):
-    """Direction in which the bolster leaves rest; with next to no friction the event may be noise."""
+    """Direction of breakaway; with hardly any friction that of the event may be noise."""
     ahead = t + LOOK_AHEAD / p.input.omega
     onward = direction * breakaway(ahead, y, direction, stop, p)
     back = -direction * breakaway(ahead, y, -direction, stop, p)

@@ -1,7 +1,6 @@
-"""Where the suspension with effects is stiff: on a steep ramp of friction, and under short bristles.
+"""Where the suspension with effects is stiff: on a steep ramp of friction, and with short bristles.
 
-A face that a steep ramp all but holds answers within nanoseconds; an explicit step could not be longer
-than that.
+The slip velocity of a face on a steep ramp settles within nanoseconds, which would limit an explicit step.
 """
 
 from math import sqrt
@@ -13,14 +12,14 @@ from wedgesweep.hybrid.interface import implement
 from wedgesweep.systems.suspension.faces import bolster_slip, column_slip
 from wedgesweep.systems.suspension.modes import VELOCITY
 
-# The kit of records that has all effects is known by this one.
+# A record with this effect has them all.
 WITH_EFFECTS = "column_compliance"
-# Share of a state's size by which it is moved for a derivative, and of a ramp on both sides of a velocity.
+# Steps for derivatives by differences: share of a state's size, and of a ramp for central ones by velocities.
 STEP, ON_BOTH_SIDES = 1e-7, 1e-4
-# Friction that answers this many times faster than the input is stiff.
+# Friction that settles this many times faster than the input is stiff.
 STIFF = 2000.0
-# Part of the time in which a ramp lets a velocity settle.
-FIRST = 0.1
+# First step on a ramp, as a share of the time in which a velocity settles there.
+FIRST_STEP = 0.1
 
 
 @implement(interface.stiff, WITH_EFFECTS)
@@ -35,7 +34,7 @@ def stiff(mode, p):
 @implement(interface.outruns, WITH_EFFECTS)
 @inlined
 def outruns(h, y, p):
-    """Whether bristles answer so fast that they alone limit an explicit step."""
+    """Whether bristles settle so fast that they alone limit an explicit step."""
     return presliding.outruns(h, column_slip(y, p), p)
 
 
@@ -44,9 +43,9 @@ def outruns(h, y, p):
 def settling_step(p):
     """A step (s) that resolves how a face settles on its ramp after an event.
 
-    A longer one may be accurate enough but looks past that, and then sees no motion away from the event.
+    A longer one may be accurate enough, but misses the motion away from the event.
     """
-    return FIRST * p.friction.v_t / (p.friction.mu_s * p.suspension.gravity)
+    return FIRST_STEP * p.friction.v_t / (p.friction.mu_s * p.suspension.gravity)
 
 
 @implement(interface.perturbation, WITH_EFFECTS)
@@ -54,8 +53,8 @@ def settling_step(p):
 def perturbation(place, y, p):
     """Step of a state for a derivative of the rate, and whether it goes to both sides.
 
-    A ramp bends within its own width, as normal forces depend on friction and friction on them. A smaller
-    step there is lost in velocities that are large: then the order of the method is, too.
+    Along a ramp the rate is nonlinear, as normal forces depend on friction and friction on them. A much
+    smaller step would be lost to rounding where velocities are large, and with it the order of the method.
     """
     if states.velocities(p)[place]:
         return ON_BOTH_SIDES * p.friction.v_t, True
@@ -67,7 +66,7 @@ def perturbation(place, y, p):
 def growth(by_state, p):
     """Rate (1/s) at which friction on its ramps drives the velocities of bolster and column apart.
 
-    An implicit method would damp what in truth runs away, and step over a wedge that locks.
+    An implicit method would damp what in truth grows, and step across a wedge that locks.
     """
     column = column_compliance.velocity_place(p)
     a, b = by_state[VELOCITY, VELOCITY], by_state[VELOCITY, column]

@@ -1,4 +1,4 @@
-"""The mode in which a run begins, and what comes after each event."""
+"""The mode in which a run begins, and the transition at each event."""
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
@@ -32,8 +32,8 @@ from wedgesweep.systems.suspension.set_valued import (
     mode_at_zero_velocity,
 )
 
-# Moments after a rest by which the input has moved the bolster, through whatever is between.
-OUTSET = 4
+# Short steps after which the input has moved a bolster at rest, also through the effects' own states.
+STEPS_FROM_REST = 4
 
 
 @inlined
@@ -47,19 +47,19 @@ def rate(t, y, mode, p):
 
 @inlined
 def _without_age(y, mode, p):
-    """The state, younger by a slip if the time at rest does not run."""
+    """The state with the time at rest set to zero where it does not run."""
     return y if mode.clock else ageing.rejuvenated(y, p)
 
 
 @inner
 def _velocity_soon(t, y, mode, p):
-    """Rate of z a few moments after a rest.
+    """Rate of z a moment after rest.
 
-    Where a run begins forces balance but for rounding, and the input may have to pass through other states
-    before it moves the bolster.
+    At the start of a run forces balance to within rounding errors, and the input may have to pass through
+    other states before it moves the bolster.
     """
     moment = LOOK_AHEAD / p.input.omega
-    for i in range(OUTSET):
+    for i in range(STEPS_FROM_REST):
         y = weighted(y, moment, (1.0,), (rate(t + (i + 0.5) * moment, y, mode, p)[0],))
     return y[VELOCITY]
 
@@ -112,7 +112,7 @@ def initial_mode(t, y, p):
 
 @inner
 def well_posed(t, y, mode, p):
-    """Whether the state has exactly one pair of normal forces; if not, the wedge locks."""
+    """Whether exactly one pair of normal forces is possible; if not, the wedge locks."""
     if p.geometry.always_well_posed:
         return True
     if stuck(mode, p):
@@ -124,8 +124,8 @@ def well_posed(t, y, mode, p):
 def _after_zero_force(t, y, mode, p):
     """Mode after a normal force has become zero, and whether it is unique.
 
-    Both forces may vanish at once, a force may only touch zero, and signs at zero are noise: look a moment
-    ahead, and further where the force is still too small to have a sign.
+    Both forces may vanish at once, and a force may only touch zero; its sign at zero is noise. So the signs
+    are those a moment later, or further on while a force is still too small to have a sign.
     """
     ahead = LOOK_AHEAD / p.input.omega
     slope = rate(t, y, mode, p)[0]
@@ -143,7 +143,7 @@ def _after_zero_force(t, y, mode, p):
 
 @inner
 def _continuous(axis, y, p):
-    """Whether friction goes over from one branch of an axis to the next without a jump."""
+    """Whether friction is continuous where one branch of an axis meets the next."""
     if axis >= GUIDE:
         return axis == GUIDE
     if axis == COLUMN and presliding.acts(p):
@@ -154,7 +154,7 @@ def _continuous(axis, y, p):
 
 @inner
 def _cross_discontinuity(t, y, mode, place, p):
-    """Mode behind the end of a branch, or held at the jump where the side behind points back to it."""
+    """Mode on the next branch, or held at the jump where the next branch points back to it."""
     axis = place // 2
     was_held = abs(branch(mode, axis)) == HELD
     across, now, certain = resolve_mode(t, y, next_branch(mode, place, False, p), p)
