@@ -186,7 +186,7 @@ def test_directional_friction_mirrors(law):
             effects={"directional_friction": {"asymmetry": asymmetry}},
         )
         cold = periodic.at_rest(1)
-        found = periodic.respond(record, cold, 1e-8, 400, 256, 7, 1e-9)
+        found = periodic.respond(record, cold, periodic.Accuracy(1e-8, 400, 1e-9), 256, 7)
         assert found.outcome[0] == periodic.OK
         return found.extremes[0]
 
@@ -306,11 +306,11 @@ def test_any_effects_end_with_a_finite_answer_or_a_reason(law, names, place, bet
         effects={name: typical(name, place) for name in names},
     )
     cold = periodic.at_rest(1)
-    found = periodic.respond(record, cold, 1e-6, 30, 128, 5, 1e-6)
+    found = periodic.respond(record, cold, periodic.Accuracy(1e-6, 30, 1e-6), 128, 5)
     assert np.isfinite(found.spectra[0]).all() == (found.outcome[0] == periodic.OK)
     # The proof that a wedge never locks is not needed to find that it does.
     record["geometry"]["always_well_posed"] = 0
-    again = periodic.respond(record, cold, 1e-6, 30, 128, 5, 1e-6)
+    again = periodic.respond(record, cold, periodic.Accuracy(1e-6, 30, 1e-6), 128, 5)
     assert (again.outcome[0] == periodic.OK) == (found.outcome[0] == periodic.OK)
 
 

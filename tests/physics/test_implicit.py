@@ -77,11 +77,11 @@ def test_bristles_become_no_work_as_they_become_short():
 
 def test_short_bristles_are_friction_that_holds_but_for_the_time_of_their_way():
     base = parameters.record("coulomb", 3e-4, OMEGA_N)
-    true = periodic.respond(base, periodic.at_rest(1), 1e-9, 400, 256, 8, 1e-9).spectra[0]
+    true = periodic.respond(base, periodic.at_rest(1), periodic.Accuracy(1e-9, 400, 1e-9), 256, 8).spectra[0]
     apart = []
     for length in (4e-8, 1e-8):
         case = parameters.record("coulomb", 3e-4, OMEGA_N, effects={"presliding": {"length": length}})
-        found = periodic.respond(case, periodic.at_rest(1), 1e-6, 400, 256, 8, 1e-6)
+        found = periodic.respond(case, periodic.at_rest(1), periodic.Accuracy(1e-6, 400, 1e-6), 256, 8)
         apart.append(np.abs(found.spectra[0] - true).max() / np.abs(true).max())
     # From a turn the slip grows evenly: the way takes a time as its square root.
     assert apart[0] < 0.01

@@ -43,7 +43,9 @@ def test_the_mean_over_a_doubled_period_does_not_depend_on_the_tolerance():
     """A response whose two halves differ by 0.1 to 1 % of the input."""
     row = parameters.record("static-dynamic", 3.4e-3, 0.36 * OMEGA_N)
     nothing = periodic.at_rest(1)
-    coarse, fine = (periodic.respond(row, nothing, tol, 60, 256, 16, tol) for tol in (1e-6, 1e-9))
+    coarse, fine = (
+        periodic.respond(row, nothing, periodic.Accuracy(tol, 60, tol), 256, 16) for tol in (1e-6, 1e-9)
+    )
     assert (coarse.warm.period[0], fine.warm.period[0]) == (2, 2)
     np.testing.assert_allclose(coarse.spectra, fine.spectra, atol=1e-5 * np.abs(fine.spectra).max())
     assert coarse.stuck[0] == pytest.approx(fine.stuck[0], abs=1e-5)
@@ -55,7 +57,7 @@ def test_faces_that_do_not_slip_in_every_period_are_not_taken_to_rest_for_ever()
     leaning = {"column_angle": np.radians(-4.0)}
     row = parameters.record("exponential", 0.467e-3, 2.0 * np.pi * 7.661, leaning, effects=ageing)
     nothing = periodic.at_rest(1)
-    found = periodic.respond(row, nothing, TOLERANCE, 200, 256, 8, TOLERANCE)
+    found = periodic.respond(row, nothing, periodic.Accuracy(TOLERANCE, 200, TOLERANCE), 256, 8)
     periods = int(found.warm.period[0])
     assert periods == 2
     x, _, _ = periodic.samples(row, nothing.state, 200, periods, 256, TOLERANCE)

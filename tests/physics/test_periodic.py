@@ -24,7 +24,7 @@ def records(name=None, factor=1.0, cases=CASES):
 
 def respond(rows, warm=None, tolerance=1e-8):
     warm = warm or periodic.at_rest(len(rows))
-    return periodic.respond(rows, warm, tolerance, 400, 256, 7, 1e-9)
+    return periodic.respond(rows, warm, periodic.Accuracy(tolerance, 400, 1e-9), 256, 7)
 
 
 @pytest.mark.parametrize("name", [None, *REPEATING])
@@ -63,7 +63,9 @@ def test_it_is_what_a_long_run_ends_in(name):
 @pytest.mark.parametrize("name", [None, "viscous_damping", "guide_friction"])
 def test_forces_tell_for_how_long_a_normal_force_is_negative(name):
     rows = records(name, cases=(("coulomb", 2.2, 0.3e-3), ("static-dynamic", 2.2, 3e-3)))
-    found = periodic.respond(rows, periodic.at_rest(2), 1e-8, 400, 256, 7, 1e-9, forces=True)
+    found = periodic.respond(
+        rows, periodic.at_rest(2), periodic.Accuracy(1e-8, 400, 1e-9), 256, 7, forces=True
+    )
     assert found.lifted[0] == 0.0 < found.lifted[1]
     for i in range(2):
         run = event_driven.solve(

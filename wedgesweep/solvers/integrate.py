@@ -123,9 +123,9 @@ def _first_zero(place, start, end, from_zero):
 def first_event(step, mode, last_event, forces, p, work):
     """Share and place of the first event of a step; (1, NO_EVENT) if there is none.
 
-    ``forces``: near the middle of the step, where they tell which event functions are worth a closer look,
-    and at its end. Where the system may lock the middle is looked at itself: an event that is missed there
-    could hide that it does.
+    ``forces``: near the middle of the step and at its end. The event functions there show which of them are
+    worth a closer look. Where the system may lock, they are evaluated in the middle itself: a missed event
+    could hide that it locks.
     """
     middle, within = inside(0.5, step), forces[0]
     if not never_locks(p):

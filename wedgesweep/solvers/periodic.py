@@ -16,7 +16,7 @@ from wedgesweep.solvers.period_map import memory, period_map
 from wedgesweep.solvers.shooting import Shooting, settle
 from wedgesweep.systems import grouped, state_count
 
-__all__ = ["OK", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
+__all__ = ["OK", "Accuracy", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
 
 # Time constants after which the lag of the velocity channel no longer depends on its start.
 LAG_TIMES = 16.0
@@ -79,14 +79,24 @@ class Periodic(NamedTuple):
     lifted: Any
 
 
+class Accuracy(NamedTuple):
+    """When a response counts as steady.
+
+    ``tolerance``: change of the state per repetition, over input amplitude and velocity; ``most_periods``:
+    without a repetition in so many the response counts as not periodic; ``rtol``: of a step.
+    """
+
+    tolerance: float
+    most_periods: int
+    rtol: float
+
+
 def respond(
     parameters: np.ndarray,
     warm: Warm,
-    tolerance: float,
-    most_periods: int,
+    accuracy: Accuracy,
     samples_per_period: int,
     harmonics: int,
-    rtol: float,
     forces: bool = False,
 ) -> Periodic:
     """Steady responses of parameter records, shape (n,).
@@ -97,14 +107,10 @@ def respond(
         See systems.suspension.parameters.record.
     warm : Warm, n rows
         Where to start from.
-    tolerance : float
-        Change of the state per repetition, over input amplitude and velocity, that counts as steady.
-    most_periods : int
-        Periods after which a response counts as not periodic.
+    accuracy : Accuracy
+        When a response counts as steady.
     samples_per_period, harmonics : int
         Samples from which the harmonics are taken, and how many.
-    rtol : float
-        Relative tolerance of a step.
     forces : bool
         Also determine ``lifted``; with effects that have their own mechanics this doubles the time.
     """
@@ -118,26 +124,17 @@ def respond(
         np.full(n, np.nan),
         np.full(n, np.nan),
     )
-    room = memory(rtol, samples_per_period, energies=forces, forces=False)
+    room = memory(accuracy.rtol, samples_per_period, energies=forces, forces=False)
     motion = np.full((n, 2, samples_per_period), np.nan)
     for rows, cases in grouped(parameters):
-        _respond_all(
-            cases, rows, Search(tolerance, most_periods), room, found, motion, period_map(cases.dtype)
-        )
+        _respond_all(cases, rows, accuracy, room, found, motion, period_map(cases.dtype))
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
     _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found
 
 
-class Search(NamedTuple):
-    """When a response counts as steady, and after how many periods as not periodic."""
-
-    tolerance: float
-    most_periods: int
-
-
 @compiled
-def _respond_all(cases, rows, search, room, found, motion, period_map):
+def _respond_all(cases, rows, accuracy, room, found, motion, period_map):
     """Write the steady responses of the cases into these rows of ``found``."""
     for k in range(cases.size):
         i, case = rows[k], cases[k : k + 1]
@@ -145,7 +142,7 @@ def _respond_all(cases, rows, search, room, found, motion, period_map):
         y, before = found.warm.state[i, :n].copy(), found.warm.period[i]
         jacobian = found.warm.map[i, :n, :n].copy()
         shooting = Shooting(
-            case, period_map, search.tolerance, search.most_periods, room, np.array(scales(case[0]))
+            case, period_map, accuracy.tolerance, accuracy.most_periods, room, np.array(scales(case[0]))
         )
         outcome, period, run, kept = settle(y, before, jacobian, shooting)
         if outcome == OK and not kept:

@@ -47,7 +47,8 @@ def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitud
 
 def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
     """Steady responses to parameter records (n,)."""
-    found = periodic.respond(rows, warm, tolerance, MOST_PERIODS, SAMPLES_PER_PERIOD, harmonics, tolerance)
+    accuracy = periodic.Accuracy(tolerance, MOST_PERIODS, rtol=tolerance)
+    found = periodic.respond(rows, warm, accuracy, SAMPLES_PER_PERIOD, harmonics)
     return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
 
 
