@@ -94,7 +94,9 @@ def test_both_sides_are_steady_states(tmp_path, steep):
     swept = small_sweep.sweep(tmp_path, STEEP)
     line = swept.together[0]
     both = continuation.there_and_back(line)
-    found, ends = batch.solve_batch(swept.parameters[both], both, swept.settings, swept.dtype, continuation=True)
+    found, ends = batch.solve_batch(
+        swept.parameters[both], both, swept.settings, swept.dtype, continuation=True
+    )
     (up, down), (states, back) = np.split(found, 2), np.split(ends, 2)
     stored = steep.isel(friction_law=0, amplitude=0)
     assert stored["amplitude_ratio"].values.tolist() == up["amplitude_ratio"].tolist()
