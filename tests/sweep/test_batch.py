@@ -211,11 +211,11 @@ def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):
     if status != "ok":
         assert status in ("locked", "solver_failure")
         assert found["message"]
-        assert np.isnan([found[name] for name in NUMBERS]).all()
+        assert np.isnan([found[name] for name in NUMBERS.names]).all()
         return
     # These are not defined for what does not move.
     undefined = {"phase_lag", "minimum_normal_force", "lift_off_fraction"}
-    assert np.isfinite([found[name] for name in NUMBERS if name not in undefined]).all()
+    assert np.isfinite([found[name] for name in NUMBERS.names if name not in undefined]).all()
     assert np.isfinite(found["displacement_harmonics"]).all()
     assert 0.0 <= found["stick_fraction"] <= 1.0
     assert found["peak_to_peak"] >= 0.0

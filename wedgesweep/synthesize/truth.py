@@ -66,7 +66,7 @@ class Truth:
             effects=self.effects,
         )
         if test.stray_phase_deg is not None:
-            record[f"{STRAY}_phase"] = np.radians(test.stray_phase_deg)
+            record[STRAY]["phase"] = np.radians(test.stray_phase_deg)
         return record
 
 
