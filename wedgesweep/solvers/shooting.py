@@ -189,6 +189,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
     shortest, last, fresh, run = np.inf, np.inf, False, 0
+    judged = False
     while run < most:
         image = y.copy()
         keeping = last < KEPT_BELOW or run == 0
@@ -207,9 +208,13 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         if now < shortest:
             shortest = now
             best[:] = image
-        if run > periods and np.isfinite(jacobian).all():
+        if run == periods and now <= CLOSER * shooting.tolerance:
+            # All but steady: another run costs less than a derivative.
+            y[:], last = image, now
+            continue
+        if judged:
             _update(jacobian, y, image, before, image_before, size)
-        if now > STALE * last or (run == periods and not _stable_and_regular(jacobian, moves)):
+        if now > STALE * last or not (judged or _stable_and_regular(jacobian, moves)):
             if (fresh and now > GAIN * last) or run + periods * (1 + moves.sum()) > most:
                 break
             outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
@@ -219,6 +224,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
                 break
         else:
             fresh = False
+        judged = True
         before[:], image_before[:], last = y, image, now
         y[:] = _newton_step(y, image, jacobian, moves, size)
     y[:] = best
