@@ -1,1 +1,0 @@
-"""Hybrid systems: smooth modes, events between them, and what every solver needs of both."""

@@ -1,1 +1,0 @@
-"""The friction wedge suspension of a three-piece bogie, as a half model."""
