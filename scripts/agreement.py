@@ -14,10 +14,11 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
-from wedgesweep import parameters, response
+from wedgesweep import response
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.systems.suspension import parameters
 
 REPORT = Path(__file__).parent.parent / "docs" / "agreement.txt"
 CASES, SEED = 200, 2024
@@ -84,7 +85,7 @@ def random_case(number):
 
 def ratio(solve, record, rtol):
     """Amplitude ratio, status and lift-off fraction; NaN where there is none."""
-    window = Window(float(record["omega"][0]), SETTLE_PERIODS, KEPT_PERIODS, 64)
+    window = Window(float(record["input"]["omega"][0]), SETTLE_PERIODS, KEPT_PERIODS, 64)
     try:
         numbers = response.evaluate(solve(record, window, rtol, 600.0), record, 1).numbers
     except CaseError as error:

@@ -8,10 +8,8 @@ import numpy as np
 import plain
 import workload
 
-from wedgesweep import tally
 from wedgesweep.simulate import Settings, respond
 from wedgesweep.solvers import event_driven
-from wedgesweep.solvers.march import workspace
 from wedgesweep.sweep import batch, dataset
 
 LADDER = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
@@ -47,11 +45,11 @@ def _settings(method, rtol):
 def loop_alone(records, rtol):
     """event_driven.run_batch: the compiled loop, with one harmonic."""
     cases, settings = np.concatenate(records), _settings("event-driven", rtol)
-    settle = np.array([settings.window(omega).settle_periods for omega in cases["omega"]])
-    plan = event_driven.Plan(settings.kept_periods, SAMPLES_PER_PERIOD, False, 0.0, 0)
-    out = event_driven.empty_batch(len(cases), 1, 0)
-    event_driven.run_batch(cases, settle, plan, tally.empty(), workspace(rtol), out)
-    return out.numbers[:, 0]
+    settle = settings.settling(cases["input"]["omega"])
+    from_rest = event_driven.BatchSettings(settings.kept_periods, SAMPLES_PER_PERIOD, False, 0.0, 0)
+    batch = event_driven.empty_batch(len(cases), 1, 0)
+    event_driven.run_batch(cases, settle, from_rest, rtol, batch)
+    return batch.numbers["amplitude_ratio"]
 
 
 def to_records(records, rtol):

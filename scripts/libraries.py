@@ -10,7 +10,9 @@ from importlib.util import find_spec
 import numpy as np
 import smooth
 from scipy.integrate import odeint
-from workload import sample_times, turning_point_ratio
+from workload import numbers, sample_times, turning_point_ratio
+
+from wedgesweep.systems import compact
 
 ABSOLUTE = 1e-2  # absolute tolerance over the relative one; the state is scaled to order one
 MOST_STEPS = 1_000_000
@@ -18,7 +20,7 @@ MOST_STEPS = 1_000_000
 
 def _times(record):
     """Start and samples (s)."""
-    return np.concatenate([[0.0], sample_times(float(record["omega"][0]))])
+    return np.concatenate([[0.0], sample_times(float(record["input"]["omega"][0]))])
 
 
 def _ratio(times, states, record):
@@ -26,14 +28,14 @@ def _ratio(times, states, record):
     if not np.isfinite(states).all():
         return np.nan
     position, velocity = states[1:].T
-    return turning_point_ratio(times[1:], position, velocity * record["omega"][0], 1.0)
+    return turning_point_ratio(times[1:], position, velocity * record["input"]["omega"][0], 1.0)
 
 
 def scipy_lsoda(record, rtol):
     # odeint, because it makes fewer Python calls a step than solve_ivp.
     times = _times(record)
     options = {"rtol": rtol, "atol": ABSOLUTE * rtol, "mxstep": MOST_STEPS, "tfirst": True}
-    return _ratio(times, odeint(smooth.rate_of, np.zeros(2), times, (record,), **options), record)
+    return _ratio(times, odeint(smooth.rate_of, np.zeros(2), times, (compact(record),), **options), record)
 
 
 def numbalsoda(record, rtol):
@@ -41,7 +43,7 @@ def numbalsoda(record, rtol):
 
     times = _times(record)
     states, success = lsoda(
-        smooth.rate_at.address, np.zeros(2), times, record, rtol, ABSOLUTE * rtol, MOST_STEPS
+        smooth.rate_at.address, np.zeros(2), times, compact(record), rtol, ABSOLUTE * rtol, MOST_STEPS
     )
     return _ratio(times, states, record) if success else np.nan
 
@@ -55,15 +57,14 @@ def cvode(record, rtol):
         rtol=rtol,
         atol=ABSOLUTE * rtol,
         max_num_steps=MOST_STEPS,
-        userdata=record,
+        userdata=compact(record),
     ).solve(times, np.zeros(2))
     return _ratio(times, run.y, record) if run.success else np.nan
 
 
 def diffrax(record, rtol):
-    p = {name: float(record[name][0]) for name in record.dtype.names}
     times = _times(record)
-    states = _diffrax_solve()(times, p, rtol)
+    states = _diffrax_solve()(times, numbers(record), rtol)
     return _ratio(times, np.asarray(states), record)
 
 

@@ -9,18 +9,18 @@ from math import tanh
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from workload import SMOOTHING, sample_times, turning_point_ratio
+from workload import SMOOTHING, numbers, sample_times, turning_point_ratio
 
 
 def coefficient(law, velocity, p):
     """Signed coefficient of friction."""
-    speed = abs(velocity) / p["threshold_velocity"]
+    speed = abs(velocity) / p["v_t"]
     if law == "coulomb":
-        return p["dynamic"] * tanh(velocity / SMOOTHING)
+        return p["mu_d"] * tanh(velocity / SMOOTHING)
     if speed <= 1.0:
-        return p["static"] * velocity / p["threshold_velocity"]
-    sliding = p["dynamic"] * np.sign(velocity)
-    return sliding if law == "static-dynamic" else sliding * speed ** p["velocity_exponent"]
+        return p["mu_s"] * velocity / p["v_t"]
+    sliding = p["mu_d"] * np.sign(velocity)
+    return sliding if law == "static-dynamic" else sliding * speed ** p["exponent"]
 
 
 def rate(t, y, law, p):
@@ -52,7 +52,7 @@ def rate(t, y, law, p):
 
 def ratio(record, law, rtol):
     """Amplitude ratio of one run from rest over 1.5 s."""
-    p = {name: float(record[name][0]) for name in record.dtype.names}
+    p = numbers(record)
     times = sample_times(p["omega"])
     atol = rtol * 1e-2 * np.array([p["amplitude"], p["amplitude"] * p["omega"]])
     run = solve_ivp(

@@ -5,38 +5,42 @@ tanh(v / 0.02 mm/s); the regularised laws are as they stand. Friction acts with 
 normal forces change their sign.
 """
 
-from math import sin, tanh
+from math import tanh
 
 import numba
 import numpy as np
 from workload import SMOOTHING
 
 from wedgesweep import friction
-from wedgesweep.damper import loads, reactions
-from wedgesweep.parameters import RECORD
+from wedgesweep.systems import compact
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.modes import ContactMode
+from wedgesweep.systems.suspension.newton import Coefficients, loads, reactions
 
 Pointer = numba.types.CPointer(numba.float64)
+RECORD = compact(parameters.record("coulomb", 1.0, 1.0)).dtype
+# Nothing but friction depends on the mode here.
+MODE = ContactMode(1, 1, 1, 1, 1, 0, 0, 0)
 compiled = numba.njit(error_model="numpy")
 
 
 @compiled
 def _coefficient(velocity, p):
-    if p.set_valued:
-        return p.dynamic * tanh(velocity / SMOOTHING)
-    return friction.coefficient(velocity, friction.branch_at(velocity, p), p)
+    if p.friction.set_valued:
+        return p.friction.mu_d * tanh(velocity / SMOOTHING)
+    return friction.coefficient(velocity, friction.branch_at(velocity, p), p.friction.mu_s, p)
 
 
 @compiled
 def _acceleration(t, x, velocity, p):
-    base = -p.amplitude * p.omega**2 * sin(p.omega * t)
-    along, into, vertical = loads(x, velocity, base, 0, p)
-    column_mu = _coefficient(p.column_ratio * velocity, p)
-    bolster_mu = _coefficient(p.bolster_ratio * velocity, p)
-    now = reactions(along, into, vertical, column_mu, bolster_mu, p)
+    load = loads(t, (x, velocity), MODE, p)
+    column_mu = _coefficient(p.geometry.column_ratio * velocity, p)
+    bolster_mu = _coefficient(p.geometry.bolster_ratio * velocity, p)
+    now = reactions(load, Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[0]
     for column, bolster in ((1, -1), (-1, 1), (-1, -1)):
         if now.column > 0.0 and now.bolster > 0.0:
             break
-        other = reactions(along, into, vertical, column * column_mu, bolster * bolster_mu, p)
+        other = reactions(load, Coefficients(column * column_mu, bolster * bolster_mu, 0.0, 0.0), p)[0]
         if column * other.column > 0.0 and bolster * other.bolster > 0.0:
             return other.acceleration
     return now.acceleration
@@ -45,9 +49,10 @@ def _acceleration(t, x, velocity, p):
 @compiled
 def rate(t, y, rates, p):
     """Write the derivative of the scaled state."""
-    size = p.amplitude * p.omega
-    rates[0] = p.omega * y[1]
-    rates[1] = _acceleration(t, p.amplitude * y[0], size * y[1], p) / size
+    amplitude, omega = p.input.amplitude, p.input.omega
+    size = amplitude * omega
+    rates[0] = omega * y[1]
+    rates[1] = _acceleration(t, amplitude * y[0], size * y[1], p) / size
 
 
 @compiled
@@ -85,7 +90,7 @@ def jax_rate(t, y, p):
     wedge = p["wedge_preload"] - p["wedge_spring"] * r * p["cos_column"] * z - p["wedge_mass"] * weight
     vertical = -p["bolster_spring"] * z - p["bolster_mass"] * weight
     into = wedge * p["sin_column"]
-    # Newton's equations of damper.reactions for the four pairs of signs at once.
+    # Newton's equations of newton.reactions for the four pairs of signs at once.
     column_sign, bolster_sign = jnp.array([1.0, 1.0, -1.0, -1.0]), jnp.array([1.0, -1.0, 1.0, -1.0])
     column_mu = column_sign * _jax_coefficient(r * velocity, p)
     bolster_mu = bolster_sign * _jax_coefficient(p["bolster_ratio"] * velocity, p)
@@ -104,10 +109,9 @@ def jax_rate(t, y, p):
 def _jax_coefficient(velocity, p):
     from jax import numpy as jnp
 
-    scaled = velocity / p["threshold_velocity"]
+    scaled = velocity / p["v_t"]
     speed = jnp.maximum(jnp.abs(scaled), 1.0)
-    sliding = (
-        p["dynamic"] * jnp.sign(velocity) * jnp.where(p["law"] == 2.0, speed ** p["velocity_exponent"], 1.0)
-    )
-    regular = jnp.where(jnp.abs(scaled) <= 1.0, p["static"] * scaled, sliding)
-    return jnp.where(p["set_valued"] > 0.0, p["dynamic"] * jnp.tanh(velocity / SMOOTHING), regular)
+    falls = p["law"] == friction.code("exponential")
+    sliding = p["mu_d"] * jnp.sign(velocity) * jnp.where(falls, speed ** p["exponent"], 1.0)
+    regular = jnp.where(jnp.abs(scaled) <= 1.0, p["mu_s"] * scaled, sliding)
+    return jnp.where(p["set_valued"] > 0.0, p["mu_d"] * jnp.tanh(velocity / SMOOTHING), regular)

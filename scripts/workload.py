@@ -4,8 +4,8 @@ from itertools import product
 
 import numpy as np
 
-from wedgesweep import parameters
 from wedgesweep.simulate import Settings
+from wedgesweep.systems.suspension import parameters
 
 OMEGA_N = (5100 / 0.70) ** 0.5
 PERIODS_KEPT = 3
@@ -19,6 +19,12 @@ def records(law, cases=None):
     """Parameter records of (beta, amplitude in m) pairs, each of shape (1,)."""
     cases = product(BETAS, AMPLITUDES) if cases is None else cases
     return [parameters.record(law, amplitude, beta * OMEGA_N) for beta, amplitude in cases]
+
+
+def numbers(record):
+    """All that a record, shape (1,), says of suspension, friction and input, as one dict of numbers."""
+    parts = ("suspension", "friction", "input", "geometry")
+    return {name: float(record[part][name][0]) for part in parts for name in record.dtype[part].names}
 
 
 def sample_times(omega):

@@ -223,14 +223,14 @@ def test_poincare_samples_are_one_per_period_at_phase_0(dataset):
 
 def test_friction_curves(dataset):
     settings = config.parse(dataset.attrs["config"])
-    parameters = settings.record(settings.case_list()[0])[0]
+    parameters = {law: settings.record(config.Case(law, 1.0, 1e-3))[0] for law in LAWS}
     for law in LAWS:
-        velocity, coefficient = friction_laws.curve(law, parameters, 4e-3)
+        velocity, coefficient = friction_laws.curve(law, parameters[law], 4e-3)
         assert (np.diff(velocity) >= 0.0).all()
         assert coefficient == pytest.approx(-coefficient[::-1])
         peak = 0.29 if law == "coulomb" else 0.32
         assert coefficient.max() == pytest.approx(peak)
-    jump = friction_laws.curve("coulomb", parameters, 4e-3)
+    jump = friction_laws.curve("coulomb", parameters["coulomb"], 4e-3)
     assert sorted(jump[1][jump[0] == 0.0]) == [-0.29, 0.29]
 
 

@@ -1,6 +1,7 @@
 """Imports run one way (table below), and only the command line prints or exits."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,15 +12,21 @@ PACKAGE = Path(__file__).parent.parent / "wedgesweep"
 FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
 
 NUMERICS = (
-    *("outcome.py", "quantity.py", "parameters.py", "excitation.py", "damper.py", "contact.py", "tally.py"),
-    *("friction/", "effects/", "solvers/", "response.py", "simulate.py"),
+    *("compiled.py", "inner_code.py", "outcome.py", "quantity.py", "excitation.py", "sensor.py"),
+    *("friction/", "effects/", "hybrid/", "systems/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
     *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report"),
     "diagnosis_result",
 )
+MECHANICS = ("friction", "effects", "excitation")
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
+    # A solver knows a system by hybrid/interface.py, and by the kits of its records.
+    ("hybrid/",): tuple(f"wedgesweep.{name}" for name in (*MECHANICS, "systems", "solvers", "response")),
+    ("solvers/",): tuple(f"wedgesweep.{name}" for name in (*MECHANICS, "systems.suspension")),
+    ("friction/", "effects/"): ("wedgesweep.systems", "wedgesweep.solvers"),
+    ("systems/",): ("wedgesweep.solvers", "wedgesweep.response"),
     ("config/",): ("xarray", "joblib", "wedgesweep.sweep", "wedgesweep.measured"),
     ("measured/",): (
         "xarray",
@@ -81,6 +88,26 @@ def test_imported_in_its_own_place_only(module):
     users = [name for name, path in FILES.items() if imports_any(path, [module])]
     assert users
     assert [name for name in users if not name.startswith(ONLY_IN[module])] == []
+
+
+def identifiers(path):
+    """Words of all names in a file but those of NumPy, those of imports and of attributes included."""
+    nodes = [
+        node for node in ast.walk(ast.parse(path.read_text())) if not ast.unparse(node).startswith("np.")
+    ]
+    for node in nodes:
+        named = (getattr(node, field, None) for field in ("id", "attr", "arg", "name", "asname", "module"))
+        yield from (
+            word for name in named if isinstance(name, str) for word in re.split(r"[._]", name.lower())
+        )
+
+
+def test_solvers_know_no_part_of_the_suspension():
+    parts = {"wedge", "bolster", "column", "suspension"}
+    files = [name for name in FILES if name.startswith(("hybrid/", "solvers/"))]
+    named = {name: parts.intersection(identifiers(FILES[name])) for name in files}
+    assert files
+    assert {name: found for name, found in named.items() if found} == {}
 
 
 def test_only_the_command_line_prints_or_exits():

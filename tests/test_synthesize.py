@@ -8,7 +8,7 @@ import pytest
 
 from tests.command import invoke
 from tests.fixture_measured import MEASURED, lines, write
-from wedgesweep import config, measured, parameters
+from wedgesweep import config, measured
 from wedgesweep.measured.noise_estimate import estimate_noise
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
@@ -16,6 +16,7 @@ from wedgesweep.synthesize.motion import Clock, steady
 from wedgesweep.synthesize.names import NOISES
 from wedgesweep.synthesize.noise import NOISES as BY_NAME
 from wedgesweep.synthesize.noise import white
+from wedgesweep.systems.suspension import parameters
 
 TRUE = """\
 title = "true"

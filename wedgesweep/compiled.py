@@ -4,8 +4,9 @@ numba's own cache looks only at the file of the function itself, so that an edit
 a stale caller behind. A cache folder per state of the compiled sources rules that out.
 """
 
+import inspect
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -13,7 +14,9 @@ from typing import Any, TypeVar, cast
 import numba
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
+from numba.extending import intrinsic, overload
+
+from wedgesweep.inner_code import InnerCompiler
 
 PACKAGE = Path(__file__).parent
 
@@ -39,23 +42,36 @@ numba.config.CACHE_DIR = str(CACHE_DIR)  # type: ignore[attr-defined]
 Function = TypeVar("Function", bound=Callable)
 
 
-# A division by zero gives inf or NaN, as in numpy; threads run at once; nobody calls these from C, and
-# without a way to do so they compile in nine tenths of the time.
-OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+# A division by zero gives inf or NaN, as in numpy. Threads run without the interpreter's lock. Nothing calls
+# these functions from C, and without C wrappers they compile in nine tenths of the time.
+# Without the last option a function inherits ``forceinline`` from its callers.
+OPTIONS: dict[str, Any] = {
+    "error_model": "numpy",
+    "nogil": True,
+    "no_cfunc_wrapper": True,
+    "forceinline": False,
+}
+# Any: stubs of numba know other options of ``overload``.
+INNER: Any = {**OPTIONS, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
 
 
 def compiled(function: Function) -> Function:
-    """Compile with numba."""
-    return cast(Function, numba.njit(**OPTIONS)(function))
+    """Compile a function that Python calls."""
+    return cast(Function, numba.njit(cache=True, **OPTIONS)(function))
+
+
+def inner(function: Function) -> Function:
+    """Compile a function that only compiled functions call; see inner_code.py."""
+    return cast(Function, numba.njit(**INNER)(function))
 
 
 def inlined(function: Function) -> Function:
-    """``compiled``, and copied into its callers: for what is short and called in the innermost loops."""
-    return cast(Function, numba.njit(forceinline=True, **OPTIONS)(function))
+    """As ``inner``, and copied into its callers: for short functions in the innermost loops."""
+    return cast(Function, numba.njit(**INNER | {"forceinline": True})(function))
 
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """LLVM code of an array, or of a tuple of such, that nobody counts the users of."""
+    """LLVM value of an array, or of a tuple of arrays, without reference counting."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         array.meminfo = cgutils.get_null_value(array.meminfo.type)
@@ -68,10 +84,10 @@ def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
 
 
 def _borrowed(typing_context: Any, value: Any) -> Any:
-    """The same array, or tuple of arrays, of which the caller keeps the original while it is in use.
+    """The same array, or tuple of arrays, without reference counting; the caller keeps the original alive.
 
-    numba counts the users of an array at every call, in steps that hold up the processor: for short functions
-    that took two thirds of their time. What is borrowed is not counted.
+    numba counts references to an array at every call, with atomic operations: they took two thirds of the
+    time of short functions.
     """
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -86,8 +102,8 @@ borrowed = cast(Callable[[Any], Any], intrinsic(_borrowed))
 class Pointer(types.WrapperAddressProtocol):
     """A compiled function as an argument of compiled code.
 
-    Its callers hold an address, not another copy of all that it calls: they compile in a fraction of
-    the time. ``arguments`` are examples of its arguments, ``result`` is numba's type of what it returns.
+    Its callers hold its address instead of a copy of its code, and compile in a fraction of the time.
+    ``arguments`` are examples of its arguments, ``result`` is numba's type of what it returns.
     """
 
     def __init__(self, function: Callable, result: Any, arguments: tuple) -> None:
@@ -99,3 +115,46 @@ class Pointer(types.WrapperAddressProtocol):
 
     def signature(self) -> Any:
         return self._signature
+
+
+def function_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
+    """A function of these arguments that returns an expression: numba compiles it like any other."""
+    exec(f"def function({', '.join(arguments)}):\n    return {body}", scope)
+    return cast(Callable, scope["function"])
+
+
+def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
+    """A function for compiled code, made anew for every type of its parameter record ``p``.
+
+    ``choose`` gets the fields of the record's type and returns the plain function to compile, so that
+    what a record has no fields for costs nothing. Python calls ``function`` itself.
+    """
+    arguments = list(inspect.signature(function).parameters)
+    place = arguments.index("p")
+
+    def chosen(*kinds: Any) -> Callable | None:
+        record = kinds[place]
+        return choose(record.fields) if isinstance(record, types.Record) else None
+
+    listed = function_of(arguments, f"chosen({', '.join(arguments)})", chosen=chosen)
+    overload(function, jit_options=INNER | {"forceinline": True})(listed)
+    return function
+
+
+def forward(arguments: Sequence[str], target: Callable) -> Callable:
+    """A plain function that passes its arguments on to compiled code."""
+    return function_of(arguments, f"target({', '.join(arguments)})", target=target)
+
+
+def term(owner: str, off: str) -> Callable[[Function], Function]:
+    """Let a function of a record p act where the record has a part named ``owner``.
+
+    For other records it is the expression ``off`` of its arguments, which costs nothing.
+    """
+
+    def decorate(function: Function) -> Function:
+        arguments = list(inspect.signature(function).parameters)
+        present, absent = forward(arguments, inlined(function)), function_of(arguments, off)
+        return by_record(function, lambda fields: present if owner in fields else absent)
+
+    return decorate

@@ -5,26 +5,30 @@ from math import atan2, cos, inf, nan, pi, sin
 
 import numpy as np
 
-from wedgesweep import excitation, sensor
+from wedgesweep import sensor
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import acting, stuck
-from wedgesweep.damper import Contact
 from wedgesweep.solvers.trajectory import Trajectory
+from wedgesweep.systems.suspension.parameters import compact
 
-# Names of the numbers in the order in which ``reduce`` returns them (see dataset.VARIABLES).
-NUMBERS = (
-    "amplitude_ratio",
-    "peak_to_peak",
-    "peak_velocity",
-    "mean_displacement",
-    "stick_fraction",
-    "stick_phases",
-    "minimum_normal_force",
-    "lift_off_fraction",
-    "dissipated_energy",
-    "supplied_energy",
-    "phase_lag",
-    "periodicity",
+# The numbers of a response (see dataset.VARIABLES), a record.
+NUMBERS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "amplitude_ratio",
+            "peak_to_peak",
+            "peak_velocity",
+            "mean_displacement",
+            "stick_fraction",
+            "stick_phases",
+            "minimum_normal_force",
+            "lift_off_fraction",
+            "dissipated_energy",
+            "supplied_energy",
+            "phase_lag",
+            "periodicity",
+        )
+    ]
 )
 # A fundamental below this share of the input amplitude has no meaningful phase.
 NO_MOTION = 1e-9
@@ -79,53 +83,40 @@ def _change(signal, periods):
 
 
 @compiled
-def reduce(tally, x, velocity, periods, p, numbers, spectra):
-    """Write the numbers, shape (len(NUMBERS),), and the spectra of displacement and velocity.
+def reduce(sums, x, velocity, periods, p, numbers, spectra):
+    """Write the numbers, a record of ``NUMBERS``, and the spectra of displacement and velocity.
 
     ``x`` and ``velocity`` are the samples of the kept window; ``spectra`` has shape (2, n, 2): displacement
     or velocity, harmonic, real or imaginary part. Both are as the sensors show them.
     """
     fourier(-x, periods, spectra[0])
     fourier(-velocity, periods, spectra[1])
-    peak_to_peak = tally.highest - tally.lowest
-    slipping_time = tally.time - (tally.stuck_time if p.set_valued else 0.0)
+    gain, amplitude = p.displacement_gain.scale, p.input.amplitude
+    slipping_time = sums.time - (sums.stuck_time if p.friction.set_valued else 0.0)
     # The window closes on itself: sticking that runs over its end is one phase.
-    onsets = tally.onsets - tally.began_stuck * tally.is_stuck
-    peak_to_peak *= p.displacement_gain_scale
-    numbers[0] = 0.5 * peak_to_peak / p.amplitude
-    numbers[1] = peak_to_peak
-    numbers[2] = tally.peak_velocity
-    numbers[3] = -tally.integral / tally.time * p.displacement_gain_scale
-    numbers[4] = tally.stuck_time / tally.time
-    numbers[5] = onsets / periods
-    numbers[6] = tally.normal_force if tally.normal_force < inf else nan
-    numbers[7] = tally.lifted_time / slipping_time if slipping_time > 0.0 else nan
-    numbers[8] = tally.dissipated / periods
-    numbers[9] = tally.supplied / periods
-    numbers[10] = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], p.amplitude)
-    numbers[11] = _change(x, periods) / p.amplitude
+    onsets = sums.onsets - sums.began_stuck * sums.is_stuck
+    numbers.peak_to_peak = (sums.highest - sums.lowest) * gain
+    numbers.amplitude_ratio = 0.5 * numbers.peak_to_peak / amplitude
+    numbers.peak_velocity = sums.peak_velocity
+    numbers.mean_displacement = -sums.integral / sums.time * gain
+    numbers.stick_fraction = sums.stuck_time / sums.time
+    numbers.stick_phases = onsets / periods
+    numbers.minimum_normal_force = sums.normal_force if sums.normal_force < inf else nan
+    numbers.lift_off_fraction = sums.lifted_time / slipping_time if slipping_time > 0.0 else nan
+    numbers.dissipated_energy = sums.dissipated / periods
+    numbers.supplied_energy = sums.supplied / periods
+    numbers.phase_lag = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], amplitude)
+    numbers.periodicity = _change(x, periods) / amplitude
     sensor.apply_to_spectra(spectra, p)
-    if p.velocity_lag_time > 0.0:
-        numbers[2] = np.abs(channels(x, velocity, periods, p)[1]).max()
+    if p.velocity_lag.time > 0.0:
+        numbers.peak_velocity = np.abs(channels(x, velocity, periods, p)[1]).max()
 
 
 @compiled
 def channels(x, velocity, periods, p):
     """Deflection and velocity over whole periods of a kept window as the sensors show them."""
-    step = 2.0 * pi / p.omega * periods / velocity.size
-    return p.displacement_gain_scale * x, sensor.lagged(velocity, step, True, p)
-
-
-@compiled
-def normal_forces(t, x, velocity, contacts, p, out):
-    """Write the normal forces on column and bolster (N; NaN while stuck), shape (2, n)."""
-    for i in range(t.size):
-        row = contacts[i]
-        contact = Contact(int(row[0]), int(row[1]), int(row[2]), int(row[3]), int(row[4]))
-        now = acting(x[i], velocity[i], excitation.acceleration(t[i], p), contact, p)
-        out[0, i], out[1, i] = now.column, now.bolster
-        if stuck(contact, p):
-            out[:, i] = nan
+    step = 2.0 * pi / p.input.omega * periods / velocity.size
+    return p.displacement_gain.scale * x, sensor.lagged(velocity, step, True, p)
 
 
 @dataclass(frozen=True)
@@ -143,19 +134,19 @@ class Response:
 def evaluate(trajectory: Trajectory, parameters: np.ndarray, harmonics: int) -> Response:
     """Reduce a trajectory to its response."""
     samples = trajectory.samples
-    numbers, spectra = np.empty(len(NUMBERS)), np.empty((2, harmonics, 2))
-    p, tally = parameters[0], trajectory.tally[0]
-    reduce(tally, samples.x, samples.velocity, trajectory.periods, p, numbers, spectra)
+    numbers, spectra = np.zeros(1, NUMBERS), np.empty((2, harmonics, 2))
+    p = compact(parameters)[0]
+    reduce(trajectory.sums[0], samples.x, samples.velocity, trajectory.periods, p, numbers[0], spectra)
     x, velocity = channels(samples.x, samples.velocity, trajectory.periods, p)
     waveforms = {
         "displacement": -x,
         "velocity": -velocity,
         "normal_force_column": samples.normal[0],
         "normal_force_bolster": samples.normal[1],
-        "stuck": np.abs(samples.contact[:, 0]) != 1,
+        "stuck": samples.sticks,
     }
     return Response(
-        dict(zip(NUMBERS, numbers.tolist(), strict=True)),
+        {name: float(numbers[name][0]) for name in NUMBERS.names or ()},
         {"displacement_harmonics": spectra[0], "velocity_harmonics": spectra[1]},
         waveforms,
     )

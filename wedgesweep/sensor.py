@@ -16,15 +16,15 @@ SERIES_BELOW, SERIES_TERMS = 1.0, 20
 @compiled
 def transfer(harmonic, p):
     """Complex factors of a harmonic of displacement and of velocity, channel over motion."""
-    lag = 1.0 / (1.0 + 1j * harmonic * p.omega * p.velocity_lag_time)
-    return complex(p.displacement_gain_scale), lag
+    lag = 1.0 / (1.0 + 1j * harmonic * p.input.omega * p.velocity_lag.time)
+    return complex(p.displacement_gain.scale), lag
 
 
 @compiled
 def apply_to_spectra(spectra, p):
     """Turn spectra (2, n, 2) of a motion into those of its channels, in place."""
-    spectra[0] *= p.displacement_gain_scale
-    if p.velocity_lag_time == 0.0:
+    spectra[0] *= p.displacement_gain.scale
+    if p.velocity_lag.time == 0.0:
         return
     for i in range(spectra.shape[1]):
         seen = complex(spectra[1, i, 0], spectra[1, i, 1]) * transfer(i + 1, p)[1]
@@ -62,9 +62,9 @@ def _weights(ratio):
 @compiled
 def lagged(velocity, step, periodic, p):
     """Velocity channel of samples ``step`` (s) apart; without ``periodic`` it begins in balance."""
-    if p.velocity_lag_time == 0.0:
+    if p.velocity_lag.time == 0.0:
         return velocity.copy()
-    ratio, n = step / p.velocity_lag_time, velocity.size
+    ratio, n = step / p.velocity_lag.time, velocity.size
     a, b, c, d = _weights(ratio)
     keeps = exp(-ratio)
     out = np.empty(n)

@@ -45,8 +45,8 @@ class Settings:
 
 
 def trajectory(parameters: np.ndarray, settings: Settings) -> Trajectory:
-    """Run one case; parameters as from parameters.record. Raises CaseError."""
-    window = settings.window(float(parameters["omega"][0]))
+    """Run one case; parameters as from systems.suspension.parameters.record. Raises CaseError."""
+    window = settings.window(float(parameters["input"]["omega"][0]))
     # Only the one that is asked for: scipy takes a quarter of a second to load.
     solver = import_module(f"wedgesweep.solvers.{settings.method.replace('-', '_')}")
     return solver.solve(parameters, window, settings.rtol, settings.case_timeout)

@@ -11,7 +11,8 @@ import pytest
 
 from wedgesweep import config
 from wedgesweep.config import Case
-from wedgesweep.parameters import FRICTION, SUSPENSION
+from wedgesweep.friction.quantities import FRICTION
+from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 SWEEP = '[sweep]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.1\n'
 CASE = '[[sweep.case]]\nfriction_law = "coulomb"\nbeta = 0.4\namplitude_mm = 0.3\n'
@@ -92,10 +93,10 @@ def test_record_holds_the_case_in_si():
     read = config.parse(text)
     record = read.record(read.case_list()[0])
     assert record.shape == (1,)
-    assert record["amplitude"] == 1e-4
-    assert record["omega"] == read.sweep.omega_n
-    assert record["wedge_angle"] == pytest.approx(pi / 6)
-    assert record["guide_friction_force"] == 2.0
+    assert record["input"]["amplitude"] == 1e-4
+    assert record["input"]["omega"] == read.sweep.omega_n
+    assert record["suspension"]["wedge_angle"] == pytest.approx(pi / 6)
+    assert record["guide_friction"]["force"] == 2.0
 
 
 def test_resolved_config_reads_back_exactly():

@@ -12,7 +12,8 @@ from wedgesweep import config
 from wedgesweep.config import Case
 from wedgesweep.config.declarations import ROOT
 from wedgesweep.effects import EFFECTS
-from wedgesweep.parameters import FRICTION, SUSPENSION
+from wedgesweep.friction.quantities import FRICTION
+from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 CONFIGS = sorted((Path(__file__).parents[2] / "configs").glob("*.toml"))
 GRID = {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 0.1}
@@ -82,7 +83,7 @@ def test_breakaway_covers_the_experiment():
 def test_paper_y0_rests_where_the_paper_says():
     read = shipped("paper-y0")
     record = read.record(read.case_list()[0])
-    assert record["rest"][0] == pytest.approx(-2.1941e-3, rel=1e-8)
+    assert record["geometry"]["rest"][0] == pytest.approx(-2.1941e-3, rel=1e-8)
     assert read.sweep.omega_n == 85.3565
     np.testing.assert_allclose(frequencies(read)[[14, 21]], [20.0, 30.0], rtol=1e-12)
     np.testing.assert_allclose(read.sweep.beta, shipped("paper").sweep.beta, rtol=2e-6)

@@ -28,7 +28,7 @@ def recorded(phases, seed):
     model = config.parse(MODEL)
     stray = {"stray_vibration": {"acceleration": ACCELERATION, "frequency": TONE}}
     rows = simulation.records(model, "static-dynamic", stray, 2.0 * pi * FREQUENCIES, AMPLITUDES)
-    rows["stray_vibration_phase"] = phases
+    rows["stray_vibration"]["phase"] = phases
     x, velocity, _ = periodic.samples(rows, periodic.at_rest(3).state, 40, 9, PER_PERIOD, 1e-8)
     count = round(PERIODS * PER_PERIOD)
     signals = -np.stack([x, velocity], axis=1)[..., :count]

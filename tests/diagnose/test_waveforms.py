@@ -71,7 +71,7 @@ def test_the_base_supplies_what_friction_takes():
     supplied = waveforms.input_energy(data, fit, fit.evaluation.response.harmonics[:, 0, 0])
     records = simulation.records(data.model, data.law, {}, data.omega, data.amplitude)
     for energy, record in zip(supplied, np.split(records, data.tests), strict=True):
-        run = event_driven.solve(record, Window(float(record["omega"][0]), 60, 2, 256), 1e-9, 60.0)
+        run = event_driven.solve(record, Window(float(record["input"]["omega"][0]), 60, 2, 256), 1e-9, 60.0)
         taken = response.evaluate(run, record, 1).numbers["dissipated_energy"]
         assert energy == pytest.approx(taken, rel=1e-4)
 

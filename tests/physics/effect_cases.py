@@ -4,6 +4,7 @@ from math import cos, exp, hypot, log, sin
 
 import numpy as np
 
+from tests.physics.compiled_mechanics import owned
 from wedgesweep.effects import EFFECTS
 
 # Where in the range that a fit searches a quantity is taken; not its middle, which may be neutral.
@@ -47,36 +48,38 @@ def mild(name):
 
 def coefficient(velocity, across, at_rest, p):
     """Signed coefficient of a face by PHYSICS.md and DIAGNOSIS.md; ``at_rest`` (s), None while it slips."""
-    threshold = p["threshold_velocity"]
+    law, stribeck, ageing = p["friction"], p["stribeck"], p["ageing"]
+    threshold = law["v_t"]
     speed = hypot(velocity, across)
-    static = p["static"] + p["stribeck_peak"]
+    static = law["mu_s"] + stribeck["peak"]
     if at_rest is not None:
-        static += p["ageing_rate"] * log(1.0 + at_rest / p["ageing_time"])
-    if not p["set_valued"] and speed <= threshold:
+        static += ageing["rate"] * log(1.0 + at_rest / ageing["time"])
+    if not law["set_valued"] and speed <= threshold:
         return static * velocity / threshold
-    mu = p["dynamic"]
-    if p["law"] == 2:
-        mu *= (speed / threshold) ** p["velocity_exponent"]
-    if p["stribeck_velocity"] > 0.0:
-        beyond = speed - (0.0 if p["set_valued"] else threshold)
-        mu += (p["static"] - p["dynamic"] + p["stribeck_peak"]) * exp(-beyond / p["stribeck_velocity"])
-    return mu * velocity / speed
+    mu = law["mu_d"]
+    if law["law"] == 2:
+        mu *= (speed / threshold) ** law["exponent"]
+    if stribeck["velocity"] > 0.0:
+        beyond = speed - (0.0 if law["set_valued"] else threshold)
+        mu += (law["mu_s"] - law["mu_d"] + stribeck["peak"]) * exp(-beyond / stribeck["velocity"])
+    return mu * velocity / speed if speed else 0.0
 
 
 def base_acceleration(t, p):
-    w = p["omega"]
+    w = p["input"]["omega"]
     wave = sin(w * t)
-    wave += 4 * p["input_distortion_second"] * sin(2 * w * t + p["input_distortion_second_phase"])
-    wave += 9 * p["input_distortion_third"] * sin(3 * w * t + p["input_distortion_third_phase"])
-    stray = p["stray_vibration_acceleration"] * sin(
-        2 * np.pi * p["stray_vibration_frequency"] * t + p["stray_vibration_phase"]
+    wave += 4 * p["input_distortion"]["second"] * sin(2 * w * t + p["input_distortion"]["second_phase"])
+    wave += 9 * p["input_distortion"]["third"] * sin(3 * w * t + p["input_distortion"]["third_phase"])
+    stray = p["stray_vibration"]["acceleration"] * sin(
+        2 * np.pi * p["stray_vibration"]["frequency"] * t + p["stray_vibration"]["phase"]
     )
-    return stray - p["amplitude"] * w**2 * wave
+    return stray - p["input"]["amplitude"] * w**2 * wave
 
 
 def residual(t, y, mode, p, result):
     """Left minus right of Newton's equations as vectors: wedge (2), bolster, column, side frame."""
-    a, g = p["wedge_angle"], p["column_angle"]
+    s, own = p["suspension"], owned(y, p)
+    a, g = s["wedge_angle"], s["column_angle"]
     along_column, into_column = np.array([-sin(g), cos(g)]), np.array([cos(g), sin(g)])
     along_bolster, into_wedge = np.array([sin(a), cos(a)]), np.array([cos(a), -sin(a)])
     outward, up = np.array([1.0, 0.0]), np.array([0.0, 1.0])
@@ -85,19 +88,22 @@ def residual(t, y, mode, p, result):
         """Wedge that keeps both contacts closed: (w - Q e_x).n_c = 0, (w - z e_z).p_b = 0."""
         return np.linalg.solve([into_column, into_wedge], [column * cos(g), -bolster * sin(a)])
 
-    x, velocity, bristle, way, way_rate, frame_way, frame_rate, age = y
-    z, way = p["rest"] + x, p["column_rest"] + way
+    (x, velocity), (bristle,), (age,) = own[""], own["presliding"], own["ageing"]
+    (way, way_rate), (frame_way, frame_rate) = own["column_compliance"], own["fixture_resonance"]
+    z, way = p["geometry"]["rest"] + x, p["column_compliance"]["rest"] + way
     rate = wedge(velocity, way_rate)
     column_slip = (rate - way_rate * outward) @ along_column
     bolster_slip = (rate - velocity * up) @ along_bolster
-    across = p["cross_slip_velocity"] * cos(p["omega"] * t + p["cross_slip_phase"])
+    if abs(bolster_slip) <= 1e-14 * abs(velocity):  # rounding: without lean this face does not slip
+        bolster_slip = 0.0
+    across = p["cross_slip"]["velocity"] * cos(p["input"]["omega"] * t + p["cross_slip"]["phase"])
     at_rest = age if mode.clock else None
     column_mu = coefficient(column_slip, across, at_rest, p)
-    if p["presliding_length"] > 0.0:
-        column_mu = p["dynamic"] * bristle
+    if p["presliding"]["length"] > 0.0:
+        column_mu = p["friction"]["mu_d"] * bristle
     bolster_mu = coefficient(bolster_slip, across, at_rest, p)
-    direction = 1.0 + p["directional_friction_asymmetry"] * np.sign(velocity)
-    exponent, reference = p["load_dependent_friction_exponent"], p["load_dependent_friction_reference"]
+    direction = 1.0 + p["directional_friction"]["asymmetry"] * np.sign(velocity)
+    exponent, reference = p["load_dependent_friction"]["exponent"], p["load_dependent_friction"]["reference"]
 
     def friction(mu, load):
         return mu * direction * abs(load) * (abs(load) / reference) ** -exponent
@@ -105,35 +111,35 @@ def residual(t, y, mode, p, result):
     base = base_acceleration(t, p)
     frame = base + result.frame_acceleration
     moved = wedge(result.acceleration, result.column_acceleration)
-    spring = p["wedge_preload"] - p["wedge_spring"] * (wedge(z, way) @ up)
+    spring = s["wedge_preload"] - s["wedge_spring"] * (wedge(z, way) @ up)
     on_column = result.column * into_column + friction(column_mu, result.column) * along_column
     on_bolster = result.bolster * into_wedge - friction(bolster_mu, result.bolster) * along_bolster
-    weight = p["wedge_mass"] * p["gravity"]
-    wedges = p["wedge_mass"] * (frame * up + moved) - (spring - weight) * up + on_column - on_bolster
-    guide = np.clip(velocity / p["threshold_velocity"], -1.0, 1.0)
-    if p["set_valued"]:
+    weight = s["wedge_mass"] * s["gravity"]
+    wedges = s["wedge_mass"] * (frame * up + moved) - (spring - weight) * up + on_column - on_bolster
+    guide = np.clip(velocity / p["friction"]["v_t"], -1.0, 1.0)
+    if p["friction"]["set_valued"]:
         guide = np.sign(velocity)
-    beyond = x - np.clip(x, -p["end_stop_clearance"], p["end_stop_clearance"])
+    beyond = x - np.clip(x, -p["end_stop"]["clearance"], p["end_stop"]["clearance"])
     bolster = (
-        p["bolster_mass"] * (frame + result.acceleration + p["gravity"])
-        + p["bolster_spring"] * z
-        + p["cubic_stiffness_coefficient"] * z**3
-        + p["viscous_damping_coefficient"] * velocity
-        + p["end_stop_stiffness"] * beyond
-        + p["guide_friction_force"] * guide
+        s["bolster_mass"] * (frame + result.acceleration + s["gravity"])
+        + s["bolster_spring"] * z
+        + p["cubic_stiffness"]["coefficient"] * z**3
+        + p["viscous_damping"]["coefficient"] * velocity
+        + p["end_stop"]["stiffness"] * beyond
+        + p["guide_friction"]["force"] * guide
         + 2 * on_bolster @ up
     )
     column = 0.0
-    if p["column_compliance_stiffness"] > 0.0:
-        mass, stiffness = p["column_compliance_mass"], p["column_compliance_stiffness"]
-        damping = 2 * p["column_compliance_damping_ratio"] * (stiffness * mass) ** 0.5
+    if p["column_compliance"]["stiffness"] > 0.0:
+        mass, stiffness = p["column_compliance"]["mass"], p["column_compliance"]["stiffness"]
+        damping = 2 * p["column_compliance"]["damping_ratio"] * (stiffness * mass) ** 0.5
         column = mass * result.column_acceleration - on_column @ outward
         column += stiffness * way + damping * way_rate
     carried = 0.0
-    if p["fixture_resonance_frequency"] > 0.0:
-        natural = 2 * np.pi * p["fixture_resonance_frequency"]
-        damping = 2 * p["fixture_resonance_damping_ratio"] * natural
-        carried = p["side_frame_mass"] * (frame + natural**2 * frame_way + damping * frame_rate)
-        carried += p["bolster_mass"] * (frame + result.acceleration)
-        carried += 2 * p["wedge_mass"] * (frame + moved @ up)
+    if p["fixture_resonance"]["frequency"] > 0.0:
+        natural = 2 * np.pi * p["fixture_resonance"]["frequency"]
+        damping = 2 * p["fixture_resonance"]["damping_ratio"] * natural
+        carried = s["side_frame_mass"] * (frame + natural**2 * frame_way + damping * frame_rate)
+        carried += s["bolster_mass"] * (frame + result.acceleration)
+        carried += 2 * s["wedge_mass"] * (frame + moved @ up)
     return np.array([*wedges, bolster, column, carried])

@@ -5,7 +5,7 @@ from math import cos, pi, sin, sqrt
 import pytest
 
 from tests.physics.cases import TABLE_1, steady
-from wedgesweep import parameters
+from wedgesweep.systems.suspension import parameters
 
 M = TABLE_1["bolster_mass"] + 2 * TABLE_1["wedge_mass"]
 K = TABLE_1["bolster_spring"] + 2 * TABLE_1["wedge_spring"]

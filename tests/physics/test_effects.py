@@ -5,15 +5,17 @@ from math import pi
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies
+from numpy.lib.recfunctions import structured_to_unstructured
 
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
-from wedgesweep import config, contact, parameters, response
-from wedgesweep.effects import EFFECTS, FAMILIES, acting, combined
-from wedgesweep.extended import rest
+from wedgesweep import config, response
+from wedgesweep.effects import EFFECTS, FAMILIES, acting, merge
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, periodic, radau
 from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration
 
 LAWS = ("coulomb", "static-dynamic", "exponential")
 SELF_LOCKING = {
@@ -23,7 +25,7 @@ SELF_LOCKING = {
 
 
 def numbers(record, settle_periods=60, rtol=1e-8, periods=2):
-    window = Window(float(record["omega"][0]), settle_periods, periods, 256)
+    window = Window(float(record["input"]["omega"][0]), settle_periods, periods, 256)
     run = event_driven.solve(record, window, rtol, 60.0)
     return response.evaluate(run, record, 9).numbers
 
@@ -56,13 +58,17 @@ def test_a_config_switches_it_on_and_its_range_is_allowed(name):
     text = f'[effects.{name}]\n{lines}\n[sweep]\nfriction_law = "coulomb"\nbeta = 1\namplitude_mm = 1\n'
     read = config.parse(text)
     record = read.record(read.case_list()[0])
-    for quantity, field in zip(EFFECTS[name].quantities, EFFECTS[name].fields, strict=True):
-        assert record[field][0] == pytest.approx(values[quantity.key] * quantity.factor)
+    numbers = {each.name: values[each.key] * each.factor for each in EFFECTS[name].quantities}
+    expected = parameters.record("coulomb", 1e-3, read.sweep.omega_n, effects={name: numbers})
+    np.testing.assert_allclose(structured_to_unstructured(record), structured_to_unstructured(expected))
+    for quantity in EFFECTS[name].quantities:
+        if name in record.dtype.names:
+            assert record[name][quantity.name][0] == pytest.approx(numbers[quantity.name])
         if quantity.search:
             assert quantity.fault(quantity.search[0]) is None
     assert read.sweep.omega_n == pytest.approx(OMEGA_N)
-    assert record["omega"][0] == pytest.approx(OMEGA_N)
-    assert bool(record["extended"][0]) == bool(EFFECTS[name].extends)
+    assert record["input"]["omega"][0] == pytest.approx(OMEGA_N)
+    assert parameters.has_own_mechanics(record)[0] == bool(EFFECTS[name].extends)
 
 
 @pytest.mark.parametrize("name", EFFECTS)
@@ -81,11 +87,10 @@ def test_neutral_is_the_base_model_bit_for_bit(law, name):
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("beta", "amplitude"), [(0.4, 1e-3), (1.472, 5e-5), (0.9, 3e-3)])
-def test_the_extended_solver_agrees_with_the_base_solver(law, beta, amplitude):
+def test_steps_agree_with_the_closed_forms_of_the_base_model(law, beta, amplitude):
     base = parameters.record(law, amplitude, beta * OMEGA_N)
     record = base.copy()
-    record["extended"] = 1.0
-    rest.prepare(record[0])
+    record["geometry"]["kit"] = parameters.ALL
     expected, found = numbers(base, 10), numbers(record, 10)
     for name in (
         "amplitude_ratio",
@@ -181,7 +186,7 @@ def test_directional_friction_mirrors(law):
             effects={"directional_friction": {"asymmetry": asymmetry}},
         )
         cold = periodic.at_rest(1)
-        found = periodic.respond(record, cold, 1e-8, 400, 256, 7, 1e-9)
+        found = periodic.respond(record, cold, periodic.Accuracy(1e-8, 400, 1e-9), 256, 7)
         assert found.outcome[0] == periodic.OK
         return found.extremes[0]
 
@@ -222,7 +227,7 @@ def test_what_scales_a_number_scales_it_once_more_and_other_effects_take_one_ano
         "viscous_damping": {"coefficient": 2.0},
     }
     added = {"friction_level": {"scale": 1.1}, "preload": {"force": 3.0}, "bolster_mass": {"scale": 0.9}}
-    found = combined(own, added)
+    found = merge(own, added)
     assert found.pop("friction_level") == {"scale": pytest.approx(0.88)}
     assert found == {
         "preload": {"force": 3.0},
@@ -241,7 +246,7 @@ def test_a_locked_wedge_is_told(name):
 
 def test_on_a_steep_ramp_a_self_locking_wedge_creeps_in_both_solvers():
     record = with_effect("coulomb", "column_compliance", **SELF_LOCKING)
-    window = Window(float(record["omega"][0]), 3, 2, 256)
+    window = Window(float(record["input"]["omega"][0]), 3, 2, 256)
     fast, slow = (
         response.evaluate(solver.solve(record, window, 1e-8, 60.0), record, 9).numbers
         for solver in (event_driven, radau)
@@ -266,7 +271,7 @@ def test_a_foreign_tone_shows_at_its_frequency_and_has_a_phase_of_its_own():
         record = with_effect(
             "static-dynamic", NOT_PERIODIC, {"acceleration": 1.0, "frequency": tone}, 1e-4, beta
         )
-        record["stray_vibration_phase"] = phase
+        record["stray_vibration"]["phase"] = phase
         x, _, _ = periodic.samples(record, cold, 20, 20, 64, 1e-8)
         spectra.append(np.fft.rfft(x[0]) / x.size * 2)
     at_tone = [spectrum[110] for spectrum in spectra]
@@ -301,18 +306,18 @@ def test_any_effects_end_with_a_finite_answer_or_a_reason(law, names, place, bet
         effects={name: typical(name, place) for name in names},
     )
     cold = periodic.at_rest(1)
-    found = periodic.respond(record, cold, 1e-6, 30, 128, 5, 1e-6)
+    found = periodic.respond(record, cold, periodic.Accuracy(1e-6, 30, 1e-6), 128, 5)
     assert np.isfinite(found.spectra[0]).all() == (found.outcome[0] == periodic.OK)
     # The proof that a wedge never locks is not needed to find that it does.
-    record["never_locks"] = 0.0
-    again = periodic.respond(record, cold, 1e-6, 30, 128, 5, 1e-6)
+    record["geometry"]["always_well_posed"] = 0
+    again = periodic.respond(record, cold, periodic.Accuracy(1e-6, 30, 1e-6), 128, 5)
     assert (again.outcome[0] == periodic.OK) == (found.outcome[0] == periodic.OK)
 
 
 @pytest.mark.parametrize(("name", "law"), [(name, LAWS[i % 3]) for i, name in enumerate(EXTENDING)])
 def test_both_solvers_agree_from_the_same_start(name, law):
     record = with_effect(law, name)
-    window = Window(float(record["omega"][0]), 3, 2, 64)
+    window = Window(float(record["input"]["omega"][0]), 3, 2, 64)
     runs = [solve(record, window, 1e-8, 120.0) for solve in (event_driven.solve, radau.solve)]
     ours, radaus = (response.evaluate(run, record, 5) for run in runs)
     size = np.ptp(radaus.waveforms["displacement"])
@@ -329,13 +334,13 @@ def test_both_solvers_agree_from_the_same_start(name, law):
 @pytest.mark.parametrize("times", [1, 5, 15])
 def test_a_release_that_lasts_a_moment_is_not_missed(times, more):
     """The bolster is released by a bit more than holds it; a tone makes that a short moment."""
-    held = contact.breakaway_acceleration(parameters.record("coulomb", 1e-4, OMEGA_N)[0])
+    held = breakaway_acceleration(parameters.record("coulomb", 1e-4, OMEGA_N)[0])
     tone = {"acceleration": 0.5 * (1.0 + more) * held, "frequency": times * OMEGA_N / (2.0 * pi)}
     record = parameters.record(
         "coulomb", 0.5 * (1.0 + more) * held / OMEGA_N**2, OMEGA_N, effects={NOT_PERIODIC: tone}
     )
     # Both are largest at the same moment, three quarters of an input period from its start.
-    record["stray_vibration_phase"] = 0.5 * pi * (1.0 - 3.0 * times)
+    record["stray_vibration"]["phase"] = 0.5 * pi * (1.0 - 3.0 * times)
     window = Window(OMEGA_N, 1, 2, 64)
     fast, slow = (
         response.evaluate(solver.solve(record, window, 1e-8, 60.0), record, 9).numbers

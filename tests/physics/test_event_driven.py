@@ -3,18 +3,21 @@
 import numpy as np
 import pytest
 
+from tests.physics import compiled_mechanics as mechanics
 from tests.physics import test_den_hartog as den_hartog
 from tests.physics.cases import OMEGA_N
 from tests.physics.test_reference import ROWS
-from wedgesweep import contact, parameters, response, tally
-from wedgesweep.solvers import event_driven, oscillator, radau, steady
-from wedgesweep.solvers.march import OK, workspace
-from wedgesweep.solvers.recorder import Recorder
+from wedgesweep import response
+from wedgesweep.hybrid.state import OK
+from wedgesweep.solvers import event_driven, radau
+from wedgesweep.solvers.event_driven import BatchSettings, empty_batch, run_batch
 from wedgesweep.solvers.trajectory import CaseError, TimedWindow, Window
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 
 
 def respond(record, settle_periods=60, periods=2, rtol=1e-9, solve=event_driven.solve):
-    window = Window(float(record["omega"][0]), settle_periods, periods, 256)
+    window = Window(float(record["input"]["omega"][0]), settle_periods, periods, 256)
     return response.evaluate(solve(record, window, rtol, 60.0), record, harmonics=9)
 
 
@@ -57,60 +60,63 @@ def test_energy_balance(law, beta, amplitude):
 @pytest.mark.parametrize(("beta", "amplitude"), [(0.4, 1e-3), (1.3, 0.2e-3), (2.6, 0.03e-3)])
 def test_peak_velocity_is_that_of_a_fine_grid(law, beta, amplitude):
     record = parameters.record(law, amplitude, beta * OMEGA_N)
-    run = event_driven.solve(record, Window(float(record["omega"][0]), 30, 2, 8192), 1e-9, 60.0)
+    run = event_driven.solve(record, Window(float(record["input"]["omega"][0]), 30, 2, 8192), 1e-9, 60.0)
     fastest = np.abs(run.samples.velocity).max()
     # A parabola misses its peak by at most this share half a sample away; switches are sharper.
-    assert fastest <= run.tally["peak_velocity"][0] <= fastest * (1.0 + 1e-6)
+    assert fastest <= run.sums["peak_velocity"][0] <= fastest * (1.0 + 1e-6)
 
 
 def test_creep_to_a_stop_ends_where_friction_holds_the_bolster():
     """Just above breakaway only one direction slips, ever less: after k periods by 1/k^2."""
     record = parameters.record("coulomb", 7.9e-6, 2.9 * OMEGA_N)
-    nothing = Recorder(0.0, 1.0, tally.empty(), *np.empty((2, 0)), np.empty((0, 5), np.int8))
-    outcome, periods, x, velocity, period = steady.settle(
-        0.0, 0.0, record, 1e-9, 5000, nothing, workspace(1e-9)
-    )
-    assert (outcome, velocity, period) == (OK, 0.0, 1)
-    assert periods < 300
-    most = 7.9e-6 * (2.9 * OMEGA_N) ** 2
+    settings = BatchSettings(periods=1, samples_per_period=64, steady=True, tolerance=1e-9, max_periods=5000)
+    batch = empty_batch(1, harmonics=1, samples=0)
+    run_batch(record, np.zeros(1, np.int64), settings, 1e-9, batch)
+    assert (batch.outcome[0], batch.state[0, 1], batch.period[0]) == (OK, 0.0, 1)
+    assert batch.settled[0] < 300
+    omega, p = 2.9 * OMEGA_N, parameters.compact(record)[0]
+    most = 7.9e-6 * omega**2
+    # The base acceleration is largest a quarter of a period before and after phase 0.
     margins = [
-        direction * contact.breakaway(x, -direction * most, direction, record[0])[0] for direction in (1, -1)
+        direction
+        * mechanics.breakaway(direction * np.pi / 2.0 / omega, (batch.state[0, 0], 0.0), direction, 0, p)
+        for direction in (1, -1)
     ]
     assert max(margins) == pytest.approx(0.0, abs=1e-4 * most)
     assert min(margins) < -1e-2 * most
 
 
-def sampled_margins(times, t, x, velocity, on, o, p):
+def sampled_margins(times, t, state, on, o, p):
     """Slip velocity and normal forces of the closed form, as positive numbers while the contact holds."""
-    free = x - o.centre - o.forced * np.sin(p["omega"] * t)
-    quadrature = (velocity - o.forced * p["omega"] * np.cos(p["omega"] * t)) / o.frequency
+    (x, velocity), omega = state, p["input"]["omega"]
+    free = x - o.centre - o.forced * np.sin(omega * t)
+    quadrature = (velocity - o.forced * omega * np.cos(omega * t)) / o.frequency
     turn = o.frequency * (times - t)
-    wave = o.forced * np.sin(p["omega"] * times) + free * np.cos(turn) + quadrature * np.sin(turn)
-    speed = o.forced * p["omega"] * np.cos(p["omega"] * times) + o.frequency * (
+    wave = o.forced * np.sin(omega * times) + free * np.cos(turn) + quadrature * np.sin(turn)
+    speed = o.forced * omega * np.cos(omega * times) + o.frequency * (
         quadrature * np.cos(turn) - free * np.sin(turn)
     )
-    u2 = -p["amplitude"] * p["omega"] ** 2 * np.sin(p["omega"] * times)
+    u2 = -p["input"]["amplitude"] * omega**2 * np.sin(omega * times)
     column = o.column + o.column_x * (o.centre + wave) + o.column_u * u2
     bolster = o.bolster + o.bolster_x * (o.centre + wave) + o.bolster_u * u2
     return np.array([on.column * speed, on.column_sign * column, on.bolster_sign * bolster])
 
 
-def test_the_closed_form_misses_no_switch():
+def test_the_closed_form_misses_no_event():
     """Also where a force dips below zero and returns within one scanned interval, the first one included."""
     generator, dips = np.random.default_rng(3), 0
     for _ in range(3000):
         amplitude, beta = 10 ** generator.uniform(-4, -2.3), generator.uniform(0.3, 3.0)
         record = parameters.record("coulomb", amplitude, beta * OMEGA_N)
-        p, period = record[0], 2 * np.pi / record["omega"][0]
+        p, period = parameters.compact(record)[0], 2 * np.pi / record["input"]["omega"][0]
         t = generator.uniform(0.0, period)
-        x, velocity = generator.normal(size=2) * amplitude * (1.0, beta * OMEGA_N)
-        on, _ = contact.initial(t, x, velocity, p)
-        o = oscillator.oscillator(on, p)
-        end, *_, switch = oscillator.slide(t, t + period, x, velocity, on, o, p, -1)
+        state = tuple(generator.normal(size=2) * amplitude * (1.0, beta * OMEGA_N))
+        on, _ = mechanics.initial_mode(t, state, p)
+        o, end, event = mechanics.slid(t, t + period, state, on, p)
         times = np.linspace(t, end, 1000)[1:-1]
-        margins = sampled_margins(times, t, x, velocity, on, o, p)
+        margins = sampled_margins(times, t, state, on, o, p)
         assert margins.min() > 0.0
-        dips += switch >= contact.COLUMN_NORMAL
+        dips += event >= COLUMN_NORMAL
     assert dips > 300
 
 

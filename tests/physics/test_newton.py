@@ -1,16 +1,19 @@
 """The mechanics against Newton's equations written out as vectors, for random states."""
 
 from itertools import product
-from math import cos, sin
 
 import numpy as np
 import pytest
 
+from tests.physics import compiled_mechanics as mechanics
 from tests.physics.cases import OMEGA_N
-from wedgesweep import contact, damper, excitation, friction, parameters
-from wedgesweep.damper import Contact
+from tests.physics.effect_cases import EXTENDING, residual, typical
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.solvers.pieces import jacobian, rate
+from wedgesweep.solvers import event_driven, radau, radau_system
+from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.modes import ContactMode
+from wedgesweep.systems.suspension.newton import Coefficients, Loads
 
 LEANS = (-0.07, 0.0, 0.07)
 
@@ -29,89 +32,147 @@ def random_states(law, column_angle, number, seed=1):
             effects={"guide_friction": {"force": generator.uniform(0, 1)}},
         )
         velocity = generator.choice([-1, 1]) * 10 ** generator.uniform(-4.5, 0)
-        yield record, generator.uniform(0, 10), generator.uniform(-5e-3, 5e-3), velocity
+        yield record, generator.uniform(0, 10), (generator.uniform(-5e-3, 5e-3), velocity)
 
 
-def coefficients(velocity, p, now):
-    return (
-        friction.coefficient(p["column_ratio"] * velocity, now.column, p),
-        friction.coefficient(p["bolster_ratio"] * velocity, now.bolster, p),
+def record_of(law, generator, names, column_angle=0.07):
+    place = generator.uniform(0.05, 0.95)
+    return parameters.record(
+        law,
+        10 ** generator.uniform(-5, -3),
+        generator.uniform(0.1, 3.0) * OMEGA_N,
+        suspension={"column_angle": column_angle},
+        friction={"dynamic": generator.uniform(0.0, 0.2), "static": generator.uniform(0.0, 0.2)},
+        effects={name: typical(name, place) for name in names},
     )
 
 
-def newton_residual(t, x, velocity, now, p, result):
-    """Left minus right of PHYSICS.md's equations: two components for the wedge, one for the bolster."""
-    a, g = p["wedge_angle"], p["column_angle"]
-    along_column, into_column = np.array([-sin(g), cos(g)]), np.array([cos(g), sin(g)])
-    along_bolster, into_wedge = np.array([sin(a), cos(a)]), np.array([cos(a), -sin(a)])
-    up = np.array([0.0, 1.0])
-    column_mu, bolster_mu = coefficients(velocity, p, now)
-    z, base = p["rest"] + x, excitation.acceleration(t, p)
-    r = sin(a) / sin(a + g)
-    spring = p["wedge_preload"] - p["wedge_spring"] * r * z * cos(g)
-    on_column = result.column * into_column + column_mu * abs(result.column) * along_column
-    on_bolster = result.bolster * into_wedge - bolster_mu * abs(result.bolster) * along_bolster
-    wedge = (
-        p["wedge_mass"] * (base * up + r * result.acceleration * along_column)
-        - (spring - p["wedge_mass"] * p["gravity"]) * up
-        + on_column
-        - on_bolster
-    )
-    threshold = p["threshold_velocity"]
-    guide = p["guide_friction_force"] * (now.guide if now.guide or p["set_valued"] else velocity / threshold)
-    bolster = (
-        p["bolster_mass"] * (base + result.acceleration)
-        + p["bolster_spring"] * z
-        + p["bolster_mass"] * p["gravity"]
-        + 2 * on_bolster @ up
-        + guide
-    )
-    return np.array([*wedge, bolster])
+def with_all_mechanics(record):
+    """The same case with room for every effect, none of which acts."""
+    full = record.copy()
+    full["geometry"]["kit"] = parameters.ALL
+    return full
+
+
+def random_state(p, generator):
+    """State of a full record."""
+    values = {("", 0): generator.uniform(-2e-3, 2e-3)}
+    values["", 1] = generator.choice([-1, 1]) * 10 ** generator.uniform(-4.5, 0)
+    if p["presliding"]["length"] > 0.0:
+        values["presliding", 0] = generator.uniform(-1, 1)
+    for name, quantity in (("column_compliance", "stiffness"), ("fixture_resonance", "frequency")):
+        if p[name][quantity] > 0.0:
+            values[name, 0], values[name, 1] = generator.uniform(-1e-4, 1e-4), generator.uniform(-1e-2, 1e-2)
+    if p["ageing"]["rate"] > 0.0:
+        values["ageing", 0] = generator.uniform(0, 0.1)
+    return mechanics.initial_state(p, values)
+
+
+def begun(record):
+    """Mode at the start of a run from rest, and whether it is unique."""
+    p = parameters.compact(record)[0]
+    return mechanics.initial_mode(0.0, mechanics.initial_state(p), p)
+
+
+def input_acceleration(p):
+    return p["input"]["amplitude"] * p["input"]["omega"] ** 2
+
+
+def check(record, generator):
+    p = record[0]
+    t, y = generator.uniform(0, 3), random_state(p, generator)
+    mode, unique = mechanics.initial_mode(t, y, p)
+    _, now, _ = mechanics.resolve_mode(t, y, mode, p)
+    s = p["suspension"]
+    scale = s["bolster_mass"] * (s["gravity"] + input_acceleration(p) + abs(now.acceleration))
+    scale += s["bolster_spring"] * 1e-3 + p["end_stop"]["stiffness"] * 1e-3
+    if unique:
+        assert mode.column_sign * now.column >= 0.0
+        assert mode.bolster_sign * now.bolster >= 0.0
+        np.testing.assert_allclose(residual(t, y, mode, p, now), 0.0, atol=1e-10 * scale)
+    return unique
 
 
 @pytest.mark.parametrize(("law", "lean"), list(product(LAW_NAMES, LEANS)))
 def test_forces_solve_newtons_equations_with_exactly_one_pair_of_signs(law, lean):
-    for record, t, x, velocity in random_states(law, lean, 450):
-        p = record[0]
-        now, unique = contact.initial(t, x, velocity, p)
-        result = damper.forces(x, velocity, excitation.acceleration(t, p), now, p)
+    for record, t, y in random_states(law, lean, 450):
+        p, small, s = record[0], parameters.compact(record)[0], record[0]["suspension"]
+        mode, unique = mechanics.initial_mode(t, y, small)
+        now = mechanics.contact_forces(t, y, mode, small)
         assert unique
-        assert now.column_sign * result.column >= 0.0
-        assert now.bolster_sign * result.bolster >= 0.0
-        scale = p["bolster_mass"] * (p["gravity"] + abs(excitation.acceleration(t, p)))
-        scale += p["bolster_spring"] * abs(x)
-        np.testing.assert_allclose(newton_residual(t, x, velocity, now, p, result), 0.0, atol=1e-11 * scale)
+        assert mode.column_sign * now.column >= 0.0
+        assert mode.bolster_sign * now.bolster >= 0.0
+        base = input_acceleration(p) * abs(np.sin(p["input"]["omega"] * t))
+        scale = s["bolster_mass"] * (s["gravity"] + base) + s["bolster_spring"] * abs(y[0])
+        full = mechanics.initial_state(p, {("", 0): y[0], ("", 1): y[1]})
+        np.testing.assert_allclose(residual(t, full, mode, p, now), 0.0, atol=1e-11 * scale)
+
+
+@pytest.mark.parametrize(("law", "name"), list(product(LAW_NAMES, EXTENDING)))
+def test_forces_solve_newtons_equations_with_each_effect(law, name):
+    generator = np.random.default_rng(2)
+    unique = [check(record_of(law, generator, [name]), generator) for _ in range(40)]
+    assert sum(unique) >= 30
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("lean", [-0.07, 0.07])
+def test_forces_solve_newtons_equations_with_any_effects_together(law, lean):
+    generator = np.random.default_rng(3)
+    unique = []
+    for _ in range(60):
+        names = generator.choice(EXTENDING, 4, replace=False)
+        unique.append(check(record_of(law, generator, names, lean), generator))
+    assert sum(unique) >= 30
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_room_for_effects_changes_nothing_without_them(law):
+    generator = np.random.default_rng(4)
+    for _ in range(50):
+        record = record_of(law, generator, [])
+        base, full = parameters.compact(record)[0], with_all_mechanics(record)[0]
+        t, y = generator.uniform(0, 3), random_state(full, generator)
+        mode, unique = mechanics.initial_mode(t, y, full)
+        slope, now = mechanics.rate(t, y, mode, full)
+        expected = mechanics.contact_forces(t, y[:2], mode, base)
+        assert unique
+        assert slope[1] == pytest.approx(expected.acceleration, rel=1e-12)
+        assert now.column == pytest.approx(expected.column, rel=1e-9)
+        assert now.bolster == pytest.approx(expected.bolster, rel=1e-9)
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_jacobian_is_the_derivative_of_the_rate(law):
-    for record, t, x, velocity in random_states(law, 0.07, 100):
-        now, _ = contact.initial(t, x, velocity, record[0])
-        exact = jacobian(t, np.array([x, velocity]), now, record)
-        for column, step in enumerate((1e-6, 1e-6 * abs(velocity))):
+    for record, t, state in random_states(law, 0.07, 100):
+        case, y = parameters.compact(record), np.array(state)
+        mode, _ = radau_system.initial_mode(t, y, case)
+        exact = radau_system.jacobian(t, y, mode, case)
+        for column, step in enumerate((1e-6, 1e-6 * abs(y[1]))):
             shift = np.zeros(2)
             shift[column] = step
-            ahead = rate(t, np.array([x, velocity]) + shift, now, record)
-            behind = rate(t, np.array([x, velocity]) - shift, now, record)
+            ahead = radau_system.rate(t, y + shift, mode, case)
+            behind = radau_system.rate(t, y - shift, mode, case)
             np.testing.assert_allclose(exact[:, column], (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-3)
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_laws_are_odd_bounded_and_passive(law):
-    p = parameters.record(law, 1e-3, 1.0)[0]
+    record = parameters.record(law, 1e-3, 1.0)
+    p, y = parameters.compact(record)[0], (0.0, 0.0)
     for velocity in np.logspace(-6, 1, 60):
-        branch = friction.branch_at(velocity, p)
-        value = friction.coefficient(velocity, branch, p)
-        assert value == -friction.coefficient(-velocity, -branch, p)
-        assert 0.0 < value <= max(p["static"], p["dynamic"])
+        branch = 1 if p["friction"]["set_valued"] else mechanics.branch_at(velocity, p)
+        value = mechanics.coefficient(velocity, branch, y, p)
+        assert value == -mechanics.coefficient(-velocity, -branch, y, p)
+        assert 0.0 < value <= max(p["friction"]["mu_s"], p["friction"]["mu_d"])
 
 
 def test_laws_jump_from_static_to_dynamic_at_the_threshold():
     for law in ("static-dynamic", "exponential"):
-        p = parameters.record(law, 1e-3, 1.0)[0]
-        threshold = p["threshold_velocity"]
-        assert friction.coefficient(threshold, 0, p) == pytest.approx(p["static"])
-        assert friction.coefficient(threshold, 1, p) == pytest.approx(p["dynamic"])
+        p, y = parameters.compact(parameters.record(law, 1e-3, 1.0))[0], (0.0, 0.0)
+        threshold = p["friction"]["v_t"]
+        assert mechanics.coefficient(threshold, 0, y, p) == pytest.approx(p["friction"]["mu_s"])
+        assert mechanics.coefficient(threshold, 1, y, p) == pytest.approx(p["friction"]["mu_d"])
 
 
 def test_a_steep_wedge_with_much_friction_locks():
@@ -122,11 +183,110 @@ def test_a_steep_wedge_with_much_friction_locks():
         suspension={"column_angle": -0.06981317007977318},
         friction={"dynamic": 0.5},
     )
-    assert not contact.initial(0.0, 0.0, 0.0, record[0])[1]
+    assert not mechanics.initial_mode(0.0, (0.0, 0.0), parameters.compact(record)[0])[1]
 
 
 def test_guide_friction_of_zero_changes_no_bit():
     base = parameters.record("static-dynamic", 1e-3, 30.0)
     off = parameters.record("static-dynamic", 1e-3, 30.0, effects={"guide_friction": {"force": 0.0}})
-    state, now = np.array([1e-4, 5e-3]), Contact(1, 0, 1, 1, 1)
-    np.testing.assert_array_equal(rate(0.3, state, now, base), rate(0.3, state, now, off))
+    state, mode = (1e-4, 5e-3), ContactMode(1, 0, 1, 1, 1, 0, 0, 0)
+    rates = [mechanics.rate(0.3, state, mode, parameters.compact(each)[0])[0] for each in (base, off)]
+    assert rates[0] == rates[1]
+
+
+@pytest.mark.parametrize("name", ["column_compliance", "fixture_resonance"])
+@pytest.mark.parametrize("most", [0.3, 1.2])
+def test_a_wedge_that_is_proved_never_to_lock_has_one_pair_of_normal_forces_in_any_state(name, most):
+    generator = np.random.default_rng(5)
+    locked = {0: [], 1: []}
+    for place in generator.uniform(0.05, 0.95, 30):
+        friction = {"dynamic": generator.uniform(0.0, most), "static": generator.uniform(0.0, most)}
+        record = parameters.record(
+            "static-dynamic", 1e-4, OMEGA_N, friction=friction, effects={name: typical(name, place)}
+        )
+        proved = int(record["geometry"]["always_well_posed"][0])
+        record["geometry"]["always_well_posed"] = 0
+        p = record[0]
+        for _ in range(40):
+            _, unique = mechanics.initial_mode(generator.uniform(0, 3), random_state(p, generator), p)
+            locked[proved].append(not unique)
+    assert locked[1]
+    assert not any(locked[1])
+    assert most < 1.0 or any(locked[0])
+
+
+@pytest.mark.parametrize("exponent", [-0.5, 0.1, 1 / 3, 0.6, 0.9])
+def test_normal_forces_under_friction_that_depends_on_them_are_found(exponent):
+    """From forces that solve the linear equations follow coefficients under which they are the answer."""
+    generator = np.random.default_rng(6)
+    effects = {"load_dependent_friction": {"exponent": exponent, "reference": 100.0}}
+    p = parameters.record("exponential", 1e-4, OMEGA_N, effects=effects)[0]
+    found = []
+    while len(found) < 300:
+        load = Loads(*generator.normal(size=6) * [60.0, 60.0, 200.0, 0.0, 0.0, 15.0])
+        mu = generator.uniform(-0.3, 0.3, 2)
+        expected, _ = mechanics.reactions(load, Coefficients(*mu, 0.0, 0.0), p)
+        forces = np.array([expected.column, expected.bolster])
+        now, _ = mechanics.loaded_reactions(load, *mu * (np.abs(forces) / 100.0) ** exponent, p)
+        found.append(np.allclose([now.column, now.bolster], forces, rtol=1e-8))
+    # Others are as good an answer: two pairs of forces, or signs under which no pair is the only one.
+    assert np.mean(found) > 0.97
+
+
+@pytest.mark.parametrize("name", EXTENDING)
+def test_the_run_begins_where_nothing_moves_without_friction(name):
+    p = parameters.record(
+        "static-dynamic",
+        1e-12,
+        50.0,
+        friction={"dynamic": 0.0, "static": 0.0},
+        effects={name: typical(name) | ({"acceleration": 0.0} if name == "stray_vibration" else {})},
+    )
+    p = with_all_mechanics(p)[0]
+    y = mechanics.initial_state(p)
+    mode, _ = mechanics.initial_mode(0.0, y, p)
+    slope = mechanics.owned(mechanics.rate(0.0, y, mode, p)[0], p)
+    slope.pop("ageing")  # time
+    assert np.abs(np.concatenate(list(slope.values()))).max() < 1e-8
+
+
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_a_run_begins_in_the_direction_that_the_input_drives_not_that_of_rounding(law):
+    """At phase 0 forces balance; a moment later the side frame falls behind, and z grows."""
+    for scale in np.linspace(0.8, 1.2, 11):
+        effects = {"bolster_stiffness": {"scale": scale}, "directional_friction": {"asymmetry": -0.09}}
+        record = parameters.record(law, 5e-5, 180.0, effects=effects)
+        mode, unique = begun(record)
+        assert unique
+        assert mode.direction == 1
+        window = Window(180.0, 1, 1, 16)
+        assert np.isfinite(radau.solve(record, window, 1e-4, 60.0).samples.x).all()
+
+
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_a_run_begins_in_the_direction_that_the_input_drives_through_a_compliant_table(law):
+    """The side frame follows the table late, and z the side frame: at phase 0 not even forces grow."""
+    effects = {
+        "directional_friction": {"asymmetry": 0.03},
+        "fixture_resonance": {"frequency": 363.0, "damping_ratio": 0.055},
+    }
+    record = parameters.record(law, 2.4e-4, 131.6, effects=effects)
+    mode, unique = begun(record)
+    assert unique
+    assert mode.direction == 1
+    window = Window(131.6, 1, 1, 64)
+    runs = [solve(record, window, 1e-8, 60.0).samples.x for solve in (radau.solve, event_driven.solve)]
+    np.testing.assert_allclose(*runs, atol=1e-6 * np.ptp(runs[0]))
+
+
+@pytest.mark.parametrize("phase", [0.5, 2.0, 4.0])
+def test_a_start_to_one_side_that_soon_turns_to_the_other_is_resolved(phase):
+    """A foreign tone pulls down for microseconds, until the input that begins at 0 has outgrown it."""
+    effects = {
+        "directional_friction": {"asymmetry": 0.01},
+        "stray_vibration": {"acceleration": 1.3e-3, "frequency": 8.0, "phase": phase},
+    }
+    record = parameters.record("exponential", 7e-5, 207.0, effects=effects)
+    window = Window(207.0, 1, 1, 64)
+    runs = [solve(record, window, 1e-8, 60.0).samples.x for solve in (radau.solve, event_driven.solve)]
+    np.testing.assert_allclose(*runs, atol=1e-6 * np.ptp(runs[0]))

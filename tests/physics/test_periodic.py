@@ -7,9 +7,10 @@ import pytest
 
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import REPEATING, mild
-from wedgesweep import parameters, response
+from wedgesweep import response
 from wedgesweep.solvers import event_driven, periodic
 from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems.suspension import parameters
 
 CASES = (("coulomb", 0.4, 1e-3), ("static-dynamic", 1.472, 1e-4), ("exponential", 0.6, 8e-4))
 
@@ -23,7 +24,7 @@ def records(name=None, factor=1.0, cases=CASES):
 
 def respond(rows, warm=None, tolerance=1e-8):
     warm = warm or periodic.at_rest(len(rows))
-    return periodic.respond(rows, warm, tolerance, 400, 256, 7, 1e-9)
+    return periodic.respond(rows, warm, periodic.Accuracy(tolerance, 400, 1e-9), 256, 7)
 
 
 @pytest.mark.parametrize("name", [None, *REPEATING])
@@ -48,25 +49,29 @@ def test_it_is_what_a_long_run_ends_in(name):
     found = respond(rows)
     for i in range(len(rows)):
         row = rows[i : i + 1]
-        run = event_driven.solve(row, Window(float(row["omega"][0]), 150, 1, 256), 1e-9, 60.0)
+        run = event_driven.solve(row, Window(float(row["input"]["omega"][0]), 150, 1, 256), 1e-9, 60.0)
         expected = response.evaluate(run, row, 7)
         spectra = np.stack([expected.spectra[f"{each}_harmonics"] for each in ("displacement", "velocity")])
         complex_spectra = spectra[..., 0] + 1j * spectra[..., 1]
         size = np.abs(complex_spectra).max(axis=1, keepdims=True)
         assert (np.abs(found.spectra[i] - complex_spectra) < 1e-5 * size).all()
         assert found.stuck[i] == pytest.approx(expected.numbers["stick_fraction"], abs=1e-5)
-        extremes = [run.tally[name][0] for name in ("lowest", "highest")]
+        extremes = [run.sums[name][0] for name in ("lowest", "highest")]
         np.testing.assert_allclose(found.extremes[i], extremes, rtol=1e-5)
 
 
 @pytest.mark.parametrize("name", [None, "viscous_damping", "guide_friction"])
 def test_forces_tell_for_how_long_a_normal_force_is_negative(name):
     rows = records(name, cases=(("coulomb", 2.2, 0.3e-3), ("static-dynamic", 2.2, 3e-3)))
-    found = periodic.respond(rows, periodic.at_rest(2), 1e-8, 400, 256, 7, 1e-9, forces=True)
+    found = periodic.respond(
+        rows, periodic.at_rest(2), periodic.Accuracy(1e-8, 400, 1e-9), 256, 7, forces=True
+    )
     assert found.lifted[0] == 0.0 < found.lifted[1]
     for i in range(2):
-        run = event_driven.solve(rows[i : i + 1], Window(float(rows["omega"][i]), 150, 1, 256), 1e-9, 60.0)
-        share = run.tally["lifted_time"][0] / run.tally["time"][0]
+        run = event_driven.solve(
+            rows[i : i + 1], Window(float(rows["input"]["omega"][i]), 150, 1, 256), 1e-9, 60.0
+        )
+        share = run.sums["lifted_time"][0] / run.sums["time"][0]
         assert found.lifted[i] == pytest.approx(share, abs=1e-4)
     silent = respond(rows)
     assert np.isnan(silent.lifted).all()
@@ -157,16 +162,16 @@ def test_sensors_turn_and_scale_the_spectra():
     plain = respond(records())
     lag, gain = 2e-3, 1.1
     rows = records()
-    rows["velocity_lag_time"], rows["displacement_gain_scale"] = lag, gain
+    rows["velocity_lag"]["time"], rows["displacement_gain"]["scale"] = lag, gain
     seen = respond(rows)
     np.testing.assert_allclose(seen.spectra[:, 0], gain * plain.spectra[:, 0], rtol=1e-12)
-    turns = 1j * np.outer(rows["omega"], np.arange(1, 8)) * lag
+    turns = 1j * np.outer(rows["input"]["omega"], np.arange(1, 8)) * lag
     np.testing.assert_allclose(seen.spectra[:, 1], plain.spectra[:, 1] / (1 + turns), rtol=1e-12)
 
 
 def test_the_lagged_waveform_has_the_lagged_spectrum():
     row = parameters.record("exponential", 8e-4, 0.6 * OMEGA_N, effects={"velocity_lag": {"time": 5e-3}})
-    run = event_driven.solve(row, Window(float(row["omega"][0]), 60, 2, 256), 1e-9, 60.0)
+    run = event_driven.solve(row, Window(float(row["input"]["omega"][0]), 60, 2, 256), 1e-9, 60.0)
     seen = response.evaluate(run, row, 7)
     spectrum = np.empty((7, 2))
     response.fourier(seen.waveforms["velocity"], 2, spectrum)

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.physics.cases import OMEGA_N, steady
-from wedgesweep import damper, parameters
-from wedgesweep.contact import breakaway_acceleration
+from wedgesweep.systems.suspension import equilibrium, parameters
 
 ROWS = json.loads((Path(__file__).parents[1] / "data" / "steady.json").read_text())
 
@@ -33,14 +32,14 @@ def test_steady_response(row):
 )
 def test_rest_position_and_resonance(column_angle, rest, resonance):
     record = parameters.record("coulomb", 1e-3, 1.0, suspension={"column_angle": column_angle})
-    assert record["rest"][0] == pytest.approx(rest, rel=1e-9)
-    assert damper.resonance(record[0]) == pytest.approx(resonance, rel=1e-9)
+    assert record["geometry"]["rest"][0] == pytest.approx(rest, rel=1e-9)
+    assert equilibrium.resonance(record[0]) == pytest.approx(resonance, rel=1e-9)
 
 
 def test_linkage_ratios():
     record = parameters.record("coulomb", 1e-3, 1.0)
-    assert record["column_ratio"][0] == pytest.approx(0.9187186996, rel=1e-9)
-    assert record["bolster_ratio"][0] == pytest.approx(-0.1052737144, rel=1e-9)
+    assert record["geometry"]["column_ratio"][0] == pytest.approx(0.9187186996, rel=1e-9)
+    assert record["geometry"]["bolster_ratio"][0] == pytest.approx(-0.1052737144, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -61,7 +60,7 @@ def test_laws_part_near_breakaway(law, beta, amplitude_mm, ratio):
 @pytest.mark.parametrize("excess", [-1e-6, 1e-3])
 def test_motion_begins_at_the_breakaway_acceleration(excess):
     omega = 1.5 * OMEGA_N
-    limit = breakaway_acceleration(parameters.record("coulomb", 1e-3, omega)[0])
+    limit = equilibrium.breakaway_acceleration(parameters.record("coulomb", 1e-3, omega)[0])
     record = parameters.record("coulomb", (1.0 + excess) * limit / omega**2, omega)
     numbers = steady(record, settle_periods=3)
     assert (numbers["stick_fraction"] < 1.0) == (excess > 0)

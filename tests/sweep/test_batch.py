@@ -10,14 +10,14 @@ from hypothesis import settings as hypothesis_settings
 
 from tests import small_sweep
 from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
-from wedgesweep import parameters
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.response import NUMBERS
 from wedgesweep.simulate import Settings
-from wedgesweep.solvers.march import SWITCHES_PER_PERIOD
+from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.sweep import cases, dataset
 from wedgesweep.sweep import run as sweep
 from wedgesweep.sweep.dataset import STATUSES
+from wedgesweep.systems.suspension import parameters
 
 EVENT_DRIVEN = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 STEADY = EVENT_DRIVEN.replace("settle_periods = 3", 'settle = "steady"\nsteady_tolerance = 1e-9\nrtol = 1e-9')
@@ -207,15 +207,15 @@ def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):
     found = solved(record, settled if steady else SHORT)
     status = STATUSES[found["status"]]
     # The switch count bounds the time that a case takes.
-    assert found["switches"] <= SWITCHES_PER_PERIOD * 200
+    assert found["switches"] <= EVENTS_PER_PERIOD * 200
     if status != "ok":
         assert status in ("locked", "solver_failure")
         assert found["message"]
-        assert np.isnan([found[name] for name in NUMBERS]).all()
+        assert np.isnan([found[name] for name in NUMBERS.names]).all()
         return
     # These are not defined for what does not move.
     undefined = {"phase_lag", "minimum_normal_force", "lift_off_fraction"}
-    assert np.isfinite([found[name] for name in NUMBERS if name not in undefined]).all()
+    assert np.isfinite([found[name] for name in NUMBERS.names if name not in undefined]).all()
     assert np.isfinite(found["displacement_harmonics"]).all()
     assert 0.0 <= found["stick_fraction"] <= 1.0
     assert found["peak_to_peak"] >= 0.0

@@ -40,7 +40,7 @@ def solved(monkeypatch):
     original = cases.simulate.respond
 
     def counting(case, *arguments):
-        counts[case["law"][0], case["omega"][0], case["amplitude"][0]] += 1
+        counts[case["friction"]["law"][0], case["input"]["omega"][0], case["input"]["amplitude"][0]] += 1
         return original(case, *arguments)
 
     monkeypatch.setattr(cases.simulate, "respond", counting)

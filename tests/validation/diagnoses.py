@@ -3,15 +3,12 @@
 They take a quarter of an hour, and run in ``make validate``, not with the tests.
 """
 
-import json
-from pathlib import Path
-
 import pytest
 
-from tests.validation import checks
+from tests.validation import checks, examples
 from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, Specimen, diagnose, make
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation.judge import ABSTAINING, NAMING
+from wedgesweep.validation.judge import ABSTAINING
 
 UNCERTAIN = {"friction_level": 0.07}
 STRONG = (
@@ -36,9 +33,6 @@ STRONG = (
     ),
 )
 WITHHELD = "column_compliance"
-# Beside the checkout, where it is there.
-EXAMPLES = Path(__file__).parents[3] / "shared" / "blind-examples"
-TRUTH = json.loads((EXAMPLES / "truth.json").read_text()) if EXAMPLES.is_dir() else {}
 
 
 @pytest.mark.parametrize("specimen", STRONG, ids=lambda specimen: specimen.name)
@@ -59,18 +53,6 @@ def test_an_effect_that_is_no_candidate_is_not_named(tmp_path):
     assert found.verdict in ABSTAINING
 
 
-@pytest.mark.parametrize("name", sorted(TRUTH))
+@pytest.mark.parametrize("name", sorted(set(examples.TRUTH) - set(examples.QUICK)))
 def test_example_comes_out_right(name, tmp_path):
-    truth = TRUTH[name]
-    found = diagnose(EXAMPLES / name / "measured.toml", tmp_path / "found")
-    hidden = set(truth["truth"])
-    if truth["kind"] == "clean":
-        assert found.verdict == "nothing-missing"
-    elif truth["kind"] == "unknown":
-        assert found.verdict == "none-of-mine"
-    elif truth["kind"] == "poor":
-        assert found.verdict in ABSTAINING or found.causes == hidden
-    else:
-        assert found.verdict in NAMING or found.verdict == "tied"
-        assert hidden in found.explanations
-        assert found.verdict == "tied" or found.causes == hidden
+    examples.comes_out_right(name, tmp_path)

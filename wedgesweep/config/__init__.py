@@ -62,13 +62,13 @@ class Config:
 
     @cached_property
     def suspension(self) -> dict[str, float]:
-        from wedgesweep.parameters import SUSPENSION
+        from wedgesweep.systems.suspension.parameters import SUSPENSION
 
         return _si(SUSPENSION, self.document["suspension"])
 
     @cached_property
     def friction(self) -> dict[str, float]:
-        from wedgesweep.parameters import FRICTION
+        from wedgesweep.friction.quantities import FRICTION
 
         return _si(FRICTION, self.document["friction"])
 
@@ -176,7 +176,7 @@ class Config:
 
     def record(self, case: Case) -> np.ndarray:
         """Parameter record of a case, shape (1,)."""
-        from wedgesweep import parameters
+        from wedgesweep.systems.suspension import parameters
 
         return parameters.record(
             law=case.law,
@@ -200,8 +200,8 @@ class Config:
         records = np.empty(laws.size, next(iter(one_by_law.values())).dtype)
         for law, one in one_by_law.items():
             records[laws == law] = one
-        records["amplitude"] = amplitudes
-        records["omega"] = betas * sweep.omega_n
+        records["input"]["amplitude"] = amplitudes
+        records["input"]["omega"] = betas * sweep.omega_n
         return records
 
     def to_toml(self) -> str:
@@ -211,7 +211,7 @@ class Config:
     @property
     def remark(self) -> str | None:
         """A note for readers of the results if effects change a friction law."""
-        from wedgesweep import parameters
+        from wedgesweep.systems.suspension import parameters
 
         law, sweep = "coulomb", self.sweep
         if law not in (sweep.friction_law or [case.law for case in sweep.cases or ()]):
@@ -271,7 +271,7 @@ def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
 
 def _require_rest(found: Config, source: str) -> None:
     """Refuse springs that soften so much that they have no equilibrium under the weight."""
-    if isnan(found.record(Case("static-dynamic", 1.0, 1e-3))["rest"][0]):
+    if isnan(found.record(Case("static-dynamic", 1.0, 1e-3))["geometry"]["rest"][0]):
         problem = "leaves the springs no equilibrium under the weight; it must be larger"
         raise ConfigError([f"{source}: effects.{SOFTENING}.coefficient_N_per_mm3: {problem}"])
 

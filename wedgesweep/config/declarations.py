@@ -9,9 +9,10 @@ from wedgesweep.config.tables import GridOrList, Table, TableList, table
 from wedgesweep.effects import EFFECTS
 from wedgesweep.effects.base import Effect
 from wedgesweep.friction.names import LAW_NAMES
-from wedgesweep.parameters import FRICTION, SUSPENSION
+from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
 from wedgesweep.solvers.names import SOLVERS
+from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)

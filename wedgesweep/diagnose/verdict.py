@@ -8,7 +8,7 @@ from scipy.special import chdtrc
 
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, penalised
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.effects import alike
+from wedgesweep.effects import confounded
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
     "nothing-missing",
@@ -136,7 +136,7 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, rivals)
     if rivals:
         return Finding(TIED, best, rivals)
-    if alike(best.effects) or _component_suffices(order, best):
+    if confounded(best.effects) or _component_suffices(order, best):
         return Finding(INSUFFICIENT, best, alternatives)
     if base.fit.excess < thresholds.strong or p < ADEQUATE:
         return Finding(CONSISTENT, best, ())

@@ -1,60 +1,26 @@
 """Physics that the base model leaves out: one effect per file, each off at its neutral value."""
 
 from collections.abc import Mapping, Sequence
+from importlib import import_module
+from types import ModuleType
 
-from wedgesweep.effects import (
-    ageing,
-    bolster_mass,
-    bolster_stiffness,
-    column_compliance,
-    cross_slip,
-    cubic_stiffness,
-    directional_friction,
-    displacement_gain,
-    end_stop,
-    fixture_resonance,
-    friction_level,
-    guide_friction,
-    input_distortion,
-    load_dependent_friction,
-    preload,
-    presliding,
-    stray_vibration,
-    stribeck,
-    velocity_lag,
-    viscous_damping,
-    wedge_stiffness,
-)
 from wedgesweep.effects.base import Effect
 
 # Numbers of effects by name, in SI units or in those of their keys.
 Numbers = Mapping[str, Mapping[str, float]]
 
 # In the order of families in which a diagnosis lists them.
-MODULES = (
-    bolster_stiffness,
-    wedge_stiffness,
-    bolster_mass,
-    preload,
-    friction_level,
-    stribeck,
-    presliding,
-    ageing,
-    directional_friction,
-    load_dependent_friction,
-    cross_slip,
-    column_compliance,
-    viscous_damping,
-    cubic_stiffness,
-    guide_friction,
-    end_stop,
-    input_distortion,
-    stray_vibration,
-    fixture_resonance,
-    velocity_lag,
-    displacement_gain,
+NAMES = (
+    *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level"),
+    *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
+    *("cross_slip", "column_compliance"),
+    *("viscous_damping", "cubic_stiffness", "guide_friction", "end_stop"),
+    *("input_distortion", "stray_vibration", "fixture_resonance"),
+    *("velocity_lag", "displacement_gain"),
 )
-EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in MODULES}
+# The modules of all effects by name; ``register`` adds one that is not of this package.
+REGISTERED: dict[str, ModuleType] = {name: import_module(f"{__name__}.{name}") for name in NAMES}
+EFFECTS: dict[str, Effect] = {name: module.EFFECT for name, module in REGISTERED.items()}
 
 FAMILIES = tuple(dict.fromkeys(effect.family for effect in EFFECTS.values()))
 
@@ -65,11 +31,14 @@ SCALES = tuple(
     name for name, effect in EFFECTS.items() if [each.name for each in effect.quantities] == ["scale"]
 )
 
-# Fields of the parameter record that need the extended mechanics unless they are off.
-EXTENDING = tuple(f"{effect.name}_{name}" for effect in EFFECTS.values() for name in effect.extends)
+
+def register(module: ModuleType) -> None:
+    """Add an effect from a module of one's own, which declares ``EFFECT`` and takes part in hooks.py."""
+    REGISTERED[module.EFFECT.name] = module
+    EFFECTS[module.EFFECT.name] = module.EFFECT
 
 
-def combined(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
+def merge(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
     """Numbers of effects with others beside them, or in their place; what scales a number scales it again."""
     scaled = {
         name: {"scale": own.get(name, {}).get("scale", 1.0) * added[name]["scale"]}
@@ -79,7 +48,7 @@ def combined(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
     return {name: dict(numbers) for name, numbers in {**own, **added, **scaled}.items()}
 
 
-def alike(names: Sequence[str]) -> bool:
+def confounded(names: Sequence[str]) -> bool:
     """Whether effects are several numbers of the model at once.
 
     Masses, stiffnesses and forces that grow alike leave every response as it is, so that two of them that are
@@ -91,12 +60,3 @@ def alike(names: Sequence[str]) -> bool:
 def acting(effects: Numbers) -> dict[str, dict[str, float]]:
     """Effects that change anything: a table with neutral values has switched nothing on."""
     return {name: dict(numbers) for name, numbers in effects.items() if EFFECTS[name].acts(numbers)}
-
-
-def neutral() -> dict[str, float]:
-    """The parameter record's fields that belong to effects, with every effect off (SI units)."""
-    return {
-        field: quantity.neutral * quantity.factor
-        for effect in EFFECTS.values()
-        for field, quantity in zip(effect.fields, effect.quantities, strict=True)
-    }

@@ -14,7 +14,8 @@ class Effect:
     """One missing piece of physics, switched on by the config table ``[effects.NAME]``.
 
     At the ``off`` value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
-    that need the extended mechanics as soon as they are not off; without any the base model serves.
+    that add forces, coefficients, states or events to the base model when they are not off. An effect
+    without any is one that the base model's mechanics can do.
     """
 
     name: str
@@ -29,8 +30,3 @@ class Effect:
         leading = self.extends or (self.quantities[0].name,)
         off = {each.name: each.neutral * each.factor for each in self.quantities}
         return any(numbers.get(name, off[name]) != off[name] for name in leading)
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """Names of its numbers in the parameter record, in the order of ``quantities``."""
-        return tuple(f"{self.name}_{quantity.name}" for quantity in self.quantities)

@@ -8,9 +8,13 @@ Neutral: the limit of infinite stiffness; off where the table is absent (0 in th
 Default: mass = 0.23 kg and damping_ratio = 0.03, neither fitted; stiffness must be given.
 """
 
-from math import nan
+from math import nan, sqrt
 
+import numpy as np
+
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.effects.states import LENGTH, VELOCITY, place_of, state
 from wedgesweep.quantity import Quantity
 
 EFFECT = Effect(
@@ -33,3 +37,63 @@ EFFECT = Effect(
     ),
     extends=("stiffness",),
 )
+
+
+STATES = (LENGTH, VELOCITY)
+# Numbers that follow from the others: place Q of the frictionless equilibrium, damping constant (N s/m).
+DERIVED = ("rest", "damping")
+# Under the Coulomb law the faces could stick one at a time.
+REGULARISES = True
+
+
+deflection = state("column_compliance", 0)
+velocity = state("column_compliance", 1)
+velocity_place = place_of("column_compliance", 1)
+
+
+def prepare(p: np.void) -> None:
+    """Fill in what follows from the other numbers."""
+    own = p["column_compliance"]
+    own["damping"] = 2.0 * own["damping_ratio"] * sqrt(own["stiffness"] * own["mass"])
+
+
+@term("column_compliance", off="False")
+def acts(p):
+    """Whether the columns yield."""
+    return p.column_compliance.stiffness > 0.0
+
+
+@term("column_compliance", off="0.0")
+def displacement(y, p):
+    """Q (m) of a column outward, from its place without load."""
+    return p.column_compliance.rest + deflection(y, p)
+
+
+@term("column_compliance", off="0.0")
+def force(y, p):
+    """Force of spring and damper on a column outward (N)."""
+    return -p.column_compliance.stiffness * displacement(y, p) - p.column_compliance.damping * velocity(y, p)
+
+
+@term("column_compliance", off="0.0")
+def stiffness(p):
+    """Lateral stiffness of a column (N/m)."""
+    return p.column_compliance.stiffness
+
+
+@term("column_compliance", off="0.0")
+def compliance(p):
+    """Acceleration of a column per force (1/kg)."""
+    return 1.0 / p.column_compliance.mass if acts(p) else 0.0
+
+
+@inlined
+def rates(column_slip, acceleration, mode, y, p):
+    """Rates of Q and Q'."""
+    return (velocity(y, p), acceleration.column)
+
+
+@inlined
+def power(velocity_of_mass, y, p):
+    """Power (W) that the dampers of both columns take."""
+    return 2.0 * p.column_compliance.damping * velocity(y, p) ** 2

@@ -9,6 +9,9 @@ Neutral and default: velocity = 0. Default: phase = 0. Half a turn of the phase 
 for it between -90 and 90 degrees.
 """
 
+from math import cos, hypot, sin
+
+from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -30,3 +33,33 @@ EFFECT = Effect(
     ),
     extends=("velocity",),
 )
+
+
+# Under the Coulomb law the faces could stick one at a time.
+REGULARISES = True
+
+
+@term("cross_slip", off="False")
+def acts(p):
+    """Whether the faces slip out of the plane."""
+    return p.cross_slip.velocity != 0.0
+
+
+@term("cross_slip", off="0.0")
+def velocity(t, p):
+    """Slip velocity (m/s) of both faces out of the plane."""
+    if p.cross_slip.velocity == 0.0:
+        return 0.0
+    return p.cross_slip.velocity * cos(p.input.omega * t + p.cross_slip.phase)
+
+
+@term("cross_slip", off="0.0")
+def acceleration(t, p):
+    """Its rate (m/s^2)."""
+    return -p.cross_slip.velocity * p.input.omega * sin(p.input.omega * t + p.cross_slip.phase)
+
+
+@term("cross_slip", off="slip")
+def speed(slip, t, p):
+    """Measure of slip of a face (m/s): its velocity in the plane, or the magnitude of both."""
+    return hypot(slip, velocity(t, p)) if acts(p) else slip

@@ -5,7 +5,7 @@
 It moves the rest position. Neutral and default: coefficient = 0.
 """
 
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -20,6 +20,12 @@ EFFECT = Effect(
 
 
 @inlined
-def force(z, p):
-    """Force on the bolster (N, up positive)."""
-    return -p.cubic_stiffness_coefficient * z * z * z
+def force_on_mass(z, velocity, y, p):
+    """Force on the bolster (N, up positive) at z (m) and z' (m/s)."""
+    return -p.cubic_stiffness.coefficient * z * z * z
+
+
+@term("cubic_stiffness", off="0.0")
+def coefficient(p):
+    """k_3 (N/m^3), which moves the rest position."""
+    return p.cubic_stiffness.coefficient

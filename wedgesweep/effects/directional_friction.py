@@ -5,6 +5,9 @@
 Neutral and default: asymmetry = 0.
 """
 
+import numpy as np
+
+from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -20,3 +23,20 @@ EFFECT = Effect(
     ),
     extends=("asymmetry",),
 )
+
+
+@term("directional_friction", off="False")
+def acts(p):
+    """Whether friction depends on the direction."""
+    return p.directional_friction.asymmetry != 0.0
+
+
+@term("directional_friction", off="1.0")
+def factor(direction, p):
+    """Factor of both coefficients; ``direction`` is the sign of z'."""
+    return 1.0 + p.directional_friction.asymmetry * direction
+
+
+def bound(mu: float, p: np.void) -> float:
+    """Largest coefficient."""
+    return mu * (1.0 + abs(p["directional_friction"]["asymmetry"]))

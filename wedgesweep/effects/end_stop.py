@@ -9,7 +9,7 @@ Default: none, both must be given.
 
 from math import nan
 
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -42,9 +42,21 @@ EFFECT = Effect(
 )
 
 
-@inlined
+@term("end_stop", off="False")
+def acts(p):
+    """Whether there are stops."""
+    return p.end_stop.stiffness > 0.0
+
+
+@term("end_stop", off="0.0")
+def clearance(p):
+    """Free travel either way (m)."""
+    return p.end_stop.clearance
+
+
+@term("end_stop", off="0.0")
 def force(x, stop, p):
     """Force on the bolster (N, up positive) in contact with the upper (1), the lower (-1) or no stop (0)."""
     if stop == 0:
         return 0.0
-    return -p.end_stop_stiffness * (x - stop * p.end_stop_clearance)
+    return -p.end_stop.stiffness * (x - stop * p.end_stop.clearance)

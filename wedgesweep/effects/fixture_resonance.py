@@ -8,9 +8,13 @@ Neutral: the limit of infinite frequency; off where the table is absent (0 in th
 Default: none, both must be given.
 """
 
-from math import nan
+from math import nan, pi
 
+import numpy as np
+
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.effects.states import LENGTH, VELOCITY, state
 from wedgesweep.quantity import Quantity
 
 EFFECT = Effect(
@@ -40,3 +44,44 @@ EFFECT = Effect(
     ),
     extends=("frequency",),
 )
+
+
+STATES = (LENGTH, VELOCITY)
+# Numbers that follow from the others: of the side frame on its table (N/m, N s/m).
+DERIVED = ("stiffness", "damping")
+
+
+deflection = state("fixture_resonance", 0)
+velocity = state("fixture_resonance", 1)
+
+
+def prepare(p: np.void) -> None:
+    """Fill in what follows from the other numbers."""
+    own, mass = p["fixture_resonance"], p["suspension"]["side_frame_mass"]
+    natural = 2.0 * pi * own["frequency"]
+    own["stiffness"] = mass * natural**2
+    own["damping"] = 2.0 * own["damping_ratio"] * mass * natural
+
+
+@term("fixture_resonance", off="False")
+def acts(p):
+    """Whether the side frame moves against its table."""
+    return p.fixture_resonance.stiffness > 0.0
+
+
+@term("fixture_resonance", off="0.0")
+def force(y, p):
+    """Force of the table on the side frame (N, up positive)."""
+    return -p.fixture_resonance.stiffness * deflection(y, p) - p.fixture_resonance.damping * velocity(y, p)
+
+
+@inlined
+def rates(column_slip, acceleration, mode, y, p):
+    """Rates of deflection and velocity of the side frame against its table."""
+    return (velocity(y, p), acceleration.frame)
+
+
+@inlined
+def power(velocity_of_mass, y, p):
+    """Power (W) that the damper of the table takes."""
+    return p.fixture_resonance.damping * velocity(y, p) ** 2

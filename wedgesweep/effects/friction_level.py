@@ -5,6 +5,8 @@
 Neutral and default: scale = 1.
 """
 
+import numpy as np
+
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -15,3 +17,9 @@ EFFECT = Effect(
     meaning="another level of friction on the wedges",
     quantities=(Quantity("scale", 1.0, "factor of mu_s and mu_d", minimum=0.0, search=(0.5, 2.0)),),
 )
+
+
+def adjust(p: np.void, scale: float) -> None:
+    """Change the numbers of the model in a parameter record; omega_n stays the nominal one."""
+    p["friction"]["mu_s"] *= scale
+    p["friction"]["mu_d"] *= scale

@@ -6,7 +6,7 @@ set-valued at z' = 0 under the Coulomb law; under the regularised laws R = -forc
 Neutral and default: force = 0. With frictionless wedges this is Den Hartog's oscillator (1930).
 """
 
-from wedgesweep.compiled import compiled, inlined
+from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -20,16 +20,14 @@ EFFECT = Effect(
 
 
 @inlined
+def acts(p):
+    """Whether the guide rubs."""
+    return p.guide_friction.force > 0.0
+
+
+@inlined
 def force(velocity, branch, p):
     """Force on the bolster (N, up positive) at z' = ``velocity`` on the given slip branch."""
-    if branch == 0 and not p.set_valued:
-        return -p.guide_friction_force * velocity / p.threshold_velocity
-    return -p.guide_friction_force * branch
-
-
-@compiled
-def slope(branch, p):
-    """Derivative of ``force`` with respect to z' (N s/m)."""
-    if branch == 0 and not p.set_valued:
-        return -p.guide_friction_force / p.threshold_velocity
-    return 0.0
+    if branch == 0 and not p.friction.set_valued:
+        return -p.guide_friction.force * velocity / p.friction.v_t
+    return -p.guide_friction.force * branch

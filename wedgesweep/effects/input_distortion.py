@@ -5,6 +5,9 @@
 Neutral and default: second = third = 0; both phases 0.
 """
 
+from math import sin
+
+from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -24,3 +27,23 @@ EFFECT = Effect(
         "third",
     ),
 )
+
+
+@inlined
+def base_acceleration(u2, t, p):
+    """U'' (m/s^2) with the harmonics, from that without."""
+    own, phase = p.input_distortion, p.input.omega * t
+    wave = 0.0
+    if own.second != 0.0:
+        wave += 4.0 * own.second * sin(2.0 * phase + own.second_phase)
+    if own.third != 0.0:
+        wave += 9.0 * own.third * sin(3.0 * phase + own.third_phase)
+    return u2 - p.input.amplitude * p.input.omega**2 * wave
+
+
+@inlined
+def fastest(omega, p):
+    """Highest angular frequency (rad/s) of the input."""
+    if p.input_distortion.third != 0.0:
+        return max(omega, 3.0 * p.input.omega)
+    return max(omega, 2.0 * p.input.omega) if p.input_distortion.second != 0.0 else omega

@@ -5,6 +5,11 @@
 N and mu are solved together. Neutral and default: exponent = 0. Default: reference = 1 N, not fitted.
 """
 
+from math import nan
+
+import numpy as np
+
+from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -28,3 +33,33 @@ EFFECT = Effect(
     ),
     extends=("exponent",),
 )
+
+
+# A normal force is kept this far off zero (N).
+LEAST_LOAD = 1e-30
+
+
+@term("load_dependent_friction", off="False")
+def acts(p):
+    """Whether friction depends on the load."""
+    return p.load_dependent_friction.exponent != 0.0
+
+
+@term("load_dependent_friction", off="0.0")
+def exponent(p):
+    """Power by which the coefficients fall with load."""
+    return p.load_dependent_friction.exponent
+
+
+@term("load_dependent_friction", off="mu")
+def coefficient(mu, normal, p):
+    """T/N of a face at a normal force (N) of either sign."""
+    if not acts(p):
+        return mu
+    load = max(abs(normal), LEAST_LOAD)
+    return mu * (load / p.load_dependent_friction.reference) ** (-p.load_dependent_friction.exponent)
+
+
+def bound(mu: float, p: np.void) -> float:
+    """Largest coefficient: none is known, as it may grow without end towards lift-off."""
+    return nan if p["load_dependent_friction"]["exponent"] != 0.0 else mu

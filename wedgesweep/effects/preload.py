@@ -5,6 +5,8 @@
 Neutral and default: force = 0.
 """
 
+import numpy as np
+
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -17,3 +19,8 @@ EFFECT = Effect(
         Quantity("force_N", 0.0, "added to the force of each wedge spring at z = 0", search=(-5.0, 30.0)),
     ),
 )
+
+
+def adjust(p: np.void, force: float) -> None:
+    """Change the numbers of the model in a parameter record; omega_n stays the nominal one."""
+    p["suspension"]["wedge_preload"] += force

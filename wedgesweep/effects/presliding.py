@@ -10,7 +10,9 @@ is absent (0 in the record). Default: none, length must be given.
 
 from math import nan
 
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.effects.states import SHARE, state
 from wedgesweep.quantity import Quantity
 
 EFFECT = Effect(
@@ -31,3 +33,39 @@ EFFECT = Effect(
     ),
     extends=("length",),
 )
+
+
+STATES = (SHARE,)
+# Where bristles settle this many times faster than the input, a few long implicit steps take less time than
+# many short explicit ones.
+STIFF = 300.0
+
+
+bristle = state("presliding", 0)
+
+
+@term("presliding", off="False")
+def acts(p):
+    """Whether the column face has bristles."""
+    return p.presliding.length > 0.0
+
+
+@term("presliding", off="mu")
+def coefficient(mu, y, p):
+    """Coefficient of the column face, from that of the law."""
+    return p.friction.mu_d * bristle(y, p) if acts(p) else mu
+
+
+@inlined
+def rates(column_slip, acceleration, mode, y, p):
+    """Rate of the bristles' share (1/s); ``mode.column`` is the sign of the slip."""
+    if not acts(p):
+        return (0.0,)
+    return (column_slip / p.presliding.length * (1.0 - bristle(y, p) * mode.column),)
+
+
+@term("presliding", off="False")
+def outruns(h, column_slip, p):
+    """Whether the bristles alone limit an explicit step, h (s) long."""
+    length, slip = p.presliding.length, abs(column_slip)
+    return length > 0.0 and slip > STIFF * p.input.omega * length and slip * h > length

@@ -7,8 +7,9 @@ the response is not periodic in the forcing.
 Neutral and default: acceleration = 0; frequency must be given.
 """
 
-from math import nan
+from math import nan, pi, sin
 
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -31,3 +32,28 @@ EFFECT = Effect(
     ),
     extends=("acceleration",),
 )
+
+
+# ``phase`` (rad) is another one in every measurement.
+DERIVED = ("phase",)
+
+
+@term("stray_vibration", off="False")
+def acts(p):
+    """Whether there is a tone, so that the response does not repeat."""
+    return p.stray_vibration.acceleration != 0.0
+
+
+@inlined
+def base_acceleration(u2, t, p):
+    """U'' (m/s^2) with the tone, from that without."""
+    if not acts(p):
+        return u2
+    own = p.stray_vibration
+    return u2 + own.acceleration * sin(2.0 * pi * own.frequency * t + own.phase)
+
+
+@inlined
+def fastest(omega, p):
+    """Highest angular frequency (rad/s) of the input."""
+    return max(omega, 2.0 * pi * p.stray_vibration.frequency) if acts(p) else omega

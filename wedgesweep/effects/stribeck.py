@@ -9,8 +9,11 @@ Neutral: the limit velocity -> 0 with peak = 0; off where the table is absent (0
 Default: peak = 0; velocity must be given.
 """
 
-from math import nan
+from math import exp, nan
 
+import numpy as np
+
+from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -33,3 +36,36 @@ EFFECT = Effect(
     ),
     extends=("velocity",),
 )
+
+
+# A trial step may look past the end of a branch, where friction that falls with velocity would run away.
+FLAT_BELOW = -1.0
+
+
+@term("stribeck", off="False")
+def acts(p):
+    """Whether friction falls with velocity."""
+    return p.stribeck.velocity > 0.0
+
+
+@inlined
+def static(mu, clock, y, p):
+    """Static coefficient."""
+    return p.friction.mu_s + p.stribeck.peak if acts(p) else mu
+
+
+@inlined
+def sliding(mu, speed, p):
+    """Coefficient above the threshold velocity, from that of the law."""
+    if not acts(p):
+        return mu
+    threshold = 0.0 if p.friction.set_valued else p.friction.v_t
+    beyond = max((speed - threshold) / p.stribeck.velocity, FLAT_BELOW)
+    return mu + (p.friction.mu_s - p.friction.mu_d + p.stribeck.peak) * exp(-beyond)
+
+
+def bound(mu: float, p: np.void) -> float:
+    """Largest coefficient."""
+    if p["stribeck"]["velocity"] == 0.0:
+        return mu
+    return max(mu, p["friction"]["mu_s"] + p["stribeck"]["peak"])

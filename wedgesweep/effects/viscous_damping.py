@@ -22,6 +22,12 @@ EFFECT = Effect(
 
 
 @inlined
-def force(velocity, p):
-    """Force on the bolster (N, up positive) at z' = ``velocity``."""
-    return -p.viscous_damping_coefficient * velocity
+def force_on_mass(z, velocity, y, p):
+    """Force on the bolster (N, up positive) at z (m) and z' (m/s)."""
+    return -p.viscous_damping.coefficient * velocity
+
+
+@inlined
+def power(velocity, y, p):
+    """Power (W) that the damper takes."""
+    return p.viscous_damping.coefficient * velocity * velocity

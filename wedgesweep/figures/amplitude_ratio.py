@@ -25,15 +25,14 @@ def frictionless_ratio(ds: xr.Dataset, beta: np.ndarray) -> np.ndarray:
     resonance, and everywhere if an effect has mechanics of its own.
     """
     from wedgesweep import config
+    from wedgesweep.systems.suspension.parameters import driven_mass, moving_mass
 
     # Any law will do: none of these numbers depends on it.
     p = config.parse(ds.attrs["config"]).record(config.Case("static-dynamic", 1.0, 1e-3))[0]
-    driven = p["bolster_mass"] + 2.0 * p["wedge_mass"] * p["column_ratio"] * p["cos_column"]
-    moving = p["bolster_mass"] + 2.0 * p["wedge_mass"] * p["column_ratio"] ** 2
     squared = (beta * ds.attrs["omega_n"] / ds.attrs["frictionless_resonance"]) ** 2
     detuning = np.abs(1.0 - squared)
     detuning[detuning < 1e-6] = np.nan
-    return driven / moving * squared / detuning
+    return driven_mass(p) / moving_mass(p) * squared / detuning
 
 
 def _limits(beta: np.ndarray) -> tuple[float, float]:

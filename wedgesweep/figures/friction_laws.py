@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from wedgesweep.figures import cases, style
 from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.friction import LAWS
+from wedgesweep.friction.curve import curve as friction_curve
 
 NAME = "friction-laws"
 DESCRIPTION = "coefficient of friction over slip velocity, a panel per law (Fig. 2)"
@@ -20,26 +21,26 @@ POINTS = 200
 def curve(name: str, parameters: np.void, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Trace slip velocity (m/s) up to ``reach`` and signed coefficient, vertical where the law jumps."""
     law = LAWS[name]
-    threshold = float(parameters["threshold_velocity"])
+    threshold = float(parameters["friction"]["v_t"])
     start = 0.0 if law.SET_VALUED else threshold
     pieces = {1: np.linspace(start, reach, POINTS)}
     pieces[-1] = -pieces[1][::-1]
     if not law.SET_VALUED:
         pieces[0] = np.array([-threshold, threshold])
     order = [branch for branch in (-1, 0, 1) if branch in pieces]
-    coefficients = [law.coefficient(v, branch, parameters) for branch in order for v in pieces[branch]]
-    return np.concatenate([pieces[branch] for branch in order]), np.array(coefficients)
+    coefficients = [friction_curve(pieces[branch], branch, parameters) for branch in order]
+    return np.concatenate([pieces[branch] for branch in order]), np.concatenate(coefficients)
 
 
 def _annotate(ax: Axes, parameters: np.void) -> None:
     """Mark the levels of the coefficients, and say how the law behaves at rest."""
-    for name, kind, side in (("s", "static", "bottom"), ("d", "dynamic", "top")):
-        level = float(parameters[kind])
+    for name, side in (("s", "bottom"), ("d", "top")):
+        level = float(parameters["friction"][f"mu_{name}"])
         ax.axhline(level, color="0.75", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
         place = {"va": side, "transform": ax.get_yaxis_transform(), "color": style.GREY}
         ax.text(0.02, level, f"$μ_{name}$ = {level:g}", fontsize=8, **place)
-    ramp = f"ramp up to $v_t$ = {float(parameters['threshold_velocity']) * style.MM:g} mm/s"
-    note = "set-valued at rest" if parameters["set_valued"] else ramp
+    ramp = f"ramp up to $v_t$ = {float(parameters['friction']['v_t']) * style.MM:g} mm/s"
+    note = "set-valued at rest" if parameters["friction"]["set_valued"] else ramp
     ax.annotate(note, (0.97, 0.06), xycoords="axes fraction", ha="right", fontsize=8, color=style.GREY)
 
 

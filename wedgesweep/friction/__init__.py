@@ -1,41 +1,95 @@
 """Friction laws: the signed coefficient of a face as a function of its slip velocity.
 
-A law is a file with three smooth branches, -1, 0 and 1: sliding backward, the branch around v = 0, and
-sliding forward. Which branch holds is decided outside (contact.py), so that no integrator ever steps
-across a corner. Under a set-valued law branch 0 means stuck, and no coefficient is defined there.
+A law is a file of its own with two smooth functions, ``static`` (the coefficient at the end of the
+sticking branch, or at which set-valued friction lets go) and ``sliding`` (beyond it), and the ``bound`` of
+both. It has three branches, -1, 0 and 1: sliding backward, the branch around v = 0, and sliding forward.
+The contact mode says which branch holds, so that no integrator ever steps across a corner. Under a
+set-valued law branch 0 means stuck.
 """
 
-from wedgesweep.compiled import compiled, inlined
-from wedgesweep.friction import coulomb, exponential, static_dynamic
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from inspect import signature
+from types import ModuleType
+from typing import Any
+
+from wedgesweep.compiled import by_record, function_of, inlined
+from wedgesweep.effects import hooks
 from wedgesweep.friction.names import LAW_NAMES
 
-LAWS = dict(zip(LAW_NAMES, (coulomb, static_dynamic, exponential), strict=True))
+# The laws by name; a law's place is its code in parameter records. ``register`` adds another.
+LAWS: dict[str, ModuleType] = {
+    name: import_module(f"{__name__}.{name.replace('-', '_')}") for name in LAW_NAMES
+}
+
+
+def register(name: str, module: ModuleType) -> None:
+    """Add a law that is not part of this package."""
+    LAWS[name] = module
+
+
+def code(name: str) -> int:
+    """Number that stands for a law in parameter records."""
+    return list(LAWS).index(name)
+
+
+def _of_the_law(function: Callable) -> Callable:
+    """A function that calls that of the law which a record names."""
+    arguments = list(signature(function).parameters)
+
+    def choose(fields: Mapping[str, Any]) -> Callable:
+        calls = [f"f{i}({', '.join(arguments)})" for i in range(len(LAWS))]
+        chosen = calls[-1]
+        for i in reversed(range(len(LAWS) - 1)):
+            chosen = f"{calls[i]} if p.friction.law == {i} else ({chosen})"
+        functions = {f"f{i}": getattr(law, function.__name__) for i, law in enumerate(LAWS.values())}
+        return function_of(arguments, chosen, **functions)
+
+    return by_record(function, choose)
+
+
+class _Law:
+    """The functions that each law writes."""
+
+    @staticmethod
+    @_of_the_law
+    def static(p): ...
+
+    @staticmethod
+    @_of_the_law
+    def sliding(speed, p): ...
+
+    @staticmethod
+    @_of_the_law
+    def constant(p): ...
+
+
+_static, _sliding, constant = _Law.static, _Law.sliding, _Law.constant
 
 
 @inlined
-def coefficient(velocity, branch, p):
-    """Signed coefficient of friction of the case's law; velocity in m/s."""
-    if p.law == 0:
-        return coulomb.coefficient(velocity, branch, p)
-    if p.law == 1:
-        return static_dynamic.coefficient(velocity, branch, p)
-    return exponential.coefficient(velocity, branch, p)
+def static(clock, y, p):
+    """Static coefficient; ``clock``: whether the time at rest runs."""
+    return hooks.static(_static(p), clock, y, p)
 
 
-@compiled
-def slope(velocity, branch, p):
-    """Derivative of ``coefficient`` with respect to velocity (s/m)."""
-    if p.law == 0:
-        return coulomb.slope(velocity, branch, p)
-    if p.law == 1:
-        return static_dynamic.slope(velocity, branch, p)
-    return exponential.slope(velocity, branch, p)
+@inlined
+def sliding(speed, p):
+    """Coefficient above the threshold velocity, at a speed (m/s)."""
+    return hooks.sliding(_sliding(speed, p), speed, p)
 
 
-@compiled
-def branch_at(velocity, p):
-    """Branch that holds at a slip velocity; 0 within the threshold, or at rest if set-valued."""
-    threshold = 0.0 if p.set_valued else p.threshold_velocity
-    if velocity > threshold:
+@inlined
+def coefficient(velocity, branch, highest, p):
+    """Signed coefficient of a face on a branch of the law; ``highest`` is its static one."""
+    if branch == 0 and not p.friction.set_valued:
+        return highest * velocity / p.friction.v_t
+    return branch * sliding(branch * velocity, p)
+
+
+@inlined
+def branch_at(speed, p):
+    """Branch of a regularised law at a measure of slip (m/s)."""
+    if speed > p.friction.v_t:
         return 1
-    return -1 if velocity < -threshold else 0
+    return -1 if speed < -p.friction.v_t else 0

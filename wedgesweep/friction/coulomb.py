@@ -1,21 +1,34 @@
 """Coulomb's law (the paper's Eq. 1), set-valued at rest.
 
 mu = mu_d sign(v)             for v != 0
-mu in [-mu_d, mu_d]           for v = 0: the face sticks, see contact.py
+mu in [-mu_d, mu_d]           for v = 0: the face sticks
 """
 
-from wedgesweep.compiled import compiled, inlined
+import numpy as np
+
+from wedgesweep.compiled import inlined
 
 SET_VALUED = True
 
 
 @inlined
-def coefficient(velocity, branch, p):
-    """Signed coefficient of friction on slip branch -1 or 1."""
-    return branch * p.dynamic
+def static(p):
+    """Coefficient at which friction lets go."""
+    return p.friction.mu_d
 
 
-@compiled
-def slope(velocity, branch, p):
-    """Derivative of ``coefficient`` with respect to the slip velocity (s/m)."""
-    return 0.0
+@inlined
+def sliding(speed, p):
+    """Coefficient of slip."""
+    return p.friction.mu_d
+
+
+@inlined
+def constant(p):
+    """Whether ``sliding`` does not depend on the speed."""
+    return True
+
+
+def bound(p: np.void) -> float:
+    """Largest coefficient."""
+    return p["friction"]["mu_d"]

@@ -6,7 +6,11 @@
 The paper prints v^(-0.1), which has a meaning only for v in units of v_t.
 """
 
-from wedgesweep.compiled import compiled, inlined
+from math import nan
+
+import numpy as np
+
+from wedgesweep.compiled import inlined
 
 SET_VALUED = False
 
@@ -16,20 +20,23 @@ FLAT_BELOW = 0.5
 
 
 @inlined
-def coefficient(velocity, branch, p):
-    """Signed coefficient of friction on a branch of the law."""
-    if branch == 0:
-        return p.static * velocity / p.threshold_velocity
-    speed = max(branch * velocity / p.threshold_velocity, FLAT_BELOW)
-    return branch * p.dynamic * speed**p.velocity_exponent
+def static(p):
+    """Coefficient at the end of the ramp."""
+    return p.friction.mu_s
 
 
-@compiled
-def slope(velocity, branch, p):
-    """Derivative of ``coefficient`` with respect to the slip velocity (s/m)."""
-    if branch == 0:
-        return p.static / p.threshold_velocity
-    speed = branch * velocity / p.threshold_velocity
-    if speed < FLAT_BELOW:
-        return 0.0
-    return p.dynamic * p.velocity_exponent * speed ** (p.velocity_exponent - 1.0) / p.threshold_velocity
+@inlined
+def sliding(speed, p):
+    """Coefficient beyond the ramp, at a speed (m/s)."""
+    return p.friction.mu_d * max(speed / p.friction.v_t, FLAT_BELOW) ** p.friction.exponent
+
+
+@inlined
+def constant(p):
+    """Whether ``sliding`` does not depend on the speed."""
+    return False
+
+
+def bound(p: np.void) -> float:
+    """Largest coefficient; NaN: a positive exponent has none."""
+    return nan if p["friction"]["exponent"] > 0.0 else max(p["friction"]["mu_s"], p["friction"]["mu_d"])

@@ -4,22 +4,31 @@ mu = mu_s v / v_t             for |v| <= v_t  (branch 0)
 mu = mu_d sign(v)             for |v| >  v_t  (branch -1 or 1)
 """
 
-from wedgesweep.compiled import compiled, inlined
+import numpy as np
+
+from wedgesweep.compiled import inlined
 
 SET_VALUED = False
 
 
 @inlined
-def coefficient(velocity, branch, p):
-    """Signed coefficient of friction on a branch of the law."""
-    if branch == 0:
-        return p.static * velocity / p.threshold_velocity
-    return branch * p.dynamic
+def static(p):
+    """Coefficient at the end of the ramp."""
+    return p.friction.mu_s
 
 
-@compiled
-def slope(velocity, branch, p):
-    """Derivative of ``coefficient`` with respect to the slip velocity (s/m)."""
-    if branch == 0:
-        return p.static / p.threshold_velocity
-    return 0.0
+@inlined
+def sliding(speed, p):
+    """Coefficient beyond the ramp."""
+    return p.friction.mu_d
+
+
+@inlined
+def constant(p):
+    """Whether ``sliding`` does not depend on the speed."""
+    return True
+
+
+def bound(p: np.void) -> float:
+    """Largest coefficient."""
+    return max(p["friction"]["mu_s"], p["friction"]["mu_d"])

@@ -5,7 +5,7 @@ from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.effects import alike
+from wedgesweep.effects import confounded
 from wedgesweep.report import phrases
 
 
@@ -97,7 +97,7 @@ def _adequate(result: DiagnosisResult) -> str:
 
 
 def _doubt(result: DiagnosisResult, only: Mapping[str, Any]) -> str:
-    if alike(only["effects"]):
+    if confounded(only["effects"]):
         return "an error in a model parameter that is no candidate could look like these two"
     if half := _adequate_half(result, only["effects"]):
         return f"{half} alone leaves hardly more, with parameters that differ from test to test"

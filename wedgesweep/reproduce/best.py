@@ -6,10 +6,11 @@ import numpy as np
 
 from wedgesweep.reproduce import observations
 from wedgesweep.reproduce.observations import Recording
-from wedgesweep.reproduce.scenarios import LOOSE, TIGHT, Accuracy, EvaluatedPoint, Scenario, recordings, sweep
+from wedgesweep.reproduce.scenarios import LOOSE, TIGHT, EvaluatedPoint, Scenario, recordings, sweep
 from wedgesweep.reproduce.scenarios import loss as loss_of
 from wedgesweep.reproduce.scenarios import satisfied as number_satisfied
 from wedgesweep.reproduce.search import SearchResult
+from wedgesweep.solvers.periodic import Accuracy
 
 HERTZ = np.arange(20.0, 41.0)
 # Points of a search that are compared again: the search used every second frequency of the sweep only.

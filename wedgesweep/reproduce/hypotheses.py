@@ -7,13 +7,13 @@ from types import MappingProxyType
 
 import numpy as np
 
-from wedgesweep import parameters
 from wedgesweep.effects import EFFECTS
 from wedgesweep.quantity import Quantity
 from wedgesweep.reproduce.observations import FAST_HERTZ, OF_FAST, OF_SLOW, OF_SWEEP, SLOW_HERTZ
+from wedgesweep.systems.suspension import parameters
 
 # Where the two faces can stick one at a time, set-valued friction has no rigid linkage to rely on (see
-# parameters.REGULARISING). It is replaced by a ramp, up to a twentieth of the largest velocity at 20 Hz: the
+# effects' REGULARISES). It is replaced by a ramp, up to a twentieth of the largest velocity at 20 Hz: the
 # threshold by which a plateau is recognised (observations.ON_THE_AXIS).
 STEEP = MappingProxyType({"static": 0.29, "threshold_velocity": 1e-4})
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from wedgesweep.friction import LAWS as MODULES
+from wedgesweep.friction.curve import curve
 from wedgesweep.reproduce.comparison import settled, spread, zone
 from wedgesweep.reproduce.findings import DISTORTED, MOVES, Finding, above, below, claim
 from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, distortion
@@ -74,7 +74,7 @@ def lowest_frequency(runs: Runs) -> Finding:
             "largest": float(cases["amplitude"].max()) * MM,
             "creep": float(others["amplitude_ratio"].sel(friction_law=STATIC_DYNAMIC)[0]),
             "slow": float(others["stick_fraction"].min()),
-            "slow_input": float(p["threshold_velocity"] / p["omega"]) * MM,
+            "slow_input": float(p["friction"]["v_t"] / p["input"]["omega"]) * MM,
         },
     )
 
@@ -146,7 +146,7 @@ def nearer_to_coulomb(runs: Runs) -> Finding:
 def _jump(run: Run, law: str) -> float:
     """Drop of the coefficient of friction at the end of the ramp of a regularised law."""
     p = record(run.config, law, 1.0, 1.0)[0]
-    ramp, sliding = (MODULES[law].coefficient(p["threshold_velocity"], side, p) for side in (0, 1))
+    ramp, sliding = (curve(p["friction"]["v_t"][None], side, p)[0] for side in (0, 1))
     return float(ramp - sliding)
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -10,16 +9,7 @@ from wedgesweep.reproduce import observations
 from wedgesweep.reproduce.hypotheses import Hypothesis, Interpretation, Law
 from wedgesweep.reproduce.observations import FAST_HERTZ, OBSERVATIONS, OF_TESTS, SLOW_HERTZ, Recording
 from wedgesweep.solvers import periodic
-from wedgesweep.solvers.periodic import Periodic
-
-
-class Accuracy(NamedTuple):
-    """Change of state that counts as steady, the largest number of periods, and rtol of a step."""
-
-    tolerance: float
-    most_periods: int
-    rtol: float
-
+from wedgesweep.solvers.periodic import Accuracy, Periodic
 
 # A search needs tenths of tolerances only; its results are computed again.
 LOOSE, TIGHT = Accuracy(1e-5, 80, 1e-6), Accuracy(1e-7, 1000, 1e-8)
@@ -90,7 +80,7 @@ class EvaluatedPoint:
 def excited(records: np.ndarray, hertz: float, amplitude: np.ndarray) -> np.ndarray:
     """The records at a frequency and with amplitudes (m), shape (n,)."""
     rows = records.copy()
-    rows["omega"], rows["amplitude"] = 2.0 * np.pi * hertz, amplitude
+    rows["input"]["omega"], rows["input"]["amplitude"] = 2.0 * np.pi * hertz, amplitude
     return rows
 
 
@@ -102,8 +92,7 @@ def respond(
     A response with a negative normal force at any time, where a real wedge would lift off, is NaN.
     """
     warm = periodic.at_rest(len(records)) if before is None else before.warm
-    tolerance, most, rtol = accuracy
-    found = periodic.respond(records, warm, tolerance, most, SAMPLES_PER_PERIOD, harmonics, rtol, forces=True)
+    found = periodic.respond(records, warm, accuracy, SAMPLES_PER_PERIOD, harmonics, forces=True)
     lifts = found.lifted > 0.0
     found.spectra[lifts], found.extremes[lifts] = np.nan, np.nan
     return found

@@ -44,5 +44,5 @@ def single(run: Run, law: str, beta: float, millimetres: float, changes: Changes
     try:
         found, _ = simulate.respond(record(config, law, beta, millimetres), config.solver, HARMONICS)
     except CaseError:
-        return dict.fromkeys(NUMBERS, nan)
+        return dict.fromkeys(NUMBERS.names or (), nan)
     return found.numbers

@@ -72,8 +72,8 @@ def _longest(run: Run, hertz: int) -> dict[str, float]:
 def _bolster_face(run: Run) -> dict[str, float]:
     """Slip of the bolster face over the velocity, and the velocity (mm/s) at which this slip is v_t."""
     p = record(run.config, "static-dynamic", 1.0, 1.0)[0]
-    share = abs(float(p["bolster_ratio"]))
-    return {"face": share, "face_limit": float(p["threshold_velocity"]) / share * MM}
+    share = abs(float(p["geometry"]["bolster_ratio"]))
+    return {"face": share, "face_limit": float(p["friction"]["v_t"]) / share * MM}
 
 
 @claim(

@@ -2,10 +2,11 @@
 
 from math import pi
 
-from wedgesweep import damper
 from wedgesweep.reproduce.findings import Finding, claim, near
 from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, identifier
 from wedgesweep.reproduce.single_case import changed, other_lean, record, single
+from wedgesweep.systems.suspension.equilibrium import resonance as frictionless_resonance
+from wedgesweep.systems.suspension.parameters import driven_mass, moving_mass
 
 # Relative tolerances: of printed numbers, of numbers read off a diagram, of a ratio that is said to reach 1.
 PRINTED, READ_OFF, REACHED = 3e-3, 0.05, 0.1
@@ -58,7 +59,7 @@ def rest_position(runs: Runs) -> Finding:
 def _other_lean(run: Run) -> float:
     """Rest position (m) with the column angle reversed."""
     config = changed(run.config, other_lean(run.config))
-    return float(record(config, "coulomb", 1.0, 1.0)["rest"][0])
+    return float(record(config, "coulomb", 1.0, 1.0)["geometry"]["rest"][0])
 
 
 def _spring_scale(runs: Runs) -> float:
@@ -137,6 +138,5 @@ def _settled_ratio(run: Run, beta: float) -> float:
 def frictionless_ratio(run: Run, beta: float) -> float:
     """Amplitude ratio of the suspension without friction on any face."""
     p = record(run.config, "coulomb", beta, 1.0)[0]
-    squared = p["omega"] ** 2
-    at_rest, driven = (damper.frictionless(0.0, base, p).acceleration for base in (0.0, 1.0))
-    return float(abs((driven - at_rest) * squared / (squared + damper.frictionless_stiffness(p))))
+    squared = p["input"]["omega"] ** 2
+    return float(abs(driven_mass(p) / moving_mass(p) * squared / (squared - frictionless_resonance(p) ** 2)))

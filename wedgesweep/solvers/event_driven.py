@@ -1,50 +1,31 @@
-"""Compiled solver that goes from event to event, for one case or for many.
+"""Compiled solver that goes from event to event, for one case or for many in one compiled loop.
 
-The same contact states, forces and switches as the Radau solver; only the way from one switch to the
-next is another. Many cases run in one compiled loop.
+It asks the system for the same modes, rates and event functions as the Radau solver, and integrates
+between events by its own methods (integrate.py).
 """
 
-from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep import response, tally
+from wedgesweep import response
 from wedgesweep.compiled import borrowed, compiled
-from wedgesweep.solvers import extended
-from wedgesweep.solvers.extended import STATISTICS
-from wedgesweep.solvers.march import CHATTERING, OK, SWITCHES_PER_PERIOD, begin, march, workspace
-from wedgesweep.solvers.passage import clear
-from wedgesweep.solvers.recorder import Recorder
-from wedgesweep.solvers.repetition import LONGEST
-from wedgesweep.solvers.runge_kutta import FAILED
-from wedgesweep.solvers.steady import settle
-from wedgesweep.solvers.sticking import LOCKED
-from wedgesweep.solvers.trajectory import CaseError, TimedWindow, Trajectory, Window, empty_samples
+from wedgesweep.hybrid.accumulators import clear
+from wedgesweep.hybrid.interface import scales
+from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, OK
+from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
+from wedgesweep.solvers.period_detection import LONGEST_PERIOD
+from wedgesweep.solvers.period_map import memory, period_map, run_periods
+from wedgesweep.solvers.shooting import Shooting, settle
+from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, Window
+from wedgesweep.systems import compact, state_count
 
 MESSAGES = {
-    LOCKED: ("locked", "normal forces not unique: the wedge locks"),
+    LOCKED: ("locked", "normal forces not unique: the system locks"),
     FAILED: ("solver_failure", "the steps became too small, or too many"),
-    CHATTERING: ("solver_failure", f"more than {SWITCHES_PER_PERIOD} switches per period"),
+    CHATTERING: ("solver_failure", f"more than {EVENTS_PER_PERIOD} switches per period"),
 }
-
-
-@compiled
-def follow(state, keep, end, parameters, recorder, work):
-    """One case from a state to the end of its window: the outcome and the state reached."""
-    outcome, state = march(state, keep, parameters, False, recorder, work)
-    if outcome == OK:
-        outcome, state = march(state, end, parameters, True, recorder, work)
-    return outcome, state
-
-
-@compiled
-def follow_from(t, x, velocity, keep, end, parameters, recorder, work):
-    """``follow`` from a time, deflection and velocity."""
-    state, unique = begin(t, x, velocity, parameters[0])
-    if not unique:
-        return LOCKED, state
-    return follow(state, keep, end, parameters, recorder, work)
+STATISTICS = ("rate_evaluations", "steps", "switches")
 
 
 def solve(
@@ -56,56 +37,59 @@ def solve(
 ) -> Trajectory:
     """Run one case; arguments and errors as for ``radau.solve``.
 
-    The compiled loop cannot be interrupted: in place of the time limit it counts steps and switches. It
+    The compiled loop cannot be interrupted: in place of the time limit it counts steps and events. It
     samples even phases only: a TimedWindow is a TypeError.
     """
     if isinstance(window, TimedWindow):
         message = "sample times of one's own are for radau.solve; this solver samples even phases"
         raise TypeError(message)
-    if parameters["extended"][0]:
-        outcome, time, run = extended.run(parameters, window, rtol, start)
-        _require(outcome, time)
-        return run
-    times = window.sample_times
-    samples = empty_samples(times)
-    sums, work = tally.empty(), workspace(rtol)
-    recorder = Recorder(window.keep, times[1] - times[0], sums, samples.x, samples.velocity, samples.contact)
-    outcome, state = follow_from(0.0, *start, window.keep, window.end, parameters, recorder, work)
-    _require(outcome, state.t)
-    response.normal_forces(times, samples.x, samples.velocity, samples.contact, parameters[0], samples.normal)
-    counts = dict(zip(STATISTICS, work.counts.tolist(), strict=True))
-    return Trajectory(samples, sums, window.periods, counts)
-
-
-def _require(outcome: int, time: float) -> None:
+    case = compact(parameters)
+    room = memory(rtol, window.samples_per_period, window.periods)
+    y, settle_periods = np.zeros(len(scales_of(case))), window.settle_periods
+    y[:2] = start
+    outcome, run = OK, period_map(case.dtype)
+    if settle_periods:
+        outcome = run_periods(run, 0, settle_periods, y, case, False, room)
+    if outcome == OK:
+        outcome = run_periods(run, settle_periods, window.periods, y, case, True, room)
     if outcome != OK:
         status, message = MESSAGES[outcome]
-        message = f"{message} (at t = {time:.6g} s)"
+        message = f"{message} (at t = {room.reached[0]:.6g} s)"
         raise CaseError(message, status)
+    samples = Samples(window.sample_times, room.x, room.velocity, room.sticks, room.normal)
+    counts = dict(zip(STATISTICS, room.work.counts.tolist(), strict=True))
+    return Trajectory(samples, room.sums, window.periods, counts)
 
 
-class Plan(NamedTuple):
+@compiled
+def scales_of(parameters):
+    """Natural sizes of the states of a case, whose record has shape (1,)."""
+    return np.array(scales(parameters[0]))
+
+
+class BatchSettings(NamedTuple):
     """How every case of a batch is run.
 
     ``steady``: settle until the response repeats within ``tolerance`` (of input amplitude and velocity),
-    for at most ``most`` periods; else each case has its own number of settling periods.
-    ``chain``: a case starts where the one before it ended, unless that failed.
+    for at most ``max_periods``; else each case has its own number of settling periods.
+    ``continuation``: a case starts where the one before it ended, unless that failed.
     """
 
     periods: int
     samples_per_period: int
     steady: bool
     tolerance: float
-    most: int
-    chain: bool = False
+    max_periods: int
+    continuation: bool = False
 
 
 class Batch(NamedTuple):
-    """What a batch comes to, a row a case; ``waveforms`` may have no rows, and then none are kept.
+    """Results of a batch, one row per case; ``waveforms`` without rows: none are kept.
 
-    ``numbers`` (n, len(response.NUMBERS)), ``spectra`` (n, 2, harmonics, 2), ``waveforms`` (n, 5, samples):
-    x, velocity, normal force on column and bolster, stuck; ``outcome``, ``time`` (s) reached, ``period``,
-    ``settled`` (periods) (n,); ``statistics`` (n, 3); ``state`` (n, 2) at the end.
+    ``numbers`` (n,) is of ``response.NUMBERS``; ``spectra`` (n, 2, harmonics, 2), ``waveforms`` (n, 5,
+    samples): displacement from rest, velocity, both normal forces, sticks; ``outcome``, ``time`` (s)
+    reached, ``period``, ``settled`` (periods) (n,); ``statistics`` (n, 3); ``state`` (n, states) at the
+    end.
     """
 
     numbers: Any
@@ -121,8 +105,11 @@ class Batch(NamedTuple):
 
 def empty_batch(cases: int, harmonics: int, samples: int) -> Batch:
     """Room for a batch; ``samples`` = 0 keeps no waveforms."""
+    numbers = np.empty(cases, response.NUMBERS)
+    for name in response.NUMBERS.names or ():
+        numbers[name] = np.nan
     return Batch(
-        np.full((cases, len(response.NUMBERS)), np.nan),
+        numbers,
         np.full((cases, 2, harmonics, 2), np.nan),
         np.full((cases if samples else 0, 5, samples), np.nan),
         np.zeros(cases, np.int64),
@@ -130,70 +117,78 @@ def empty_batch(cases: int, harmonics: int, samples: int) -> Batch:
         np.zeros(cases, np.int64),
         np.zeros(cases, np.int64),
         np.zeros((cases, 3), np.int64),
-        np.zeros((cases, 2)),
+        np.zeros((cases, state_count())),
     )
 
 
-@compiled
-def _keep_waveforms(recorder, periods, parameters, out):
-    """Write the last samples of a case as waveforms."""
-    samples = out.shape[1]
-    x, velocity = recorder.x[-samples:], recorder.velocity[-samples:]
-    contact = recorder.contact[-samples:]
-    times = recorder.start + recorder.step * np.arange(recorder.x.size)[-samples:]
-    seen = response.channels(recorder.x, recorder.velocity, periods, parameters[0])
-    out[0], out[1] = seen[0][-samples:], seen[1][-samples:]
-    response.normal_forces(times, x, velocity, contact, parameters[0], out[2:4])
-    for i in range(samples):
-        out[4, i] = 1.0 if abs(contact[i, 0]) != 1 else 0.0
-
-
-@compiled
-def _settled(start, settle_periods, case, plan, sums, work):
-    """Where a case's window may begin: outcome, settled periods, start of ``follow``, period, state."""
-    if not plan.steady:
-        return OK, settle_periods, 0.0, -1, start[0], start[1]
-    empty = np.empty(0)
-    nothing = Recorder(0.0, 1.0, sums, empty, empty, np.empty((0, 5), np.int8))
-    outcome, settled, x, velocity, period = settle(
-        start[0], start[1], case, plan.tolerance, plan.most, nothing, work
+def run_batch(
+    parameters: np.ndarray, settle_periods: np.ndarray, settings: BatchSettings, rtol: float, batch: Batch
+) -> None:
+    """Run all cases of a batch, from rest or in a continuation, into ``batch``."""
+    cases = compact(parameters)
+    room = memory(
+        rtol,
+        settings.samples_per_period,
+        settings.periods + LONGEST_PERIOD,
+        forces=bool(batch.waveforms.size),
     )
-    return outcome, settled, settled * 2.0 * pi / case[0].omega, period, x, velocity
+    _run_all(cases, settle_periods, settings, room, batch, period_map(cases.dtype))
 
 
 @compiled
-def run_batch(parameters, settle_periods, plan, sums, work, batch):
-    """Run all cases of a batch, from rest or in a chain, into ``batch``."""
-    sums, work, batch = borrowed(sums), borrowed(work), borrowed(batch)
-    longest = plan.periods + LONGEST
-    x = np.empty(longest * plan.samples_per_period)
-    velocity = np.empty_like(x)
-    contact = np.empty((x.size, 5), np.int8)
-    for i in range(parameters.size):
-        case = parameters[i : i + 1]
-        cycle = 2.0 * pi / case[0].omega
-        start = (0.0, 0.0)
-        if plan.chain and i > 0 and batch.outcome[i - 1] == OK:
-            start = (batch.state[i - 1, 0], batch.state[i - 1, 1])
-        work.counts[:] = 0
-        outcome, settled, first, period, x0, v0 = _settled(start, settle_periods[i], case, plan, sums, work)
-        batch.outcome[i], batch.period[i], batch.settled[i] = outcome, period, settled
-        batch.time[i] = settled * cycle
+def _settled(y, near, settle_periods, case, settings, room, period_map):
+    """Settle a case; y moves along. Returns the outcome, the period of the response and the periods run.
+
+    ``near``: period of the response that y lies close to, 0 if unknown.
+    """
+    if settings.steady:
+        unknown = np.full((y.size, y.size), np.nan)
+        shooting = Shooting(
+            case, period_map, settings.tolerance, settings.max_periods, room, np.array(scales(case[0]))
+        )
+        found = settle(y, near, unknown, shooting)
+        return found.outcome, found.period, found.run
+    outcome = OK
+    if settle_periods > 0:
+        outcome = period_map(0, settle_periods, y, case, False, room)
+    return outcome, -1, settle_periods
+
+
+@compiled
+def _run_all(cases, settle_periods, settings, room, batch, period_map):
+    room, batch = borrowed(room), borrowed(batch)
+    for i in range(cases.size):
+        case = cases[i : i + 1]
+        y, near = np.zeros(len(scales(case[0]))), 0
+        if settings.continuation and i > 0 and batch.outcome[i - 1] == OK:
+            y[:], near = batch.state[i - 1, : y.size], batch.period[i - 1]
+        room.work.counts[:] = 0
+        room.reached[0] = 0.0
+        outcome, period, settled = _settled(y, near, settle_periods[i], case, settings, room, period_map)
+        batch.period[i], batch.settled[i] = period, settled
+        # A response of a longer period is kept for whole periods of its own.
+        periods = max(period, 1) * ((settings.periods - 1) // max(period, 1) + 1)
         if outcome == OK:
-            # A response of a longer period is kept for whole periods of its own.
-            periods = max(period, 1) * ((plan.periods - 1) // max(period, 1) + 1)
-            n = periods * plan.samples_per_period
-            keep, end = settled * cycle, (settled + periods) * cycle
-            clear(sums)
-            step = cycle / plan.samples_per_period
-            recorder = borrowed(Recorder(keep, step, sums, x[:n], velocity[:n], contact[:n]))
-            outcome, state = follow_from(first, x0, v0, keep, end, case, recorder, work)
-            batch.outcome[i], batch.time[i] = outcome, state.t
-            batch.state[i, 0], batch.state[i, 1] = state.x, state.velocity
-        batch.statistics[i] = work.counts
+            clear(room.sums)
+            outcome = period_map(settled, periods, y, case, True, room)
+        batch.outcome[i], batch.time[i] = outcome, room.reached[0]
+        batch.state[i, : y.size] = y
+        batch.statistics[i] = room.work.counts
         if outcome == OK:
-            response.reduce(
-                sums[0], x[:n], velocity[:n], periods, case[0], batch.numbers[i], batch.spectra[i]
-            )
-            if batch.waveforms.shape[0]:
-                _keep_waveforms(recorder, periods, case, batch.waveforms[i])
+            _reduce(i, case, periods, room, batch)
+
+
+@compiled
+def _reduce(i, case, periods, room, batch):
+    """Write the results of the kept periods of a case."""
+    n = periods * room.samples_per_period
+    x, velocity = room.x[:n], room.velocity[:n]
+    response.reduce(room.sums[0], x, velocity, periods, case[0], batch.numbers[i], batch.spectra[i])
+    if batch.waveforms.shape[0]:
+        out = batch.waveforms[i]
+        first = n - out.shape[1]
+        seen = response.channels(x, velocity, periods, case[0])
+        out[0], out[1] = seen[0][first:], seen[1][first:]
+        out[2:4] = room.normal[:, first:n]
+        for k in range(out.shape[1]):
+            out[4, k] = 1.0 if room.sticks[first + k] else 0.0

@@ -1,8 +1,4 @@
-"""Steady responses of many cases, each started from a state nearby: what a fit asks for.
-
-Works alike for the base model, whose states are the first two of the extended system's, and for every
-effect. See settling.py for the way to a steady state.
-"""
+"""Steady responses of many cases by shooting (shooting.py), each from a state nearby: for fits."""
 
 from collections.abc import Sequence
 from math import ceil, pi
@@ -12,23 +8,25 @@ import numpy as np
 
 from wedgesweep import response, sensor
 from wedgesweep.compiled import compiled
-from wedgesweep.extended.mode import SIZE
-from wedgesweep.solvers.march import OK
-from wedgesweep.solvers.passage import clear, passage, tools
-from wedgesweep.solvers.repetition import LONGEST
-from wedgesweep.solvers.settling import settle
+from wedgesweep.hybrid.accumulators import clear
+from wedgesweep.hybrid.interface import scales
+from wedgesweep.hybrid.state import OK
+from wedgesweep.solvers.period_detection import LONGEST_PERIOD
+from wedgesweep.solvers.period_map import memory, period_map
+from wedgesweep.solvers.shooting import Shooting, settle
+from wedgesweep.systems import grouped, state_count
 
-__all__ = ["OK", "SIZE", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
+__all__ = ["OK", "Accuracy", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
 
-# Time constants after which the lag of the velocity channel has forgotten how it began.
+# Time constants after which the lag of the velocity channel no longer depends on its start.
 LAG_TIMES = 16.0
 
 
 class Warm(NamedTuple):
-    """Where steady responses were found, a row a case, and so where to look for those of their neighbours.
+    """Start of a search for steady responses, one row per case: where those of neighbours were found.
 
-    ``state`` (n, SIZE) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
-    periods (0: it does not repeat), ``map`` (n, SIZE, SIZE) the derivative of the state a period later by
+    ``state`` (n, S) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
+    periods (0: it does not repeat), ``map`` (n, S, S) the derivative of the state a period later by
     that at phase 0 (NaN: unknown).
     """
 
@@ -37,7 +35,7 @@ class Warm(NamedTuple):
     map: Any
 
     def repeated(self, times: int) -> "Warm":
-        """All rows so many times, one after the other."""
+        """All rows, repeated as a block."""
         return Warm(*(np.concatenate([each] * times) for each in self))
 
     def of(self, rows: Any) -> "Warm":
@@ -45,7 +43,7 @@ class Warm(NamedTuple):
         return Warm(*(each[rows] for each in self))
 
     def where(self, chosen: np.ndarray, other: "Warm") -> "Warm":
-        """Rows from another where they are chosen (n,), else the own ones."""
+        """Rows from another where ``chosen`` (n,), else from this one."""
         found = Warm(*(each.copy() for each in self))
         for mine, its in zip(found, other, strict=True):
             mine[chosen] = its[chosen]
@@ -53,10 +51,9 @@ class Warm(NamedTuple):
 
 
 def at_rest(cases: int) -> Warm:
-    """No neighbour."""
-    return Warm(
-        np.full((cases, SIZE), np.nan), np.zeros(cases, np.int64), np.full((cases, SIZE, SIZE), np.nan)
-    )
+    """Start without neighbours."""
+    n = state_count()
+    return Warm(np.full((cases, n), np.nan), np.zeros(cases, np.int64), np.full((cases, n, n), np.nan))
 
 
 def joined(some: Sequence[Warm]) -> Warm:
@@ -65,7 +62,7 @@ def joined(some: Sequence[Warm]) -> Warm:
 
 
 class Periodic(NamedTuple):
-    """Steady responses, a row a case (SI units); NaN where there is none.
+    """Steady responses, one row per case (SI units); NaN where there is none.
 
     ``spectra`` (n, 2, H), complex: D_h, h = 1..H, of displacement x - y = -z and of its rate, as the sensors
     show them; ``warm``: where they were found. ``outcome`` (n,) is OK or one of event_driven.MESSAGES;
@@ -82,14 +79,24 @@ class Periodic(NamedTuple):
     lifted: Any
 
 
+class Accuracy(NamedTuple):
+    """When a response counts as steady.
+
+    ``tolerance``: change of the state per repetition, over input amplitude and velocity; ``most_periods``:
+    without a repetition in so many the response counts as not periodic; ``rtol``: of a step.
+    """
+
+    tolerance: float
+    most_periods: int
+    rtol: float
+
+
 def respond(
     parameters: np.ndarray,
     warm: Warm,
-    tolerance: float,
-    most_periods: int,
+    accuracy: Accuracy,
     samples_per_period: int,
     harmonics: int,
-    rtol: float,
     forces: bool = False,
 ) -> Periodic:
     """Steady responses of parameter records, shape (n,).
@@ -97,19 +104,15 @@ def respond(
     Parameters
     ----------
     parameters : structured array, shape (n,)
-        See parameters.record.
+        See systems.suspension.parameters.record.
     warm : Warm, n rows
         Where to start from.
-    tolerance : float
-        Change of the state per repetition, over input amplitude and velocity, that counts as steady.
-    most_periods : int
-        Periods after which a response counts as not periodic.
+    accuracy : Accuracy
+        When a response counts as steady.
     samples_per_period, harmonics : int
         Samples from which the harmonics are taken, and how many.
-    rtol : float
-        Relative tolerance of a step.
     forces : bool
-        Look at the normal forces, too, which takes an extended case twice the time.
+        Also determine ``lifted``; with effects that have their own mechanics this doubles the time.
     """
     n = len(parameters)
     found = Periodic(
@@ -121,46 +124,52 @@ def respond(
         np.full(n, np.nan),
         np.full(n, np.nan),
     )
-    bench = tools(rtol, samples_per_period, forces=forces)
+    room = memory(accuracy.rtol, samples_per_period, energies=forces, forces=False)
     motion = np.full((n, 2, samples_per_period), np.nan)
-    _respond_all(parameters, tolerance, most_periods, bench, found, motion, passage())
+    for rows, cases in grouped(parameters):
+        _respond_all(cases, rows, accuracy, room, found, motion, period_map(cases.dtype))
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
     _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found
 
 
 @compiled
-def _respond_all(parameters, tolerance, most, bench, found, motion, passage):
-    for i in range(parameters.size):
-        case = parameters[i : i + 1]
-        y, before = found.warm.state[i].copy(), found.warm.period[i]
-        outcome, period, run, kept = settle(
-            y, before, found.warm.map[i], case, tolerance, most, bench, passage
+def _respond_all(cases, rows, accuracy, room, found, motion, period_map):
+    """Write the steady responses of the cases into these rows of ``found``."""
+    for k in range(cases.size):
+        i, case = rows[k], cases[k : k + 1]
+        n = len(scales(case[0]))
+        y, before = found.warm.state[i, :n].copy(), found.warm.period[i]
+        jacobian = found.warm.map[i, :n, :n].copy()
+        shooting = Shooting(
+            case, period_map, accuracy.tolerance, accuracy.most_periods, room, np.array(scales(case[0]))
         )
+        outcome, period, run, kept = settle(y, before, jacobian, shooting)
         if outcome == OK and not kept:
-            # Of a response that does not repeat, the mean over as many periods as there is room for.
-            kept = period if period else LONGEST
-            clear(bench.tally)
-            outcome = passage(run if period == 0 else 0, kept, y, case, True, bench)
+            # If the response does not repeat, its mean over as many periods as there is room for.
+            kept = period if period else LONGEST_PERIOD
+            clear(room.sums)
+            outcome = period_map(run if period == 0 else 0, kept, y, case, True, room)
             run += kept
         found.outcome[i], found.periods[i] = outcome, run
-        found.warm.state[i], found.warm.period[i] = y, period
+        found.warm.state[i], found.warm.period[i], found.warm.map[i] = 0.0, period, np.nan
+        found.warm.state[i, :n], found.warm.map[i, :n, :n] = y, jacobian
         if outcome != OK:
             found.warm.state[i] = np.nan
         else:
-            _reduce(i, kept, bench, found, motion[i])
+            _reduce(i, kept, room, found, motion[i])
 
 
 @compiled
-def _reduce(i, periods, bench, found, motion):
-    """Write what the kept periods come to; ``motion`` (2, samples): displacement x - y and its rate."""
-    n = periods * bench.samples_per_period
-    response.mean_period(-bench.x[:n], motion[0])
-    response.mean_period(-bench.velocity[:n], motion[1])
-    one = bench.tally[0]
+def _reduce(i, periods, room, found, motion):
+    """Write the results of the kept periods; ``motion`` (2, samples): displacement x - y and its rate."""
+    n = periods * room.samples_per_period
+    response.mean_period(-room.x[:n], motion[0])
+    response.mean_period(-room.velocity[:n], motion[1])
+    one = room.sums[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time
-    if bench.normal.shape[1] > 0:
+    if room.energies:
         found.lifted[i] = one.lifted_time / one.time
 
 
@@ -180,35 +189,49 @@ def samples(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Deflection (m) and velocity (m/s) as the sensors show them, shape (n, samples), and states at the end.
 
-    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, SIZE; a row with NaN
+    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, S; a row with NaN:
     at rest) and runs ``settle_periods`` before the kept ones. NaN where the case has no answer.
     """
     n, kept = len(parameters), periods * samples_per_period
     x, velocity = np.full((n, kept), np.nan), np.full((n, kept), np.nan)
     state = np.array(states, dtype=float)
-    slowest = float((parameters["velocity_lag_time"] * parameters["omega"]).max()) / (2.0 * pi)
+    slowest = float((parameters["velocity_lag"]["time"] * parameters["input"]["omega"]).max()) / (2.0 * pi)
     # The lag of the velocity channel dies out before the kept samples.
     before = min(settle_periods, ceil(LAG_TIMES * slowest))
-    bench = tools(rtol, samples_per_period, before + periods, forces=False)
-    _sample_all(parameters, settle_periods - before, before, periods, bench, x, velocity, state, passage())
+    room = memory(rtol, samples_per_period, before + periods, energies=False, forces=False)
+    spans = np.array([settle_periods - before, before + periods])
+    for rows, cases in grouped(parameters):
+        _sample_all(cases, rows, spans, room, Sampled(x, velocity, state), period_map(cases.dtype))
     return x, velocity, state
 
 
+class Sampled(NamedTuple):
+    """Samples (n, k) of displacement (m) and velocity (m/s), and states (n, S) before and after."""
+
+    x: Any
+    velocity: Any
+    state: Any
+
+
 @compiled
-def _sample_all(parameters, settle_periods, before, periods, bench, x, velocity, state, passage):
-    for i in range(parameters.size):
-        case = parameters[i : i + 1]
+def _sample_all(cases, rows, spans, room, out, period_map):
+    """Run the cases of these rows; ``spans``: periods that are not kept, and periods that are."""
+    for k in range(cases.size):
+        i, case = rows[k], cases[k : k + 1]
         p = case[0]
-        y = state[i].copy() if np.isfinite(state[i]).all() else np.zeros(SIZE)
+        n = len(scales(p))
+        y = out.state[i, :n].copy() if np.isfinite(out.state[i]).all() else np.zeros(n)
         outcome = OK
-        if settle_periods > 0:
-            outcome = passage(0, settle_periods, y, case, False, bench)
+        if spans[0] > 0:
+            outcome = period_map(0, spans[0], y, case, False, room)
         if outcome == OK:
-            outcome = passage(settle_periods, before + periods, y, case, True, bench)
-        state[i] = y
+            outcome = period_map(spans[0], spans[1], y, case, True, room)
+        out.state[i] = 0.0
+        out.state[i, :n] = y
         if outcome != OK:
-            state[i] = np.nan
+            out.state[i] = np.nan
         else:
-            step = 2.0 * pi / p.omega / bench.samples_per_period
-            x[i] = p.displacement_gain_scale * bench.x[-x.shape[1] :]
-            velocity[i] = sensor.lagged(bench.velocity, step, False, p)[-x.shape[1] :]
+            step = 2.0 * pi / p.input.omega / room.samples_per_period
+            samples = out.x.shape[1]
+            out.x[i] = p.displacement_gain.scale * room.x[-samples:]
+            out.velocity[i] = sensor.lagged(room.velocity, step, False, p)[-samples:]

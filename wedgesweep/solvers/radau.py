@@ -1,35 +1,40 @@
-"""scipy's Radau, piece by piece: it never steps across a corner of the friction law.
+"""scipy's Radau, mode by mode: it never steps across a corner of the equations.
 
-Each piece runs on one mode until one of its switches reaches zero. What modes there are is the
-business of pieces.py; right-hand side and Jacobian are compiled, what remains is scipy's.
+Each call of ``solve_ivp`` follows one mode until one of its event functions reaches zero. Right-hand side
+and event functions are compiled; what remains is scipy's.
 """
 
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from math import pi
+from math import inf, pi
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 from scipy.integrate import Radau, solve_ivp
+from scipy.optimize import brentq, minimize_scalar
 
-from wedgesweep import tally
 from wedgesweep.compiled import compiled
-from wedgesweep.contact import LOOK_AHEAD
-from wedgesweep.solvers import dips
-from wedgesweep.solvers.pieces import Mode, pieces_of
-from wedgesweep.solvers.sticking import LOCKED
+from wedgesweep.hybrid import accumulators
+from wedgesweep.solvers import radau_system as system
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
+from wedgesweep.systems import compact
 
+# A mode of the system, a tuple of integers.
+Mode = Any
 # Absolute tolerances, as a share of rtol times input amplitude and input velocity: motions far smaller
 # than the input, as they occur near breakaway, are resolved as well.
 ABSOLUTE = 1e-2
-# Steps per period of the fastest input: one as long cannot hold a stop and the start after it. While the
-# bolster rides nothing else limits them.
-STEPS_PER_PERIOD, STEPS_RIDING = 16, 64
-SWITCHES_PER_PERIOD = 1000
-# When a piece ends where it began, its first step is made shorter, down to this share of a period.
+# Least number of steps per period of the fastest input: a step is too short for a stop and the start after
+# it. While contacts hold the mass nothing else limits its length.
+STEPS_PER_PERIOD, STEPS_HELD = 16, 64
+EVENTS_PER_PERIOD = 1000
+# Phase (rad) after which an event function that is passing zero is safely away from it.
+LOOK_AHEAD = 1e-8
+# Error of the place of a minimum, as a share of a step.
+CLOSE = 1e-9
+# When a mode ends where it began, its first step is made shorter, down to this share of a period.
 SHORTER, SHORTEST = 10.0, 1e-13
 # While a run settles, its tolerance may be this much coarser.
 COARSER = 100.0
@@ -73,7 +78,7 @@ def solve(
     Parameters
     ----------
     parameters : structured array, shape (1,)
-        See parameters.record.
+        Of the suspension (see systems.suspension.parameters.record), or of another system.
     window : Window
         Time span and what to keep of it.
     rtol : float
@@ -89,7 +94,7 @@ def solve(
     Raises
     ------
     CaseError
-        If the wedge locks, the time limit passes or the integrator fails.
+        If the system locks, the time limit passes or the integrator fails.
     """
     return _Run(parameters, window, rtol, time_limit).trajectory(start, settled)
 
@@ -99,29 +104,30 @@ class _Run:
 
     def __init__(self, parameters: np.ndarray, window: Window, rtol: float, time_limit: float) -> None:
         self.window, self.rtol = window, rtol
-        self.pieces = pieces_of(parameters)
+        self.case = compact(parameters)
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
-        self.period = 2.0 * pi / self.pieces.fastest
-        self.atol = ABSOLUTE * rtol * self.pieces.scale
+        self.period = 2.0 * pi / system.fastest(self.case)
+        self.scales = system.scales(self.case)
+        self.atol = ABSOLUTE * rtol * self.scales
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
-        self.tally = tally.empty()
+        self.sums = accumulators.empty()
         self.first_step: float | None = None
-        self.last_switch = -1
+        self.last_event = -1
 
     def trajectory(self, start: tuple[float, float], settled: float | None) -> Trajectory:
-        """Follow the pieces to the end of the window."""
-        y = np.zeros(self.pieces.scale.size)
+        """Follow the modes to the end of the window."""
+        y = np.zeros(self.scales.size)
         y[:2] = start
-        mode, unique = self.pieces.initial(0.0, y)
+        mode, unique = system.initial_mode(0.0, y, self.case)
         self._require(unique, 0.0)
         y, mode = self._settle(y, mode, settled)
         self.samples = empty_samples(self.window.sample_times)
         self._follow(self.window.keep, self.window.end, y, mode)
-        return Trajectory(self.samples, self.tally, self.window.periods, dict(self.statistics))
+        return Trajectory(self.samples, self.sums, self.window.periods, dict(self.statistics))
 
     def _settle(self, y: np.ndarray, mode: Mode, settled: float | None) -> tuple[np.ndarray, Mode]:
-        """Follow the pieces to the kept part of the window; it is moved to where the state repeats."""
+        """Follow the modes to the kept part of the window; it is moved to where the state repeats."""
         if settled is None:
             return self._follow(0.0, self.window.keep, y, mode)
         most, close = self.window.settle_periods, self.atol / (ABSOLUTE * self.rtol) * settled
@@ -138,43 +144,31 @@ class _Run:
         return y, mode
 
     def _follow(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[np.ndarray, Mode]:
-        """Follow the pieces from one time to another."""
+        """Follow the modes from one time to another."""
         while t < stop:
-            t, y, switch = self._piece(t, stop, y, mode)
-            if switch >= 0:
-                mode, y = self._switched(t, y, mode, switch)
+            t, y, event = self._follow_mode(t, stop, y, mode)
+            if event >= 0:
+                y, mode = self._after(t, y, mode, event)
         return y, mode
 
-    def _piece(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, np.ndarray, int]:
-        """Follow one mode; the time and state where it ends, and the switch (-1 at ``stop``)."""
-        if self.pieces.waits(mode):
-            return self._wait(t, stop, y, mode)
-        return self._slide(t, stop, y, mode)
-
-    def _wait(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, np.ndarray, int]:
-        end, switch = self.pieces.release(t, stop, y, mode)
-        self._require(switch != LOCKED, end)
-        if t >= self.window.keep:
-            self._sample(t, end, lambda times: np.outer(y, np.ones(times.size)), mode)
-            self._add(np.array([t]), y[:, None], mode, np.array([end - t]))
-        return end, y, switch
-
-    def _slide(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, np.ndarray, int]:
-        ahead = self._switches_ahead(t, y, mode)
+    def _follow_mode(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, np.ndarray, int]:
+        """Follow one mode; the time and state where it ends, and the event (-1 at ``stop``)."""
+        moment = LOOK_AHEAD / self.window.omega
+        ahead = system.moment_later(t, y, moment, mode, self.case)
         for place in np.flatnonzero(ahead < 0.0).tolist():
             if not self._just_passed(place):
-                return t, y, place  # it came at the same time as the switch before
+                return t, y, place  # it came at the same time as the event before
         places = np.flatnonzero(np.isfinite(ahead)).tolist()
-        rides = self.pieces.rides(mode)
-        result = self._integrate(t, stop, y, mode, places, rides)
-        if rides:
-            dips.cut(result, lambda t: self.pieces.switches(t, result.sol(t), mode)[places])
+        held = system.holds(mode, self.case)
+        result = self._integrate(t, stop, y, mode, places, held)
+        if held:
+            _truncate_at_grazing(result, lambda t: system.events(t, result.sol(t), mode, self.case)[places])
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
         if reached and result.t[-1] == t:
             self._shorten_first_step(t)
             return t, y, -1
-        self._require(self.pieces.first_locked(result.t, result.y, mode) < 0, result.t[-1])
-        if self.pieces.missed_switch(result.t, result.y, mode):
+        self._require(system.first_locked(result.t, result.y, mode, self.case) < 0, result.t[-1])
+        if system.missed_event(result.t, result.y, mode, self.case):
             message = f"a switch was missed between t = {t:.6g} s and {result.t[-1]:.6g} s"
             raise CaseError(message, "solver_failure")
         if result.t.size > 2:
@@ -183,76 +177,68 @@ class _Run:
             self._keep(result, mode)
         return result.t[-1], result.y[:, -1], reached[0] if reached else -1
 
-    def _switches_ahead(self, t: float, y: np.ndarray, mode: Mode) -> np.ndarray:
-        """Switches a moment later, when one that is passing zero has left the rounding behind."""
-        moment = LOOK_AHEAD / self.window.omega
-        # Half-way: where a run begins the rate itself is rounding.
-        y = y + moment * self.pieces.rate(t + 0.5 * moment, y, mode)
-        return self.pieces.switches(t + moment, y, mode)
-
     def _just_passed(self, place: int) -> bool:
-        """Whether a switch belongs to the face, or the forces, that switched last: it begins at 0."""
-        return place // 2 == self.last_switch // 2
+        """Whether an event is of the same pair as the last one: then its function begins at 0."""
+        return place // 2 == self.last_event // 2
 
     def _shorten_first_step(self, t: float) -> None:
-        """Begin again where one step saw nothing of a short slip but its end."""
+        """Begin the mode again with a shorter first step: the last one saw only the end of a short motion."""
         self.first_step = (self.first_step or self.period) / SHORTER
         if self.first_step < SHORTEST * self.period:
             message = f"no progress at t = {t:.6g} s"
             raise CaseError(message, "solver_failure")
 
     def _integrate(
-        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], rides: bool
+        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], held: bool
     ) -> Any:
         result = solve_ivp(
             self._rate(mode),
             (t, stop),
             y,
             method=SmallRadau if y.size == 2 else Radau,
-            jac=lambda t, y: self.pieces.jacobian(t, y, mode),
+            jac=lambda t, y: system.jacobian(t, y, mode, self.case),
             events=[*(self._event(t, mode, place) for place in places), _turn],
-            dense_output=rides or t >= self.window.keep,
+            dense_output=held or t >= self.window.keep,
             rtol=self.rtol,
             atol=self.atol,
-            max_step=self.period / (STEPS_RIDING if rides else STEPS_PER_PERIOD),
+            max_step=self.period / (STEPS_HELD if held else STEPS_PER_PERIOD),
             first_step=min(self.first_step, stop - t) if self.first_step else None,
         )
         self._check(result)
         return result
 
     def _rate(self, mode: Mode) -> Callable[[float, np.ndarray], np.ndarray]:
-        pieces, deadline = self.pieces, self.deadline
+        case, deadline = self.case, self.deadline
 
         def limited_rate(t: float, y: np.ndarray) -> np.ndarray:
             if perf_counter() > deadline:
                 message = f"gave up after {self.time_limit:g} s at t = {t:.6g} s"
                 raise CaseError(message, "time_limit")
-            return pieces.rate(t, y, mode)
+            return system.rate(t, y, mode, case)
 
         return limited_rate
 
     def _event(self, start: float, mode: Mode, place: int) -> Callable[[float, np.ndarray], float]:
-        pieces = self.pieces
+        case = self.case
 
         def event(t: float, y: np.ndarray) -> float:
-            value = pieces.switches(t, y, mode)[place]
-            # A switch that begins at zero may be negative there by rounding, which would hide its return.
+            value = system.events(t, y, mode, case)[place]
+            # An event that begins at zero may be negative there by rounding, which would hide its return.
             return max(value, 0.0) if t == start else value
 
         # scipy reads these two from the function.
         event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
         return event
 
-    def _switched(self, t: float, y: np.ndarray, mode: Mode, switch: int) -> tuple[Mode, np.ndarray]:
+    def _after(self, t: float, y: np.ndarray, mode: Mode, event: int) -> tuple[np.ndarray, Mode]:
         self.statistics["switches"] += 1
-        self.last_switch = switch
-        if self.statistics["switches"] > SWITCHES_PER_PERIOD * (1.0 + t / self.period):
-            message = f"more than {SWITCHES_PER_PERIOD} switches per period at t = {t:.6g} s"
+        self.last_event = event
+        if self.statistics["switches"] > EVENTS_PER_PERIOD * (1.0 + t / self.period):
+            message = f"more than {EVENTS_PER_PERIOD} switches per period at t = {t:.6g} s"
             raise CaseError(message, "solver_failure")
-        y = y.copy()
-        mode, unique = self.pieces.successor(t, y, mode, switch)
+        y, mode, unique = system.transition(t, y, mode, event, self.case)
         self._require(unique, t)
-        return mode, y
+        return y, mode
 
     def _check(self, result: Any) -> None:
         self.statistics["rate_evaluations"] += result.nfev
@@ -266,7 +252,7 @@ class _Run:
 
     def _require(self, unique: bool, t: float) -> None:
         if not unique:
-            message = f"normal forces not unique at t = {t:.6g} s: the wedge locks"
+            message = f"normal forces not unique at t = {t:.6g} s: the system locks"
             raise CaseError(message, "locked")
 
     def _keep(self, result: Any, mode: Mode) -> None:
@@ -274,29 +260,62 @@ class _Run:
         t = ((result.t[:-1] + half)[:, None] + half[:, None] * GAUSS_POINTS).ravel()
         self._add(t, result.sol(t), mode, np.outer(half, GAUSS_WEIGHTS).ravel())
         self._add(result.t[[0, -1]], result.y[:, [0, -1]], mode)
-        self._add(result.t_events[-1], result.y_events[-1].reshape(-1, self.pieces.scale.size).T, mode)
-        self._sample(result.t[0], result.t[-1], result.sol, mode)
+        self._add(result.t_events[-1], result.y_events[-1].reshape(-1, self.scales.size).T, mode)
+        here = slice(*np.searchsorted(self.samples.t, (result.t[0], result.t[-1])))
+        if here.start < here.stop:
+            times = self.samples.t[here]
+            motion, sticks, normal = system.sample(times, result.sol(times), mode, self.case)
+            self.samples.x[here], self.samples.velocity[here] = motion
+            self.samples.sticks[here], self.samples.normal[:, here] = sticks, normal
 
     def _add(self, t: np.ndarray, y: np.ndarray, mode: Mode, weight: np.ndarray | None = None) -> None:
         weight = np.zeros(t.size) if weight is None else weight
-        self.pieces.add(self.tally, t, y, weight, mode)
-
-    def _sample(
-        self,
-        start: float,
-        end: float,
-        state: Callable[[np.ndarray], np.ndarray],
-        mode: Mode,
-    ) -> None:
-        samples = self.samples
-        here = slice(*np.searchsorted(samples.t, (start, end)))
-        if here.start < here.stop:
-            y = state(samples.t[here])
-            samples.x[here], samples.velocity[here] = y[:2]
-            samples.contact[here] = self.pieces.contacts(y, mode)
-            samples.normal[:, here] = self.pieces.normal_forces(samples.t[here], y, mode)
+        system.add(self.sums, t, np.ascontiguousarray(y), weight, mode, self.case)
 
 
 def _turn(t: float, y: np.ndarray) -> float:
     """Zero where x is extreme."""
     return y[1]
+
+
+def _truncate_at_grazing(result: Any, values: Callable[[float], np.ndarray]) -> None:
+    """Let a piece that ``solve_ivp`` made, with its dense output, end where an event function is first zero.
+
+    One that passes zero and comes back within a step is not seen by looking at the step's ends.
+    ``values``: the event functions (k,) at a time, in the order of the first k events.
+    """
+    at_ends = np.array([values(t) for t in result.t])
+    for i in range(1, len(at_ends) - 1):
+        lowest = (at_ends[i] <= at_ends[i - 1]) & (at_ends[i] <= at_ends[i + 1])
+        found = [
+            (_first_zero(values, k, result.t[i - 1], result.t[i + 1]), k)
+            for k in np.flatnonzero(lowest).tolist()
+        ]
+        reached = min(found, default=(inf, 0))
+        if reached[0] < inf:
+            _end_at(result, *reached)
+            return
+
+
+def _first_zero(values: Callable[[float], np.ndarray], k: int, before: float, after: float) -> float:
+    """When an event function is first zero between two times that its minimum lies between; inf if never."""
+
+    def value(t: float) -> float:
+        return float(values(t)[k])
+
+    close = CLOSE * (after - before)
+    least = minimize_scalar(value, bounds=(before, after), method="bounded", options={"xatol": close})
+    if value(before) <= 0.0 or least.fun >= 0.0:
+        return inf
+    return float(brentq(value, before, least.x, xtol=close))
+
+
+def _end_at(result: Any, t: float, k: int) -> None:
+    """End a piece at a time, with event k."""
+    y = result.sol(t)
+    kept = result.t < t
+    result.t, result.y = np.append(result.t[kept], t), np.column_stack([result.y[:, kept], y])
+    for i, times in enumerate(result.t_events):
+        before = times < t
+        result.t_events[i], result.y_events[i] = times[before], result.y_events[i][before]
+    result.t_events[k], result.y_events[k] = np.array([t]), y[None]

@@ -48,30 +48,30 @@ class TimedWindow(Window):
 class Samples:
     """States at the sample times of the kept window.
 
-    ``t`` (s), ``x`` (m, deflection from rest) and ``velocity`` (m/s) have shape (n,); ``contact`` holds the
-    five numbers of ``damper.Contact`` in each row, shape (n, 5), ``normal`` the normal forces on column and
-    bolster (N; NaN while stuck), shape (2, n).
+    ``t`` (s), ``x`` (m, displacement from rest) and ``velocity`` (m/s) have shape (n,), ``sticks`` (n,)
+    says whether the observed contact sticks, ``normal`` (2, n) holds the normal forces of both contacts
+    (N; NaN while not determined).
     """
 
     t: np.ndarray
     x: np.ndarray
     velocity: np.ndarray
-    contact: np.ndarray
+    sticks: np.ndarray
     normal: np.ndarray
 
 
 def empty_samples(times: np.ndarray) -> Samples:
     """Room for samples at some times (s)."""
     n = times.size
-    return Samples(times, np.empty(n), np.empty(n), np.empty((n, 5), np.int8), np.empty((2, n)))
+    return Samples(times, np.empty(n), np.empty(n), np.zeros(n, np.bool_), np.empty((2, n)))
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Kept window of a run: its samples, and the running sums over it (tally.TALLY, shape (1,))."""
+    """Kept window of a run: its samples, and the running sums over it (accumulators.SUMS, shape (1,))."""
 
     samples: Samples
-    tally: np.ndarray
+    sums: np.ndarray
     periods: int
     statistics: dict[str, int]
 

@@ -4,11 +4,11 @@ from time import perf_counter
 
 import numpy as np
 
-from wedgesweep import response, tally
+from wedgesweep import response
+from wedgesweep.hybrid.state import OK
 from wedgesweep.simulate import Settings
-from wedgesweep.solvers import event_driven, extended
-from wedgesweep.solvers.event_driven import Batch, Plan
-from wedgesweep.solvers.march import OK, workspace
+from wedgesweep.solvers import event_driven
+from wedgesweep.solvers.event_driven import Batch, BatchSettings
 from wedgesweep.sweep import dataset
 
 WAVEFORMS = ("normal_force_column", "normal_force_bolster", "stuck")
@@ -19,25 +19,20 @@ def solve_batch(
     indices: np.ndarray,
     settings: Settings,
     dtype: np.dtype,
-    chain: bool = False,
+    continuation: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Records of some cases, and their states (m, m/s) at the end, shape (n, 2).
+    """Records of some cases, and their states (m, m/s) at the end, shape (n, states).
 
-    ``cases`` are parameter records, shape (n,); they start from rest, in a ``chain`` where the one before
-    ended, unless that failed. The wall time of a case is its share of the batch's.
+    ``cases`` are parameter records, shape (n,); they start from rest, in a ``continuation`` where the one
+    before ended, unless that failed. The wall time of a case is its share of the batch's.
     """
     began = perf_counter()
-    settle = settings.settling(cases["omega"])
+    settle = settings.settling(cases["input"]["omega"])
     samples = settings.kept_periods * settings.samples_per_period
     batch = event_driven.empty_batch(
         len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
-    plan, rtol = _plan(settings, chain), _rtol(settings)
-    # All cases have the effects of one config.
-    if cases["extended"].any():
-        extended.run_batch(cases, settle, plan, rtol, batch)
-    else:
-        event_driven.run_batch(cases, settle, plan, tally.empty(), workspace(rtol), batch)
+    event_driven.run_batch(cases, settle, _batch_settings(settings, continuation), _rtol(settings), batch)
     records = dataset.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)
@@ -49,21 +44,21 @@ def _rtol(settings: Settings) -> float:
     return min(settings.rtol, settings.steady_tolerance) if settings.steady else settings.rtol
 
 
-def _plan(settings: Settings, chain: bool) -> Plan:
-    return Plan(
+def _batch_settings(settings: Settings, continuation: bool) -> BatchSettings:
+    return BatchSettings(
         settings.kept_periods,
         settings.samples_per_period,
         settings.steady,
         settings.steady_tolerance,
         settings.max_periods,
-        chain,
+        continuation,
     )
 
 
 def _fill(records: np.ndarray, batch: Batch, settings: Settings) -> None:
     """Copy a batch into its records; cases that failed stay blank but for status and message."""
-    fine = (batch.outcome == OK) & np.isfinite(batch.numbers[:, 0])
-    columns = dict(zip(response.NUMBERS, batch.numbers.T, strict=True))
+    fine = (batch.outcome == OK) & np.isfinite(batch.numbers["amplitude_ratio"])
+    columns = {name: batch.numbers[name] for name in response.NUMBERS.names or ()}
     columns |= {
         "displacement_harmonics": batch.spectra[:, 0],
         "velocity_harmonics": batch.spectra[:, 1],

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep import parameters, simulate
+from wedgesweep import simulate
 from wedgesweep.compiled import CACHE_DIR
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
@@ -16,6 +16,7 @@ from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import dataset
 from wedgesweep.sweep.batch import solve_batch
 from wedgesweep.sweep.continuation import solve_lines
+from wedgesweep.systems.suspension import parameters
 
 
 def describe(law: str, beta: float, amplitude: float) -> str:
@@ -130,4 +131,4 @@ def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, recor
     }
     for name in variables.keys() & set(record.dtype.names or ()):
         record[name] = variables[name]
-    record["settled_periods"] = settings.window(float(case["omega"][0])).settle_periods
+    record["settled_periods"] = settings.window(float(case["input"]["omega"][0])).settle_periods

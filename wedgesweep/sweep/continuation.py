@@ -26,7 +26,7 @@ def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtyp
     records = dataset.blank(dtype, indices)
     for line in lines(cases):
         both = there_and_back(line)
-        found, _ = solve_batch(cases[both], indices[both], settings, dtype, chain=True)
+        found, _ = solve_batch(cases[both], indices[both], settings, dtype, continuation=True)
         up, down = found[: line.size], found[line.size :][::-1]
         up["amplitude_ratio_down"], up["period_down"] = down["amplitude_ratio"], down["period"]
         up["coexisting"] = compared(up, settings.steady_tolerance)
@@ -37,9 +37,10 @@ def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtyp
 
 def lines(cases: np.ndarray) -> Iterator[np.ndarray]:
     """Yield the indices of the cases of each law and amplitude, sorted by frequency."""
-    order = np.lexsort((cases["omega"], cases["amplitude"], cases["law"]))
-    line = cases[["law", "amplitude"]][order]
-    yield from np.split(order, np.flatnonzero(line[1:] != line[:-1]) + 1)
+    given, law = cases["input"], cases["friction"]["law"]
+    order = np.lexsort((given["omega"], given["amplitude"], law))
+    ends = (np.diff(law[order]) != 0) | (np.diff(given["amplitude"][order]) != 0.0)
+    yield from np.split(order, np.flatnonzero(ends) + 1)
 
 
 def there_and_back(line: np.ndarray) -> np.ndarray:

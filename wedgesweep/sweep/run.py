@@ -16,7 +16,6 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep import contact, damper
 from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.outcome import Outcome
@@ -26,6 +25,8 @@ from wedgesweep.sweep.backend import Backend, local
 from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
+from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
+from wedgesweep.systems.suspension.parameters import has_own_mechanics
 
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
@@ -89,7 +90,7 @@ class Sweep:
     @property
     def extended(self) -> bool:
         """Whether effects of the config need the extended mechanics."""
-        return bool(self.parameters["extended"].any())
+        return bool(has_own_mechanics(self.parameters).any())
 
     @property
     def fingerprint(self) -> dict[str, str]:
@@ -253,13 +254,13 @@ class Sweep:
     def _physics(self) -> dict[str, float]:
         """Properties of the suspension that figures refer to (SI)."""
         p = self.parameters[0]
-        numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["rest"])}
-        if p["extended"]:  # not defined for the extended mechanics
+        numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
+        if self.extended:  # not defined for the extended mechanics
             return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}
         coulomb = self.config.record(Case("coulomb", 1.0, 1e-3))[0]
         return numbers | {
-            "frictionless_resonance": damper.resonance(p),
-            "breakaway_acceleration": contact.breakaway_acceleration(coulomb),
+            "frictionless_resonance": resonance(p),
+            "breakaway_acceleration": breakaway_acceleration(coulomb),
         }
 
 

@@ -17,6 +17,7 @@ from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
+from wedgesweep.systems.suspension.parameters import has_own_mechanics
 
 # A bolster that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
@@ -78,7 +79,7 @@ def _name(i: int, test: TrueTest) -> str:
 
 def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
     """Simulate the tests; raises SynthesisError with every test that fails."""
-    compile_once("radau", bool(truth.record(truth.tests[0])["extended"][0]))
+    compile_once("radau", bool(has_own_mechanics(truth.record(truth.tests[0]))[0]))
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
         joblib.delayed(_motion)(
@@ -107,7 +108,7 @@ def _motion(record: np.ndarray, *arguments: Any) -> Motion | str:
         motion = steady(record, *arguments)
     except CaseError as error:
         return str(error)
-    if np.ptp(motion.displacement) < STUCK * record["amplitude"][0]:
+    if np.ptp(motion.displacement) < STUCK * record["input"]["amplitude"][0]:
         return "the bolster sticks all the time and there is nothing to measure; raise the amplitude"
     return motion
 

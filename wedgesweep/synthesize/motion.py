@@ -48,7 +48,7 @@ def steady(
     Parameters
     ----------
     record : structured array, shape (1,)
-        See parameters.record.
+        See systems.suspension.parameters.record.
     clock : Clock
         When to sample.
     settle_periods : int
@@ -63,7 +63,7 @@ def steady(
     CaseError
         If the wedge locks or the solver fails.
     """
-    period = 2.0 * pi / float(record["omega"][0])
+    period = 2.0 * pi / float(record["input"]["omega"][0])
     lag = effects.get("velocity_lag", {}).get("time", 0.0)
     finer = ceil(clock.step / period * LAG_STEPS_PER_PERIOD) if lag > 0.0 else 1
     ahead = ceil(LAG_MEMORY * lag / clock.step) * finer

@@ -7,7 +7,7 @@ from math import ceil, exp, pi
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.effects import combined
+from wedgesweep.effects import merge
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
 
@@ -51,11 +51,11 @@ class Truth:
     def effects(self) -> dict[str, dict[str, float]]:
         """Effects of the config with the uncertain numbers at their true values, in SI units."""
         factors = {name: {"scale": factor} for name, factor in self.factors.items()}
-        return combined(self.config.effects, factors)
+        return merge(self.config.effects, factors)
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""
-        from wedgesweep import parameters
+        from wedgesweep.systems.suspension import parameters
 
         record = parameters.record(
             law=self.law,
@@ -66,7 +66,7 @@ class Truth:
             effects=self.effects,
         )
         if test.stray_phase_deg is not None:
-            record[f"{STRAY}_phase"] = np.radians(test.stray_phase_deg)
+            record[STRAY]["phase"] = np.radians(test.stray_phase_deg)
         return record
 
 

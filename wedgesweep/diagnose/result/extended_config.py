@@ -11,7 +11,7 @@ def extended(found: Diagnosis) -> str:
     best, data = found.extended, found.data
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
-    document["effects"] = effects.combined(document["effects"], {**nuisance, **best.values})
+    document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
     # Repeated tests are one case, and single cases do not continue one another.
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))

@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep import effects, parameters
+from wedgesweep import effects
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
+from wedgesweep.systems.suspension import parameters
 
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
@@ -37,16 +38,17 @@ class Responses(NamedTuple):
 
 def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Parameter records (n,) of tests with given angular frequencies (rad/s) and input amplitudes (m)."""
-    numbers = effects.combined(model.effects, values)
+    numbers = effects.merge(model.effects, values)
     one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, numbers)
     rows = np.repeat(one, omega.size)
-    rows["omega"], rows["amplitude"] = omega, amplitude
+    rows["input"]["omega"], rows["input"]["amplitude"] = omega, amplitude
     return rows
 
 
 def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
     """Steady responses to parameter records (n,)."""
-    found = periodic.respond(rows, warm, tolerance, MOST_PERIODS, SAMPLES_PER_PERIOD, harmonics, tolerance)
+    accuracy = periodic.Accuracy(tolerance, MOST_PERIODS, rtol=tolerance)
+    found = periodic.respond(rows, warm, accuracy, SAMPLES_PER_PERIOD, harmonics)
     return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
 
 
@@ -95,7 +97,7 @@ def respond_with_tone(
         Relative tolerance.
     """
     rows = rows.copy()
-    rows["stray_vibration_phase"] += np.nan_to_num(source_phase)
+    rows["stray_vibration"]["phase"] += np.nan_to_num(source_phase)
     measured = np.array([timing.tone_phase for timing in timings])
     untimed = np.isnan(source_phase) & np.isnan(measured)
     timings = tuple(
@@ -108,7 +110,7 @@ def respond_with_tone(
     lag = np.where(np.isnan(source_phase), measured, np.nan) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(lag))
     if again.size:
-        rows["stray_vibration_phase"][again] += lag[again]
+        rows["stray_vibration"]["phase"][again] += lag[again]
         chosen = tuple(timings[i] for i in again)
         spectra[again], state[again] = _recorded(
             rows[again], state[again], harmonics, tone, chosen, tolerance
@@ -137,7 +139,7 @@ def _recorded(
         start = timing.input_phase % (2.0 * pi)
         first = round(start / turn)
         count = round(timing.periods * SAMPLES_PER_PERIOD)
-        ratio = 2.0 * pi * tone / float(rows["omega"][i])
+        ratio = 2.0 * pi * tone / float(rows["input"]["omega"][i])
         signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
         found = signals @ _projection(ratio, harmonics, count).T
         found[:, :-1] *= np.exp(-1j * np.arange(1, harmonics + 1) * first * turn)

@@ -10,6 +10,7 @@ from wedgesweep.diagnose.steady.accelerations import accelerations
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
+from wedgesweep.systems.suspension.parameters import compact, driven_mass, has_own_mechanics, moving_mass
 
 PHASES = 256
 # A harmonic counts by the share of its square that exceeds this many times its noise.
@@ -72,10 +73,10 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
         Of the displacement, complex; a measured one from phase 0 of the input of this fit.
     """
     rows = _rows(data, fit)
-    fundamental = fundamental / rows["displacement_gain_scale"]
-    fundamental = np.where(rows["fixture_resonance_frequency"] > 0.0, np.nan, fundamental)
-    moving = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] * rows["cos_column"]
-    return pi * moving * rows["amplitude"] * rows["omega"] ** 2 * fundamental.real
+    fundamental = fundamental / rows["displacement_gain"]["scale"]
+    fundamental = np.where(rows["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
+    given = rows["input"]
+    return pi * driven_mass(rows) * given["amplitude"] * given["omega"] ** 2 * fundamental.real
 
 
 def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.ndarray:
@@ -96,7 +97,7 @@ def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.nd
         Measured harmonics from phase 0 of its input.
     """
     rows = _rows(data, fit)
-    if rows["extended"].any() or set(acting(data.model.effects)) & set(SENSOR):
+    if has_own_mechanics(rows).any() or set(acting(data.model.effects)) & set(SENSOR):
         return np.full((data.tests, PHASES), np.nan)
     weight = _wiener_weight(data)
     rate = velocity(data, harmonics)
@@ -104,18 +105,17 @@ def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.nd
     model = np.array([_about_mean_position(rows[t : t + 1], x[t], v[t]) for t in range(data.tests)])
     simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : data.shape[1] + 1]
     measured = -1j * data.omega[:, None] * data.orders * rate
-    moving = rows["bolster_mass"] + 2.0 * rows["wedge_mass"] * rows["column_ratio"] ** 2
-    return moving[:, None] * waveform(weight * (measured - simulated))
+    return moving_mass(rows)[:, None] * waveform(weight * (measured - simulated))
 
 
 def _about_mean_position(row: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """The model's acceleration about the mean position at which it averages to zero."""
-    acceleration = np.zeros_like(x)
+    acceleration, small = np.zeros_like(x), compact(row)
     if not x.any():  # no motion above the noise, and so no force
         return acceleration
 
     def mean(position: float) -> float:
-        accelerations(row, x + position, v, acceleration)
+        accelerations(small, x + position, v, acceleration)
         return float(acceleration.mean())
 
     position = root_scalar(mean, x0=0.0, x1=FIRST_MEAN * np.ptp(x), method="secant", maxiter=20).root

@@ -1,0 +1,1 @@
+"""Hybrid systems: smooth modes, events between them, and what every solver needs of both."""

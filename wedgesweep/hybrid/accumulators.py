@@ -1,0 +1,89 @@
+"""Running sums over the kept window of a run: all numbers that need no waveform.
+
+A solver adds points as it goes: quadrature nodes with their weights, and points of weight 0 where a mode
+begins or ends and where displacement or velocity is extreme.
+"""
+
+from math import inf
+
+import numpy as np
+
+from wedgesweep.compiled import compiled, inner
+from wedgesweep.hybrid.interface import observed, powers, sticks
+
+SUMS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "lowest",  # displacement (m)
+            "highest",
+            "peak_velocity",  # m/s
+            "time",  # s
+            "integral",  # of the displacement (m s)
+            "stuck_time",  # s
+            "lifted_time",  # s with a negative normal force
+            "normal_force",  # smallest while slipping (N)
+            "dissipated",  # J
+            "supplied",  # J, by the input
+            "onsets",  # of sticking
+            "began_stuck",
+            "is_stuck",
+        )
+    ]
+)
+
+
+def empty() -> np.ndarray:
+    """Sums of nothing, shape (1,)."""
+    sums = np.zeros(1, SUMS)
+    clear(sums)
+    return sums
+
+
+@compiled
+def clear(sums):
+    """Empty the sums."""
+    one = sums[0]
+    one.lowest, one.highest, one.normal_force = inf, -inf, inf
+    one.peak_velocity = one.time = one.integral = 0.0
+    one.stuck_time = one.lifted_time = one.dissipated = one.supplied = 0.0
+    one.onsets = one.began_stuck = one.is_stuck = 0.0
+
+
+@inner
+def _count_onset(sums, is_stuck):
+    """Follow the sequence of sticking and slipping spans."""
+    if sums.time == 0.0:
+        sums.began_stuck = is_stuck
+    if is_stuck and not sums.is_stuck:
+        sums.onsets += 1.0
+    sums.is_stuck = is_stuck
+
+
+@inner
+def add_motion(sums, y, weight, mode, p):
+    """Add what one point says without its forces; ``weight`` (s) as in a quadrature."""
+    x, velocity = observed(y, p)
+    stuck = sticks(y, mode, p)
+    sums.lowest = min(sums.lowest, x)
+    sums.highest = max(sums.highest, x)
+    sums.peak_velocity = max(sums.peak_velocity, abs(velocity))
+    if weight > 0.0:
+        _count_onset(sums, 1.0 if stuck else 0.0)
+    sums.time += weight
+    sums.integral += weight * x
+    if stuck:
+        sums.stuck_time += weight
+
+
+@inner
+def add(sums, t, y, weight, mode, p):
+    """Add one point of the kept window."""
+    add_motion(sums, y, weight, mode, p)
+    dissipated, supplied, first, second = powers(t, y, mode, p)
+    sums.dissipated += weight * dissipated
+    sums.supplied += weight * supplied
+    if first == first:  # NaN: not determined
+        sums.normal_force = min(sums.normal_force, first, second)
+        if first < 0.0 or second < 0.0:
+            sums.lifted_time += weight

@@ -1,0 +1,67 @@
+"""Records the kept window of a run: quadrature nodes into running sums, states onto an even grid of times."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.hybrid import accumulators
+from wedgesweep.hybrid.interface import contact_forces, observed, sticks
+
+# Four-point Gauss-Legendre rule on [0, 1].
+NODES = tuple(float(0.5 + 0.5 * node) for node in np.polynomial.legendre.leggauss(4)[0])
+WEIGHTS = tuple(float(0.5 * weight) for weight in np.polynomial.legendre.leggauss(4)[1])
+
+
+class Recorder(NamedTuple):
+    """Where a run is kept: sums of shape (1,), and samples at ``start + i step`` (s).
+
+    ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks.
+    ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), or has shape (2, 0):
+    then none are kept. Without ``energies`` the sums leave out forces and energies, which saves half of
+    the time.
+    """
+
+    start: float
+    step: float
+    energies: bool
+    sums: Any
+    x: Any
+    velocity: Any
+    normal: Any
+    sticks: Any
+
+
+@inlined
+def first_sample(t, recorder):
+    """Index of the first sample at or after time t."""
+    return max(int(np.ceil((t - recorder.start) / recorder.step - 1e-9)), 0)
+
+
+@inner
+def put_node(t, y, weight, mode, recorder, p):
+    """Add a node to the sums; ``weight`` in s."""
+    if recorder.energies:
+        accumulators.add(recorder.sums[0], t, y, weight, mode, p)
+    else:
+        accumulators.add_motion(recorder.sums[0], y, weight, mode, p)
+
+
+@inlined
+def put_sample(i, y, mode, recorder, p):
+    """Store sample i if the grid has it."""
+    if i >= recorder.x.size:
+        return
+    recorder.x[i], recorder.velocity[i] = observed(y, p)
+    recorder.sticks[i] = sticks(y, mode, p)
+    if recorder.normal.shape[1] > 0:
+        t = recorder.start + i * recorder.step
+        recorder.normal[0, i], recorder.normal[1, i] = contact_forces(t, y, mode, p)
+
+
+@inner
+def keep_constant(t, end, y, mode, recorder, p):
+    """Keep a span during which the state stays as it is."""
+    put_node(t, y, end - t, mode, recorder, p)
+    for i in range(first_sample(t, recorder), first_sample(end, recorder)):
+        put_sample(i, y, mode, recorder, p)

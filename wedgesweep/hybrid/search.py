@@ -1,0 +1,130 @@
+"""Zeros and minima of functions of one variable: how all events are located.
+
+A function has the arguments (place, context) and is found by the type of its context, a NamedTuple: numba
+cannot cache code that takes functions as arguments. The same search serves event functions on the dense
+output of a step, on a closed form, and of a system at rest.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+from numba.core import types
+from numba.extending import overload
+
+from wedgesweep.compiled import INNER, forward, inner
+
+GOLDEN = 0.6180339887498949
+MOST_ITERATIONS = 100
+
+Function = TypeVar("Function", bound=Callable)
+_FUNCTIONS: dict[type, Callable] = {}
+
+
+def searched(context: type) -> Callable[[Function], Function]:
+    """Register a compiled function of (place, context) for a type of context.
+
+    It returns its value and its slope, or NaN for an unknown slope.
+    """
+
+    def decorate(function: Function) -> Function:
+        _FUNCTIONS[context] = function
+        return function
+
+    return decorate
+
+
+def _value(place, context):
+    """The function of a context, at a place."""
+
+
+@overload(_value, jit_options=INNER | {"forceinline": True})
+def _of_context(place, context):
+    if not isinstance(context, types.NamedTuple | types.NamedUniTuple):
+        return None
+    return forward(("place", "context"), _FUNCTIONS[context.instance_class])
+
+
+class Bracket(NamedTuple):
+    """Two places and the values of a function: positive at ``low``, not positive at ``high``."""
+
+    low: float
+    at_low: float
+    high: float
+    at_high: float
+
+
+@inner
+def zero(context, bracket, close):
+    """Place in a bracket at which a function is zero, to within ``close``.
+
+    Newton's method, or the secant method where the slope is unknown. The Illinois method replaces a step
+    that leaves the bracket.
+    """
+    low, at_low, high, at_high = bracket
+    place = high - at_high * (high - low) / (at_high - at_low)
+    before, at_before = (low, at_low) if at_low < -at_high else (high, at_high)
+    for _ in range(MOST_ITERATIONS):
+        if not low < place < high:
+            place = 0.5 * (low + high)
+        value, slope = _value(place, context)
+        if value == 0.0 or high - low < close:
+            return place
+        if slope != slope:  # NaN: not known
+            slope = (value - at_before) / (place - before)
+        before, at_before = place, value
+        newton = place - value / slope
+        if value > 0.0:
+            if place - low < close:
+                return place
+            low, at_low = place, value
+            at_high *= 0.5
+        else:
+            if high - place < close:
+                return place
+            high, at_high = place, value
+            at_low *= 0.5
+        if low <= newton <= high:
+            if abs(newton - place) < close:
+                return newton
+            place = newton
+        else:
+            place = high - at_high * (high - low) / (at_high - at_low)
+    return high
+
+
+@inner
+def zero_after_start(context, bracket, nearest, close):
+    """As ``zero``, of a function that is zero at the low end and positive after it.
+
+    The low end itself if no positive value is found farther than ``nearest`` from it.
+    """
+    start, _, high, at_high = bracket
+    place = 0.5 * (start + high)
+    while place - start > nearest:
+        value = _value(place, context)[0]
+        if value > 0.0:
+            return zero(context, Bracket(place, value, high, at_high), close)
+        high, at_high = place, value
+        place = 0.5 * (start + high)
+    return start
+
+
+@inner
+def minimum(context, low, high, close):
+    """Place between two others at which a function is smallest, or at least not positive (golden section)."""
+    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_left, at_right = _value(left, context)[0], _value(right, context)[0]
+    while high - low > close:
+        if at_left <= 0.0:
+            return left
+        if at_right <= 0.0:
+            return right
+        if at_left < at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = _value(left, context)[0]
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = _value(right, context)[0]
+    return 0.5 * (low + high)

@@ -1,0 +1,16 @@
+"""Where a run is, and how it got there."""
+
+from typing import Any, NamedTuple
+
+# How a run ends. A mode ends with the number of an event, from 0 up, or with one of the numbers below 0.
+OK, NO_EVENT, LOCKED, FAILED, CHATTERING = 0, -1, -2, -3, -4
+
+
+class State(NamedTuple):
+    """Time (s), state vector, mode, the event that led to it or NO_EVENT, and the next step to try (s)."""
+
+    t: float
+    y: Any
+    mode: Any
+    last_event: Any
+    step: float

@@ -1,0 +1,73 @@
+"""Small vectors as tuples of floats, which compiled code keeps in registers; their type includes the length.
+
+``vector`` and ``store`` convert from and to arrays.
+"""
+
+from typing import Any
+
+from numba.core import types
+from numba.cpython.unsafe.tuple import tuple_setitem
+from numba.extending import overload
+
+from wedgesweep.compiled import INNER, function_of, inlined
+
+_set_item: Any = tuple_setitem
+INLINE: Any = INNER | {"forceinline": True}
+
+
+def weighted(start, scale, weights, vectors):
+    """Start + scale (w_1 v_1 + w_2 v_2 + ...), each product with the scale taken first."""
+    raise NotImplementedError
+
+
+@overload(weighted, jit_options=INLINE)
+def _weighted(start, scale, weights, vectors):
+    size, count = len(start), len(vectors)
+    parts = ", ".join(
+        " + ".join([f"start[{i}]", *(f"w{j} * vectors[{j}][{i}]" for j in range(count))]) for i in range(size)
+    )
+    factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
+    scope: dict[str, Any] = {}
+    exec(f"def sum(start, scale, weights, vectors):\n{factors}\n    return ({parts},)", scope)
+    return scope["sum"]
+
+
+def combination(scale, weights, vectors):
+    """The weighted sum alone."""
+    raise NotImplementedError
+
+
+@overload(combination, jit_options=INLINE)
+def _combination(scale, weights, vectors):
+    size, count = len(vectors[0]), len(vectors)
+    parts = ", ".join(" + ".join(f"w{j} * vectors[{j}][{i}]" for j in range(count)) for i in range(size))
+    factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
+    scope: dict[str, Any] = {}
+    exec(f"def sum(scale, weights, vectors):\n{factors}\n    return ({parts},)", scope)
+    return scope["sum"]
+
+
+def vector(array, like):
+    """The first numbers of an array as a vector as long as another."""
+    raise NotImplementedError
+
+
+@overload(vector, jit_options=INLINE)
+def _vector(array, like):
+    if not isinstance(like, types.BaseTuple):
+        return None
+    parts = ", ".join(f"array[{i}]" for i in range(len(like)))
+    return function_of(("array", "like"), f"({parts},)")
+
+
+@inlined
+def store(y, out):
+    """Write a vector into an array."""
+    for i in range(len(y)):
+        out[i] = y[i]
+
+
+@inlined
+def replaced(y, place, value):
+    """The vector with another number at a place."""
+    return _set_item(y, place, value)

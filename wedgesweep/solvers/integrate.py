@@ -1,0 +1,348 @@
+"""A run from one event to the next: closed form where the system has one, Runge-Kutta steps elsewhere.
+
+After each step the event functions are known at its start, middle and end. Where one may have been zero in
+between, its minimum is sought. Each event is located on the step's dense output.
+"""
+
+from collections.abc import Callable, Mapping
+from math import inf, nan, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep.compiled import by_record, inlined, inner
+from wedgesweep.hybrid.interface import (
+    closed_form,
+    event,
+    event_count,
+    events,
+    fastest,
+    holds,
+    initial_mode,
+    never_locks,
+    observed,
+    outruns,
+    provided,
+    rate,
+    settling_step,
+    stiff,
+    transition,
+    well_posed,
+)
+from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
+from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
+from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
+from wedgesweep.solvers import explicit, implicit
+from wedgesweep.solvers.step import inside, slope
+
+EVENTS_PER_PERIOD = 1000
+# First step of a run, as a share of a period.
+FIRST_STEP = 1e-3
+# Least number of steps per period of the fastest input: a longer step could miss a whole motion. While
+# contacts hold the mass nothing else limits its length.
+LEAST_STEPS, LEAST_STEPS_HELD = 12, 64
+SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+SHORTEST = 1e-13
+# A mode that needs more steps than this per period of the fastest input will not end.
+MOST_STEPS = 100_000
+# A minimum is looked for where the parabola through three values falls below this share of the least.
+SUSPECT = 0.3
+# Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; and the phase (rad) after
+# an event in which no other one is sought.
+CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
+
+
+class Workspace(NamedTuple):
+    """Tolerance of a run, counts of its rate evaluations, steps and events, and room for event functions."""
+
+    rtol: float
+    counts: Any
+    at_start: Any
+    at_middle: Any
+    at_end: Any
+    at_point: Any
+
+
+MOST_EVENTS = 32
+
+
+def workspace(rtol: float) -> Workspace:
+    """A fresh Workspace."""
+    return Workspace(rtol, np.zeros(3, np.int64), *(np.full(MOST_EVENTS, inf) for _ in range(4)))
+
+
+class _Place(NamedTuple):
+    """An event function on a step: what is searched for zeros and minima."""
+
+    number: int
+    step: Any
+    mode: Any
+    p: Any
+    out: Any
+
+
+@searched(_Place)
+@inner
+def _value(share, place):
+    step = place.step
+    y = inside(share, step)
+    return event(place.number, step.t + share * step.h, y, place.mode, place.p, place.out), nan
+
+
+@inlined
+def _may_graze(before, now, following):
+    """Whether a function, positive at three even points, may have been zero between them."""
+    if not before > now <= following:
+        return False
+    curvature = before - 2.0 * now + following
+    return now - (following - before) ** 2 / (8.0 * curvature) < SUSPECT * now
+
+
+@inner
+def _first_zero(place, start, end, from_zero):
+    """Share of a step at which an event function is first zero; 2 if nowhere.
+
+    ``start``, ``end``: its values at the ends of the step.
+    """
+    nearest = UNSEEN / (place.step.h * fastest(place.p))
+    high, at_high = 0.5, _value(0.5, place)[0]
+    if at_high > 0.0 and start > 0.0 and _may_graze(start, at_high, end):
+        high = minimum(place, 0.0, 1.0, CLOSE_TO_MINIMUM)
+        at_high = _value(high, place)[0]
+    if at_high <= 0.0:
+        bracket = Bracket(0.0, start, high, at_high)
+        if start > 0.0 and not from_zero:
+            return zero(place, bracket, CLOSE)
+        return zero_after_start(place, bracket, nearest, CLOSE)
+    if end <= 0.0:
+        return zero(place, Bracket(high, at_high, 1.0, end), CLOSE)
+    return 2.0
+
+
+@inlined
+def first_event(step, mode, last_event, forces, p, work):
+    """Share and place of the first event of a step; (1, NO_EVENT) if there is none.
+
+    ``forces``: near the middle of the step and at its end. The event functions there show which of them are
+    worth a closer look. Where the system may lock, they are evaluated in the middle itself: a missed event
+    could hide that it locks.
+    """
+    middle, within = inside(0.5, step), forces[0]
+    if not never_locks(p):
+        within = rate(step.t + 0.5 * step.h, middle, mode, p)[1]
+    events(within, step.t + 0.5 * step.h, middle, mode, p, work.at_middle)
+    events(forces[1], step.t + step.h, step.end, mode, p, work.at_end)
+    earliest, first = 1.0, NO_EVENT
+    for number in range(event_count(p)):
+        start, middle, end = work.at_start[number], work.at_middle[number], work.at_end[number]
+        if end == inf or (min(middle, end) > 0.0 and not _may_graze(start, middle, end)):
+            continue
+        from_zero = last_event >= 0 and number // 2 == last_event // 2
+        share = _first_zero(_Place(number, step, mode, p, work.at_point), start, end, from_zero)
+        if share <= 1.0 and (first < 0 or share < earliest):
+            earliest, first = share, number
+    return earliest, first
+
+
+class _Velocity(NamedTuple):
+    """Observed velocity on a step, times a sign."""
+
+    sign: float
+    step: Any
+    p: Any
+
+
+class _Acceleration(NamedTuple):
+    """Slope of the observed velocity on a step, times a sign."""
+
+    sign: float
+    step: Any
+    p: Any
+
+
+@searched(_Velocity)
+@inner
+def _velocity(share, context):
+    step, p = context.step, context.p
+    velocity, rate_of_share = observed(inside(share, step), p)[1], observed(slope(share, step), p)[1]
+    return context.sign * velocity, context.sign * rate_of_share
+
+
+@searched(_Acceleration)
+@inner
+def _acceleration(share, context):
+    return context.sign * observed(slope(share, context.step), context.p)[1], nan
+
+
+@inner
+def _keep_extremes(share, step, mode, recorder, p):
+    """Record the extremes of displacement and velocity below a share of a step."""
+    first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
+    if first * last < 0.0:
+        turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
+        there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
+        put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
+    upward = _Acceleration(1.0, step, p)
+    first, last = _acceleration(0.0, upward)[0], _acceleration(share, upward)[0]
+    if first * last < 0.0:
+        fastest = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
+        there = zero(fastest, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
+        put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
+
+
+@inner
+def keep(step, share, mode, recorder, p):
+    """Record a step up to a share of it."""
+    t, h, end = step.t, step.h, inside(share, step)
+    put_node(t, step.start, 0.0, mode, recorder, p)
+    for node in range(len(NODES)):
+        there = share * NODES[node]
+        put_node(t + there * h, inside(there, step), share * h * WEIGHTS[node], mode, recorder, p)
+    put_node(t + share * h, end, 0.0, mode, recorder, p)
+    _keep_extremes(share, step, mode, recorder, p)
+    for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
+        place = (recorder.start + i * recorder.step - t) / h
+        put_sample(i, inside(place, step), mode, recorder, p)
+
+
+def _implicit_step(t, h, y, k1, mode, p, rtol):
+    """``implicit.step`` where the system may be stiff; elsewhere nothing calls it."""
+
+
+def _if_stiff(some: Callable, none: Callable) -> Callable[[Mapping[str, Any]], Callable]:
+    """Code for records whose system may be stiff, and for others."""
+    return lambda fields: some if provided(stiff, fields) else none
+
+
+def _begins_stiff(mode, p):
+    """Whether a mode needs implicit steps."""
+
+
+def _becomes_stiff(h, y, p):
+    """Whether a state needs implicit steps."""
+
+
+def _after_event(h, p):
+    """First step (s) of a stiff mode after an event."""
+
+
+by_record(
+    _implicit_step,
+    _if_stiff(
+        lambda t, h, y, k1, mode, p, rtol: implicit.step(t, h, y, k1, mode, p, rtol),
+        lambda t, h, y, k1, mode, p, rtol: explicit.step(t, h, y, k1, mode, p, rtol),
+    ),
+)
+by_record(_begins_stiff, _if_stiff(lambda mode, p: stiff(mode, p), lambda mode, p: False))
+by_record(_becomes_stiff, _if_stiff(lambda h, y, p: outruns(h, y, p), lambda h, y, p: False))
+by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda h, p: h))
+
+
+def _closed_form(state, stop, p, keeping, recorder):
+    """The closed form of a mode, if the system has one."""
+
+
+by_record(
+    _closed_form,
+    lambda fields: (
+        (lambda state, stop, p, keeping, recorder: closed_form(state, stop, p, keeping, recorder))
+        if provided(closed_form, fields)
+        else (lambda state, stop, p, keeping, recorder: (False, state.t, state.y, NO_EVENT))
+    ),
+)
+
+
+@inner
+def _integrate_mode(state, stop, p, keeping, recorder, work):
+    """Follow a mode by steps until its first event or ``stop``: the state there and the event.
+
+    In place of an event NO_EVENT, LOCKED or FAILED.
+    """
+    t, y, mode, last_event, h = state
+    per_period = LEAST_STEPS_HELD if holds(mode, p) else LEAST_STEPS
+    period = 2.0 * pi / fastest(p)
+    k1, forces = rate(t, y, mode, p)
+    events(forces, t, y, mode, p, work.at_start)
+    most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
+    implicitly = _begins_stiff(mode, p)
+    if implicitly and last_event >= 0:
+        h = _after_event(h, p)
+    while t < stop:
+        h = min(h, period / per_period)
+        taken = min(h, stop - t)
+        if implicitly:
+            step, within, forces, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
+            exponent, evaluations = -1.0 / implicit.ORDER, implicit.STAGES
+        else:
+            step, within, forces, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
+            exponent, evaluations = -1.0 / explicit.ORDER, explicit.STAGES - 1
+        work.counts[0] += evaluations
+        if not error <= 1.0:
+            h = taken * max(SHRINK, SAFETY * error**exponent) if error < inf else taken * SHRINK
+            if h < SHORTEST * period:
+                return State(t, y, mode, last_event, h), FAILED
+            continue
+        work.counts[1] += 1
+        if work.counts[1] > most:
+            return State(t, y, mode, last_event, h), FAILED
+        share, number = first_event(step, mode, last_event, (within, forces), p, work)
+        if keeping:
+            keep(step, share, mode, recorder, p)
+        if number >= 0:
+            y = inside(share, step) if share < 1.0 else step.end
+            return State(t + share * taken, y, mode, last_event, h), number
+        if not well_posed(t + taken, step.end, mode, p):
+            return State(t, y, mode, last_event, h), LOCKED
+        t = stop if taken == stop - t else t + taken
+        y, k1, last_event = step.end, step.end_rate, NO_EVENT
+        for i in range(event_count(p)):
+            work.at_start[i] = work.at_end[i]
+        implicitly = implicitly or _becomes_stiff(taken, y, p)
+        grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
+        h = max(h, grown) if taken < h else grown
+    return State(stop, y, mode, last_event, h), NO_EVENT
+
+
+@inner
+def begin(t, y, p):
+    """State at the start of a run, and whether it is well-posed."""
+    mode, unique = initial_mode(t, y, p)
+    return State(t, y, mode, np.int64(NO_EVENT), FIRST_STEP * 2.0 * pi / fastest(p)), unique
+
+
+@inner
+def integrate(state, keep_from, stop, p, recorder, work):
+    """Follow a run from event to event up to ``stop``, and keep the part from a time on.
+
+    Returns how it ended (OK, LOCKED, FAILED, CHATTERING) and the state reached.
+    """
+    limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + (stop - state.t) * fastest(p) / (2.0 * pi))
+    while state.t < stop:
+        keeping = state.t >= keep_from
+        end = stop if keeping else keep_from
+        done, t, y, number = _closed_form(state, end, p, keeping, recorder)
+        if done:
+            state = State(t, y, state.mode, state.last_event, state.step)
+        else:
+            state, number = _integrate_mode(state, end, p, keeping, recorder, work)
+        if number == NO_EVENT:
+            continue
+        if number < NO_EVENT:
+            return number, state
+        y, mode, unique = transition(state.t, state.y, state.mode, number, p)
+        state = State(state.t, y, mode, number, state.step)
+        work.counts[2] += 1
+        if not unique:
+            return LOCKED, state
+        if work.counts[2] > limit:
+            return CHATTERING, state
+    return OK, state
+
+
+@inner
+def run(t, y, keep_from, stop, p, recorder, work):
+    """As ``integrate``, from a state vector."""
+    state, unique = begin(t, y, p)
+    if not unique:
+        return LOCKED, state
+    return integrate(state, keep_from, stop, p, recorder, work)

@@ -1,0 +1,36 @@
+"""After how many forcing periods a response repeats."""
+
+from wedgesweep.compiled import inner
+
+# Longest period that is detected, in forcing periods.
+LONGEST_PERIOD = 8
+# With a period above one, a state comes back this many times closer than it moves in one forcing period.
+CLOSER = 1e3
+# A response may have a longer period if its state comes back this many times closer after that than after one
+# forcing period.
+SEEMS = 10.0
+
+
+@inner
+def detected_period(distances, tolerance):
+    """Number of periods after which a state came back within the tolerance, 0 if it did not.
+
+    ``distances`` (LONGEST_PERIOD,): from the state one period before, two periods before, and so on. A
+    spiral into a fixed point also comes close to itself after a few periods: a longer period counts only
+    where the state moves far away in between.
+    """
+    if distances[0] <= tolerance:
+        return 1
+    for n in range(2, LONGEST_PERIOD + 1):
+        if distances[n - 1] <= min(tolerance, distances[0] / CLOSER):
+            return n
+    return 0
+
+
+@inner
+def guessed_period(distances):
+    """Likely period of a response that has not settled yet, from the same distances."""
+    for n in range(2, LONGEST_PERIOD + 1):
+        if distances[n - 1] * SEEMS < distances[0]:
+            return n
+    return 1

@@ -1,0 +1,331 @@
+"""Steady states by shooting: Newton's method for fixed points of the Poincare map, and plain integration.
+
+The map spans as many forcing periods as the response seems to repeat after, or as a neighbour's does. A case
+may have several stable responses; plain integration decides which of them a start leads to. The derivative J
+of the map (monodromy matrix) comes from differences or from a neighbour, and Broyden's update (1965) adapts
+it from step to step. If a Newton step does not bring the state closer to its image, integration goes on from
+where it had stopped. It also finds the responses that Newton's method cannot: those that J shows to be
+unstable, and those whose mean position is not determined.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep.compiled import inner
+from wedgesweep.hybrid.accumulators import clear
+from wedgesweep.hybrid.interface import clocks, cycle, free, repeats, scales
+from wedgesweep.hybrid.state import OK
+from wedgesweep.hybrid.vectors import vector
+from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
+
+# Perturbation of the scaled state for J, at least NOISE times the tolerance of a step, and the least step
+# after which J is updated.
+PERTURBATION, NOISE, LEAST_STEP = 1e-6, 1e2, 1e-4
+# Limits of Newton's method: least determinant of I - J, largest eigenvalue of J.
+SINGULAR, UNSTABLE = 1e-3, 0.9999
+# Periods of plain integration before Newton's method is tried, from rest and after it has failed.
+NEWTON_INTERVAL = 8
+# If the distance is above STALE times the last one, J is computed again; with a new J, Newton's method has
+# failed if it is above GAIN times the last one.
+STALE, GAIN = 0.2, 0.5
+# Share of a period by which a clock grows if nothing resets it, less rounding; and its reading, in periods,
+# in a response in which nothing ever does.
+GROWN, CONTACT_TIME_LIMIT = 1.0 - 1e-9, 100.0
+# Below this distance the next period may be the last one, and is kept.
+KEPT_BELOW = 1e-3
+# Periods of integration of a response to an input that does not repeat.
+PERIODS_OF_NO_RESPONSE = 30
+# An extrapolated state is taken if it reduces the distance to its image by this factor.
+EXTRAPOLATION_GAIN = 0.5
+
+
+class Shooting(NamedTuple):
+    """A search for a steady state: the case (1,), its map, tolerance, limit of periods, and workspace."""
+
+    case: Any
+    period_map: Any
+    tolerance: float
+    most_periods: int
+    memory: Any
+    size: Any  # natural sizes of the states (n,)
+
+
+class Found(NamedTuple):
+    """How a search ended.
+
+    ``period`` of the response in forcing periods (0: it did not repeat), periods ``run``, and how many of
+    them the memory has kept (the last ones but for checks).
+    """
+
+    outcome: int
+    period: int
+    run: int
+    kept: int
+
+
+@inner
+def _distance(a, b, size):
+    """Largest difference of two states in their units."""
+    largest = 0.0
+    for i in range(size.size):
+        difference = abs(a[i] - b[i]) / size[i]
+        if not difference <= largest:
+            largest = difference
+    return largest
+
+
+@inner
+def _moving(y, periods, p):
+    """Which states at phase 0 affect those some periods later; a clock does if it was reset in between."""
+    now = vector(y, scales(p))
+    moves = np.array(free(now, p))
+    counts = clocks(p)
+    for i in range(moves.size):
+        if counts[i]:
+            moves[i] = 0.0 < y[i] < periods * GROWN * cycle(p)
+    return moves
+
+
+@inner
+def _run(y, periods, keeping, shooting):
+    """Run some periods; y moves along. Returns the outcome.
+
+    A clock that was not reset although all other states came back never will be; nor will one that was not
+    reset in as many periods as a response may have.
+    """
+    before = y.copy()
+    case = shooting.case
+    outcome = shooting.period_map(0, periods, y, case, keeping, shooting.memory)
+    p = case[0]
+    counts = clocks(p)
+    for i in range(len(counts)):
+        if counts[i] and y[i] >= periods * GROWN * cycle(p):
+            before[i] = y[i]
+            if y[i] >= LONGEST_PERIOD * GROWN * cycle(p) or _distance(y, before, shooting.size) <= KEPT_BELOW:
+                y[i] = CONTACT_TIME_LIMIT * cycle(p)
+    return outcome
+
+
+@inner
+def monodromy(y, image, periods, moves, jacobian, shooting):
+    """Write J at y, whose image is known; returns the outcome and the periods run."""
+    jacobian[:] = 0.0
+    size = shooting.size
+    run = 0
+    share = max(PERTURBATION, NOISE * shooting.memory.work.rtol)
+    for k in range(size.size):
+        if moves[k]:
+            shifted = y.copy()
+            shifted[k] += share * size[k]
+            outcome = _run(shifted, periods, False, shooting)
+            run += periods
+            if outcome != OK:
+                jacobian[:] = np.nan
+                return outcome, run
+            jacobian[:, k] = (shifted - image) / size / share
+    return OK, run
+
+
+@inner
+def _part(jacobian, moves):
+    """J of the states that move."""
+    places = np.flatnonzero(moves)
+    part = np.empty((places.size, places.size))
+    for i in range(places.size):
+        for j in range(places.size):
+            part[i, j] = jacobian[places[i], places[j]]
+    return part
+
+
+@inner
+def _stable_and_regular(jacobian, moves):
+    """Whether J is known, the response stable by it, and its position determined."""
+    part = _part(jacobian, moves)
+    n = part.shape[0]
+    if not np.isfinite(part).all():
+        return False
+    margin = np.linalg.det(np.eye(n) - part)
+    if n == 1:
+        return abs(part[0, 0]) < UNSTABLE and margin >= SINGULAR
+    if n == 2:
+        determinant = part[0, 0] * part[1, 1] - part[0, 1] * part[1, 0]
+        stable = abs(part[0, 0] + part[1, 1]) < 1.0 + determinant and determinant < UNSTABLE
+        return stable and margin >= SINGULAR
+    largest = np.max(np.abs(np.linalg.eigvals(part.astype(np.complex128))))
+    return largest < UNSTABLE and margin >= SINGULAR
+
+
+@inner
+def _newton_step(y, image, jacobian, moves, size):
+    """Newton's next state."""
+    places = np.flatnonzero(moves)
+    miss = ((image - y) / size)[places]
+    step = np.linalg.solve(np.eye(places.size) - _part(jacobian, moves), miss)
+    following = image.copy()
+    for i in range(places.size):
+        following[places[i]] = y[places[i]] + step[i] * size[places[i]]
+    return following
+
+
+@inner
+def _update(jacobian, y, image, before, image_before, size):
+    """Broyden's update of J from two states and their images, unless they are too close to tell."""
+    step = (y - before) / size
+    square = np.dot(step, step)
+    if square > LEAST_STEP**2:
+        miss = (image - image_before) / size - np.dot(jacobian, step)
+        jacobian += np.outer(miss, step) / square
+
+
+@inner
+def newton_shooting(y, periods, jacobian, most, shooting):
+    """Newton's method from y for a state that comes back; J is computed where it is unknown or out of date.
+
+    Returns whether y repeats now, the outcome and the periods run; if y repeats the last of them are kept.
+    If the method fails, y is the state closest to its own image so far.
+    """
+    p = shooting.case[0]
+    size = shooting.size
+    before, image_before, best = y.copy(), y.copy(), y.copy()
+    shortest, last, fresh, run = np.inf, np.inf, False, 0
+    judged = False
+    while run < most:
+        image = y.copy()
+        keeping = last < KEPT_BELOW or run == 0
+        if keeping:
+            clear(shooting.memory.sums)
+        outcome = _run(image, periods, keeping, shooting)
+        run += periods
+        if outcome != OK:
+            y[:] = best
+            return False, outcome, run
+        now = _distance(image, y, size)
+        if now <= shooting.tolerance and keeping:
+            y[:] = image
+            return True, OK, run
+        moves = _moving(image, periods, p)
+        if now < shortest:
+            shortest = now
+            best[:] = image
+        if run == periods and now <= CLOSER * shooting.tolerance:
+            # All but steady: another run costs less than a derivative.
+            y[:], last = image, now
+            continue
+        if judged:
+            _update(jacobian, y, image, before, image_before, size)
+        if now > STALE * last or not (judged or _stable_and_regular(jacobian, moves)):
+            if (fresh and now > GAIN * last) or run + periods * (1 + moves.sum()) > most:
+                break
+            outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
+            run += more
+            fresh = True
+            if outcome != OK or not _stable_and_regular(jacobian, moves):
+                break
+        else:
+            fresh = False
+        judged = True
+        before[:], image_before[:], last = y, image, now
+        y[:] = _newton_step(y, image, jacobian, moves, size)
+    y[:] = best
+    return False, OK, run
+
+
+@inner
+def _shoot(y, periods, jacobian, most, shooting):
+    """Newton's method from y for a response of some periods, or of a divisor of them."""
+    found, outcome, run = newton_shooting(y, periods, jacobian, most, shooting)
+    if not found:
+        return Found(outcome, 0, run, periods)
+    size = shooting.size
+    for shorter in range(1, periods):
+        if periods % shorter:
+            continue
+        image = y.copy()
+        outcome = _run(image, shorter, False, shooting)
+        run += shorter
+        if outcome == OK and _distance(image, y, size) <= CLOSER * shooting.tolerance:
+            jacobian[:] = np.nan
+            found, outcome, more = newton_shooting(y, shorter, jacobian, most, shooting)
+            return Found(outcome, shorter * found, run + more, shorter)
+    return Found(OK, periods, run, periods)
+
+
+@inner
+def _extrapolated(y, last, before, moves):
+    """Limit of three successive states (Aitken); the last of them where they do not converge.
+
+    A state at rest at phase 0 may creep by one slip per period, near breakaway ever more slowly: as 1/k after
+    k periods. There each extrapolation halves the distance to the limit and does not overshoot.
+    """
+    limit = y.copy()
+    for i in range(y.size):
+        now, then = y[i] - last[i], last[i] - before[i]
+        if moves[i] and now != 0.0 and abs(now) < abs(then) and now * then > 0.0:
+            limit[i] += now * now / (then - now)
+    return limit
+
+
+@inner
+def _creep(y, past, count, shooting):
+    """Extrapolate the creep of states that a contact holds at phase 0; returns the periods run."""
+    p = shooting.case[0]
+    size, moves = shooting.size, np.array(free(vector(y, scales(p)), p))
+    last, before = past[(count - 1) % LONGEST_PERIOD], past[(count - 2) % LONGEST_PERIOD]
+    trial = _extrapolated(y, last, before, moves)
+    image = trial.copy()
+    outcome = _run(image, 1, False, shooting)
+    if outcome == OK and _distance(image, trial, size) < EXTRAPOLATION_GAIN * _distance(y, last, size):
+        y[:] = trial
+    return 1
+
+
+@inner
+def settle(y, periods, jacobian, shooting):
+    """Find a state at phase 0 that repeats, from y (rest where it is NaN) and J (NaN: unknown).
+
+    ``periods``: period of the response that y should be close to, for which Newton's method is tried first;
+    0 if none is known. y and J are updated in place; J is that over one period of the response.
+    """
+    p = shooting.case[0]
+    size, most, run = shooting.size, shooting.most_periods, 0
+    if not np.isfinite(y).all():
+        y[:], periods = 0.0, 0
+        jacobian[:] = np.nan
+    if not repeats(p):
+        most = min(most, PERIODS_OF_NO_RESPONSE)
+        outcome = shooting.period_map(0, most, y, shooting.case, False, shooting.memory)
+        return Found(outcome, 0, most, 0)
+    if periods:
+        found = _shoot(y, periods, jacobian, most, shooting)
+        if found.period:
+            return found
+        run = found.run
+        if found.outcome != OK:
+            # The neighbour's state may be impossible in this case: rest decides.
+            y[:] = 0.0
+    past, back = np.full((LONGEST_PERIOD, size.size), np.inf), np.empty(LONGEST_PERIOD)
+    count = 0
+    while run < most:
+        past[count % LONGEST_PERIOD] = y
+        outcome = _run(y, 1, False, shooting)
+        run, count = run + 1, count + 1
+        if outcome != OK:
+            return Found(outcome, 0, run, 0)
+        for n in range(1, LONGEST_PERIOD + 1):
+            back[n - 1] = _distance(y, past[(count - n) % LONGEST_PERIOD], size)
+        period = detected_period(back, shooting.tolerance)
+        if period:
+            if period != periods:
+                jacobian[:] = np.nan
+            return Found(OK, period, run, 0)
+        if count % NEWTON_INTERVAL == 0:
+            trial, periods = y.copy(), guessed_period(back)
+            jacobian[:] = np.nan
+            found = _shoot(trial, periods, jacobian, most - run, shooting)
+            run += found.run
+            if found.period:
+                y[:] = trial
+                return Found(OK, found.period, run, found.kept)
+            run += _creep(y, past, count, shooting)
+    return Found(OK, 0, run, 0)

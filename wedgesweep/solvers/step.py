@@ -1,0 +1,65 @@
+"""A step of an integrator with its dense output, and its error against the tolerance."""
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+from wedgesweep.compiled import inlined
+from wedgesweep.hybrid.interface import error_scales
+from wedgesweep.hybrid.vectors import combination, weighted
+
+# Share of a state's natural size, times rtol, that an error may always have.
+ABSOLUTE = 1e-2
+
+
+class Step(NamedTuple):
+    """A step from t, h (s) long: states and rates at both ends, and the coefficients of its dense output."""
+
+    t: float
+    h: float
+    start: Any
+    end: Any
+    start_rate: Any
+    end_rate: Any
+    rise: Any
+    bend: Any
+    turn: Any
+    quartic: Any
+
+
+@inlined
+def connected(t, h, start, end, start_rate, end_rate, quartic):
+    """A step whose dense output is Hermite's cubic through both ends plus a term of order 4."""
+    rise = combination(1.0, (1.0, -1.0), (end, start))
+    bend = combination(1.0, (h, -1.0), (start_rate, rise))
+    turn = combination(1.0, (1.0, -h, -1.0), (rise, end_rate, bend))
+    return Step(t, h, start, end, start_rate, end_rate, rise, bend, turn, quartic)
+
+
+@inlined
+def inside(share, step):
+    """State at a share of a step."""
+    rest = 1.0 - share
+    mixed = share * rest
+    weights = (share, mixed, share * mixed, mixed * mixed)
+    return weighted(step.start, 1.0, weights, (step.rise, step.bend, step.turn, step.quartic))
+
+
+@inlined
+def slope(share, step):
+    """Derivative of ``inside`` by the share."""
+    rest = 1.0 - share
+    weights = (1.0, rest - share, share * (2.0 - 3.0 * share), 2.0 * share * rest * (rest - share))
+    return combination(1.0, weights, (step.rise, step.bend, step.turn, step.quartic))
+
+
+@inlined
+def over_tolerance(error, y, end, rtol, p):
+    """Error over the tolerance: root mean square over all states that are not zero."""
+    scales = error_scales(p)
+    total, count = 0.0, 0
+    for i in range(len(y)):
+        size = max(abs(y[i]), abs(end[i]))
+        if size > 0.0:
+            total += (error[i] / (rtol * (size + ABSOLUTE * scales[i]))) ** 2
+            count += 1
+    return sqrt(total / max(count, 1))

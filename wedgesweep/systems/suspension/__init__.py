@@ -1,0 +1,1 @@
+"""The friction wedge suspension of a three-piece bogie, as a half model."""

@@ -1,0 +1,96 @@
+"""Where the suspension rests without friction, its resonance, and the input that breaks it loose."""
+
+from math import inf, nan, sqrt
+
+import numpy as np
+
+from wedgesweep.compiled import compiled
+from wedgesweep.effects import column_compliance, cubic_stiffness
+from wedgesweep.systems.suspension.newton import NO_FRICTION, Coefficients, Loads, reactions
+
+ITERATIONS = 100
+REACHED = 1e-15  # m
+
+
+@compiled
+def determinant(column_mu, bolster_mu, p):
+    """Determinant of Newton's equations, positive without friction."""
+    unloaded = Loads(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return -reactions(unloaded, Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[1]
+
+
+@compiled
+def _response(wedge, vertical, lateral, mu, p):
+    """Accelerations z'' and Q'' under forces on wedge (up), bolster and column (outward).
+
+    At rest the side frame does not accelerate, so that its own support changes nothing.
+    """
+    g = p.geometry
+    load = Loads(wedge * g.cos_column, wedge * g.sin_column, vertical, lateral, 0.0, 0.0)
+    now = reactions(load, mu, p)[0]
+    return now.acceleration, now.column_acceleration
+
+
+@compiled
+def equilibrium(p):
+    """Newton's method for z and Q (m) of the frictionless equilibrium; NaN where none holds by itself."""
+    s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
+    cubic = cubic_stiffness.coefficient(p)
+    yields, stiffness = column_compliance.acts(p), column_compliance.stiffness(p)
+    z, deflection = 0.0, 0.0
+    for _ in range(ITERATIONS):
+        wedge = s.wedge_preload - s.wedge_spring * (lift * z + p.geometry.lift_ratio * deflection)
+        vertical = -(s.bolster_spring + cubic * z * z) * z - s.bolster_mass * s.gravity
+        lateral = -stiffness * deflection
+        rz, rq = _response(wedge - s.wedge_mass * s.gravity, vertical, lateral, NO_FRICTION, p)
+        tangent = -s.bolster_spring - 3.0 * cubic * z * z
+        zz, qz = _response(-s.wedge_spring * lift, tangent, 0.0, NO_FRICTION, p)
+        if not yields:
+            dz, dq, stable = -rz / zz, 0.0, zz < 0.0
+        else:
+            zq, qq = _response(-s.wedge_spring * p.geometry.lift_ratio, 0.0, -stiffness, NO_FRICTION, p)
+            volume = zz * qq - zq * qz
+            dz, dq = -(rz * qq - zq * rq) / volume, -(zz * rq - rz * qz) / volume
+            stable = zz < 0.0 and volume > 0.0
+        z, deflection = z + dz, deflection + dq
+        if abs(dz) + abs(dq) <= REACHED:
+            return (z, deflection) if stable else (nan, nan)
+    return nan, nan
+
+
+@compiled
+def _stiffness_response(p):
+    s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
+    return _response(-s.wedge_spring * lift, -s.bolster_spring, 0.0, NO_FRICTION, p)[0]
+
+
+def resonance(p: np.void) -> float:
+    """Angular frequency (rad/s) of the suspension without friction and effects."""
+    return sqrt(-_stiffness_response(p))
+
+
+@compiled
+def _weight_and_inertia(direction, mu_d, p):
+    """Z'' at rest as friction lets go in a direction, and what each m/s^2 of the base adds to it."""
+    s, g = p.suspension, p.geometry
+    bolster = direction if g.bolster_ratio > 0.0 else -direction if g.bolster_ratio < 0.0 else 0.0
+    mu = Coefficients(direction * mu_d, bolster * mu_d, 0.0, 0.0)
+    wedge = s.wedge_preload - s.wedge_spring * g.column_ratio * g.cos_column * g.rest
+    vertical = -s.bolster_spring * g.rest - p.guide_friction.force * direction
+    return (
+        _response(wedge - s.wedge_mass * s.gravity, vertical - s.bolster_mass * s.gravity, 0.0, mu, p)[0],
+        _response(-s.wedge_mass, -s.bolster_mass, 0.0, mu, p)[0],
+    )
+
+
+def breakaway_acceleration(p: np.void) -> float:
+    """Smallest base acceleration (m/s^2) at which set-valued friction slips from the equilibrium.
+
+    0 without friction. The normal forces stay positive on the way there, so that z'' is linear in the
+    base acceleration.
+    """
+    least = inf
+    for direction in (1.0, -1.0):
+        at_rest, inertia = _weight_and_inertia(direction, float(p["friction"]["mu_d"]), p)
+        least = min(least, abs(at_rest / inertia))
+    return least

@@ -1,0 +1,141 @@
+"""Event functions of the suspension: positive while a contact mode holds, zero where it ends."""
+
+from math import inf
+
+import numpy as np
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import ageing, end_stop, guide_friction, presliding
+from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
+from wedgesweep.systems.suspension.filippov import WIDTH, both_sides
+from wedgesweep.systems.suspension.modes import (
+    AXES,
+    BOLSTER,
+    COLUMN,
+    DIRECTION,
+    GUIDE,
+    HELD,
+    VELOCITY,
+    X,
+    branch,
+    held,
+    stuck,
+)
+from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
+from wedgesweep.systems.suspension.set_valued import breakaway
+
+# Places of the event functions beside those of the axes: normal forces, end stops (two), time at rest. Those
+# of the base model end with the normal forces.
+COLUMN_NORMAL, BOLSTER_NORMAL, BASE_EVENTS = 6, 7, 8
+STOP, CLOCK = 2 * AXES, 2 * AXES + 2
+EVENTS = CLOCK + 1
+# A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
+# end cannot go back and forth between both at one instant.
+OVERLAP = 1e-9
+
+
+@inlined
+def _branch_ends(value, threshold, now, place, out):
+    """Write the distances of a measure of slip to the lower and the upper end of its branch."""
+    if now == 0:
+        threshold *= 1.0 + OVERLAP
+    if now >= 0:
+        out[place] = value - threshold if now else value + threshold
+    if now <= 0:
+        out[place + 1] = -threshold - value if now else threshold - value
+
+
+@inlined
+def _stop_events(x, stop, p, out):
+    clearance = end_stop.clearance(p)
+    if stop >= 0:
+        out[STOP] = x - clearance if stop else x + clearance
+    if stop <= 0:
+        out[STOP + 1] = -clearance - x if stop else clearance - x
+
+
+@inlined
+def _bristle_events(t, y, mode, p, out):
+    """Write the events of a column face with bristles: the slip turns, the time at rest begins or ends."""
+    slip = column_slip(y, p)
+    out[2 * COLUMN if mode.column > 0 else 2 * COLUMN + 1] = mode.column * slip
+    if ageing.acts(p):
+        inside = p.friction.v_t - abs(slip)
+        out[CLOCK] = inside if mode.clock else -inside
+
+
+@inlined
+def _slip_events(t, y, mode, p, out):
+    """Write the events of a regularised law that no jump holds."""
+    if presliding.acts(p):
+        _bristle_events(t, y, mode, p, out)
+    elif abs(mode.column) != HELD:
+        _branch_ends(slip_measure(COLUMN, t, y, p), p.friction.v_t, mode.column, 2 * COLUMN, out)
+    if abs(mode.bolster) != HELD:
+        _branch_ends(slip_measure(BOLSTER, t, y, p), p.friction.v_t, mode.bolster, 2 * BOLSTER, out)
+    if guide_friction.acts(p) and abs(mode.guide) != HELD:
+        _branch_ends(y[VELOCITY], p.friction.v_t, mode.guide, 2 * GUIDE, out)
+    if abs(mode.direction) == 1:
+        out[2 * DIRECTION if mode.direction > 0 else 2 * DIRECTION + 1] = mode.direction * y[VELOCITY]
+
+
+@inner
+def _held_events(t, y, mode, p, out):
+    """Write the events of the jumps that hold a velocity: the sides must point at the jump."""
+    sides = np.empty((2, WIDTH))
+    for axis in range(AXES):
+        if abs(branch(mode, axis)) == HELD:
+            both_sides(t, y, mode, axis, p, sides)
+            out[2 * axis] = slip_rate(axis, t, y, sides[0, 0], sides[0, 1], p)
+            out[2 * axis + 1] = -slip_rate(axis, t, y, sides[1, 0], sides[1, 1], p)
+
+
+@inlined
+def _kinematic_events(t, y, mode, p, out):
+    """Write the events that need no forces."""
+    if end_stop.acts(p):
+        _stop_events(y[X], mode.stop, p, out)
+    if p.friction.set_valued:
+        out[2 * COLUMN if mode.column > 0 else 2 * COLUMN + 1] = mode.column * y[VELOCITY]
+    else:
+        _slip_events(t, y, mode, p, out)
+
+
+@inlined
+def events(now, t, y, mode, p, out):
+    """Write the event functions, shape (EVENTS,), under the forces ``now`` (unused if held or stuck).
+
+    Units are m/s for slip velocities, m for the end stops, N for normal forces, m/s^2 for what is held or
+    stuck; an event that the mode does not have is inf.
+    """
+    for i in range(EVENTS):
+        out[i] = inf
+    if stuck(mode, p):
+        out[2 * COLUMN] = breakaway(t, y, -1, mode.stop, p)
+        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.stop, p)
+        return
+    _kinematic_events(t, y, mode, p, out)
+    if held(mode):
+        _held_events(t, y, mode, p, out)
+    else:
+        out[COLUMN_NORMAL] = mode.column_sign * now.column
+        out[BOLSTER_NORMAL] = mode.bolster_sign * now.bolster
+
+
+@inlined
+def _is_kinematic(place, mode, p):
+    if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
+        return False
+    return place >= STOP or abs(branch(mode, place // 2)) != HELD
+
+
+@inner
+def event(place, t, y, mode, p, out):
+    """One of the event functions, which may be all that is written."""
+    if _is_kinematic(place, mode, p):
+        _kinematic_events(t, y, mode, p, out)
+    elif stuck(mode, p) or held(mode):
+        events(UNDETERMINED, t, y, mode, p, out)
+    else:
+        events(forces(t, y, mode, p), t, y, mode, p, out)
+    return out[place]

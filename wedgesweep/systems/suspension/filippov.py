@@ -1,0 +1,95 @@
+"""Jumps of friction that hold a velocity: Filippov's convex combination of both sides (1988).
+
+A jump holds the slip of a face at its threshold, or the bolster at rest where friction depends on the sign
+of z'. Several may hold at once: then each vertex of the combination is a mode of its own, and the jumps
+are resolved one after the other, so that all their velocities stay.
+"""
+
+import numpy as np
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.systems.suspension.energy import friction_power
+from wedgesweep.systems.suspension.faces import slip_rate
+from wedgesweep.systems.suspension.modes import AXES, HELD, branch, held, side, with_branch
+from wedgesweep.systems.suspension.newton import Forces, forces, solve_for_signs
+
+# Numbers of a vertex: the five forces, then the power of friction.
+WIDTH, POWER = 6, 5
+
+
+@inner
+def _vertex(mode, bits, order, p):
+    """Mode at a vertex: bit i is the side of the jump of axis ``order[i]``."""
+    for i in range(order.size):
+        axis = order[i]
+        mode = with_branch(mode, axis, side(branch(mode, axis), axis, (bits >> i) & 1), p)
+    return mode
+
+
+@inner
+def both_sides(t, y, mode, first, p, out):
+    """Write both sides of the jump of axis ``first``, shape (2, WIDTH), the other jumps resolved.
+
+    Returns whether the normal forces are unique at every vertex.
+    """
+    order = np.empty(AXES, np.int64)
+    order[0] = first
+    count = 1
+    for axis in range(AXES):
+        if axis != first and abs(branch(mode, axis)) == HELD:
+            order[count] = axis
+            count += 1
+    order = order[:count]
+    vertices = np.empty((2**count, WIDTH))
+    unique = True
+    for bits in range(2**count):
+        at, now, certain = solve_for_signs(t, y, _vertex(mode, bits, order, p), p)
+        unique = unique and certain
+        vertices[bits, 0], vertices[bits, 1], vertices[bits, 2] = now[0], now[1], now[2]
+        vertices[bits, 3], vertices[bits, 4] = now.column, now.bolster
+        vertices[bits, POWER] = friction_power(t, y, at, now, p)
+    for i in range(count - 1, 0, -1):
+        for low in range(2**i):
+            _resolve(order[i], t, y, vertices[low], vertices[low + 2**i], p)
+    out[0], out[1] = vertices[0], vertices[1]
+    return unique
+
+
+@inner
+def _resolve(axis, t, y, low, high, p):
+    """Combine both sides of a jump, into the first, so that its measure of slip stays constant."""
+    below = slip_rate(axis, t, y, low[0], low[1], p)
+    above = slip_rate(axis, t, y, high[0], high[1], p)
+    share = above / (above - below) if above != below else 0.5
+    for i in range(WIDTH):
+        low[i] = share * low[i] + (1.0 - share) * high[i]
+
+
+@inner
+def filippov_forces(t, y, mode, p):
+    """Forces and friction power (W) of a mode with held velocities, and whether they are unique."""
+    sides = np.empty((2, WIDTH))
+    axis = 0
+    while abs(branch(mode, axis)) != HELD:
+        axis += 1
+    unique = both_sides(t, y, mode, axis, p, sides)
+    _resolve(axis, t, y, sides[0], sides[1], p)
+    now = sides[0]
+    return Forces(now[0], now[1], now[2], now[3], now[4]), now[POWER], unique
+
+
+@inlined
+def contact_forces(t, y, mode, p):
+    """Forces on any mode but a stuck one."""
+    if held(mode):
+        return filippov_forces(t, y, mode, p)[0]
+    return forces(t, y, mode, p)
+
+
+@inner
+def resolve_mode(t, y, mode, p):
+    """``contact_forces`` with the signs of the normal forces found: mode, forces, whether they are unique."""
+    if held(mode):
+        now, _, unique = filippov_forces(t, y, mode, p)
+        return mode, now, unique
+    return solve_for_signs(t, y, mode, p)

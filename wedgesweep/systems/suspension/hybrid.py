@@ -1,0 +1,128 @@
+"""The suspension as a hybrid system: what solvers ask of it, see hybrid/interface.py."""
+
+from math import nan, pi
+
+from wedgesweep import excitation
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import presliding, states, stray_vibration
+from wedgesweep.hybrid import interface
+from wedgesweep.hybrid.interface import implement
+from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.systems.suspension import closed_form, events, stiffness, transitions  # noqa: F401
+from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
+from wedgesweep.systems.suspension.faces import column_slip
+from wedgesweep.systems.suspension.filippov import contact_forces, filippov_forces
+from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
+from wedgesweep.systems.suspension.newton import forces
+
+SUSPENSION = "suspension"
+
+for _declared, _written in (
+    (interface.initial_mode, transitions.initial_mode),
+    (interface.rate, transitions.rate),
+    (interface.transition, transitions.transition),
+    (interface.well_posed, transitions.well_posed),
+    (interface.events, events.events),
+    (interface.event, events.event),
+    (interface.holds, stuck),
+    (interface.fastest, excitation.fastest),
+):
+    implement(_declared, SUSPENSION)(_written)
+
+for _declared, _written in (
+    (interface.scales, states.scales),
+    (interface.error_scales, states.error_scales),
+    (interface.active, states.active),
+    (interface.clocks, states.clocks),
+):
+    implement(_declared, SUSPENSION)(_written)
+
+
+@implement(interface.event_count, "base")
+@inlined
+def base_event_count(p):
+    """Number of event functions of the base model."""
+    return events.BASE_EVENTS
+
+
+@implement(interface.event_count, SUSPENSION)
+@inlined
+def event_count(p):
+    """Number of event functions."""
+    return events.EVENTS
+
+
+@implement(interface.cycle, SUSPENSION)
+@inlined
+def cycle(p):
+    """Period of the input (s)."""
+    return 2.0 * pi / p.input.omega
+
+
+@implement(interface.repeats, SUSPENSION)
+@inlined
+def repeats(p):
+    """A foreign tone has a period of its own."""
+    return not stray_vibration.acts(p)
+
+
+@implement(interface.never_locks, SUSPENSION)
+@inlined
+def never_locks(p):
+    """See parameters.prepare."""
+    return p.geometry.always_well_posed != 0
+
+
+@implement(interface.free, SUSPENSION)
+@inlined
+def free(y, p):
+    """A bolster that friction holds keeps its velocity."""
+    pinned = p.friction.set_valued and y[VELOCITY] == 0.0
+    return replaced(states.active(p), VELOCITY, not pinned)
+
+
+@implement(interface.observed, SUSPENSION)
+@inlined
+def observed(y, p):
+    """Displacement and velocity of the bolster against the side frame."""
+    return y[X], y[VELOCITY]
+
+
+@implement(interface.sticks, SUSPENSION)
+@inlined
+def sticks(y, mode, p):
+    """Whether the column face sticks: bristles end no branch at the threshold velocity."""
+    if abs(mode.column) == 1 and presliding.acts(p) and not p.friction.set_valued:
+        return abs(column_slip(y, p)) <= p.friction.v_t
+    return abs(mode.column) != 1
+
+
+@inner
+def _forces_and_power(t, y, mode, p):
+    """Normal forces on column and bolster, and the power (W) of friction, on a mode that slips."""
+    if held(mode):
+        now, power, _ = filippov_forces(t, y, mode, p)
+        return now.column, now.bolster, power
+    now = forces(t, y, mode, p)
+    return now.column, now.bolster, friction_power(t, y, mode, now, p)
+
+
+@implement(interface.powers, SUSPENSION)
+@inner
+def powers(t, y, mode, p):
+    """Power taken and supplied, and the normal forces."""
+    column, bolster, power = nan, nan, 0.0
+    if not stuck(mode, p):
+        column, bolster, power = _forces_and_power(t, y, mode, p)
+    supplied = supplied_power(excitation.acceleration(t, p), y, p)
+    return power + damping_power(y, p), supplied, column, bolster
+
+
+@implement(interface.contact_forces, SUSPENSION)
+@inner
+def normal_forces(t, y, mode, p):
+    """Normal forces on column and bolster face; they are not determined while set-valued friction holds."""
+    if stuck(mode, p):
+        return nan, nan
+    now = contact_forces(t, y, mode, p)
+    return now.column, now.bolster

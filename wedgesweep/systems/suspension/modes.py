@@ -1,0 +1,139 @@
+"""Contact modes of the suspension: which smooth piece of its equations holds."""
+
+from typing import NamedTuple
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import directional_friction, presliding
+
+# Displacement x from the frictionless equilibrium (m) and its rate: the first two states.
+X, VELOCITY = 0, 1
+# Friction axes: velocities that a jump of friction can hold. Each has two event functions: the branch ends
+# toward lower, or toward higher slip velocity.
+COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 4  # the event functions of the normal forces stand between
+AXES = 5
+# Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
+HELD = 2
+
+
+class ContactMode(NamedTuple):
+    """Which smooth piece of the equations holds.
+
+    ``column``, ``bolster``, ``guide``: slip branch (-1, 0, 1, or +-HELD) of each face; 0 is stuck under a
+    set-valued law. ``column_sign``, ``bolster_sign``: signs of the normal forces; the joints are bilateral
+    and friction acts with |N|. ``direction``: sign of z' where friction depends on it, HELD where its jump
+    holds the bolster, else 0. ``stop``: -1, 0, 1, the end stop in contact. ``clock``: 1 while the time at
+    rest runs.
+    """
+
+    column: int
+    bolster: int
+    guide: int
+    column_sign: int
+    bolster_sign: int
+    direction: int
+    stop: int
+    clock: int
+
+
+@inlined
+def stuck(mode, p):
+    """Whether set-valued friction holds the bolster."""
+    return p.friction.set_valued and mode.column == 0
+
+
+@inlined
+def held(mode):
+    """Whether the jump of a friction law holds a velocity."""
+    return (
+        abs(mode.column) == HELD
+        or abs(mode.bolster) == HELD
+        or abs(mode.guide) == HELD
+        or mode.direction == HELD
+    )
+
+
+@inlined
+def branch(mode, axis):
+    """Branch of an axis."""
+    if axis == COLUMN:
+        return mode.column
+    if axis == BOLSTER:
+        return mode.bolster
+    if axis == GUIDE:
+        return mode.guide
+    return mode.direction if axis == DIRECTION else 0
+
+
+@inner
+def with_branch(mode, axis, value, p):
+    """The mode with another branch of an axis; the time at rest runs while the column face does not slip."""
+    column, bolster, guide, column_sign, bolster_sign, direction, stop, clock = mode
+    if axis == COLUMN:
+        column = value
+        if not presliding.acts(p):
+            clock = 0 if abs(value) == 1 else 1
+    elif axis == BOLSTER:
+        bolster = value
+    elif axis == GUIDE:
+        guide = value
+    else:
+        direction = value
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+
+
+@inlined
+def with_signs(mode, column_sign, bolster_sign):
+    """The mode with other signs of the normal forces."""
+    column, bolster, guide, _, _, direction, stop, clock = mode
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+
+
+@inlined
+def with_stop(mode, stop):
+    """The mode in contact with another end stop."""
+    column, bolster, guide, column_sign, bolster_sign, direction, _, clock = mode
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+
+
+@inlined
+def with_clock(mode, clock):
+    """The mode in which the time at rest runs, or does not."""
+    column, bolster, guide, column_sign, bolster_sign, direction, stop, _ = mode
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+
+
+@inner
+def slipping(direction, stop, clock, p):
+    """Mode of a set-valued law while z' has the given sign; ``clock`` = 1: about to slip, still at rest."""
+    ratio = p.geometry.bolster_ratio
+    bolster = direction if ratio > 0.0 else -direction
+    if ratio == 0.0:
+        bolster = 0
+    sign = direction if directional_friction.acts(p) else 0
+    return ContactMode(direction, bolster, direction, 1, 1, sign, stop, clock)
+
+
+@inlined
+def side(value, axis, higher):
+    """Branch on the lower (0) or higher (1) side of the jump that holds an axis."""
+    if axis == DIRECTION:
+        return 2 * higher - 1
+    return (0 if value > 0 else -1) + higher
+
+
+@inner
+def next_branch(mode, place, to_jump, p):
+    """Mode after a lower (even) or upper (odd) event of an axis: the next branch, or held at the jump."""
+    axis, upward = place // 2, place % 2
+    now = branch(mode, axis)
+    if abs(now) == HELD:
+        value = side(now, axis, upward)
+    elif axis == DIRECTION:
+        value = HELD if to_jump else -now
+    elif axis == COLUMN and presliding.acts(p):
+        value = -now
+    elif to_jump:
+        value = HELD if now + upward > 0 else -HELD
+    else:
+        value = now + 2 * upward - 1
+    return with_branch(mode, axis, value, p)

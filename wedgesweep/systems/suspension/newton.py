@@ -1,0 +1,251 @@
+"""Newton's equations of the wedge suspension: accelerations and normal forces on a smooth piece.
+
+Half model of one bolster, two mirror-image wedges and a driven side frame, derived in docs/physics.md.
+State: displacement x = z - z_rest of the bolster against the side frame (z = y - u, up positive, z_rest
+its frictionless equilibrium) and its rate. With w the wedge's displacement against the side frame, w = A_t
+t_c + Q cos g n_c, and both contacts closed (Q: displacement of a column that yields, else 0):
+
+    A_t = r z + Q cos g cot(a+g)         w_z = r cos g z + Q cos g cos a/sin(a+g)
+    v_c = r z' + Q' cos a/sin(a+g)       v_b = q z' + Q' cos g/sin(a+g)
+
+Unknown are z'', Q'', the side frame's own acceleration A and both normal forces; the accelerations are
+linear in the forces, which leaves two equations. Friction T = mu |N| is written as T = tau + m N: m alone
+where the coefficient does not depend on the load, a tangent where it does.
+"""
+
+from math import nan
+from typing import NamedTuple
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import (
+    column_compliance,
+    end_stop,
+    fixture_resonance,
+    guide_friction,
+    hooks,
+    load_dependent_friction,
+)
+from wedgesweep.excitation import acceleration
+from wedgesweep.systems.suspension.faces import coefficients
+from wedgesweep.systems.suspension.modes import VELOCITY, X, with_signs
+
+# Normal forces below this share of the loads count as zero when the consistent signs are sought.
+ROUNDING = 1e-11
+# Newton's method for coefficients that depend on the load: most iterations, and the relative change of each
+# normal force at which it ends, as the error is squared in each iteration. Near lift-off one force is no more
+# than rounding error: then the changes together must be below the last number times both forces.
+LOAD_ITERATIONS, LAST_CHANGE, LIFT_OFF_CHANGE = 40, 1e-7, 1e-11
+
+
+class Forces(NamedTuple):
+    """What follows from a state on one mode: accelerations (m/s^2) and normal forces (N).
+
+    z'' of the bolster, Q'' of a column, d'' of the side frame against its table, and the normal forces
+    on column and bolster face, compression positive.
+    """
+
+    acceleration: float
+    column_acceleration: float
+    frame_acceleration: float
+    column: float
+    bolster: float
+
+
+class Accelerations(NamedTuple):
+    """Accelerations of the effects' own degrees of freedom (m/s^2)."""
+
+    column: float
+    frame: float
+
+
+class Loads(NamedTuple):
+    """Loads (N) without contact forces, and without the inertia of the side frame's acceleration.
+
+    On a wedge tangential and normal to the column, on the bolster, on a column (lateral, outward), on the
+    side frame from its table; ``base`` is the table's acceleration (m/s^2).
+    """
+
+    tangential: float
+    normal: float
+    vertical: float
+    lateral: float
+    frame: float
+    base: float
+
+
+class Coefficients(NamedTuple):
+    """Friction T = tau + mu N of both faces; mu carries the sign of the normal force."""
+
+    column: float
+    bolster: float
+    column_tau: float
+    bolster_tau: float
+
+
+NO_FRICTION = Coefficients(0.0, 0.0, 0.0, 0.0)
+UNDETERMINED = Forces(nan, nan, nan, nan, nan)
+
+
+@inlined
+def _rise(z, y, p):
+    """Rise of a wedge (m), which its spring feels."""
+    rise = p.geometry.column_ratio * p.geometry.cos_column * z
+    if column_compliance.acts(p):
+        rise += p.geometry.lift_ratio * column_compliance.displacement(y, p)
+    return rise
+
+
+@inlined
+def loads(t, y, mode, p):
+    """Loads at a state; see ``Loads``."""
+    s, g = p.suspension, p.geometry
+    z, velocity = g.rest + y[X], y[VELOCITY]
+    wedge = s.wedge_preload - s.wedge_spring * _rise(z, y, p) - s.wedge_mass * s.gravity
+    bolster = (
+        guide_friction.force(velocity, mode.guide, p) - s.bolster_spring * z - s.bolster_mass * s.gravity
+    )
+    bolster += hooks.force_on_mass(z, velocity, y, p) + end_stop.force(y[X], mode.stop, p)
+    return Loads(
+        wedge * g.cos_column,
+        wedge * g.sin_column,
+        bolster,
+        column_compliance.force(y, p),
+        fixture_resonance.force(y, p),
+        acceleration(t, p),
+    )
+
+
+@inlined
+def reactions(load, mu, p):
+    """Forces, and the determinant of their equations, which is negative without friction."""
+    s, g = p.suspension, p.geometry
+    lift = g.sin_wedge + mu.bolster * g.cos_wedge
+    vertical = load.vertical + 2.0 * mu.bolster_tau * g.cos_wedge
+    inertia = s.wedge_mass * g.column_ratio / s.bolster_mass
+    a11, a12 = mu.column, g.sin_included + mu.bolster * g.cos_included + 2.0 * lift * inertia
+    a21, a22 = 1.0, mu.bolster * g.sin_included - g.cos_included
+    tangential = load.tangential - mu.column_tau - mu.bolster_tau * g.cos_included - inertia * vertical
+    normal = load.normal - mu.bolster_tau * g.sin_included
+
+    outward, outward_per_force = 0.0, 0.0
+    if column_compliance.acts(p):
+        compliance = column_compliance.compliance(p)
+        outward_per_force = compliance * (g.cos_column - mu.column * g.sin_column)
+        outward = compliance * (load.lateral - mu.column_tau * g.sin_column)
+        inertia_along = s.wedge_mass * g.cos_column * g.cos_included / g.sin_included
+        inertia_into = s.wedge_mass * g.cos_column
+        a11 += inertia_along * outward_per_force
+        a21 += inertia_into * outward_per_force
+        tangential -= inertia_along * outward
+        normal -= inertia_into * outward
+
+    base, base_per_column, base_per_bolster = load.base, 0.0, 0.0
+    along_base = s.wedge_mass * (g.cos_column - g.column_ratio)
+    into_base = s.wedge_mass * g.sin_column
+    if fixture_resonance.acts(p):
+        carried = (s.bolster_mass + 2.0 * s.wedge_mass * g.column_ratio * g.cos_column) / s.bolster_mass
+        mass = s.side_frame_mass + 2.0 * s.wedge_mass * (1.0 - g.column_ratio * g.cos_column)
+        aside = 2.0 * s.wedge_mass * g.lift_ratio
+        base = (load.frame - carried * vertical - aside * outward) / mass
+        base_per_bolster = -2.0 * carried * lift / mass
+        base_per_column = -aside * outward_per_force / mass
+        a11 += along_base * base_per_column
+        a12 += along_base * base_per_bolster
+        a21 += into_base * base_per_column
+        a22 += into_base * base_per_bolster
+    tangential -= along_base * base
+    normal -= into_base * base
+
+    determinant = a11 * a22 - a12 * a21
+    inverse = 1.0 / determinant
+    bolster = (a11 * normal - a21 * tangential) * inverse
+    column = (tangential * a22 - a12 * normal) * inverse
+    frame = base
+    if fixture_resonance.acts(p):
+        frame += base_per_column * column + base_per_bolster * bolster
+    rising = (vertical + 2.0 * bolster * lift) / s.bolster_mass - frame
+    return Forces(
+        rising, outward + outward_per_force * column, frame - load.base, column, bolster
+    ), determinant
+
+
+@inner
+def _loaded_reactions(load, column_mu, bolster_mu, p):
+    """``reactions`` with coefficients that depend on the load, by Newton's method.
+
+    The coefficients carry the signs of their normal forces. NaN, and a determinant of 0, where it does not
+    converge.
+    """
+    now, determinant = reactions(load, NO_FRICTION, p)
+    exponent = load_dependent_friction.exponent(p)
+    for _ in range(LOAD_ITERATIONS):
+        column = load_dependent_friction.coefficient(column_mu, now.column, p)
+        bolster = load_dependent_friction.coefficient(bolster_mu, now.bolster, p)
+        tangent = Coefficients(
+            (1.0 - exponent) * column,
+            (1.0 - exponent) * bolster,
+            exponent * column * now.column,
+            exponent * bolster * now.bolster,
+        )
+        following, determinant = reactions(load, tangent, p)
+        of_column, of_bolster = abs(following.column - now.column), abs(following.bolster - now.bolster)
+        now = following
+        if of_column <= LAST_CHANGE * abs(now.column) and of_bolster <= LAST_CHANGE * abs(now.bolster):
+            return now, determinant
+    if of_column + of_bolster <= LIFT_OFF_CHANGE * (abs(now.column) + abs(now.bolster)):
+        return now, determinant
+    return UNDETERMINED, 0.0
+
+
+@inlined
+def _reactions_for_signs(load, column_mu, bolster_mu, mode, p):
+    """Forces, and the determinant, for the mode's signs of the normal forces."""
+    column_mu, bolster_mu = mode.column_sign * column_mu, mode.bolster_sign * bolster_mu
+    if load_dependent_friction.acts(p):
+        return _loaded_reactions(load, column_mu, bolster_mu, p)
+    return reactions(load, Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)
+
+
+@inlined
+def forces(t, y, mode, p):
+    """Forces on the given mode."""
+    column_mu, bolster_mu = coefficients(t, y, mode, p)
+    return _reactions_for_signs(loads(t, y, mode, p), column_mu, bolster_mu, mode, p)[0]
+
+
+@inner
+def solve_for_signs(t, y, mode, p):
+    """The mode with the signs of its normal forces, these forces, and whether they are unique.
+
+    Friction acts with |N|, so each combination of signs is its own linear problem; one that returns the
+    signs it assumed is a solution. None, or more than one, means that the wedge locks; and a solution
+    whose determinant has another sign than without friction is never the only one.
+    """
+    column_mu, bolster_mu = coefficients(t, y, mode, p)
+    load = loads(t, y, mode, p)
+    zero = ROUNDING * (abs(load.tangential) + abs(load.normal) + abs(load.vertical))
+    found, result, certain = mode, UNDETERMINED, 0
+    possible = proper = False
+    for column_sign in (1, -1):
+        for bolster_sign in (1, -1):
+            trial = with_signs(mode, column_sign, bolster_sign)
+            now, determinant = _reactions_for_signs(load, column_mu, bolster_mu, trial, p)
+            smallest = min(column_sign * now.column, bolster_sign * now.bolster)
+            if smallest > zero:
+                if p.geometry.always_well_posed:
+                    return trial, now, True
+                certain += 1
+            if smallest >= -zero and (smallest > zero or not possible):
+                found, result, possible = trial, now, True
+                proper = determinant < 0.0
+    return found, result, possible and proper and certain <= 1
+
+
+@inner
+def at_rest(t, y, mode, p):
+    """Forces while set-valued friction holds the bolster: the side frame carries the whole suspension."""
+    frame = 0.0
+    if fixture_resonance.acts(p):
+        s, load = p.suspension, loads(t, y, mode, p)
+        frame = load.frame / (s.side_frame_mass + s.bolster_mass + 2.0 * s.wedge_mass) - load.base
+    return Forces(0.0, 0.0, frame, nan, nan)

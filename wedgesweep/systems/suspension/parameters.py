@@ -1,0 +1,253 @@
+"""Everything that one case of the suspension depends on, as one value: a record in SI units.
+
+The record is a one-element structured array with a part for each subject (``suspension``, ``friction``,
+``input``, one for each effect, and ``geometry`` for what follows from them). Python always holds the full
+record; compiled code gets the smallest sufficient kit of parts (``compact``), so that effects which are
+off cost nothing.
+"""
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from math import cos, isfinite, sin
+from types import MappingProxyType
+
+import numpy as np
+
+from wedgesweep import effects as known
+from wedgesweep import friction as laws
+from wedgesweep.friction.quantities import FRICTION, SYMBOLS
+from wedgesweep.quantity import Quantity
+from wedgesweep.systems.suspension.equilibrium import determinant, equilibrium
+
+SUSPENSION = (
+    Quantity("bolster_mass_kg", 0.70, "mass of the bolster, M_b", above=0.0),
+    Quantity("wedge_mass_kg", 0.17, "mass of one wedge, M_w", minimum=0.0),
+    Quantity("side_frame_mass_kg", 0.46, "mass of the side frame, M_sf", above=0.0),
+    Quantity("bolster_spring_N_per_mm", 5.10, "stiffness under the bolster, k_b", above=0.0),
+    Quantity("wedge_spring_N_per_mm", 2.55, "stiffness under one wedge, k_w", minimum=0.0),
+    Quantity("wedge_angle_deg", 37.5, "wedge angle from the vertical, alpha", above=0.0, below=90.0),
+    Quantity(
+        "column_angle_deg",
+        4.0,
+        "column angle, gamma; positive: the faces close upward",
+        above=-45.0,
+        below=45.0,
+    ),
+    Quantity("wedge_preload_N", 0.0, "force of each wedge spring at z = 0"),
+    Quantity("gravity_m_per_s2", 9.80665, "acceleration of gravity", minimum=0.0),
+)
+
+# Numbers that follow from the others.
+GEOMETRY = (
+    "column_ratio",  # r: wedge travel along the column per z
+    "bolster_ratio",  # q: slip on the bolster face per z'
+    "sin_wedge",
+    "cos_wedge",
+    "sin_column",
+    "cos_column",
+    "sin_included",  # of alpha + gamma
+    "cos_included",
+    "column_slip_ratio",  # slip on the column face per Q
+    "bolster_slip_ratio",  # slip on the bolster face per Q
+    "lift_ratio",  # rise of a wedge per Q
+    "rest",  # z of the frictionless equilibrium (m)
+)
+
+# Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects.
+BASE, OWN, ALL = 0, 1, 2
+# Coulomb friction that is regularised reaches mu_d at this velocity (m/s).
+REGULARISED_VELOCITY = 1e-6
+
+
+@cache
+def _kits(names: tuple[str, ...]) -> tuple[np.dtype, np.dtype, np.dtype]:
+    """Record types by kit. No type is the beginning of another: numba would mistake one for the other."""
+    simple = [name for name in names if not known.EFFECTS[name].extends]
+    own = [name for name in names if name not in known.NAMES]
+    plain = [name for name in simple if name not in own]
+    return _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], names)
+
+
+def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
+    parts: list[tuple] = marker
+    for name in names:
+        if hasattr(known.REGISTERED[name], "adjust"):
+            continue
+        derived = getattr(known.REGISTERED[name], "DERIVED", ())
+        numbers = [quantity.name for quantity in known.EFFECTS[name].quantities]
+        parts.append((name, [(each, np.float64) for each in (*numbers, *derived)]))
+    coefficients = [(name, np.float64) for name in SYMBOLS.values()]
+    return np.dtype(
+        [
+            *parts,
+            ("friction", [("law", np.int64), ("set_valued", np.int64), *coefficients]),
+            ("input", [("amplitude", np.float64), ("omega", np.float64)]),
+            ("suspension", [(quantity.name, np.float64) for quantity in SUSPENSION]),
+            (
+                "geometry",
+                [
+                    ("kit", np.int64),
+                    ("always_well_posed", np.int64),
+                    *((name, np.float64) for name in GEOMETRY),
+                ],
+            ),
+        ]
+    )
+
+
+def record_type() -> np.dtype:
+    """Type of the full record, with all effects that are known now."""
+    return _kits(tuple(known.EFFECTS))[ALL]
+
+
+def record(
+    law: str,
+    amplitude: float,
+    omega: float,
+    suspension: Mapping[str, float] = MappingProxyType({}),
+    friction: Mapping[str, float] = MappingProxyType({}),
+    effects: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
+) -> np.ndarray:
+    """Parameters of one case; what is not given has its default (the paper's Table 1).
+
+    Parameters
+    ----------
+    law : str
+        Name of a friction law.
+    amplitude, omega : float
+        Of the input: m, rad/s.
+    suspension, friction, effects : mapping
+        SI numbers by the names of their quantities.
+
+    Returns
+    -------
+    structured array, shape (1,)
+        Of ``record_type()``.
+    """
+    case = np.zeros(1, record_type())
+    p = case[0]
+    for quantity in SUSPENSION:
+        p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
+    for quantity in FRICTION:
+        value = friction.get(quantity.name, quantity.default * quantity.factor)
+        p["friction"][SYMBOLS[quantity.name]] = value
+    p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
+    p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
+    for name, effect in known.EFFECTS.items():
+        neutral = {each.name: each.neutral * each.factor for each in effect.quantities}
+        _set(p, name, {**neutral, **effects.get(name, {})})
+    p["geometry"]["kit"] = _kit_of(p)
+    if is_regularised(p):
+        _regularise(p)
+    prepare(case)
+    return case
+
+
+def _set(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
+    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
+    module = known.REGISTERED[effect]
+    if hasattr(module, "adjust"):
+        module.adjust(p, **numbers)
+        return
+    for name, value in numbers.items():
+        p[effect][name] = value
+    if hasattr(module, "prepare"):
+        module.prepare(p)
+
+
+def _acting(p: np.void) -> list[str]:
+    """Effects of a record that need mechanics of their own."""
+    return [
+        name
+        for name, effect in known.EFFECTS.items()
+        for quantity in effect.quantities
+        if quantity.name in effect.extends and p[name][quantity.name] != quantity.neutral * quantity.factor
+    ]
+
+
+def _kit_of(p: np.void) -> int:
+    acting = _acting(p)
+    if not acting:
+        return BASE
+    return ALL if any(name in known.NAMES for name in acting) else OWN
+
+
+def is_regularised(p: np.void) -> bool:
+    """Whether effects turn the case's Coulomb law into a steep ramp (over 1e-3 mm/s)."""
+    regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in _acting(p))
+    return regularising and laws.LAWS["coulomb"].SET_VALUED and p["friction"]["law"] == laws.code("coulomb")
+
+
+def _regularise(p: np.void) -> None:
+    """Replace set-valued friction by a ramp up to mu_d, or up to the peak of ``stribeck``."""
+    own = p["friction"]
+    own["set_valued"], own["v_t"] = 0, REGULARISED_VELOCITY
+    if p["stribeck"]["velocity"] == 0.0:
+        own["mu_s"] = own["mu_d"]
+
+
+def prepare(case: np.ndarray) -> None:
+    """Fill in the geometry of a record, shape (1,), in place.
+
+    The equilibrium is NaN where the springs have none (a cubic stiffness far below zero).
+    """
+    p, s = case[0]["geometry"], case[0]["suspension"]
+    included = s["wedge_angle"] + s["column_angle"]
+    p["sin_wedge"], p["cos_wedge"] = sin(s["wedge_angle"]), cos(s["wedge_angle"])
+    p["sin_column"], p["cos_column"] = sin(s["column_angle"]), cos(s["column_angle"])
+    p["sin_included"], p["cos_included"] = sin(included), cos(included)
+    p["column_ratio"] = p["sin_wedge"] / p["sin_included"]
+    p["bolster_ratio"] = -p["sin_column"] / p["sin_included"]
+    p["column_slip_ratio"] = p["cos_wedge"] / p["sin_included"]
+    p["bolster_slip_ratio"] = p["cos_column"] / p["sin_included"]
+    p["lift_ratio"] = p["cos_column"] * p["cos_wedge"] / p["sin_included"]
+    small = compact(case)[0]
+    p["rest"], case[0]["column_compliance"]["rest"] = equilibrium(small)
+    p["always_well_posed"] = _always_well_posed(case[0], small)
+
+
+def _always_well_posed(p: np.void, small: np.void) -> bool:
+    """Whether every load has exactly one pair of normal forces, at any slip velocity.
+
+    Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one if
+    and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They are
+    linear in each coefficient of friction, so that the extreme coefficients decide. Where no bound of these
+    is known the answer is no.
+    """
+    most = list(laws.LAWS.values())[p["friction"]["law"]].bound(p)
+    for name in _acting(p):
+        bound = getattr(known.REGISTERED[name], "bound", None)
+        most = bound(most, p) if bound else most
+    if not isfinite(most):
+        return False
+    corners = ((most, most), (most, -most), (-most, most), (-most, -most))
+    return all(determinant(column, bolster, small) > 0.0 for column, bolster in corners)
+
+
+def compact(rows: np.ndarray) -> np.ndarray:
+    """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
+    kits = _kits(tuple(known.EFFECTS))
+    kind = kits[int(rows["geometry"]["kit"].max(initial=BASE))]
+    if kind == rows.dtype:
+        return rows
+    small = np.zeros(rows.shape, kind)
+    for name in set(kind.names or ()) & set(rows.dtype.names or ()):
+        small[name] = rows[name]
+    return small
+
+
+def has_own_mechanics(rows: np.ndarray) -> np.ndarray:
+    """Whether effects of records, shape (n,), need more than the base model's mechanics."""
+    return rows["geometry"]["kit"] != BASE
+
+
+def driven_mass(rows: np.ndarray) -> np.ndarray:
+    """Mass (kg) that the base acceleration drives, M_b + 2 M_w r cos(gamma), of records of any shape."""
+    s, g = rows["suspension"], rows["geometry"]
+    return s["bolster_mass"] + 2.0 * s["wedge_mass"] * g["column_ratio"] * g["cos_column"]
+
+
+def moving_mass(rows: np.ndarray) -> np.ndarray:
+    """Mass (kg) that moves with z', M_b + 2 M_w r^2, of records of any shape."""
+    s, g = rows["suspension"], rows["geometry"]
+    return s["bolster_mass"] + 2.0 * s["wedge_mass"] * g["column_ratio"] ** 2

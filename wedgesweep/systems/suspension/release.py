@@ -1,0 +1,118 @@
+"""Time of breakaway of the base model from rest under set-valued friction, without integration.
+
+While the bolster sticks only the base moves, so that the event functions are known functions of time. The
+time of breakaway has a closed form while both normal forces stay positive. Elsewhere the event functions
+are sampled, and their minimum is sought between samples where it may be negative.
+"""
+
+from math import asin, ceil, inf, nan, pi, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wedgesweep.compiled import inner
+from wedgesweep.hybrid.search import Bracket, minimum, searched, zero
+from wedgesweep.hybrid.state import LOCKED, NO_EVENT
+from wedgesweep.systems.suspension.events import EVENTS, events
+from wedgesweep.systems.suspension.faces import coefficients
+from wedgesweep.systems.suspension.modes import COLUMN, slipping
+from wedgesweep.systems.suspension.newton import UNDETERMINED, Coefficients, Loads, loads, reactions
+from wedgesweep.systems.suspension.transitions import well_posed
+
+SAMPLES_PER_PERIOD = 64
+# Error of a time, as a share of the interval between samples.
+CLOSE = 1e-13
+DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
+
+
+class _Held(NamedTuple):
+    """A bolster at rest, with room for event functions."""
+
+    y: tuple
+    mode: tuple
+    p: Any
+    out: Any
+
+
+@searched(_Held)
+@inner
+def _lowest(t, held):
+    """Smallest event function at time t."""
+    events(UNDETERMINED, t, held.y, held.mode, held.p, held.out)
+    return held.out.min(), nan
+
+
+@inner
+def _breakaway_input(state, direction, p):
+    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative."""
+    mode = slipping(direction, 0, 1, p)
+    column_mu, bolster_mu = coefficients(0.0, state.y, mode, p)
+    mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
+    load = loads(0.0, state.y, mode, p)
+    at_rest = reactions(load, mu, p)[0].acceleration
+    inertia = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0].acceleration
+    limit = -at_rest / inertia
+    there = reactions(Loads(load.tangential, load.normal, load.vertical, 0.0, 0.0, limit), mu, p)[0]
+    return limit if min(there.column, there.bolster) > 0.0 else nan
+
+
+@inner
+def release(state, stop, p):
+    """Time at which a stuck bolster breaks away, and the event.
+
+    The event is NO_EVENT if nothing happens before ``stop``, and LOCKED where breakaway is not unique. The
+    bolster sticks between two base accelerations. With positive normal forces these are known, and so are
+    the phases at which a harmonic base motion reaches them.
+    """
+    forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
+    if not (p.geometry.always_well_posed and forward < backward):
+        return scanned_release(state, stop, p)
+    omega = p.input.omega
+    most = p.input.amplitude * omega**2
+    upper, lower = -forward / most, -backward / most  # of sin(omega t)
+    phase = omega * state.t
+    if sin(phase) > upper:
+        return state.t, UP
+    if sin(phase) < lower:
+        return state.t, DOWN
+    turn = 2.0 * pi
+    rising = falling = inf
+    if upper < 1.0:
+        rising = asin(upper)
+        rising += turn * ceil((phase - rising) / turn)
+    if lower > -1.0:
+        falling = pi - asin(lower)
+        falling += turn * ceil((phase - falling) / turn)
+    moment = min(rising, falling) / omega
+    if moment >= stop:
+        return stop, NO_EVENT
+    return moment, UP if rising < falling else DOWN
+
+
+@inner
+def scanned_release(state, stop, p):
+    """As ``release``, from samples: for any base motion and for normal forces of either sign."""
+    out = np.empty(EVENTS)
+    context = _Held(state.y, state.mode, p, out)
+    step = 2.0 * np.pi / p.input.omega / SAMPLES_PER_PERIOD
+    earlier, held = state.t, state.t
+    before, now = inf, _lowest(held, context)[0]
+    while held < stop:
+        if not well_posed(held, state.y, state.mode, p):
+            return held, LOCKED
+        following = min(held + step, stop)
+        after = _lowest(following, context)[0]
+        if after > 0.0 and before > now and now < after:
+            lowest = minimum(context, earlier, following, CLOSE * step)
+            value = _lowest(lowest, context)[0]
+            if value < 0.0:
+                held, now, following, after = earlier, before, lowest, value
+        if after < 0.0:
+            moment = held
+            if now > 0.0:
+                moment = zero(context, Bracket(held, now, following, after), CLOSE * step)
+            _lowest(moment, context)
+            return moment, int(np.argmin(out))
+        earlier, before = held, now
+        held, now = following, after
+    return stop, NO_EVENT

@@ -1,0 +1,209 @@
+"""The mode in which a run begins, and the transition at each event."""
+
+from wedgesweep import friction
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import ageing, directional_friction, end_stop, hooks, presliding
+from wedgesweep.excitation import acceleration
+from wedgesweep.hybrid.vectors import replaced, weighted
+from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, STOP
+from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
+from wedgesweep.systems.suspension.filippov import contact_forces, resolve_mode
+from wedgesweep.systems.suspension.modes import (
+    BOLSTER,
+    COLUMN,
+    DIRECTION,
+    GUIDE,
+    HELD,
+    VELOCITY,
+    ContactMode,
+    X,
+    branch,
+    next_branch,
+    slipping,
+    stuck,
+    with_branch,
+    with_clock,
+    with_stop,
+)
+from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, at_rest, solve_for_signs
+from wedgesweep.systems.suspension.set_valued import (
+    LOOK_AHEAD,
+    breakaway_direction,
+    mode_at_zero_velocity,
+)
+
+# Short steps after which the input has moved a bolster at rest, also through the effects' own states.
+STEPS_FROM_REST = 4
+
+
+@inlined
+def rate(t, y, mode, p):
+    """dy/dt, and the forces."""
+    now = at_rest(t, y, mode, p) if stuck(mode, p) else contact_forces(t, y, mode, p)
+    others = Accelerations(now.column_acceleration, now.frame_acceleration)
+    own = hooks.rates(column_slip(y, p), others, mode, y, p)
+    return (y[VELOCITY], now.acceleration) + own, now  # noqa: RUF005
+
+
+@inlined
+def _without_age(y, mode, p):
+    """The state with the time at rest set to zero where it does not run."""
+    return y if mode.clock else ageing.rejuvenated(y, p)
+
+
+@inner
+def _velocity_soon(t, y, mode, p):
+    """Rate of z a moment after rest.
+
+    At the start of a run forces balance to within rounding errors, and the input may have to pass through
+    other states before it moves the bolster.
+    """
+    moment = LOOK_AHEAD / p.input.omega
+    for i in range(STEPS_FROM_REST):
+        y = weighted(y, moment, (1.0,), (rate(t + (i + 0.5) * moment, y, mode, p)[0],))
+    return y[VELOCITY]
+
+
+@inner
+def _with_direction(t, y, mode, p):
+    """The mode with the direction of z', and whether it is unique."""
+    if not directional_friction.acts(p):
+        found, _, unique = solve_for_signs(t, y, mode, p)
+        return found, unique
+    upward, _, unique = solve_for_signs(t, y, with_branch(mode, DIRECTION, 1, p), p)
+    if y[VELOCITY] > 0.0 or (y[VELOCITY] == 0.0 and _velocity_soon(t, y, upward, p) > 0.0):
+        return upward, unique
+    downward, _, unique = solve_for_signs(t, y, with_branch(mode, DIRECTION, -1, p), p)
+    if y[VELOCITY] < 0.0 or _velocity_soon(t, y, downward, p) < 0.0:
+        return downward, unique
+    found, _, unique = resolve_mode(t, y, with_branch(mode, DIRECTION, HELD, p), p)
+    return found, unique
+
+
+@inlined
+def _stop_at(x, p):
+    """End stop in contact."""
+    if not end_stop.acts(p):
+        return 0
+    clearance = end_stop.clearance(p)
+    if x > clearance or (clearance == 0.0 and x >= 0.0):
+        return 1
+    return -1 if x < -clearance else 0
+
+
+@inner
+def initial_mode(t, y, p):
+    """Mode at the start of a run, and whether it is unique."""
+    stop = _stop_at(y[X], p)
+    if p.friction.set_valued:
+        if y[VELOCITY] == 0.0:
+            return mode_at_zero_velocity(t, y, stop, p)
+        found, _, unique = solve_for_signs(t, y, slipping(1 if y[VELOCITY] > 0.0 else -1, stop, 0, p), p)
+        return found, unique
+    column = friction.branch_at(slip_measure(COLUMN, t, y, p), p)
+    clock = 1 if column == 0 else 0
+    if presliding.acts(p):
+        clock = 1 if abs(column_slip(y, p)) <= p.friction.v_t else 0
+        column = 1 if column_slip(y, p) >= 0.0 else -1
+    bolster = friction.branch_at(slip_measure(BOLSTER, t, y, p), p)
+    guide = friction.branch_at(y[VELOCITY], p)
+    return _with_direction(t, y, ContactMode(column, bolster, guide, 1, 1, 0, stop, clock), p)
+
+
+@inner
+def well_posed(t, y, mode, p):
+    """Whether exactly one pair of normal forces is possible; if not, the wedge locks."""
+    if p.geometry.always_well_posed:
+        return True
+    if stuck(mode, p):
+        return mode_at_zero_velocity(t, y, mode.stop, p)[1]
+    return resolve_mode(t, y, mode, p)[2]
+
+
+@inner
+def _after_zero_force(t, y, mode, p):
+    """Mode after a normal force has become zero, and whether it is unique.
+
+    Both forces may vanish at once, and a force may only touch zero; its sign at zero is noise. So the signs
+    are those a moment later, or further on while a force is still too small to have a sign.
+    """
+    ahead = LOOK_AHEAD / p.input.omega
+    slope = rate(t, y, mode, p)[0]
+    found, certain = mode, True
+    for _ in range(4):
+        later = weighted(y, ahead, (1.0,), (slope,))
+        later = replaced(later, X, later[X] + 0.5 * ahead * ahead * slope[VELOCITY])
+        found, now, certain = solve_for_signs(t + ahead, later, mode, p)
+        weight = p.suspension.bolster_mass * (p.suspension.gravity + abs(acceleration(t + ahead, p)))
+        if min(abs(now.column), abs(now.bolster)) > ROUNDING * weight:
+            break
+        ahead *= 30.0
+    return found, certain
+
+
+@inner
+def _continuous(axis, y, p):
+    """Whether friction is continuous where one branch of an axis meets the next."""
+    if axis >= GUIDE:
+        return axis == GUIDE
+    if axis == COLUMN and presliding.acts(p):
+        return True
+    jump = friction.static(0, y, p) - friction.sliding(p.friction.v_t, p)
+    return not ageing.acts(p) and abs(jump) <= ROUNDING * p.friction.mu_d
+
+
+@inner
+def _cross_discontinuity(t, y, mode, place, p):
+    """Mode on the next branch, or held at the jump where the next branch points back to it."""
+    axis = place // 2
+    was_held = abs(branch(mode, axis)) == HELD
+    across, now, certain = resolve_mode(t, y, next_branch(mode, place, False, p), p)
+    onward = slip_rate(axis, t, y, now.acceleration, now.column_acceleration, p)
+    if was_held or _continuous(axis, y, p) or (onward if place % 2 else -onward) >= 0.0:
+        return across, certain
+    found, _, certain = resolve_mode(t, y, next_branch(mode, place, True, p), p)
+    return found, certain
+
+
+@inlined
+def _next_stop(mode, place, p):
+    """End stop in contact after one has been reached or left."""
+    step = 2 * (place % 2) - 1
+    following = mode.stop + step
+    return step if following == 0 and end_stop.clearance(p) == 0.0 else following
+
+
+@inner
+def _transition(t, y, mode, place, p):
+    if place in (COLUMN_NORMAL, BOLSTER_NORMAL):
+        found, certain = _after_zero_force(t, y, mode, p)
+        return y, found, certain
+    if place >= STOP:
+        if place == CLOCK:
+            mode = with_clock(mode, 1 - mode.clock)
+        else:
+            mode = with_stop(mode, _next_stop(mode, place, p))
+        found, _, certain = resolve_mode(t, y, mode, p)
+        return y, found, certain
+    if not p.friction.set_valued:
+        found, certain = _cross_discontinuity(t, y, mode, place, p)
+        return y, found, certain
+    y = replaced(y, VELOCITY, 0.0)
+    if not stuck(mode, p):
+        y = ageing.rejuvenated(y, p)
+        found, certain = mode_at_zero_velocity(t, y, mode.stop, p)
+        return y, found, certain
+    direction = breakaway_direction(t, y, 1 if place == 2 * COLUMN + 1 else -1, mode.stop, p)
+    found, _, certain = solve_for_signs(t, y, slipping(direction, mode.stop, 0, p), p)
+    return y, found, certain
+
+
+@inner
+def transition(t, y, mode, place, p):
+    """State and mode after an event, and whether they are unique (if not: locked).
+
+    The state changes where the event changes it: set-valued friction stops the bolster, slip ends the time
+    at rest.
+    """
+    y, found, certain = _transition(t, y, mode, place, p)
+    return _without_age(y, found, p), found, certain
