@@ -1,20 +1,66 @@
 """The examples of docs/extending.md, taken from the page and run."""
 
+import json
+import os
 import re
+import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 from tests import fixture_dataset
 from wedgesweep import figures
+from wedgesweep.compiled import CACHE_DIR
 from wedgesweep.figures import catalogue
 
 PAGE = Path(__file__).parents[1] / "docs" / "extending.md"
+REPOSITORY = PAGE.parents[1]
+
+# A small law and effect through the command line, in a process that has registered them.
+SWEEP = """
+[effects.maxwell]
+stiffness_N_per_mm = 3.0
+damping_N_s_per_m = 30.0
+
+[sweep]
+friction_law = ["fading", "coulomb"]
+frequency_hz = 14.0
+amplitude_mm = 1.0
+
+[solver]
+rtol = 1e-8
+settle_periods = 40
+kept_periods = 2
+keep_waveforms = false
+"""
+RUN = """
+import sys
+
+import fading
+import maxwell
+
+from wedgesweep import effects, friction
+
+friction.register("fading", fading)
+effects.register(maxwell)
+
+from wedgesweep.cli import cli
+
+cli(sys.argv[1:])
+"""
+ENERGIES = """
+import json
+
+names = ("lowest", "highest", "time", "stuck_time", "dissipated", "supplied")
+print(json.dumps([{name: float(run.sums[0][name]) for name in names} for run in runs]))
+"""
 
 
 def example(file):
-    """Code of the page's example for a file of the package."""
+    """Code of the page's example for a file."""
     block = re.search(rf"```python\n# {re.escape(file)}\n(.*?)```", PAGE.read_text(), re.DOTALL)
     assert block, file
     return block[1]
@@ -30,6 +76,62 @@ def package(tmp_path, monkeypatch):
     yield "extension", folder
     for name in [name for name in sys.modules if name.split(".")[0] == "extension"]:
         del sys.modules[name]
+
+
+@pytest.fixture
+def python(tmp_path):
+    """Run code beside examples of the page, in a process of its own: what it registers ends with it.
+
+    Compiled code is kept in a folder for this state of the examples.
+    """
+
+    def run(code, examples, *arguments):
+        texts = {file: example(file) for file in examples}
+        for file, text in texts.items():
+            (tmp_path / file).write_text(text)
+        digest = sha256("".join([code, *texts.values()]).encode()).hexdigest()[:16]
+        variables = {
+            "PYTHONPATH": os.pathsep.join([str(REPOSITORY), str(tmp_path)]),
+            "NUMBA_CACHE_DIR": str(CACHE_DIR.parent / f"extending-{digest}"),
+        }
+        done = subprocess.run(
+            [sys.executable, "-c", code, *arguments],
+            cwd=tmp_path,
+            env={**os.environ, **variables},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr + done.stdout
+        return done.stdout
+
+    return run
+
+
+def test_law_and_effect(python, tmp_path):
+    (tmp_path / "sweep.toml").write_text(SWEEP)
+    found = {}
+    for solver in ("event-driven", "radau"):
+        out = tmp_path / f"{solver}.nc"
+        options = ("-o", str(out), "--solver", solver, "--n-jobs", "1")
+        python(RUN, ("fading.py", "maxwell.py"), "run", "sweep.toml", *options)
+        found[solver] = xr.load_dataset(out)
+    for ds in found.values():
+        assert ds["friction_law"].values.tolist() == ["fading", "coulomb"]
+        assert (ds["status"] == 0).all()
+        assert ds["supplied_energy"].values == pytest.approx(ds["dissipated_energy"].values, rel=1e-5)
+    for name in ("amplitude_ratio", "dissipated_energy", "stick_fraction"):
+        one, other = (ds[name].values for ds in found.values())
+        assert one == pytest.approx(other, rel=1e-5), name
+
+
+def test_system(python):
+    code = example("run_two_masses.py") + ENERGIES
+    runs = json.loads(python(code, ("two_masses.py",)).splitlines()[-1])
+    for run in runs:
+        assert run["supplied"] == pytest.approx(run["dissipated"], rel=1e-6)
+        assert 0.0 < run["stuck_time"] < run["time"]
+    assert runs[0] == pytest.approx(runs[1], rel=1e-6)
 
 
 def test_figure(package, monkeypatch):

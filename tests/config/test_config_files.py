@@ -10,7 +10,7 @@ import pytest
 
 from wedgesweep import config
 from wedgesweep.config import Case
-from wedgesweep.config.declarations import ROOT
+from wedgesweep.config.declarations import root
 from wedgesweep.effects import EFFECTS
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.systems.suspension.parameters import SUSPENSION
@@ -133,7 +133,7 @@ def test_schema_accepts_shipped_configs_as_written_and_resolved(path):
 )
 def test_schema_and_parser_agree(document, valid):
     found: list[str] = []
-    ROOT.read(document, "", found)
+    root().read(document, "", found)
     assert (not found) == valid
     assert accepted(document) == valid
 

@@ -253,10 +253,10 @@ def parse(text: str, source: str = "<config>") -> Config:
 
 def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
-    from wedgesweep.config.declarations import ROOT
+    from wedgesweep.config.declarations import root
 
     problems: list[str] = []
-    document = ROOT.read(given, "", problems)
+    document = root().read(given, "", problems)
     problems += contradictions(document)
     if problems:
         raise ConfigError([f"{source}: {problem}" for problem in problems])
@@ -278,17 +278,17 @@ def _require_rest(found: Config, source: str) -> None:
 
 def schema() -> dict[str, Any]:
     """JSON schema of a config (draft 2020-12), for editors."""
-    from wedgesweep.config.declarations import ROOT
+    from wedgesweep.config.declarations import root
 
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **ROOT.schema()}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **root().schema()}
 
 
 def template() -> str:
     """A config with every key, commented."""
     from wedgesweep.config import commented
-    from wedgesweep.config.declarations import ROOT
+    from wedgesweep.config.declarations import root
 
-    return commented.template(ROOT)
+    return commented.template(root())
 
 
 def _si(quantities: Iterable["Quantity"], given: Mapping[str, float]) -> dict[str, float]:

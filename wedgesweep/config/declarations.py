@@ -8,6 +8,7 @@ from wedgesweep.config.series import Series, Several
 from wedgesweep.config.tables import GridOrList, Table, TableList, table
 from wedgesweep.effects import EFFECTS
 from wedgesweep.effects.base import Effect
+from wedgesweep.friction import LAWS
 from wedgesweep.friction.names import LAW_NAMES
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
@@ -18,7 +19,8 @@ BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "input amplitude a of the side frame", above=0.0)
 OMEGA_N = Quantity("omega_n_rad_per_s", nan, "omega_n that beta refers to; default: sqrt(k_b/M_b)", above=0.0)
-LAW = Choice(key="friction_law", meaning="friction law", choices=LAW_NAMES, example=LAW_NAMES[0])
+# The laws are looked up when a config is read: one may be registered until then.
+LAW = Choice(key="friction_law", meaning="friction law", choices=LAWS.keys(), example=LAW_NAMES[0])
 
 
 def _series(quantity: Quantity, example: object) -> Series:
@@ -139,23 +141,26 @@ SOLVER = table(
     default={},
 )
 
-ROOT = table(
-    "",
-    "Config of wedgesweep",
-    Text(key="title", meaning="title of the sweep", default="wedge suspension"),
-    table(
-        "suspension",
-        "the suspension; defaults: Table 1 of the paper",
-        *map(Number.of, SUSPENSION),
-        default={},
-    ),
-    table("friction", "friction on both faces of each wedge", *map(Number.of, FRICTION), default={}),
-    table(
-        "effects",
-        "effects that the base model leaves out; off unless their table is present",
-        *map(_effect, EFFECTS.values()),
-        default={},
-    ),
-    GridOrList(key="sweep", meaning="the cases", grid=GRID, listed=LISTED),
-    SOLVER,
-)
+
+def root() -> Table:
+    """The whole config, with the effects that are registered by now."""
+    return table(
+        "",
+        "Config of wedgesweep",
+        Text(key="title", meaning="title of the sweep", default="wedge suspension"),
+        table(
+            "suspension",
+            "the suspension; defaults: Table 1 of the paper",
+            *map(Number.of, SUSPENSION),
+            default={},
+        ),
+        table("friction", "friction on both faces of each wedge", *map(Number.of, FRICTION), default={}),
+        table(
+            "effects",
+            "effects that the base model leaves out; off unless their table is present",
+            *map(_effect, EFFECTS.values()),
+            default={},
+        ),
+        GridOrList(key="sweep", meaning="the cases", grid=GRID, listed=LISTED),
+        SOLVER,
+    )

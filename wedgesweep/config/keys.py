@@ -7,7 +7,7 @@ the TOML path, the fault and a valid alternative to ``problems``, and returns No
 
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import isfinite
@@ -109,10 +109,10 @@ class Flag(Key):
 class Choice(Key):
     """One name out of a list."""
 
-    choices: tuple[str, ...]
+    choices: Collection[str]
 
     def read(self, value: Any, path: str, problems: list[str]) -> str | None:
-        if value in self.choices:
+        if isinstance(value, str) and value in self.choices:
             return value
         problems.append(f"{path}: unknown name {show(value)}; {hint(str(value), self.choices)}")
         return None

@@ -1,14 +1,13 @@
 """The extended model: equations and parameters of what was added to the base model."""
 
-from importlib import import_module
-from importlib.util import find_spec
 from inspect import cleandoc
+from types import ModuleType
 from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.effects import EFFECTS
-from wedgesweep.friction.names import LAW_NAMES
+from wedgesweep.effects import EFFECTS, REGISTERED
+from wedgesweep.friction import LAWS
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 
@@ -44,7 +43,7 @@ def _introduction(result: DiagnosisResult) -> list[Markup]:
 
 def _effect(result: DiagnosisResult, effect: str) -> Markup:
     rows = [_row(*each) for each in _parameters(result, effect)]
-    equation = explained(f"wedgesweep.effects.{effect}")
+    equation = explained(REGISTERED.get(effect))
     return html.join(
         [
             html.element("h3", f"{effect}: {phrases.meaning(effect)}"),
@@ -55,9 +54,9 @@ def _effect(result: DiagnosisResult, effect: str) -> Markup:
     )
 
 
-def explained(module: str) -> str:
+def explained(module: ModuleType | None) -> str:
     """The docstring of a module, which holds the equation of an effect or a law; empty for an unknown one."""
-    return cleandoc(import_module(module).__doc__ or "") if find_spec(module) else ""
+    return cleandoc(module.__doc__ or "") if module else ""
 
 
 def _place(result: DiagnosisResult, effect: str) -> str:
@@ -98,6 +97,6 @@ def _uncertain(result: DiagnosisResult) -> Markup:
 
 
 def _law(law: str) -> Markup:
-    if law not in LAW_NAMES:
+    if law not in LAWS:
         return html.paragraph("This version does not know this law.")
-    return html.element("pre", explained(f"wedgesweep.friction.{law.replace('-', '_')}"))
+    return html.element("pre", explained(LAWS[law]))

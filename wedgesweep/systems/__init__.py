@@ -6,12 +6,18 @@ import numpy as np
 
 from wedgesweep.effects import states
 from wedgesweep.systems.suspension import hybrid  # noqa: F401
-from wedgesweep.systems.suspension.parameters import compact, record_type
+from wedgesweep.systems.suspension import parameters as suspension
 
 
 def state_count() -> int:
     """Number of states of the largest records."""
-    return len(states.kinds(record_type().fields or {}))
+    return len(states.kinds(suspension.record_type().fields or {}))
+
+
+def compact(parameters: np.ndarray) -> np.ndarray:
+    """Records, shape (n,), as compiled code gets them: the suspension's without what they do not need."""
+    own = "suspension" in (parameters.dtype.names or ())
+    return suspension.compact(parameters) if own else parameters
 
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
