@@ -141,10 +141,10 @@ def _part(jacobian, moves):
 @inner
 def _stable_and_regular(jacobian, moves):
     """Whether J is known, the response stable by it, and its position determined."""
+    if not np.isfinite(jacobian).all():
+        return False
     part = _part(jacobian, moves)
     n = part.shape[0]
-    if not np.isfinite(part).all():
-        return False
     margin = np.linalg.det(np.eye(n) - part)
     if n == 1:
         return abs(part[0, 0]) < UNSTABLE and margin >= SINGULAR
