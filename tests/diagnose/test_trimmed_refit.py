@@ -16,7 +16,7 @@ def refined(data, effects, x):
 
 
 def test_around_a_test_next_to_breakaway():
-    held_up = refined(next_to_breakaway(), ("stribeck", "viscous_damping"), (6e-3, -0.43, 0.0))
+    held_up = refined(next_to_breakaway(), ("stribeck", "viscous_damping"), (6e-3, -0.6, 0.0))
     assert held_up.p < 1e-9
     found = trimmed_refit.refit_without_influential_tests(held_up)
     assert found.p > 0.01
@@ -29,7 +29,7 @@ def test_around_a_test_that_has_two_responses():
     amplitude = 1e-3 * np.array([0.77024, 2.89193, 0.78434, 0.22942, 0.10986, 0.04951])
     tones = {"second": 3.07453e-4, "second_phase": -1.8564, "third": 5.56403e-4, "third_phase": 2.79555}
     data = drawn({"input_distortion": tones}, bench=(hertz, amplitude), std=0.007, level=0.01)
-    held_up = refined(data, ("input_distortion",), np.zeros(4))
+    held_up = refined(data, ("input_distortion",), np.full(4, 1e-4))
     assert (held_up.evaluation.point.warm.period == 1).all()
     assert held_up.p < 1e-9
     found = trimmed_refit.refit_without_influential_tests(held_up)
