@@ -49,7 +49,9 @@ effects.register(maxwell)
 
 from wedgesweep.cli import cli
 
-cli(sys.argv[1:])
+for solver in sys.argv[1:]:
+    options = ("-o", f"{solver}.nc", "--solver", solver, "--n-jobs", "1")
+    assert not cli(["run", "sweep.toml", *options], standalone_mode=False)
 """
 ENERGIES = """
 import json
@@ -110,12 +112,10 @@ def python(tmp_path):
 
 def test_law_and_effect(python, tmp_path):
     (tmp_path / "sweep.toml").write_text(SWEEP)
-    found = {}
-    for solver in ("event-driven", "radau"):
-        out = tmp_path / f"{solver}.nc"
-        options = ("-o", str(out), "--solver", solver, "--n-jobs", "1")
-        python(RUN, ("fading.py", "maxwell.py"), "run", "sweep.toml", *options)
-        found[solver] = xr.load_dataset(out)
+    solvers = ("event-driven", "radau")
+    # One process for both: what they share is compiled once.
+    python(RUN, ("fading.py", "maxwell.py"), *solvers)
+    found = {solver: xr.load_dataset(tmp_path / f"{solver}.nc") for solver in solvers}
     for ds in found.values():
         assert ds["friction_law"].values.tolist() == ["fading", "coulomb"]
         assert (ds["status"] == 0).all()
