@@ -52,14 +52,19 @@ def diagnose(
     """
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
+    from wedgesweep.sweep.cases import compiled_mark
 
     measurement = api.read_measurement(measured, model)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     processors = count_jobs(n_jobs)
+    diagnosed_before = compiled_mark("diagnose")
+    if not diagnosed_before.exists():
+        click.echo("compiling the solver (once, a minute or two)", err=True)
     found = api.diagnose_measurement(
         measurement, effects=_names(effects), n_jobs=processors, progress=_print_step, calibrate=calibrate
     )
+    diagnosed_before.touch()
     _clear(directory)
     found.write(directory)
     written = directory

@@ -26,7 +26,7 @@ def describe(law: str, beta: float, amplitude: float) -> str:
 
 def is_compiled(method: str, extended: bool = False) -> bool:
     """Whether the compiled code of a solver is cached, for the base or the extended mechanics."""
-    return _compiled_mark(method, extended).exists()
+    return compiled_mark(_code(method, extended)).exists()
 
 
 def compile_once(method: str, extended: bool = False) -> None:
@@ -42,12 +42,17 @@ def compile_once(method: str, extended: bool = False) -> None:
     case = parameters.record("coulomb", 5e-3, 85.0, effects=effects)
     dtype = dataset.record_dtype({"phase": 64, "harmonic": dataset.HARMONICS, "part": 2})
     solve_cases(case, np.array([0]), short, inf, dtype)
-    _compiled_mark(method, extended).touch()
+    compiled_mark(_code(method, extended)).touch()
 
 
-def _compiled_mark(method: str, extended: bool) -> Path:
+def _code(method: str, extended: bool) -> str:
+    return f"{method}{'-extended' * extended}"
+
+
+def compiled_mark(code: str) -> Path:
+    """File that exists once all compiled code of a task is cached."""
     # The cache folder itself exists earlier: reading parameters already compiles a few functions.
-    return CACHE_DIR / f"{method}{'-extended' * extended}.complete"
+    return CACHE_DIR / f"{code}.complete"
 
 
 class Chunk(NamedTuple):
