@@ -19,7 +19,14 @@ from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import Evaluation
 from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
-from wedgesweep.diagnose.search import Scans, Search, refit_best
+from wedgesweep.diagnose.search import (
+    MULTISTART_SCHEDULE,
+    Scans,
+    Search,
+    best_of,
+    best_per_value,
+    refit_best,
+)
 
 # Best single fits with which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
@@ -34,6 +41,8 @@ BEHIND, SEVERAL = 5.0, 4
 SUBSET = 6
 # Where no pair is adequate: diverse starts of the best pairs, and how many pairs are the best.
 DIVERSE_STARTS, LEADING = 4, 4
+# Best pairs that are fitted again from the whole range of their effects, where no pair is adequate.
+RESTARTED = 3
 # Best pairs whose effects are each combined with other effects, where no pair is adequate.
 SWAPPED = 2
 # Pairs whose chi-squared is this close to the best have their components fitted by themselves.
@@ -95,6 +104,8 @@ def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: 
         combinations = _with_all_others(known, showing, leading)
         found = best_of_each(found + _fit_combinations(job, combinations, COMPLETED), penalised)
     if verdict.none_adequate(found):
+        found = best_of_each(found + restarted_pairs(search, found), penalised)
+    if verdict.none_adequate(found):
         found = best_of_each(found + swapped_pairs(job, found), penalised)
     if verdict.none_adequate(found):
         orders = [order for each in found[:COMPLETED] for order in permutations(each.effects)]
@@ -113,6 +124,28 @@ def _with_all_others(
         for other in known
         if one != other and one not in except_for
     ]
+
+
+def restarted_pairs(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """The best pairs fitted again from the whole range of either effect, the other one as it was fitted.
+
+    The first effect of a pair began where it fits best by itself: the pair may have a minimum there as well,
+    and a much deeper one elsewhere.
+    """
+    restarts = [(pair.fit, effect) for pair in found[:RESTARTED] for effect in pair.effects]
+    fits = search.each(lambda one: _restarted(search, *one), restarts)
+    return refit_best(search, [search.explanation(fit) for fit in fits])
+
+
+def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
+    """A pair, fitted from points over the range of one of its effects."""
+    rough, model = search.model(*pair.effects, tolerance=ROUGH), search.model(*pair.effects)
+    own = search.model(effect).hypothesis
+    points = [model.hypothesis.at({**pair.values, **own.in_key_units(x)}) for x in own.starts()]
+    evaluations = rough.evaluate_all([rough.start(pair, x) for x in points])
+    search.progress(f"{' + '.join(pair.effects)}, all starting points of {effect}")
+    first = [each.name.split(".")[0] for each in model.hypothesis.parameters].index(effect)
+    return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
 
 
 def swapped_pairs(job: PairSearch, found: Sequence[Explanation]) -> list[Explanation]:

@@ -183,7 +183,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     data, model, rough = search.data, search.model(effect), search.model(effect, tolerance=ROUGH)
     points = model.hypothesis.starts()
     scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
-    evaluations = _best_per_first_parameter(scan)
+    evaluations = best_per_value(scan)
     implausible = data.implausible(base.point)
     if implausible or data.brings_nuisances(effect):
         # Without the effect the base model's own parameters are, or may be, far from the truth.
@@ -217,7 +217,7 @@ def multistart(search: Search, scans: Scans) -> list[Explanation]:
     """
 
     def fitted(effect: str) -> Explanation:
-        evaluations = _best_per_first_parameter(scans[effect])
+        evaluations = best_per_value(scans[effect])
         search.progress(f"{effect}, all starting points")
         return search.explanation(best_of(search.model(effect), evaluations, MULTISTART_SCHEDULE))
 
@@ -269,9 +269,9 @@ def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Ev
     return sorted(evaluations, key=_chi2)[:entering]
 
 
-def _best_per_first_parameter(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """The best evaluation at each value of the first parameter, so that not all starts are neighbours."""
+def best_per_value(evaluations: Sequence[Evaluation], parameter: int = 0) -> list[Evaluation]:
+    """The best evaluation at each value of a parameter, so that not all starts are neighbours."""
     best: dict[float, Evaluation] = {}
     for evaluation in sorted(evaluations, key=_chi2):
-        best.setdefault(float(evaluation.point.x[0]), evaluation)
+        best.setdefault(float(evaluation.point.x[parameter]), evaluation)
     return list(best.values())
