@@ -32,6 +32,16 @@ def test_what_is_affordable_does_not_depend_on_which_thread_is_faster(threads):
     assert search.budget.untried == [Untried("numbers", 5, 8), Untried("more numbers", 2, 2)]
 
 
+def test_a_grant_adds_what_is_missing_and_no_more():
+    budget = Budget(100.0)
+    work.add(70.0)
+    budget.grant(20.0)
+    assert budget.left == 30.0
+    work.add(70.0)
+    budget.grant(20.0)
+    assert budget.left == 20.0
+
+
 def test_a_simulated_case_counts_with_its_periods():
     search = Search.of(drawn(PAIR), CANDIDATES)
     begun = work.done()

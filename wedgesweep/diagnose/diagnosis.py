@@ -14,6 +14,7 @@ from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import (
+    PAIRS_SHARE,
     Scans,
     Search,
     base_fit,
@@ -179,6 +180,7 @@ def explain(search: Search) -> Explained:
     if verdict.none_adequate([base]):
         found = refit_best(search, found)
     if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
+        search.budget.grant(PAIRS_SHARE * search.budget.total)
         pairs = fit_pairs(search, base.fit, found, scans)
         found = found + pairs + component_fits(search, pairs)
         if verdict.none_adequate(found):

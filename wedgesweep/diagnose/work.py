@@ -65,6 +65,10 @@ class Budget:
     def left(self) -> float:
         return self.total - (done() - self.begun)
 
+    def grant(self, work: float) -> None:
+        """See to it that so much is left, whatever was spent before."""
+        self.total = max(self.total, done() - self.begun + work)
+
     def leave_out(self, what: str, left_out: int, of: int) -> None:
         """Remember what there was no work left for."""
         if left_out:
