@@ -201,6 +201,17 @@ def test_the_reason_for_a_reservation_is_given(verdict, change, words, tmp_path)
     assert words in plain(report.sentence(tmp_path))
 
 
+def test_sentence_says_what_the_budget_left_out(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
+    complete = plain(report.sentence(tmp_path))
+    document["untried"] = [{"what": "best pairs with one effect exchanged", "left_out": 60, "of": 76}]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    sentence = plain(report.sentence(tmp_path))
+    assert sentence.startswith(complete.removesuffix("."))
+    assert "before it tried best pairs with one effect exchanged (60 of 76)" in sentence
+    assert not re.search(r"\.\s", sentence)
+
+
 @pytest.mark.parametrize(
     ("candidates", "words"),
     [(0, "there is no candidate that these tests could show"), (1, "the only candidate does not explain it")],

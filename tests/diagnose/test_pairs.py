@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from tests.diagnose.synthetic import drawn, next_to_breakaway
 from wedgesweep.diagnose import pairs
@@ -37,6 +38,18 @@ def test_an_effect_keeps_its_numbers_beside_another_than_that_of_its_pair():
     best = pairs.swapped_pairs(pairs.PairSearch(search, base.fit, known), [search.explanation(wrong)])[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
+
+
+def test_a_pair_that_stopped_in_a_local_minimum_is_fitted_again_from_the_whole_range():
+    """From any softer column the fit ends at 8 N/mm."""
+    truth = {"column_compliance": {"stiffness": 22461.0}, "displacement_gain": {"scale": 0.8827}}
+    search, base = base_fit(Search.of(drawn(truth, std=1e-3), tuple(truth)))
+    model = search.model(*truth)
+    wrong = minimise(model, model.evaluate(model.start(base.fit, np.array([np.log(9.0), 1.15]))))
+    assert wrong.p < 1e-9
+    best = pairs.restarted_pairs(search, [search.explanation(wrong)])[0]
+    assert best.fit.p > 1e-3
+    assert best.fit.values["column_compliance"]["stiffness_N_per_mm"] == pytest.approx(22.461, rel=0.02)
 
 
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():

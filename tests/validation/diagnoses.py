@@ -7,6 +7,9 @@ import pytest
 
 from tests.validation import checks, examples
 from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, Specimen, diagnose, make
+from wedgesweep import measured
+from wedgesweep.diagnose import diagnosis, work
+from wedgesweep.diagnose.search import WORK_PER_TEST
 from wedgesweep.effects import EFFECTS
 from wedgesweep.validation.judge import ABSTAINING
 
@@ -41,14 +44,14 @@ def test_a_strong_cause_is_named_with_its_numbers(specimen, tmp_path):
 
 
 def test_in_clean_data_nothing_is_named(tmp_path):
-    measured, _ = make(CLEAN, tmp_path)
-    assert diagnose(measured, tmp_path / "found").verdict == "nothing-missing"
+    file, _ = make(CLEAN, tmp_path)
+    assert diagnose(file, tmp_path / "found").verdict == "nothing-missing"
 
 
 def test_an_effect_that_is_no_candidate_is_not_named(tmp_path):
     withheld = Specimen("withheld", "static-dynamic", {WITHHELD: {"stiffness_N_per_mm": 60.0}})
-    measured, _ = make(withheld, tmp_path)
-    found = diagnose(measured, tmp_path / "found", [name for name in EFFECTS if name != WITHHELD])
+    file, _ = make(withheld, tmp_path)
+    found = diagnose(file, tmp_path / "found", [name for name in EFFECTS if name != WITHHELD])
     assert found.document["misfit"]["excess_base"] >= 800.0
     assert found.verdict in ABSTAINING
 
@@ -56,3 +59,18 @@ def test_an_effect_that_is_no_candidate_is_not_named(tmp_path):
 @pytest.mark.parametrize("name", sorted(set(examples.TRUTH) - set(examples.QUICK)))
 def test_example_comes_out_right(name, tmp_path):
     examples.comes_out_right(name, tmp_path)
+
+
+@pytest.mark.parametrize("name", examples.IMPERFECT)
+def test_a_search_in_which_nothing_fits_ends(name):
+    """No model fits to within the noise: the budget is spent, and the hidden effect leads all the same."""
+    begun = work.done()
+    measurement = measured.read(examples.HARD_EXAMPLES / name / "measured.toml")
+    found = diagnosis.diagnose(measurement, threads=2)
+    assert found.untried
+    # The last fits, scores and predictions come after the search.
+    assert work.done() - begun < 1.5 * WORK_PER_TEST * found.data.tests
+    hidden = examples.HARD_TRUTH[name]["truth"]
+    singles = [each for each in found.explanations if len(each.effects) == 1]
+    assert singles[0].effects == tuple(hidden)
+    assert found.finding.cause is None or set(hidden) <= set(found.finding.cause.effects)

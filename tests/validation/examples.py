@@ -6,8 +6,16 @@ from pathlib import Path
 from tests.validation.laboratory import diagnose
 from wedgesweep.validation.judge import ABSTAINING, NAMING
 
-EXAMPLES = Path(__file__).parents[3] / "shared" / "blind-examples"
-TRUTH = json.loads((EXAMPLES / "truth.json").read_text()) if EXAMPLES.is_dir() else {}
+SHARED = Path(__file__).parents[3] / "shared"
+EXAMPLES, HARD_EXAMPLES = SHARED / "blind-examples", SHARED / "hard-examples"
+
+
+def _truth(folder):
+    return json.loads((folder / "truth.json").read_text()) if folder.is_dir() else {}
+
+
+TRUTH, HARD_TRUTH = _truth(EXAMPLES), _truth(HARD_EXAMPLES)
+IMPERFECT = sorted(name for name, truth in HARD_TRUTH.items() if truth["kind"] == "imperfect")
 # Those that a test run has time for: nothing hidden, and one effect.
 QUICK = ("set-017", "set-052")
 

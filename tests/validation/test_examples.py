@@ -1,11 +1,24 @@
-"""Two of the examples of an independent simulator; ``make validate`` diagnoses all of them."""
+"""Some of the examples of an independent simulator; ``make validate`` diagnoses all of them."""
 
 import pytest
 
 from tests.validation import examples
+from tests.validation.laboratory import diagnose
 
 
 @pytest.mark.skipif(not examples.TRUTH, reason="no ../shared/blind-examples beside the checkout")
 @pytest.mark.parametrize("name", examples.QUICK)
 def test_example_comes_out_right(name, tmp_path):
     examples.comes_out_right(name, tmp_path)
+
+
+@pytest.mark.skipif(not examples.HARD_TRUTH, reason="no ../shared/hard-examples beside the checkout")
+def test_a_pair_with_a_local_minimum_is_named(tmp_path):
+    found = diagnose(examples.HARD_EXAMPLES / "pair-126" / "measured.toml", tmp_path / "found")
+    truth = examples.HARD_TRUTH["pair-126"]
+    assert found.verdict == "named"
+    assert found.causes == set(truth["truth"])
+    assert not found.document["untried"]
+    for name, value in truth["values"].items():
+        low, high = found.parameters[name]["ci95"]
+        assert low - (high - low) < value < high + (high - low)

@@ -14,6 +14,7 @@ from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import (
+    PAIRS_SHARE,
     Scans,
     Search,
     base_fit,
@@ -27,6 +28,7 @@ from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.next_test import NextTest, recommend
 from wedgesweep.diagnose.verdict import Finding, Thresholds
+from wedgesweep.diagnose.work import Untried
 from wedgesweep.effects import EFFECTS, SCALES, acting
 from wedgesweep.measured import Measurement
 
@@ -38,7 +40,10 @@ MUCH = 0.9
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Everything that was found; ``explanations`` are sorted, the best first."""
+    """Everything that was found; ``explanations`` are sorted, the best first.
+
+    ``untried``: what the budget of the search left out.
+    """
 
     measurement: Measurement
     data: HarmonicData
@@ -50,6 +55,7 @@ class Diagnosis:
     next_test: NextTest | None
     thresholds: Thresholds
     calibration: dict[str, float | None] | None = None
+    untried: tuple[Untried, ...] = ()
 
     @property
     def extended(self) -> Fit:
@@ -125,6 +131,7 @@ def diagnose(
         next_test=next_test,
         thresholds=thresholds,
         calibration=calibration,
+        untried=tuple(search.budget.untried),
     )
 
 
@@ -150,7 +157,10 @@ def refit_cause(
     while finding.best is not None and not any(finding.best is each for each in done):
         search.progress(f"final fit of {' + '.join(finding.best.effects)}")
         fit = tight_refit(with_extra_nuisances(finding.best.fit))
-        done.append(search.explanation(profile_likelihood(fit, search.each)))
+        # Without a cause there is no interval to report.
+        if finding.cause is not None or search.budget.left > 0.0:
+            fit = profile_likelihood(fit, search.each)
+        done.append(search.explanation(fit))
         found = [done[-1] if each is finding.best else each for each in found]
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
@@ -170,6 +180,7 @@ def explain(search: Search) -> Explained:
     if verdict.none_adequate([base]):
         found = refit_best(search, found)
     if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
+        search.budget.grant(PAIRS_SHARE * search.budget.total)
         pairs = fit_pairs(search, base.fit, found, scans)
         found = found + pairs + component_fits(search, pairs)
         if verdict.none_adequate(found):

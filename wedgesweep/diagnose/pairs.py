@@ -19,7 +19,14 @@ from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import Evaluation
 from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
-from wedgesweep.diagnose.search import Scans, Search, refit_best
+from wedgesweep.diagnose.search import (
+    MULTISTART_SCHEDULE,
+    Scans,
+    Search,
+    best_of,
+    best_per_value,
+    refit_best,
+)
 
 # Best single fits with which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
@@ -34,6 +41,8 @@ BEHIND, SEVERAL = 5.0, 4
 SUBSET = 6
 # Where no pair is adequate: diverse starts of the best pairs, and how many pairs are the best.
 DIVERSE_STARTS, LEADING = 4, 4
+# Best pairs that are fitted again from the whole range of their effects, where no pair is adequate.
+RESTARTED = 3
 # Best pairs whose effects are each combined with other effects, where no pair is adequate.
 SWAPPED = 2
 # Pairs whose chi-squared is this close to the best have their components fitted by themselves.
@@ -42,6 +51,12 @@ NEAR_BEST = 50.0
 SEEN = 4.0
 # An effect may be this much weaker or stronger than where it was evaluated.
 SCALES = (0.1, 2.0)
+# What a spent budget leaves out, as reported.
+PAIRS = "pairs with one of the best single effects"
+FURTHER_PAIRS = "pairs with an effect of the best pairs"
+RESTARTS = "best pairs from the whole range of an effect"
+EXCHANGED = "best pairs with one effect exchanged"
+DIVERSE = "best pairs from diverse starting points"
 
 
 class SingleScan(NamedTuple):
@@ -88,18 +103,20 @@ def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: 
     known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
     job = PairSearch(search, base, known)
     leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:PARTNERS]
-    found = _fit_combinations(job, _with_all_others(known, leading, ()), COMPLETED)
+    found = _fit_combinations(job, _with_all_others(known, leading, ()), PAIRS)
     if verdict.none_adequate(found):
         # Effects that do not stand out by themselves may do so in a pair.
         showing = dict.fromkeys(effect for each in found[:LEADING] for effect in each.effects)
         combinations = _with_all_others(known, showing, leading)
-        found = best_of_each(found + _fit_combinations(job, combinations, COMPLETED), penalised)
+        found = best_of_each(found + _fit_combinations(job, combinations, FURTHER_PAIRS), penalised)
+    if verdict.none_adequate(found):
+        found = best_of_each(found + restarted_pairs(search, found), penalised)
     if verdict.none_adequate(found):
         found = best_of_each(found + swapped_pairs(job, found), penalised)
     if verdict.none_adequate(found):
         orders = [order for each in found[:COMPLETED] for order in permutations(each.effects)]
         combinations = [Combination(known[one], known[other]) for one, other in orders]
-        found += _fit_combinations(job, combinations, LEADING, diverse=True)
+        found += _fit_combinations(job, combinations, DIVERSE, diverse=True)
     return best_of_each(found, penalised)
 
 
@@ -115,6 +132,28 @@ def _with_all_others(
     ]
 
 
+def restarted_pairs(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """The best pairs fitted again from the whole range of either effect, the other one as it was fitted.
+
+    The first effect of a pair began where it fits best by itself: the pair may have a minimum there as well,
+    and a much deeper one elsewhere.
+    """
+    restarts = [(pair.fit, effect) for pair in found[:RESTARTED] for effect in pair.effects]
+    fits = search.each_affordable(lambda one: _restarted(search, *one), restarts, RESTARTS)
+    return refit_best(search, [search.explanation(fit) for fit in fits])
+
+
+def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
+    """A pair, fitted from points over the range of one of its effects."""
+    rough, model = search.model(*pair.effects, tolerance=ROUGH), search.model(*pair.effects)
+    own = search.model(effect).hypothesis
+    points = [model.hypothesis.at({**pair.values, **own.in_key_units(x)}) for x in own.starts()]
+    evaluations = rough.evaluate_all([rough.start(pair, x) for x in points])
+    search.progress(f"{' + '.join(pair.effects)}, all starting points of {effect}")
+    first = [each.name.split(".")[0] for each in model.hypothesis.parameters].index(effect)
+    return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
+
+
 def swapped_pairs(job: PairSearch, found: Sequence[Explanation]) -> list[Explanation]:
     """Pairs in which one effect is kept as in one of the best pairs, and the other is replaced."""
     components = [(pair.fit, effect) for pair in found[:SWAPPED] for effect in pair.effects]
@@ -125,28 +164,37 @@ def swapped_pairs(job: PairSearch, found: Sequence[Explanation]) -> list[Explana
         for effect, second in job.singles.items()
         if effect not in pair.effects and first.fit.evaluation.found
     ]
-    return _fit_combinations(job, combinations, COMPLETED)
+    return _fit_combinations(job, combinations, EXCHANGED)
 
 
 def _fit_combinations(
-    job: PairSearch, combinations: Sequence[Combination], completed: int, diverse: bool = False
+    job: PairSearch, combinations: Sequence[Combination], what: str, diverse: bool = False
 ) -> list[Explanation]:
     """Fits of combinations, the best first; ``diverse``: from several starts of each."""
     search = job.search
     useful = [each for each in combinations if len(each.second.x)]
-    begun = search.each(lambda each: begin(search, each, diverse), useful)
+    begun = search.each_affordable(lambda each: begin(search, each, diverse), useful, what)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.chi2)]
-    fits = _continued(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0])
+    further = f"{what}, followed further"
+    fits = _continued(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0], further)
     if any(fit.chi2 < NEARLY * fit.dof for fit in fits):
         fits = _best_of_pairs(fits)[:ENTERING]
-    fits = _continued(search, fits, ROUNDS[1])
-    fits = _continued(search, fits if diverse else promising(fits)[:ENTERING], ROUNDS[2])
+    fits = _continued(search, fits, ROUNDS[1], further)
+    fits = _continued(search, fits if diverse else promising(fits)[:ENTERING], ROUNDS[2], further)
+    completed = LEADING if diverse or search.budget.left <= 0.0 else COMPLETED
     found = search.each(lambda fit: _complete(search, job.base, fit), promising(fits)[:completed])
     return refit_best(search, found)
 
 
-def _continued(search: Search, fits: Sequence[Fit], iterations: int) -> list[Fit]:
-    return search.each(lambda fit: minimise(fit.model, fit.evaluation, iterations), fits)
+def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
+    """Fits followed for some iterations, the best first; as they are where the budget is spent."""
+    order = sorted(fits, key=lambda fit: fit.chi2)
+    found = search.each_affordable(lambda fit: _followed(fit, iterations), order, what)
+    return [*found, *order[len(found) :]]
+
+
+def _followed(fit: Fit, iterations: int) -> Fit:
+    return minimise(fit.model, fit.evaluation, iterations)
 
 
 def _best_of_pairs(fits: Sequence[Fit]) -> list[Fit]:
@@ -172,7 +220,8 @@ def component_fits(search: Search, pairs: Sequence[Explanation]) -> list[Explana
     near = [each for each in pairs if each.fit.chi2 - pairs[0].fit.chi2 < NEAR_BEST]
     components = [(pair.fit, effect) for pair in near for effect in pair.effects]
     starts = search.each(lambda one: _component(search, *one), components)
-    return [search.explanation(fit) for fit in _continued(search, starts, ITERATIONS)]
+    fits = search.each(lambda fit: _followed(fit, ITERATIONS), starts)
+    return [search.explanation(fit) for fit in fits]
 
 
 def _component(search: Search, pair: Fit, effect: str) -> Fit:

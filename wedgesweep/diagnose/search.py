@@ -5,12 +5,13 @@ Each stage is a function of what earlier stages returned; nothing is kept in bet
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
-from math import log
+from dataclasses import dataclass, field, replace
+from math import inf, log
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose import work
 from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import Evaluation, FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
@@ -40,6 +41,9 @@ REFITTED = 8
 HELD_ITERATIONS = 8
 # A fit is better if it takes this much off chi-squared.
 SLIGHT = 1.0
+# Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
+# that pairs get even if unknown amplitudes made single effects expensive.
+WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1.5e5, 12, 1.0 / 3.0
 # Effects with states of their own take longest to fit, and begin first.
 SLOWEST = ("column_compliance", "fixture_resonance", "presliding")
 
@@ -55,7 +59,8 @@ def quiet(step: str) -> None:
 class Search:
     """What all stages share: data, candidate effects, number of threads, and who is told of progress.
 
-    ``undetected``: candidates of which the records show nothing, so that there is nothing to fit.
+    ``undetected``: candidates of which the records show nothing, so that there is nothing to fit. ``budget``:
+    what the search may simulate; base model and single effects are fitted whatever that takes.
     """
 
     data: FitData
@@ -63,6 +68,7 @@ class Search:
     undetected: tuple[str, ...] = ()
     threads: int = 1
     progress: Callable[[str], None] = quiet
+    budget: work.Budget = field(default_factory=work.Budget, compare=False)
 
     @classmethod
     def of(
@@ -75,7 +81,8 @@ class Search:
         """A search for some effects in some data."""
         detected = data.candidates(effects)
         undetected = tuple(effect for effect in effects if effect not in detected)
-        return cls(data, detected, undetected, threads, progress)
+        budget = work.Budget(WORK_PER_TEST * max(data.tests, FEWEST_COUNTED))
+        return cls(data, detected, undetected, threads, progress, budget)
 
     @property
     def parameter_penalty(self) -> float:
@@ -92,10 +99,42 @@ class Search:
 
     def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         """Results of a function for all items, in their order."""
+        return self._each(function, list(items), inf)
+
+    def each_affordable(self, function: Callable[[Any], Any], items: Sequence[Any], what: str) -> list[Any]:
+        """Results for the first items, the most promising, until the budget is spent.
+
+        ``what``: what is reported to have been left out otherwise.
+        """
+        found = self._each(function, items, self.budget.left)
+        self.budget.leave_out(what, len(items) - len(found), len(items))
+        return found
+
+    def _each(self, function: Callable[[Any], Any], items: Sequence[Any], limit: float) -> list[Any]:
+        """Results for the items before which less work than the limit was done for the others.
+
+        Threads may finish more of them than that; these are dropped, or results would depend on timing.
+        """
+        spent = np.zeros(len(items))
+
+        def one(place: int) -> work.Piece | None:
+            if spent[:place].sum() >= limit:
+                return None
+            piece = work.apart(lambda: function(items[place]))
+            spent[place] = piece.work
+            return piece
+
         if self.threads == 1:
-            return [function(item) for item in items]
-        with ThreadPoolExecutor(self.threads) as pool:
-            return list(pool.map(function, items))
+            pieces = [one(place) for place in range(len(items))]
+        else:
+            with ThreadPoolExecutor(self.threads) as pool:
+                pieces = list(pool.map(one, range(len(items))))
+        before = np.cumsum(np.r_[0.0, spent])[:-1]
+        kept = [
+            piece for piece, sum_before in zip(pieces, before, strict=True) if piece and sum_before < limit
+        ]
+        work.add(sum(piece.work for piece in kept))
+        return [piece.result for piece in kept]
 
     def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
         """Results of a function for every candidate effect, in their order; the slowest begin first."""
@@ -183,7 +222,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     data, model, rough = search.data, search.model(effect), search.model(effect, tolerance=ROUGH)
     points = model.hypothesis.starts()
     scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
-    evaluations = _best_per_first_parameter(scan)
+    evaluations = best_per_value(scan)
     implausible = data.implausible(base.point)
     if implausible or data.brings_nuisances(effect):
         # Without the effect the base model's own parameters are, or may be, far from the truth.
@@ -217,11 +256,13 @@ def multistart(search: Search, scans: Scans) -> list[Explanation]:
     """
 
     def fitted(effect: str) -> Explanation:
-        evaluations = _best_per_first_parameter(scans[effect])
+        evaluations = best_per_value(scans[effect])
         search.progress(f"{effect}, all starting points")
         return search.explanation(best_of(search.model(effect), evaluations, MULTISTART_SCHEDULE))
 
-    return list(search.each_effect(fitted).values())
+    order = sorted(search.effects, key=lambda effect: min(map(_chi2, scans[effect])))
+    found = search.each_affordable(fitted, order, "single effects from all starting points")
+    return sorted(found, key=lambda each: search.effects.index(each.effects[0]))
 
 
 def best_of(
@@ -269,9 +310,9 @@ def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Ev
     return sorted(evaluations, key=_chi2)[:entering]
 
 
-def _best_per_first_parameter(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """The best evaluation at each value of the first parameter, so that not all starts are neighbours."""
+def best_per_value(evaluations: Sequence[Evaluation], parameter: int = 0) -> list[Evaluation]:
+    """The best evaluation at each value of a parameter, so that not all starts are neighbours."""
     best: dict[float, Evaluation] = {}
     for evaluation in sorted(evaluations, key=_chi2):
-        best.setdefault(float(evaluation.point.x[0]), evaluation)
+        best.setdefault(float(evaluation.point.x[parameter]), evaluation)
     return list(best.values())

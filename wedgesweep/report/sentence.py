@@ -11,7 +11,17 @@ from wedgesweep.report import phrases
 
 def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
-    return TEMPLATES[result.verdict](result)
+    return TEMPLATES[result.verdict](result).removesuffix(".") + _untried(result) + "."
+
+
+def _untried(result: DiagnosisResult) -> str:
+    """What the budget of the search left out; empty for most diagnoses."""
+    left_out = [
+        f"{each['what']} ({each['left_out']} of {each['of']})" for each in result.document.get("untried", [])
+    ]
+    return (
+        f"; the search had spent its budget before it tried {phrases.listing(left_out)}" if left_out else ""
+    )
 
 
 def _nothing_missing(result: DiagnosisResult) -> str:

@@ -39,6 +39,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "not_testable": hidden,
         "next_test": _following(found.next_test),
         "extended": list(best.effects),
+        "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
         "model": {"law": data.law, "title": data.model.title},
         "uncertain": uncertain(best.fit),

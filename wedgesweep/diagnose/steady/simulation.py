@@ -9,6 +9,7 @@ import numpy as np
 
 from wedgesweep import effects
 from wedgesweep.config import Config
+from wedgesweep.diagnose import work
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
@@ -23,6 +24,8 @@ TONE_SETTLING, FROM_REST = 10, 30
 # Periods over which such a response is evaluated if its relative timing is unknown, and at most: by then all
 # relative phases of tone and input have occurred.
 UNTIMED, LONGEST_SIMULATED = 12.0, 60.0
+# Work of one case beside its periods, and of a period with mechanics of an effect's own; see work.py.
+WORK_OF_CASE, WORK_OF_OWN_MECHANICS = 3.0, 3.0
 
 
 class Responses(NamedTuple):
@@ -49,7 +52,14 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOL
     """Steady responses to parameter records (n,)."""
     accuracy = periodic.Accuracy(tolerance, MOST_PERIODS, rtol=tolerance)
     found = periodic.respond(rows, warm, accuracy, SAMPLES_PER_PERIOD, harmonics)
+    _count(rows, found.periods)
     return Responses(found.spectra, found.outcome == periodic.OK, found.warm)
+
+
+def _count(rows: np.ndarray, periods: np.ndarray | int) -> None:
+    """Count the work of simulated cases (n,) over so many periods (n,)."""
+    weight = np.where(parameters.has_own_mechanics(rows), WORK_OF_OWN_MECHANICS, 1.0)
+    work.add(float((WORK_OF_CASE + weight * periods).sum()))
 
 
 class ToneTiming(NamedTuple):
@@ -106,6 +116,7 @@ def respond_with_tone(
     state = warm.state
     if not np.isfinite(state).all():
         state = periodic.samples(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance)[2]
+        _count(rows, FROM_REST + 1)
     spectra, state = _recorded(rows, state, harmonics, tone, timings, tolerance)
     lag = np.where(np.isnan(source_phase), measured, np.nan) - np.angle(spectra[:, 0, -1])
     again = np.flatnonzero(np.isfinite(lag))
@@ -134,6 +145,7 @@ def _recorded(
     spectra = np.full((len(rows), 2, harmonics + 1), np.nan, complex)
     longest = ceil(max(timing.periods for timing in timings)) + 1
     x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, SAMPLES_PER_PERIOD, tolerance)
+    _count(rows, TONE_SETTLING + longest)
     turn = 2.0 * pi / SAMPLES_PER_PERIOD
     for i, timing in enumerate(timings):
         start = timing.input_phase % (2.0 * pi)

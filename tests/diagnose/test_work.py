@@ -1,0 +1,75 @@
+"""A search spends its budget in an order of its own, whatever the machine and the number of threads."""
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from tests.diagnose.synthetic import drawn
+from wedgesweep.diagnose import diagnosis, pairs, work
+from wedgesweep.diagnose.search import Search, base_fit, single_fits
+from wedgesweep.diagnose.work import Budget, Untried
+
+# More preload and less friction: no single effect explains both.
+PAIR = {"preload": {"force": 0.3}, "friction_level": {"scale": 0.85}}
+CANDIDATES = (*PAIR, "bolster_mass")
+
+
+@pytest.mark.parametrize("threads", [1, 2, 4])
+def test_what_is_affordable_does_not_depend_on_which_thread_is_faster(threads):
+    def worked(item):
+        time.sleep(0.02 * (item == 0))
+        work.add(10.0)
+        return item
+
+    search = Search(None, (), threads=threads, budget=Budget(25.0))
+    begun = work.done()
+    assert search.each_affordable(worked, range(8), "numbers") == [0, 1, 2]
+    assert work.done() - begun == 30.0
+    assert search.budget.left == -5.0
+    assert search.each_affordable(worked, range(2), "more numbers") == []
+    assert search.each(worked, range(2)) == [0, 1]
+    assert search.budget.untried == [Untried("numbers", 5, 8), Untried("more numbers", 2, 2)]
+
+
+def test_a_grant_adds_what_is_missing_and_no_more():
+    budget = Budget(100.0)
+    work.add(70.0)
+    budget.grant(20.0)
+    assert budget.left == 30.0
+    work.add(70.0)
+    budget.grant(20.0)
+    assert budget.left == 20.0
+
+
+def test_a_simulated_case_counts_with_its_periods():
+    search = Search.of(drawn(PAIR), CANDIDATES)
+    begun = work.done()
+    model = search.model()
+    model.evaluate(model.start(None, model.low))
+    assert search.data.tests < work.done() - begun < 100 * search.data.tests
+
+
+def test_without_work_left_singles_are_fitted_and_the_rest_is_told():
+    search = replace(Search.of(drawn(PAIR), CANDIDATES), budget=Budget(0.0))
+    found = diagnosis.explain(search)
+    assert {each.effects for each in found.explanations} == {(name,) for name in CANDIDATES}
+    left_out = {each.what: each.left_out for each in search.budget.untried}
+    assert left_out == {pairs.PAIRS: 6, "single effects from all starting points": 3}
+
+
+def test_a_budget_ends_the_search_for_pairs_at_the_same_place_with_any_number_of_threads():
+    def searched(threads, total):
+        search, base = base_fit(Search.of(drawn(PAIR), CANDIDATES, threads))
+        search, singles, scans = single_fits(search, base.fit)
+        search = replace(search, budget=Budget(total))
+        begun = work.done()
+        found = pairs.fit_pairs(search, base.fit, singles, scans)
+        return [(each.effects, each.fit.chi2) for each in found], search.budget.untried, work.done() - begun
+
+    complete = searched(1, float("inf"))
+    assert complete[1] == []
+    some = searched(1, 0.1 * complete[2])
+    assert some[1]
+    assert some[2] < complete[2]
+    assert searched(2, 0.1 * complete[2]) == some
