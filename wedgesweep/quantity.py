@@ -4,6 +4,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import inf, pi
 
+from wedgesweep.natural_units import (
+    ACCELERATION,
+    BENCH,
+    FREQUENCY,
+    LENGTH,
+    SHARE,
+    TIME,
+    VELOCITY,
+    Dimension,
+    NaturalUnits,
+)
+
 # Longest suffix first, so that "_N_per_mm" is not read as "_mm".
 SI_FACTORS = {
     "_N_per_mm3": 1e9,
@@ -19,6 +31,21 @@ SI_FACTORS = {
     "_N": 1.0,
     "_s": 1.0,
 }
+# What the same endings tell of the dimension; without any of them a number is a share or a factor.
+DIMENSIONS = {
+    "_N_per_mm3": Dimension(mass=1, length=-2, time=-2),
+    "_N_per_mm": Dimension(mass=1, time=-2),
+    "_N_s_per_m": Dimension(mass=1, time=-1),
+    "_m_per_s2": ACCELERATION,
+    "_rad_per_s": FREQUENCY,
+    "_mm_per_s": VELOCITY,
+    "_deg": SHARE,
+    "_kg": Dimension(mass=1),
+    "_mm": LENGTH,
+    "_hz": FREQUENCY,
+    "_N": Dimension(mass=1, length=1, time=-2),
+    "_s": TIME,
+}
 
 
 @dataclass(frozen=True)
@@ -30,6 +57,7 @@ class Quantity:
     A default that is not finite is none: the key must be given. ``off`` is the number that stands for an
     absent effect, the default unless given. A fit looks for the number within ``search`` (None: it is
     not fitted), on a scale of its logarithm if ``logarithmic``. For an angle that is one turn about zero.
+    ``search`` is for a model of the bench's size; see ``searched``.
     """
 
     key: str
@@ -60,6 +88,17 @@ class Quantity:
     def factor(self) -> float:
         """What turns a number in the key's unit into SI."""
         return SI_FACTORS.get(self.suffix, 1.0)
+
+    @cached_property
+    def dimension(self) -> Dimension:
+        """Powers of mass, length and time."""
+        return DIMENSIONS.get(self.suffix, SHARE)
+
+    def searched(self, units: NaturalUnits = BENCH) -> tuple[float, float]:
+        """Search range in the key's unit for a model with these natural units; no limits if not fitted."""
+        low, high = self.search or (-inf, inf)
+        ratio = units.ratio(self.dimension)
+        return ratio * low, ratio * high
 
     @property
     def angle(self) -> bool:

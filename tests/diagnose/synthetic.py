@@ -7,6 +7,7 @@ from math import pi
 
 import numpy as np
 
+from tests.scaling import BENCH_SIZE
 from wedgesweep import config
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation
@@ -42,16 +43,18 @@ def drawn(
     bench=(FREQUENCIES, AMPLITUDES),
     law="static-dynamic",
     model=MODEL,
+    size=BENCH_SIZE,
 ) -> HarmonicData:
     """Data of six tests under ``effects`` (SI), true amplitudes ``off`` (relative) from the stated.
 
-    ``bench``: frequencies (Hz) and stated amplitudes (m) of all the tests that may be chosen.
+    ``bench``: frequencies (Hz) and stated amplitudes (m) of all the tests that may be chosen. ``size``: of
+    the rig that is measured in place of the bench; everything is given as for the bench.
     """
     rng = np.random.default_rng(seed)
-    model = config.parse(model)
-    frequencies, stated = (each[tests] for each in bench)
-    omega = 2.0 * pi * frequencies
-    rows = simulation.records(model, law, effects or {}, omega, stated * (1.0 + off))
+    model, effects = size.config(config.parse(model)), size.effects(effects or {})
+    frequencies, stated = bench[0][tests] / size.time, bench[1][tests] * size.length
+    omega, interval = 2.0 * pi * frequencies, INTERVAL * size.time
+    rows = simulation.records(model, law, effects, omega, stated * (1.0 + off))
     exact = simulation.respond(rows, at_rest(omega.size), HARMONICS).harmonics
     spectra = []
     for frequency, harmonics in zip(frequencies, exact, strict=True):
@@ -62,7 +65,7 @@ def drawn(
         mean = harmonics * turn + noise[0] + 1j * noise[1]
         flat = tuple(SmoothPSD(np.array([2.0 * np.log(level * each), 0.0, 0.0]), 1.0) for each in rms)
         silent = np.zeros((2, SAMPLES))
-        spectra.append(Spectrum(frequency, 8.4, SAMPLES, INTERVAL, mean, variance, 0.0j, silent, flat))
+        spectra.append(Spectrum(frequency, 8.4, SAMPLES, interval, mean, variance, 0.0j, silent, flat))
     return HarmonicData(
         model,
         law,

@@ -18,6 +18,8 @@ from wedgesweep.systems.suspension import parameters
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration
 
 LAWS = ("coulomb", "static-dynamic", "exponential")
+# A number whose default follows from the model.
+FOLLOWS = 2.0
 SELF_LOCKING = {
     "suspension": {"column_angle": np.radians(-4.0)},
     "friction": {"dynamic": 0.9, "static": 0.9},
@@ -52,7 +54,8 @@ def test_the_declared_order_is_that_of_the_families():
 @pytest.mark.parametrize("name", EFFECTS)
 def test_a_config_switches_it_on_and_its_range_is_allowed(name):
     values = {
-        quantity.key: (quantity.search or (quantity.default,))[-1] for quantity in EFFECTS[name].quantities
+        quantity.key: (quantity.search or (quantity.default or FOLLOWS,))[-1]
+        for quantity in EFFECTS[name].quantities
     }
     lines = "\n".join(f"{key} = {value}" for key, value in values.items())
     text = f'[effects.{name}]\n{lines}\n[sweep]\nfriction_law = "coulomb"\nbeta = 1\namplitude_mm = 1\n'

@@ -20,6 +20,7 @@ SOFTENING = "cubic_stiffness"
 
 # Imports that load numba or scipy come late, so that `wedgesweep --help` does not wait for them.
 if TYPE_CHECKING:
+    from wedgesweep.natural_units import NaturalUnits
     from wedgesweep.quantity import Quantity
     from wedgesweep.simulate import Settings
 
@@ -65,6 +66,12 @@ class Config:
         from wedgesweep.systems.suspension.parameters import SUSPENSION
 
         return _si(SUSPENSION, self.document["suspension"])
+
+    def natural_units(self, travel: float | None = None) -> "NaturalUnits":
+        """Natural units of the model, whose measured motion has some travel (m)."""
+        from wedgesweep.systems.suspension.parameters import natural_units_of
+
+        return natural_units_of(self.suspension, travel)
 
     @cached_property
     def friction(self) -> dict[str, float]:
@@ -218,7 +225,7 @@ class Config:
             return None
         if not parameters.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
             return None
-        width = parameters.REGULARISED_VELOCITY * 1e3
+        width = parameters.regularised_velocity(self.suspension) * 1e3
         return (
             f"{law}: with cross_slip or column_compliance the faces may stick one at a time; "
             f"friction is regularised, a ramp up to mu_d over {width:g} mm/s"

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 import numpy as np
 
 from wedgesweep.diagnose.fit_parameters import Values
+from wedgesweep.natural_units import BENCH, NaturalUnits
 
 if TYPE_CHECKING:
     from wedgesweep.diagnose.model import Model
@@ -170,6 +171,11 @@ class FitData(Protocol):
     @property
     def known(self) -> Mapping[str, tuple[float, float]]:
         return {}
+
+    @property
+    def units(self) -> NaturalUnits:
+        """Natural units of the model on trial, in which effects are searched."""
+        return BENCH
 
     @abstractmethod
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:

@@ -1,7 +1,9 @@
 """Effects as bounded fit parameters in which their action is smooth.
 
 A positive number that spans decades is fitted as its logarithm, an amplitude with its phase as cosine and
-sine parts; everything else is fitted as it stands in a config.
+sine parts; everything else is fitted as it stands in a config. All of them are fitted as if the model had the
+size of the bench, so that nothing in a fit depends on the size: a force is divided by the model's natural
+unit of force over the bench's.
 """
 
 from collections.abc import Iterator
@@ -13,6 +15,7 @@ from math import atan2, cos, degrees, exp, hypot, inf, log, radians, sin
 import numpy as np
 
 from wedgesweep.effects import EFFECTS
+from wedgesweep.natural_units import BENCH, NaturalUnits
 from wedgesweep.quantity import Quantity
 
 PHASE = "_phase_deg"
@@ -82,10 +85,12 @@ class Hypothesis:
     """Some effects together, as a vector x (k,) of fit parameters; no effects: the base model.
 
     ``fixed``: numbers, as ("effect.key", value) in key units, that are known from elsewhere and not fitted.
+    ``units``: of the model on trial.
     """
 
     effects: tuple[str, ...] = ()
     fixed: tuple[tuple[str, float], ...] = ()
+    units: NaturalUnits = BENCH
 
     @cached_property
     def parameters(self) -> tuple[FitParameter, ...]:
@@ -117,14 +122,14 @@ class Hypothesis:
                 if f"{name}.{quantity.key}" in known:
                     values[name][quantity.key] = known[f"{name}.{quantity.key}"]
                     continue
-                value = float(next(rest))
+                value, unit = float(next(rest)), self.units.ratio(quantity.dimension)
                 if phase:
                     other = float(next(rest))
-                    values[name][quantity.key] = hypot(value, other)
+                    values[name][quantity.key] = unit * hypot(value, other)
                     values[name][phase.key] = degrees(atan2(other, value))
                 else:
                     value = exp(value) if quantity.logarithmic else quantity.nearest(value, 0.0)
-                    values[name][quantity.key] = value
+                    values[name][quantity.key] = unit * value
         return values
 
     def values(self, x: np.ndarray) -> Values:
@@ -143,7 +148,7 @@ class Hypothesis:
             for quantity, phase in _split(name):
                 if f"{name}.{quantity.key}" in known:
                     continue
-                value = numbers[quantity.key]
+                value = numbers[quantity.key] / self.units.ratio(quantity.dimension)
                 if phase:
                     angle = radians(numbers[phase.key])
                     x += [value * cos(angle), value * sin(angle)]

@@ -92,7 +92,7 @@ class Search:
         """The model with some effects; no effects: the base model."""
         known = self.data.known
         fixed = tuple((name, value) for name, (value, _) in known.items() if name.split(".")[0] in effects)
-        return Model(self.data, Hypothesis(effects, fixed), tolerance)
+        return Model(self.data, Hypothesis(effects, fixed, self.data.units), tolerance)
 
     def explanation(self, fit: Fit) -> Explanation:
         return Explanation(fit, self.parameter_penalty)

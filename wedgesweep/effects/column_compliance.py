@@ -5,7 +5,8 @@
 The wedge follows: (w - Q e_x).n_c = 0; slip on the column is relative to it. Q starts at its static
 place. Under the Coulomb law the faces are regularised: mu_d |v|/v_t up to v_t = 1e-3 mm/s.
 Neutral: the limit of infinite stiffness; off where the table is absent (0 in the record).
-Default: mass = 0.23 kg and damping_ratio = 0.03, neither fitted; stiffness must be given.
+Default: mass = half the side frame's (0.23 kg on the bench) and damping_ratio = 0.03, neither fitted;
+stiffness must be given.
 """
 
 from math import nan, sqrt
@@ -32,7 +33,9 @@ EFFECT = Effect(
             search=(2.0, 5000.0),
             logarithmic=True,
         ),
-        Quantity("mass_kg", 0.23, "mass of a column that moves, M_q", above=0.0),
+        Quantity(
+            "mass_kg", 0.0, "mass of a column that moves, M_q; 0: half of the side frame's", minimum=0.0
+        ),
         Quantity("damping_ratio", 0.03, "damping of a column alone", minimum=0.0),
     ),
     extends=("stiffness",),
@@ -54,6 +57,8 @@ velocity_place = place_of("column_compliance", 1)
 def prepare(p: np.void) -> None:
     """Fill in what follows from the other numbers."""
     own = p["column_compliance"]
+    if own["mass"] == 0.0:
+        own["mass"] = 0.5 * p["suspension"]["side_frame_mass"]
     own["damping"] = 2.0 * own["damping_ratio"] * sqrt(own["stiffness"] * own["mass"])
 
 

@@ -2,7 +2,8 @@
 
     mu -> mu (|N|/reference)^(-exponent)                         on both faces, each with its own N
 
-N and mu are solved together. Neutral and default: exponent = 0. Default: reference = 1 N, not fitted.
+N and mu are solved together. Neutral and default: exponent = 0. Default: reference = the normal force on the
+column face at frictionless rest, not fitted.
 """
 
 from math import nan
@@ -28,7 +29,10 @@ EFFECT = Effect(
             search=(-0.5, 0.6),
         ),
         Quantity(
-            "reference_N", 1.0, "normal force at which the coefficients are the nominal ones", above=0.0
+            "reference_N",
+            0.0,
+            "normal force at which the coefficients are the nominal ones; 0: the column face's at rest",
+            minimum=0.0,
         ),
     ),
     extends=("exponent",),

@@ -31,7 +31,8 @@ class SynthesisError(InputError):
 class Options:
     """How the data are made; ``level`` and ``amplitude_error`` are relative std.
 
-    If ``sampling_hz`` is None, each test has a different rate near 2 kHz, which does not divide the period.
+    If ``sampling_hz`` is None, each test has a different rate, which does not divide the period: near 2 kHz
+    for a rig like the bench.
     """
 
     noise: str = "white"

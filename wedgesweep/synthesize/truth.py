@@ -1,6 +1,6 @@
 """The true system: all random numbers of a synthetic measurement, drawn once."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import ceil, exp, pi
 
@@ -8,10 +8,12 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.effects import merge
+from wedgesweep.natural_units import FREQUENCY
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
 
-# Default sampling rates: near SAMPLING_HZ, and different in each test.
+# Default sampling rates: near SAMPLING_HZ for a rig like the bench (in proportion to the natural frequency of
+# others), and different in each test.
 SAMPLING_HZ, SAMPLING_SPREAD = 2000.0, 0.03
 STRAY = "stray_vibration"
 
@@ -83,8 +85,13 @@ def draw(
     random = np.random.default_rng(seeds[0])
     factors = {name: 1.0 + std * float(random.normal()) for name, std in plan.uncertain.items()}
     stray = STRAY in config.effects
+    near = SAMPLING_HZ * config.natural_units().ratio(FREQUENCY)
+
+    def rate(spread: float) -> float:
+        return sampling_hz or round(near * (1.0 + SAMPLING_SPREAD * (2.0 * spread - 1.0)), 3)
+
     tests = tuple(
-        _drawn(test, amplitude_error, sampling_hz, stray, np.random.default_rng(seed))
+        _drawn(test, amplitude_error, rate, stray, np.random.default_rng(seed))
         for test, seed in zip(plan.tests, seeds[1:], strict=True)
     )
     return Truth(config, law, factors, tests)
@@ -93,7 +100,7 @@ def draw(
 def _drawn(
     test: PlannedTest,
     amplitude_error: float,
-    sampling_hz: float | None,
+    rate: Callable[[float], float],
     stray: bool,
     random: np.random.Generator,
 ) -> TrueTest:
@@ -103,7 +110,7 @@ def _drawn(
         plan=test,
         amplitude_mm=test.amplitude_mm * exp((test.amplitude_std or amplitude_error) * error),
         phase_deg=360.0 * phase,
-        sampling_hz=sampling_hz or round(SAMPLING_HZ * (1.0 + SAMPLING_SPREAD * (2.0 * spread - 1.0)), 3),
+        sampling_hz=rate(spread),
         offset=offset,
         stray_phase_deg=360.0 * stray_phase if stray else None,
         random=random,

@@ -1,6 +1,6 @@
 """Fitted parameters with their 95 % intervals."""
 
-from math import exp, inf, isfinite, log, sqrt
+from math import exp, isfinite, log, sqrt
 from typing import Any
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.profile_likelihood import TWO_SIDED
 from wedgesweep.effects import EFFECTS
+from wedgesweep.natural_units import BENCH, NaturalUnits
 from wedgesweep.quantity import Quantity
 
 
@@ -29,7 +30,7 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
         std = sqrt(max(float(slope @ covariance @ slope), 0.0))
         if f"{name}.{quantity.key}" in known:
             std = change(quantity, value, value + known[f"{name}.{quantity.key}"][1])
-        ends = interval(quantity, value, TWO_SIDED * std)
+        ends = interval(quantity, value, TWO_SIDED * std, hypothesis.units)
         return {"value": finite(value), "ci95": [finite(end) for end in ends]}
 
     return {
@@ -45,9 +46,11 @@ def change(quantity: Quantity, value: float, moved: float) -> float:
     return quantity.nearest(moved, value) - value
 
 
-def interval(quantity: Quantity, value: float, half: float) -> tuple[float, float]:
+def interval(
+    quantity: Quantity, value: float, half: float, units: NaturalUnits = BENCH
+) -> tuple[float, float]:
     """Ends of an interval; ``half`` of its width is in the form in which the number is fitted."""
-    low, high = quantity.search or (-inf, inf)
+    low, high = quantity.searched(units)
     if quantity.angle:
         half = min(half, 0.5 * (high - low))
         return value - half, value + half

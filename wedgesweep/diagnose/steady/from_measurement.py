@@ -7,6 +7,7 @@ from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.spectra import fitted, spectrum
 from wedgesweep.effects import acting
 from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.natural_units import FREQUENCY
 
 
 def harmonic_data(measurement: Measurement) -> HarmonicData:
@@ -14,7 +15,9 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
     tests = measurement.tests
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
     records = [(test.time, s, test.refined_frequency) for test, s in zip(tests, signals, strict=True)]
-    found = tone.of(acting(measurement.model.effects)) or tone.find([fitted(*each) for each in records])
+    lowest = tone.LOWEST * measurement.model.natural_units().ratio(FREQUENCY)
+    known = tone.of(acting(measurement.model.effects))
+    found = known or tone.find([fitted(*each) for each in records], lowest)
     spectra = tuple(spectrum(*each, found.frequency if found else None) for each in records)
     std = [test.amplitude_std if test.amplitude is not None else np.inf for test in tests]
     return HarmonicData(

@@ -19,6 +19,7 @@ from wedgesweep.diagnose.steady.spectra import SIMULATED
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
 from wedgesweep.effects import acting
+from wedgesweep.natural_units import NaturalUnits
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
 
 # Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
@@ -91,6 +92,12 @@ class HarmonicData(WhitenedHarmonics, FitData):
     @property
     def known(self) -> dict[str, tuple[float, float]]:
         return {} if self.tone is None else {TONE_FREQUENCY: (self.tone, self.tone_std)}
+
+    @cached_property
+    def units(self) -> NaturalUnits:
+        """Natural units of the model; without gravity of the largest fundamental that was measured."""
+        travel = max(float(np.abs(s.mean[0, 0])) for s in self.spectra)
+        return self.model.natural_units(travel)
 
     def has_tone(self, effects: Iterable[str]) -> bool:
         """Whether responses under these effects contain the tone."""

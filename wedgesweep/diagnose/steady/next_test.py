@@ -20,10 +20,12 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.whitened import real
+from wedgesweep.natural_units import ACCELERATION, FREQUENCY
 from wedgesweep.solvers.periodic import Warm, at_rest
 
+# Frequencies (Hz) of the tests to choose from, for a rig like the bench; see natural_units.
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
-# Input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.
+# Their input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.
 ACCELERATIONS = np.geomspace(0.3, 4.0, 8)
 # Least share of these tests that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
@@ -73,7 +75,9 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     """The test that separates most fits, the best one first; None if there is nothing to separate."""
     if len(fits) < 2:
         return None
+    units = _data(fits[0]).units
     frequency, acceleration = (each.ravel() for each in np.meshgrid(FREQUENCIES, ACCELERATIONS))
+    frequency, acceleration = units.ratio(FREQUENCY) * frequency, units.ratio(ACCELERATION) * acceleration
     omega = 2.0 * np.pi * frequency
     tests = Conditions(omega, acceleration / omega**2)
     predicted = [(fit, _predict(fit, tests)) for fit in fits]
@@ -189,8 +193,8 @@ def _weights(data: HarmonicData, predictions: Sequence[_Prediction]) -> np.ndarr
     size = np.ones((*predictions[0].harmonics.shape[:2], 1))
     for each in reversed(predictions):
         own = np.sqrt((np.abs(each.harmonics) ** 2).sum(-1, keepdims=True))
-        size = np.where(each.found[:, None, None], own, size)
-    return np.sqrt(2.0) / (np.median(level) * np.maximum(size, 1e-12))
+        size = np.where(each.found[:, None, None] & (own > 0.0), own, size)
+    return np.sqrt(2.0) / (np.median(level) * size)
 
 
 def _distances(a: _Prediction, b: _Prediction, weight: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ TONE_FREQUENCY = f"{TONE}.frequency_hz"
 FALSE_ALARM = 1e-4
 # Grid points per resolution of the longest record.
 FINE = 4
-# Lowest frequency (Hz) that is searched: anything slower is drift.
+# Lowest frequency (Hz) that is searched on a rig like the bench: anything slower is drift.
 LOWEST = 1.0
 # Share of a tone that must not be a harmonic for its power to count in full.
 NOT_HARMONIC = 0.05
@@ -39,8 +39,8 @@ def of(effects: Mapping[str, Mapping[str, float]]) -> Tone | None:
     return Tone(effects[TONE]["frequency"], 0.0) if TONE in effects else None
 
 
-def find(spectra: Sequence[Spectrum]) -> Tone | None:
-    """The tone common to all tests, None if there is none.
+def find(spectra: Sequence[Spectrum], lowest: float = LOWEST) -> Tone | None:
+    """The tone from a lowest frequency (Hz) up that is common to all tests, None if there is none.
 
     Multiples of half, a third and so on of the input frequency are no spurious tones but sub-harmonics of
     the response; tests of another frequency have them elsewhere. If all tests have the same frequency, a
@@ -50,7 +50,7 @@ def find(spectra: Sequence[Spectrum]) -> Tone | None:
     alike = np.abs(np.log(frequency / frequency[:, None])) < SAME_FREQUENCY
     longest = max(s.duration for s in spectra)
     highest = max(BAND / s.interval for s in spectra)
-    grid = np.arange(LOWEST, highest, 1.0 / longest / FINE)
+    grid = np.arange(lowest, highest, 1.0 / longest / FINE)
     if not grid.size:
         return None
     part = 2 if len(spectra) > 1 and alike.all() else 1

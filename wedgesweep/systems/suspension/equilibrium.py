@@ -9,7 +9,8 @@ from wedgesweep.effects import column_compliance, cubic_stiffness
 from wedgesweep.systems.suspension.newton import NO_FRICTION, Coefficients, Loads, reactions
 
 ITERATIONS = 100
-REACHED = 1e-15  # m
+# Newton's method has arrived if a step is this share of what weight and preload deflect the bolster's spring.
+REACHED = 1e-12
 
 
 @compiled
@@ -37,6 +38,7 @@ def equilibrium(p):
     s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
     cubic = cubic_stiffness.coefficient(p)
     yields, stiffness = column_compliance.acts(p), column_compliance.stiffness(p)
+    close = REACHED * (s.bolster_mass * s.gravity + abs(s.wedge_preload)) / s.bolster_spring
     z, deflection = 0.0, 0.0
     for _ in range(ITERATIONS):
         wedge = s.wedge_preload - s.wedge_spring * (lift * z + p.geometry.lift_ratio * deflection)
@@ -53,7 +55,7 @@ def equilibrium(p):
             dz, dq = -(rz * qq - zq * rq) / volume, -(zz * rq - rz * qz) / volume
             stable = zz < 0.0 and volume > 0.0
         z, deflection = z + dz, deflection + dq
-        if abs(dz) + abs(dq) <= REACHED:
+        if abs(dz) + abs(dq) <= close:
             return (z, deflection) if stable else (nan, nan)
     return nan, nan
 

@@ -16,6 +16,7 @@ import numpy as np
 from wedgesweep import effects as known
 from wedgesweep import friction as laws
 from wedgesweep.friction.quantities import FRICTION, SYMBOLS
+from wedgesweep.natural_units import VELOCITY, NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems.suspension.equilibrium import determinant, equilibrium
 
@@ -55,7 +56,7 @@ GEOMETRY = (
 
 # Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects.
 BASE, OWN, ALL = 0, 1, 2
-# Coulomb friction that is regularised reaches mu_d at this velocity (m/s).
+# Coulomb friction that is regularised reaches mu_d at this velocity (m/s) on the bench; see natural_units.
 REGULARISED_VELOCITY = 1e-6
 
 
@@ -128,6 +129,7 @@ def record(
     p = case[0]
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
+    nominal = p["suspension"].copy()
     for quantity in FRICTION:
         value = friction.get(quantity.name, quantity.default * quantity.factor)
         p["friction"][SYMBOLS[quantity.name]] = value
@@ -138,7 +140,7 @@ def record(
         _set(p, name, {**neutral, **effects.get(name, {})})
     p["geometry"]["kit"] = _kit_of(p)
     if is_regularised(p):
-        _regularise(p)
+        _regularise(p, nominal)
     prepare(case)
     return case
 
@@ -172,16 +174,30 @@ def _kit_of(p: np.void) -> int:
     return ALL if any(name in known.NAMES for name in acting) else OWN
 
 
+def natural_units_of(suspension: Mapping[str, float] | np.void, travel: float | None = None) -> NaturalUnits:
+    """Natural units of a suspension (SI numbers by name), whose measured motion has some travel (m)."""
+    mass, stiffness = float(suspension["bolster_mass"]), float(suspension["bolster_spring"])
+    return natural_units(mass, stiffness, float(suspension["gravity"]), travel)
+
+
+def regularised_velocity(suspension: Mapping[str, float] | np.void) -> float:
+    """Velocity (m/s) at which Coulomb friction that effects regularise reaches mu_d."""
+    return REGULARISED_VELOCITY * natural_units_of(suspension).ratio(VELOCITY)
+
+
 def is_regularised(p: np.void) -> bool:
-    """Whether effects turn the case's Coulomb law into a steep ramp (over 1e-3 mm/s)."""
+    """Whether effects turn the case's Coulomb law into a steep ramp."""
     regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in _acting(p))
     return regularising and laws.LAWS["coulomb"].SET_VALUED and p["friction"]["law"] == laws.code("coulomb")
 
 
-def _regularise(p: np.void) -> None:
-    """Replace set-valued friction by a ramp up to mu_d, or up to the peak of ``stribeck``."""
+def _regularise(p: np.void, nominal: np.void) -> None:
+    """Replace set-valued friction by a ramp up to mu_d, or up to the peak of ``stribeck``.
+
+    ``nominal``: the suspension without effects, whose natural units decide on the width.
+    """
     own = p["friction"]
-    own["set_valued"], own["v_t"] = 0, REGULARISED_VELOCITY
+    own["set_valued"], own["v_t"] = 0, regularised_velocity(nominal)
     if p["stribeck"]["velocity"] == 0.0:
         own["mu_s"] = own["mu_d"]
 
@@ -203,7 +219,17 @@ def prepare(case: np.ndarray) -> None:
     p["lift_ratio"] = p["cos_column"] * p["cos_wedge"] / p["sin_included"]
     small = compact(case)[0]
     p["rest"], case[0]["column_compliance"]["rest"] = equilibrium(small)
+    if case[0]["load_dependent_friction"]["reference"] == 0.0:
+        case[0]["load_dependent_friction"]["reference"] = _column_force_at_rest(case[0])
     p["always_well_posed"] = _always_well_posed(case[0], small)
+
+
+def _column_force_at_rest(p: np.void) -> float:
+    """Normal force (N) on the column face of the frictionless equilibrium; 1 where it carries nothing."""
+    s, g = p["suspension"], p["geometry"]
+    rise = g["column_ratio"] * g["cos_column"] * g["rest"] + g["lift_ratio"] * p["column_compliance"]["rest"]
+    load = s["wedge_preload"] - s["wedge_spring"] * rise - s["wedge_mass"] * s["gravity"]
+    return abs(float(load * g["cos_wedge"] / g["sin_included"])) or 1.0
 
 
 def _always_well_posed(p: np.void, small: np.void) -> bool:

@@ -1,0 +1,63 @@
+"""The size of a rig changes nothing in a diagnosis but its numbers, and costs no simulations."""
+
+import pytest
+
+from tests.diagnose.synthetic import drawn
+from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER
+from wedgesweep.diagnose import diagnosis, verdict
+from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.steady import next_test, simulation
+from wedgesweep.effects import EFFECTS
+
+# Rounding may end a fit an iteration earlier or later.
+MORE = 1.1
+GUIDE, SPRING = {"guide_friction": {"force": 0.25}}, {"cubic_stiffness": {"coefficient": 0.6e9}}
+FEWER = ("cubic_stiffness", "bolster_stiffness", "preload", "viscous_damping", "end_stop", "velocity_lag")
+
+
+class Answer:
+    """What a search says of six tests of a rig under an effect, and how many responses it simulated."""
+
+    def __init__(self, effects, size, candidates, monkeypatch):
+        self.size, self.simulated = size, 0
+        respond = simulation.respond
+
+        def counted(rows, *arguments, **more):
+            self.simulated += len(rows)
+            return respond(rows, *arguments, **more)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(simulation, "respond", counted)
+            data = drawn(effects, size=size)
+            explained = diagnosis.explain(Search.of(data, candidates))
+            self.base, self.explanations = explained.base, explained.explanations
+            self.next = next_test.recommend([each.fit for each in self.explanations[:3]])
+        self.finding = verdict.decide(self.base, self.explanations, verdict.DEFAULT)
+
+    def numbers(self, explanation):
+        """Fitted numbers of an explanation as they would be on the bench."""
+        inverse = type(self.size)(*(1.0 / each for each in self.size))
+        return inverse.effects(explanation.fit.values)
+
+
+@pytest.mark.parametrize(
+    ("effects", "size", "candidates"),
+    [(GUIDE, FROUDE, tuple(EFFECTS)), (SPRING, HEAVIER, FEWER)],
+    ids=["guide-froude", "spring-heavier"],
+)
+def test_verdict_causes_numbers_and_next_test_are_those_of_the_bench(effects, size, candidates, monkeypatch):
+    bench, rig = (Answer(effects, each, candidates, monkeypatch) for each in (BENCH_SIZE, size))
+    (cause,) = effects
+    assert bench.finding.best.effects == (cause,)
+    assert rig.finding.verdict == bench.finding.verdict
+    assert [each.effects for each in rig.explanations[:3]] == [
+        each.effects for each in bench.explanations[:3]
+    ]
+    assert rig.base.fit.chi2 == pytest.approx(bench.base.fit.chi2, rel=1e-6)
+    assert rig.finding.best.fit.chi2 == pytest.approx(bench.finding.best.fit.chi2, rel=1e-4)
+    found, expected = (each.numbers(each.finding.best) for each in (rig, bench))
+    assert found[cause] == pytest.approx(expected[cause], rel=1e-4)
+    assert rig.next.separates == bench.next.separates
+    assert rig.next.frequency * size.time == pytest.approx(bench.next.frequency)
+    assert rig.next.amplitude / size.length == pytest.approx(bench.next.amplitude)
+    assert rig.simulated <= MORE * bench.simulated

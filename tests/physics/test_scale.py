@@ -1,0 +1,66 @@
+"""A rig of another size moves in proportion, under every effect."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from tests.physics.effect_cases import mild
+from tests.scaling import BENCH_SIZE, POWERS_OF_TWO, SIZES
+from wedgesweep.effects import EFFECTS
+from wedgesweep.solvers import event_driven, radau
+from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems.suspension import parameters
+
+HERTZ, AMPLITUDE = 20.0, 0.1e-3
+EXPLICIT = [(name, "static-dynamic") for name in EFFECTS] + [("cross_slip", "coulomb")]
+# Rounding of implicit steps depends on the order of pivots, and that on the units.
+CASES = [*EXPLICIT, ("column_compliance", "coulomb")]
+
+
+def motion(size, law, effects, solver=event_driven):
+    """Displacement over length and velocity over velocity, and normal forces over weight, all (n,)."""
+    omega = 2.0 * pi * HERTZ / size.time
+    record = parameters.record(
+        law, AMPLITUDE * size.length, omega, size.suspension(), size.friction(), size.effects(effects)
+    )
+    window = Window(omega, 1, 2, 64)
+    run = solver.solve(record, window, rtol=1e-9, time_limit=60.0).samples
+    length, time = size.length, size.time
+    return run.x / length, run.velocity / length * time, run.normal / size.mass / length * time**2
+
+
+def in_proportion(size, law, effects, tolerance, solver=event_driven):
+    expected, found = (motion(each, law, effects, solver) for each in (BENCH_SIZE, size))
+    return [np.abs(b - a).max() <= tolerance * np.abs(a).max() for a, b in zip(expected, found, strict=True)]
+
+
+@pytest.mark.parametrize("size", SIZES.values(), ids=SIZES)
+@pytest.mark.parametrize(("name", "law"), CASES)
+def test_motion_is_in_proportion(name, law, size):
+    displacement, velocity, forces = in_proportion(size, law, {name: mild(name)}, 1e-9)
+    assert displacement
+    assert velocity
+    # On a steep ramp rounding of the velocity is multiplied.
+    assert forces or law == "coulomb"
+
+
+@pytest.mark.parametrize("size", POWERS_OF_TWO.values(), ids=POWERS_OF_TWO)
+@pytest.mark.parametrize(("name", "law"), EXPLICIT)
+def test_motion_is_the_same_to_the_last_bits_where_factors_round_nothing(name, law, size):
+    """Nothing in the mechanics or the solver is in units of its own."""
+    assert all(in_proportion(size, law, {name: mild(name)}, 1e-13))
+
+
+@pytest.mark.parametrize("size", POWERS_OF_TWO.values(), ids=POWERS_OF_TWO)
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [
+        ("velocity_lag", "coulomb"),
+        ("velocity_lag", "exponential"),
+        ("fixture_resonance", "static-dynamic"),
+        ("ageing", "coulomb"),
+    ],
+)
+def test_the_reference_solver_has_no_units_of_its_own(name, law, size):
+    assert all(in_proportion(size, law, {name: mild(name)}, 1e-9, radau))
