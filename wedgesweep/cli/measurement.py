@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from wedgesweep.measured import Measurement, TestRecord
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
-UNITS = ("", "Hz", "mm", "", "per period", "of displacement, velocity", "")
+UNITS = ("", "Hz", "mm", "", "per period", "of responses", "")
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -49,6 +49,8 @@ def _told(stated: float | None, used: float) -> str:
 
 
 def _amplitude(test: "TestRecord") -> str:
+    if test.input is not None:
+        return "recorded"
     if test.amplitude is None:
         return "unknown"
     std = f" +- {100.0 * test.amplitude_std:.3g} %" if test.amplitude_std else ""
@@ -56,15 +58,20 @@ def _amplitude(test: "TestRecord") -> str:
 
 
 def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
-    """Noise per channel, and the harmonics of the displacement."""
+    """Noise per response, and the harmonics of the first one."""
     from wedgesweep.measured.noise_estimate import estimate_noise
 
-    displacement = estimate_noise(test.time, test.displacement, frequency)
-    told = [f"{displacement.std * 1e3:.3g} mm ({100.0 * displacement.share:.2g} %)"]
-    if test.velocity is not None:
-        velocity = estimate_noise(test.time, test.velocity, frequency)
-        told.append(f"{velocity.std * 1e3:.3g} mm/s ({100.0 * velocity.share:.2g} %)")
-    return ", ".join(told), _runs(displacement.harmonics)
+    told, harmonics = [], None
+    for samples, unit, size in (
+        (test.displacement, "mm", 1e-3),
+        (test.velocity, "mm/s", 1e-3),
+        (test.acceleration, "m/s^2", 1.0),
+    ):
+        if samples is not None:
+            noise = estimate_noise(test.time, samples, frequency)
+            told.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
+            harmonics = noise.harmonics if harmonics is None else harmonics
+    return ", ".join(told), _runs(harmonics or ())
 
 
 def _runs(orders: tuple[int, ...]) -> str:

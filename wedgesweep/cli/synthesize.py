@@ -7,7 +7,7 @@ import click
 
 from wedgesweep.cli.options import CONFIG, N_JOBS
 from wedgesweep.cli.run import announce_compiling
-from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.names import NOISES, QUANTITIES
 
 SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
 
@@ -63,6 +63,18 @@ SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
     default=1e-3,
     show_default=True,
     help="Relative std of the true amplitudes about the nominal ones; a test's amplitude_std overrides it.",
+)
+@click.option(
+    "--record-input",
+    type=click.Choice(QUANTITIES),
+    help="Record this quantity of the input, in its SI unit, instead of stating its amplitude.",
+)
+@click.option(
+    "--input-level",
+    type=SHARE,
+    default=0.01,
+    show_default=True,
+    help="Std of the recorded input's noise relative to its rms.",
 )
 @N_JOBS
 def synthesize(

@@ -68,6 +68,16 @@ def rates(column_slip, acceleration, mode, y, p):
 
 
 @_chain
+def base_displacement(u, t, p):
+    """Displacement of the input (m)."""
+
+
+@_chain
+def base_velocity(u1, t, p):
+    """Velocity of the input (m/s)."""
+
+
+@_chain
 def base_acceleration(u2, t, p):
     """Acceleration of the input (m/s^2)."""
 

@@ -5,7 +5,7 @@
 Neutral and default: second = third = 0; both phases 0.
 """
 
-from math import sin
+from math import cos, sin
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
@@ -27,6 +27,23 @@ EFFECT = Effect(
         "third",
     ),
 )
+
+
+@inlined
+def base_displacement(u, t, p):
+    """U (m) with the harmonics, from that without."""
+    own, phase = p.input_distortion, p.input.omega * t
+    wave = own.second * sin(2.0 * phase + own.second_phase) + own.third * sin(3.0 * phase + own.third_phase)
+    return u + p.input.amplitude * wave
+
+
+@inlined
+def base_velocity(u1, t, p):
+    """U' (m/s) with the harmonics, from that without."""
+    own, phase = p.input_distortion, p.input.omega * t
+    wave = 2.0 * own.second * cos(2.0 * phase + own.second_phase)
+    wave += 3.0 * own.third * cos(3.0 * phase + own.third_phase)
+    return u1 + p.input.amplitude * p.input.omega * wave
 
 
 @inlined

@@ -7,7 +7,7 @@ the response is not periodic in the forcing.
 Neutral and default: acceleration = 0; frequency must be given.
 """
 
-from math import nan, pi, sin
+from math import cos, nan, pi, sin
 
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
@@ -42,6 +42,26 @@ DERIVED = ("phase",)
 def acts(p):
     """Whether there is a tone, so that the response does not repeat."""
     return p.stray_vibration.acceleration != 0.0
+
+
+@inlined
+def base_displacement(u, t, p):
+    """U (m) with the tone, from that without."""
+    if not acts(p):
+        return u
+    own = p.stray_vibration
+    omega = 2.0 * pi * own.frequency
+    return u - own.acceleration / omega**2 * sin(omega * t + own.phase)
+
+
+@inlined
+def base_velocity(u1, t, p):
+    """U' (m/s) with the tone, from that without."""
+    if not acts(p):
+        return u1
+    own = p.stray_vibration
+    omega = 2.0 * pi * own.frequency
+    return u1 - own.acceleration / omega * cos(omega * t + own.phase)
 
 
 @inlined

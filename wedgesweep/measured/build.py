@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.measured import sampling
-from wedgesweep.measured.declarations import UNITS
+from wedgesweep.measured.declarations import INPUT, UNITS, units
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
@@ -29,7 +29,7 @@ class Channels:
         """Samples of a channel in SI units, or None."""
         if channel not in self.columns:
             return None
-        return self.columns[channel] * UNITS[channel][self.units[channel]]
+        return self.columns[channel] * units(channel)[self.units[channel]]
 
 
 def build_record(
@@ -43,8 +43,6 @@ def build_record(
             problems.append(f"{channels.file}: {channel} is constant; there is no vibration in it")
     if len(problems) > before:
         return None
-    displacement = channels.si("displacement")
-    assert displacement is not None
     amplitude = given.get("amplitude_mm")
     test = TestRecord(
         name=name,
@@ -53,8 +51,11 @@ def build_record(
         amplitude=None if amplitude is None else amplitude * 1e-3,
         amplitude_std=given.get("amplitude_std", 0.0),
         time=grid * UNITS["time"][channels.units["time"]],
-        displacement=displacement,
+        displacement=channels.si("displacement"),
         velocity=channels.si("velocity"),
+        acceleration=channels.si("acceleration"),
+        input=channels.si(INPUT),
+        model=given.get("model", {}),
     )
     problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
     return None if len(problems) > before else test

@@ -1,11 +1,11 @@
 """Declaration of every key of measured.toml."""
 
 from dataclasses import dataclass
-from math import nan
+from math import isfinite, nan
 from typing import Any
 
 from wedgesweep.config import toml
-from wedgesweep.config.keys import Choice, Flag, Number, Text, show
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, show
 from wedgesweep.config.tables import Table, TableList, table
 from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
 from wedgesweep.quantity import Quantity
@@ -14,7 +14,14 @@ UNITS = {
     "time": {"s": 1.0, "ms": 1e-3},
     "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
     "velocity": {"m/s": 1.0, "mm/s": 1e-3},
+    "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": 9.80665},
+    "force": {"N": 1.0, "kN": 1e3},
 }
+# Channels that show the response, and what a recorded input may be.
+RESPONSES = ("displacement", "velocity", "acceleration", "force")
+INPUT = "input"
+QUANTITIES = ("displacement", "velocity", "acceleration", "force")
+RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
@@ -45,6 +52,26 @@ class Unit(Choice):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Overrides(Key):
+    """Numbers of the model by "section.key"; the model itself checks the names and the ranges."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> dict[str, float] | None:
+        if not isinstance(value, dict):
+            told = f'{show(value)} is not a table; write {{ "section.key" = number }}'
+            problems.append(f"{path}: {told}")
+            return None
+        for name, number in value.items():
+            if name.count(".") < 1:
+                problems.append(f'{path}: {show(name)} is not "section.key"; write it in quotes')
+            if isinstance(number, bool) or not isinstance(number, int | float) or not isfinite(number):
+                problems.append(f"{path}.{show(name)}: {show(number)} is not a finite number; write one")
+        return value
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": "object", "additionalProperties": {"type": "number"}}
+
+
+@dataclass(frozen=True, kw_only=True)
 class RecordTable(Table):
     """Keys of a test."""
 
@@ -55,14 +82,37 @@ class RecordTable(Table):
         return super().read(value, path, problems)
 
 
-def _channel(name: str, meaning: str, column: str, unit: str, *more: Flag, optional: bool = False) -> Inline:
+@dataclass(frozen=True, kw_only=True)
+class Input(Inline):
+    """The recorded input, whose unit is one of its quantity."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
+        read = super().read(value, path, problems)
+        if {"quantity", "unit"} <= read.keys() and read["unit"] not in UNITS[read["quantity"]]:
+            valid = ", ".join(UNITS[read["quantity"]])
+            told = f"{show(read['unit'])} is no unit of {read['quantity']}; valid here: {valid}"
+            problems.append(f"{path}.unit: {told}")
+        return read
+
+
+def units(channel: str, quantity: str | None = None) -> dict[str, float]:
+    """Units of a channel, by name, and their sizes in SI; an input has those of its quantity."""
+    if channel != INPUT:
+        return UNITS[channel]
+    if quantity is not None:
+        return UNITS[quantity]
+    return {name: size for each in QUANTITIES for name, size in UNITS[each].items()}
+
+
+def _channel(name: str, meaning: str, column: str, unit: str, *more: Key, optional: bool = False) -> Inline:
     keys = (
         Text(key="column", meaning="header name in the CSV files", example=column),
-        Unit(key="unit", meaning="its unit", choices=tuple(UNITS[name]), example=unit),
+        Unit(key="unit", meaning="its unit", choices=tuple(units(name)), example=unit),
         *more,
     )
     groups = tuple((key,) for key in keys)
-    return Inline(key=name, meaning=meaning, groups=groups, optional=optional)
+    kind = Input if name == INPUT else Inline
+    return kind(key=name, meaning=meaning, groups=groups, optional=optional)
 
 
 def _uncertain(name: str) -> Number:
@@ -70,14 +120,29 @@ def _uncertain(name: str) -> Number:
     return Number.of(Quantity(name, nan, meaning, above=0.0, below=1.0), optional=True)
 
 
+OF = Choice(
+    key="of",
+    meaning="motion of the mass against its base, or against the ground",
+    choices=(RELATIVE, ABSOLUTE),
+    default=RELATIVE,
+)
+QUANTITY = Choice(
+    key="quantity", meaning="what was recorded of the input", choices=QUANTITIES, example="displacement"
+)
+INPUT_GAIN_STD = Quantity(
+    "input_gain_std", 0.0, "relative std of the gain of the recorded input", minimum=0.0, below=1.0
+)
 DERIVED = Flag(key="derived", meaning="whether it is computed from the displacement", default=False)
 
 COLUMNS = table(
     "columns",
     "header name and unit of each channel",
     _channel("time", "time at a constant sampling rate", "t", "s"),
-    _channel("displacement", "side frame minus bolster, x - y", "d", "mm"),
-    _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, optional=True),
+    _channel("displacement", "side frame minus bolster, x - y", "d", "mm", OF, optional=True),
+    _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, OF, optional=True),
+    _channel("acceleration", "relative acceleration, x'' - y''", "a", "m/s^2", OF, optional=True),
+    _channel("force", "force on the mass", "f", "N", optional=True),
+    _channel(INPUT, "motion of the side frame as recorded", "u", "mm", QUANTITY, optional=True),
     example="measurement.columns",
 )
 
@@ -91,6 +156,7 @@ TEST = RecordTable(
         (Number.of(FREQUENCY, optional=True),),
         (Number.of(AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),
+        (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )
 
@@ -100,6 +166,7 @@ MEASUREMENT = table(
     Text(key="title", meaning="title of the measurement", default="measurement"),
     Text(key="model", meaning="the base model: a config, relative to this file", example="model.toml"),
     COLUMNS,
+    Number.of(INPUT_GAIN_STD),
     UNCERTAIN,
     TableList(key="test", meaning="the tests", item=TEST, example="measurement.test"),
 )

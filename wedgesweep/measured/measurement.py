@@ -1,7 +1,7 @@
 """What measured data consist of, in SI units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -10,6 +10,7 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.measured.frequency import refined_frequency
+from wedgesweep.measured.overrides import with_numbers
 
 
 class MeasuredError(InputError):
@@ -22,8 +23,9 @@ class TestRecord:
 
     ``frequency`` (Hz) and ``amplitude`` (m, of the side frame) are None where they are not known;
     ``amplitude_std`` is relative. ``time`` (s) is the even grid that the file's stamps round, shape (n,);
-    ``displacement`` (m, x - y with the sensor's constant part) and ``velocity`` (m/s, x' - y', or None) are
-    samples at these times.
+    ``displacement`` (m, x - y with the sensor's constant part) and ``velocity`` (m/s, x' - y') are
+    samples at these times, and so are ``acceleration`` (m/s^2) and the recorded ``input`` (SI); None where
+    not measured. ``model``: numbers of the base model in this test, by "section.key", in its units.
     """
 
     __test__ = False  # not a test of pytest
@@ -34,13 +36,22 @@ class TestRecord:
     amplitude: float | None
     amplitude_std: float
     time: np.ndarray
-    displacement: np.ndarray
+    displacement: np.ndarray | None
     velocity: np.ndarray | None
+    acceleration: np.ndarray | None = None
+    input: np.ndarray | None = None
+    model: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def refined_frequency(self) -> float:
         """Frequency (Hz): the stated one, unless none is stated or the record excludes it."""
-        return refined_frequency(self.time, self.displacement, self.frequency)
+        return refined_frequency(self.time, self.leading, self.frequency)
+
+    @property
+    def leading(self) -> np.ndarray:
+        """The channel (n,) that tells the frequency: the recorded input, or the first response."""
+        channels = (self.input, self.displacement, self.velocity, self.acceleration)
+        return next(each for each in channels if each is not None)
 
     @property
     def sampling_rate(self) -> float:
@@ -58,7 +69,8 @@ class Measurement:
     """Tests of one suspension, and the base model.
 
     ``law`` is the model's friction law; ``uncertain`` holds the relative std of numbers of the model by
-    the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel.
+    the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel, with
+    ``of`` of responses and ``quantity`` of the input. ``input_gain_std``: of a recorded input, relative.
     """
 
     path: Path
@@ -69,3 +81,13 @@ class Measurement:
     tests: tuple[TestRecord, ...]
     derived_velocity: bool
     columns: Mapping[str, Mapping[str, str]]
+    input_gain_std: float = 0.0
+
+    @property
+    def recorded_input(self) -> str | None:
+        """What was recorded of the input, None if its amplitude is stated instead."""
+        return self.columns["input"]["quantity"] if "input" in self.columns else None
+
+    def model_of(self, test: TestRecord) -> Config:
+        """The base model with the numbers of a test."""
+        return with_numbers(self.model, test.model) if test.model else self.model

@@ -5,28 +5,41 @@ path). The group ``uncertain``, if there is one, has an attribute for each uncer
 ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm`` and
 ``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally, ``velocity``
 over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed from
-displacement has the attribute ``derived`` = 1.
+displacement has the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute
+``quantity``; ``acceleration`` is a further response, and responses may have the attribute ``of``. The
+attribute ``model`` of a test holds its numbers of the model as TOML text; ``input_gain_std`` is one of the
+file.
 """
 
 import os
+import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.config import Config
+from wedgesweep.config import Config, toml
 from wedgesweep.config.keys import hint, show
 from wedgesweep.config.tables import Table
+from wedgesweep.measured import overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.channels import channel_faults, keys_faults, model_faults
+from wedgesweep.measured.declarations import INPUT, QUANTITIES, TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
 
 SUFFIXES = (".nc", ".nc4")
-ROOT_NAMES = ("title", "model")
-SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s"}
-LONG_NAMES = {"time": "time", "displacement": "side frame minus bolster", "velocity": "rate of displacement"}
+ROOT_NAMES = ("title", "model", "input_gain_std")
+SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
+LONG_NAMES = {
+    "time": "time",
+    "displacement": "side frame minus bolster",
+    "velocity": "rate of displacement",
+    "acceleration": "rate of velocity",
+    "input": "recorded input",
+}
 
 
 def write_netcdf(measurement: Measurement, path: Path) -> None:
@@ -37,33 +50,38 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
     try:
         with netCDF4.Dataset(partial, "w") as root:
             root.setncatts({"title": measurement.title, "model": measurement.model.to_toml()})
+            if measurement.input_gain_std:
+                root.setncattr("input_gain_std", measurement.input_gain_std)
             root.createGroup("uncertain").setncatts(dict(measurement.uncertain))
             tests = root.createGroup("tests")
             for i, test in enumerate(measurement.tests):
-                _write_test(tests.createGroup(f"{i:04d}"), test, measurement.derived_velocity)
+                _write_test(tests.createGroup(f"{i:04d}"), test, measurement)
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)
 
 
-def _write_test(group: Any, test: TestRecord, derived: bool) -> None:
+def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
     millimetres = None if test.amplitude is None else float(f"{test.amplitude * 1e3:.15g}")
     given = {
         "file": test.file,
         "frequency_hz": test.frequency,
         "amplitude_mm": millimetres,
         "amplitude_std": None if test.amplitude is None else test.amplitude_std,
+        "model": toml.inline(dict(test.model)) if test.model else None,
     }
     group.setncatts({name: value for name, value in given.items() if value is not None})
     group.createDimension("sample", test.time.size)
-    for channel, unit in SI_UNITS.items():
+    for channel, long_name in LONG_NAMES.items():
         samples = getattr(test, channel)
         if samples is not None:
+            told = {key: measurement.columns.get(channel, {}).get(key) for key in ("of", "quantity")}
             variable = group.createVariable(channel, "f8", ("sample",), compression="zlib")
-            variable.setncatts({"units": unit, "long_name": LONG_NAMES[channel]})
+            variable.setncatts({"units": SI_UNITS[told["quantity"] or channel], "long_name": long_name})
+            variable.setncatts({key: value for key, value in told.items() if value is not None})
             variable[:] = samples
             if channel == "velocity":
-                variable.setncattr("derived", int(derived))
+                variable.setncattr("derived", int(measurement.derived_velocity))
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
@@ -98,9 +116,22 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         problems.append(
             f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
         )
+    columns = [_columns(each) for each in groups]
+    if any(each != columns[0] for each in columns):
+        problems.append(
+            f"{path}: tests: they have different variables, units, of or quantity; make them alike"
+        )
+    gain_std = attributes.get("input_gain_std", 0.0)
+    if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
+        problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
+        gain_std = 0.0
+    problems += [f"{path}: tests: {fault}" for fault in channel_faults(columns[0], gain_std)]
+    if config is not None:
+        problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns[0])]
+        for test in complete:
+            problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
     if problems or config is None:
         raise MeasuredError(problems)
-    variables = [groups[0].variables[name] for name in UNITS if name in groups[0].variables]
     return Measurement(
         path=path,
         title=attributes.get("title", "measurement"),
@@ -109,8 +140,21 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         uncertain=uncertain,
         tests=complete,
         derived_velocity=derived == {True},
-        columns={each.name: {"column": each.name, "unit": each.units} for each in variables},
+        columns=columns[0],
+        input_gain_std=float(gain_std),
     )
+
+
+def _columns(group: Any) -> dict[str, dict[str, str]]:
+    """Name, unit, ``of`` and ``quantity`` of the variables of a test."""
+    found = {}
+    for name in (*UNITS, INPUT):
+        if name in group.variables:
+            own = group.variables[name]
+            told = {"column": name, "unit": getattr(own, "units", "none")}
+            more = {key: getattr(own, key) for key in ("of", "quantity") if hasattr(own, key)}
+            found[name] = told | more
+    return found
 
 
 def _model(
@@ -146,26 +190,45 @@ def _checked(table: Table, given: Mapping[str, Any], at: str, problems: list[str
 def _test(group: Any, path: Path, problems: list[str]) -> TestRecord | None:
     at = f"{path}: {group.path.lstrip('/')}"
     before = len(problems)
-    given = _checked(TEST, {"file": group.name, **_attributes(group)}, at, problems)
+    given = _checked(TEST, {"file": group.name, **_read_numbers(_attributes(group))}, at, problems)
+    problems.extend(f"{at}: {fault}" for fault in keys_faults(given, group.variables))
     columns = {
         name: np.ma.filled(variable[:].astype(float), np.nan) for name, variable in group.variables.items()
     }
     units = {name: getattr(variable, "units", "none") for name, variable in group.variables.items()}
-    problems.extend(f"{at}: {fault}" for fault in _variable_faults(columns, units))
+    quantity = getattr(group.variables.get(INPUT), "quantity", None)
+    problems.extend(f"{at}: {fault}" for fault in _variable_faults(columns, units, quantity))
     if len(problems) > before:
         return None
     channels = Channels(columns, units, at, lambda sample: f"{at}: sample {sample}")
     return build_record(Path(given["file"]).stem, given, channels, at, problems)
 
 
-def _variable_faults(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> list[str]:
-    faults = [f"no variable {name}" for name in ("time", "displacement") if name not in columns]
+def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Attributes of a test with its numbers of the model read from their text."""
+    if not isinstance(attributes.get("model"), str):
+        return attributes
+    try:
+        return attributes | {"model": tomllib.loads(f"model = {attributes['model']}")["model"]}
+    except tomllib.TOMLDecodeError:
+        return attributes
+
+
+def _variable_faults(
+    columns: Mapping[str, np.ndarray], units: Mapping[str, str], quantity: str | None
+) -> list[str]:
+    needed = ("time",) if INPUT in columns else ("time", "displacement")
+    faults = [f"no variable {name}" for name in needed if name not in columns]
+    if INPUT in columns and quantity not in QUANTITIES:
+        faults.append(f"{INPUT}: quantity {show(quantity or 'none')}; valid here: {', '.join(QUANTITIES)}")
+        quantity = None
     for name, samples in columns.items():
-        if name not in UNITS:
-            faults.append(f"{name}: unknown variable; {hint(name, UNITS)}")
+        if name not in (*UNITS, INPUT):
+            faults.append(f"{name}: unknown variable; {hint(name, (*UNITS, INPUT))}")
             continue
-        if units[name] not in UNITS[name]:
-            faults.append(f"{name}: unknown units {show(units[name])}; valid here: {', '.join(UNITS[name])}")
+        valid = units_of(name, quantity)
+        if units[name] not in valid:
+            faults.append(f"{name}: unknown units {show(units[name])}; valid here: {', '.join(valid)}")
         if samples.ndim != 1 or samples.size != columns.get("time", samples).size:
             faults.append(f"{name}: shape {samples.shape}; it has one dimension, that of time")
         elif not np.isfinite(samples).all():

@@ -17,7 +17,7 @@ MOST, LEAST, SEVERAL = 300.0, 0.01, 2
 
 def channel_faults(test: TestRecord, file: str) -> list[str]:
     """Faults between the channels of a test whose frequency is correct."""
-    if test.velocity is None:
+    if test.velocity is None or test.displacement is None:
         return []
     at = test.refined_frequency
     moved, speed = (_fundamental(test, signal) for signal in (test.displacement, test.velocity))
@@ -39,7 +39,7 @@ def amplitude_faults(tests: Sequence[TestRecord]) -> list[str]:
     moved = {
         test.file: abs(_fundamental(test, test.displacement)) / test.amplitude
         for test in tests
-        if test.amplitude is not None
+        if test.amplitude is not None and test.displacement is not None
     }
     faults = [
         f"{file} moves {share:.3g} times its amplitude_mm; correct one of them"

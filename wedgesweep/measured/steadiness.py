@@ -27,7 +27,7 @@ def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
         told = f"has {test.time.size} samples, at most {MOST_SAMPLES} are used"
         return [f"{file}: {told}; cut it shorter, or low-pass it and sample it down"]
     stated = test.frequency
-    found = frequency.estimate_frequency(test.time, test.displacement) if stated is None else stated
+    found = frequency.estimate_frequency(test.time, test.leading) if stated is None else stated
     if isnan(found):
         return [f"{file}: no vibration stands out of the noise; state frequency_hz in {at}"]
     samples = test.sampling_rate / found
@@ -38,7 +38,7 @@ def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
     if periods < FEWEST_PERIODS - WHOLE:
         told = f"covers {periods:.3g} periods of {found:.6g} Hz"
         return [f"{file}: {told}; at least {FEWEST_PERIODS} are needed"]
-    estimate = frequency.estimate_near(test.time, test.displacement, found, frequency.LOBE / periods)
+    estimate = frequency.estimate_near(test.time, test.leading, found, frequency.LOBE / periods)
     return _drift(estimate, periods, file) or _contradiction(test, estimate, file, at)
 
 
@@ -51,7 +51,7 @@ def _contradiction(test: TestRecord, estimate: FrequencyEstimate, file: str, at:
         if estimate.differs(stated) and _worse(test, stated, estimate.frequency)
         else stated
     )
-    if actual == stated and not frequency.stands_out(test.time, test.displacement, stated):
+    if actual == stated and not frequency.stands_out(test.time, test.leading, stated):
         actual = _elsewhere(test, stated)
     if abs(actual / stated - 1.0) < frequency.NEGLIGIBLE:
         return []
@@ -65,16 +65,16 @@ def _worse(test: TestRecord, stated: float, other: float) -> bool:
 
 
 def _noise(test: TestRecord, at: float) -> NoiseEstimate:
-    return estimate_noise(test.time, test.displacement, at)
+    return estimate_noise(test.time, test.leading, at)
 
 
 def _elsewhere(test: TestRecord, stated: float) -> float:
     """Frequency (Hz) of a vibration that dominates the stated one; else the stated one."""
-    found = frequency.estimate_frequency(test.time, test.displacement)
+    found = frequency.estimate_frequency(test.time, test.leading)
     # In noise alone the highest line is a small part of the record.
     if isnan(found) or test.duration * found < 2.0 or _noise(test, found).share > 1.0:
         return stated
-    there, here = (frequency.amplitude(test.time, test.displacement, each) for each in (found, stated))
+    there, here = (frequency.amplitude(test.time, test.leading, each) for each in (found, stated))
     return found if here < LEAKAGE * there else stated
 
 

@@ -5,7 +5,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from wedgesweep.measured import csv_columns
+from wedgesweep.config import Config
+from wedgesweep.measured import channels, csv_columns, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import ROOT
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
@@ -22,11 +23,17 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     measurement = given.get("measurement", {})
     if model is None and "model" in measurement:
         model = path.parent / measurement["model"]
+    columns = measurement.get("columns", {})
+    if not problems:
+        told = channels.channel_faults(columns, measurement["input_gain_std"])
+        problems += [f"{path}: {_at(fault)}" for fault in told]
     config, law = load_model(model, problems) if model else (None, "")
+    if config is not None:
+        problems += [f"{model}: {fault}" for fault in channels.model_faults(config.effects, columns)]
+        problems += _override_faults(path, measurement, config)
     tests = _tests(path, measurement, problems)
     if problems or config is None:
         raise MeasuredError(problems)
-    columns = measurement["columns"]
     return Measurement(
         path=path,
         title=measurement["title"],
@@ -35,8 +42,25 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         uncertain=measurement["uncertain"],
         tests=tuple(tests),
         derived_velocity=columns.get("velocity", {}).get("derived", False),
-        columns={name: {"column": each["column"], "unit": each["unit"]} for name, each in columns.items()},
+        columns={
+            name: {key: value for key, value in each.items() if key != "derived"}
+            for name, each in columns.items()
+        },
+        input_gain_std=measurement["input_gain_std"],
     )
+
+
+def _at(fault: str) -> str:
+    """The full key of a fault of the channels."""
+    return f"measurement.{fault}" if fault.startswith("input_gain_std") else f"measurement.columns.{fault}"
+
+
+def _override_faults(path: Path, measurement: dict[str, Any], config: Config) -> list[str]:
+    """Numbers of single tests that the model does not have, or that are out of range."""
+    faults: list[str] = []
+    for i, given in enumerate(measurement.get("test", ())):
+        faults += overrides.faults(config, given, f"{path}: measurement.test[{i}].model")
+    return faults
 
 
 def has_measurement(path: Path) -> bool:
@@ -69,7 +93,7 @@ def _document(path: Path, problems: list[str]) -> dict[str, Any]:
 def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[TestRecord]:
     """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
-    complete = {"time", "displacement"} <= columns.keys() and all(
+    complete = columns.keys() > {"time"} and all(
         {"column", "unit"} <= each.keys() for each in columns.values()
     )
     tests: list[TestRecord] = []
@@ -83,6 +107,7 @@ def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
+        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns))
         if complete:
             tests += _test(path.parent / file, at, given, columns, problems)
     return tests
@@ -96,6 +121,6 @@ def _test(
     if not numbers:
         return []
     units = {channel: each["unit"] for channel, each in columns.items()}
-    channels = Channels(numbers, units, str(file), lambda sample: f"{file}:{lines[sample]}")
-    test = build_record(file.stem, given, channels, at, problems)
+    content = Channels(numbers, units, str(file), lambda sample: f"{file}:{lines[sample]}")
+    test = build_record(file.stem, given, content, at, problems)
     return [test] if test else []

@@ -9,10 +9,11 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
+from wedgesweep.measured.declarations import UNITS
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.cases import compile_once
-from wedgesweep.synthesize import files, noise
+from wedgesweep.synthesize import files, noise, recorded_input
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady
 from wedgesweep.synthesize.plan import Plan
@@ -29,7 +30,9 @@ class SynthesisError(InputError):
 
 @dataclass(frozen=True)
 class Options:
-    """How the data are made; ``level`` and ``amplitude_error`` are relative std.
+    """How the data are made; ``level``, ``input_level`` and ``amplitude_error`` are relative std.
+
+    ``record_input``: quantity of the input that is recorded; its amplitude is then not stated.
 
     If ``sampling_hz`` is None, each test has a different rate, which does not divide the period: near 2 kHz
     for a rig like the bench.
@@ -42,6 +45,8 @@ class Options:
     sampling_hz: float | None = None
     settle_periods: int = 60
     amplitude_error: float = 1e-3
+    record_input: str | None = None
+    input_level: float = 0.01
 
 
 def synthesize(
@@ -63,7 +68,7 @@ def synthesize(
         raise SynthesisError(problems)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
     motions = _motions(truth, options, n_jobs)
-    tables = [_table(*each, options) for each in zip(truth.tests, motions, strict=True)]
+    tables = [_table(truth, *each, options) for each in zip(truth.tests, motions, strict=True)]
     model = Config(config.document | {"effects": {}, "title": "base model"})
     measured = _measured(directory.name, plan, options)
     files.write(directory, measured, model, tables, _told(truth, motions, options))
@@ -114,13 +119,27 @@ def _motion(record: np.ndarray, *arguments: Any) -> Motion | str:
     return motion
 
 
-def _table(test: TrueTest, motion: Motion, options: Options) -> Table:
+def _table(truth: Truth, test: TrueTest, motion: Motion, options: Options) -> Table:
     """Channels with offset and noise, as in the CSV file; time starts at 0."""
     displacement = motion.displacement + test.offset * motion.displacement.std()
     channels = (displacement, motion.velocity)
     step = 1.0 / test.sampling_hz
     displacement, velocity = noise.NOISES[options.noise](channels, options.level, step, test.random)
-    return Table(step * np.arange(displacement.size), displacement * 1e3, velocity * 1e3)
+    time = step * np.arange(displacement.size)
+    return Table(time, displacement * 1e3, velocity * 1e3, _input(truth, test, time, options))
+
+
+def _input(truth: Truth, test: TrueTest, time: np.ndarray, options: Options) -> np.ndarray | None:
+    """The recorded input in its SI unit, with white noise."""
+    if options.record_input is None:
+        return None
+    # Differences lose a sample at either end.
+    first = int(options.noise == "differentiated")
+    clock = test.clock(options.periods, 0)
+    exact = recorded_input.recorded(
+        truth.record(test), clock.start + first * clock.step + time, options.record_input
+    )
+    return exact + options.input_level * exact.std() * test.random.normal(size=exact.size)
 
 
 def _measured(title: str, plan: Plan, options: Options) -> dict[str, Any]:
@@ -128,16 +147,19 @@ def _measured(title: str, plan: Plan, options: Options) -> dict[str, Any]:
     tests = []
     for i, test in enumerate(plan.tests):
         told: dict[str, Any] = {"file": f"test-{i:02d}.csv", "frequency_hz": test.frequency_hz}
-        if test.known:
+        if test.known and options.record_input is None:
             told["amplitude_mm"] = test.amplitude_mm
             told["amplitude_std"] = test.amplitude_std or options.amplitude_error
         tests.append(told)
     velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated"}
-    columns = {
+    columns: dict[str, dict[str, Any]] = {
         "time": {"column": "t", "unit": "s"},
         "displacement": {"column": "d", "unit": "mm"},
         "velocity": velocity,
     }
+    if options.record_input is not None:
+        unit = next(iter(UNITS[options.record_input]))
+        columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}
     head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
     return {"measurement": {**head, "test": tests}}
 

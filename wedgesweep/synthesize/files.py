@@ -16,11 +16,15 @@ from wedgesweep.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Content of a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each."""
+    """Content of a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each.
+
+    ``input``: as recorded, in its SI unit, or None.
+    """
 
     time: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray
+    input: np.ndarray | None = None
 
 
 def require_free(directory: Path) -> None:
@@ -50,5 +54,8 @@ def write(
 
 
 def _write_csv(path: Path, table: Table) -> None:
-    rows = np.column_stack([table.time, table.displacement, table.velocity])
-    np.savetxt(path, rows, fmt=["%.7f", "%.7g", "%.7g"], delimiter=",", header="t,d,v", comments="")
+    columns, header = [table.time, table.displacement, table.velocity], "t,d,v"
+    if table.input is not None:
+        columns, header = [*columns, table.input], f"{header},u"
+    formats = ["%.7f", *["%.7g"] * (len(columns) - 1)]
+    np.savetxt(path, np.column_stack(columns), fmt=formats, delimiter=",", header=header, comments="")

@@ -1,3 +1,4 @@
-"""Names of the kinds of noise, apart from their code so that the command line starts fast."""
+"""Names of the kinds of noise and of recorded inputs: apart from their code, for a fast start."""
 
 NOISES = ("white", "ar1", "adc", "differentiated")
+QUANTITIES = ("displacement", "velocity", "acceleration")

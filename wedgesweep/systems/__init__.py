@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from wedgesweep.effects import states
+from wedgesweep.excitation import has_series
 from wedgesweep.systems.suspension import hybrid  # noqa: F401
 from wedgesweep.systems.suspension import parameters as suspension
 
@@ -22,7 +23,7 @@ def compact(parameters: np.ndarray) -> np.ndarray:
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Records, shape (n,), by the kit that they need: their places, and the compact records."""
-    kits = parameters["geometry"]["kit"]
+    kits = 2 * parameters["geometry"]["kit"] + has_series(parameters)
     for kit in np.unique(kits):
         rows = np.flatnonzero(kits == kit)
         yield rows, compact(parameters[rows])

@@ -1,17 +1,32 @@
 """Measured signals to the harmonics that are fitted."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from wedgesweep.diagnose.steady import tone
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.steady.spectra import fitted, spectrum
+from wedgesweep.diagnose.steady.recorded_input import (
+    InputHarmonics,
+    RecordedInputData,
+    input_harmonics,
+    motion_factor,
+    stated,
+    without_noise,
+)
+from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence, spectrum
 from wedgesweep.effects import acting
 from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.natural_units import FREQUENCY
 
+# Effects that only a sensor of this channel, relative to the base, can show.
+OF_SENSORS = {"displacement_gain": "displacement", "velocity_lag": "velocity"}
+
 
 def harmonic_data(measurement: Measurement) -> HarmonicData:
     """Spectra of all tests; a spurious tone is that of the base model, or it is looked for."""
+    if measurement.recorded_input is not None:
+        return _under_recorded_input(measurement)
     tests = measurement.tests
     signals = [_channels(test, measurement.derived_velocity) for test in tests]
     records = [(test.time, s, test.refined_frequency) for test, s in zip(tests, signals, strict=True)]
@@ -30,11 +45,127 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         uncertain=dict(measurement.uncertain),
         tone=found.frequency if found else None,
         tone_std=found.std if found else 0.0,
+        models=_models(measurement),
     )
+
+
+def _models(measurement: Measurement) -> tuple | None:
+    """The base model of each test, None if all have the same."""
+    if not any(test.model for test in measurement.tests):
+        return None
+    return tuple(measurement.model_of(test) for test in measurement.tests)
 
 
 def _channels(test: TestRecord, derived_velocity: bool) -> np.ndarray:
     """Channels with information of their own, (C, n)."""
+    assert test.displacement is not None
     if test.velocity is None or derived_velocity:
         return test.displacement[None]
     return np.array([test.displacement, test.velocity])
+
+
+def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
+    """Harmonics of responses, as displacement and velocity relative to the base, and those of the input."""
+    quantity = measurement.recorded_input
+    assert quantity is not None
+    named = _compared(measurement)
+    read = [_read_test(test, named, quantity) for test in measurement.tests]
+    spectra = tuple(each[0] for each in read)
+    orders = max(each[1].displacement.shape[1] for each in read)
+    inputs = InputHarmonics(
+        *(
+            np.concatenate([_wider(part, orders) for part in parts])
+            for parts in zip(*(each[1] for each in read), strict=True)
+        )
+    )
+    told = {name for name, _, of in named if of == "relative"}
+    data = RecordedInputData(
+        model=measurement.model,
+        law=measurement.law,
+        names=tuple(test.name for test in measurement.tests),
+        spectra=spectra,
+        amplitude=inputs.amplitude,
+        amplitude_std=np.full(len(spectra), measurement.input_gain_std),
+        uncertain=dict(measurement.uncertain),
+        models=_models(measurement),
+        inputs=inputs,
+        untold=_untold(told, any(of == "absolute" for *_, of in named)),
+    )
+    return data.with_covariance(stated(data))
+
+
+def _untold(relative: set[str], absolute: bool) -> tuple[str, ...]:
+    """Effects that the channels cannot show."""
+    found = [effect for effect, channel in OF_SENSORS.items() if channel not in relative]
+    return (*found, "fixture_resonance") if absolute else tuple(found)
+
+
+Channel = tuple[str, str, str]
+
+
+def _compared(measurement: Measurement) -> list[Channel]:
+    """Quantity that each compared channel measures, the one it is compared as, and of which motion.
+
+    The first one is compared as a displacement, a second one as a velocity.
+    """
+    named = [
+        name
+        for name in ("displacement", "velocity", "acceleration")
+        if name in measurement.columns and not (name == "velocity" and measurement.derived_velocity)
+    ]
+    slots = ("displacement", "velocity")
+    return [(name, slots[i], measurement.columns[name].get("of", "relative")) for i, name in enumerate(named)]
+
+
+def _read_test(test: TestRecord, named: list[Channel], quantity: str) -> tuple[Spectrum, InputHarmonics]:
+    """Spectrum of the responses of a test and harmonics of its input."""
+    frequency = test.refined_frequency
+    # The displacement is that of the base less that of the mass.
+    signals = np.array(
+        [-getattr(test, name) if of == "absolute" else getattr(test, name) for name, _, of in named]
+    )
+    assert test.input is not None
+    found = fitted(test.time, signals, frequency)
+    recorded = fitted(test.time, test.input[None], frequency)
+    displacement, variance = without_noise(*input_harmonics(recorded, quantity))
+    shared = np.array(
+        [noise_coherence(test.time, np.array([test.input, each]), frequency) for each in signals]
+    )[: len(found.mean)]
+    found, absolute = _as_motion(found, named, displacement)
+    # Of the input as recorded; as a displacement it is turned as its harmonics are.
+    turn = motion_factor(recorded, quantity)
+    turn /= np.abs(turn)
+    kept = np.sqrt(variance / np.maximum(input_harmonics(recorded, quantity)[1], 1e-300))
+    ratio = np.array([_turned(found, each) for each in named])[: len(found.mean)]
+    covariance = shared[:, None] * ratio * (turn.conj() * kept)[None]
+    return found, InputHarmonics(displacement[None], variance[None], absolute[None], covariance[None])
+
+
+def _as_motion(
+    found: Spectrum, named: list[Channel], displacement: np.ndarray
+) -> tuple[Spectrum, np.ndarray]:
+    """The spectrum as relative displacement and velocity, and the share (C, N) of the input in each."""
+    mean, variance = found.mean.copy(), found.variance.copy()
+    absolute = np.zeros(mean.shape, complex)
+    scaled = False
+    for i, (name, slot, of) in enumerate(named[: len(mean)]):
+        factor = motion_factor(found, name) / motion_factor(found, slot)
+        scaled = scaled or name != slot
+        mean[i] *= factor
+        variance[i] *= np.abs(factor) ** 2
+        if of == "absolute":
+            absolute[i] = 1.0 / motion_factor(found, slot)
+            mean[i] += absolute[i] * displacement[: mean.shape[1]]
+    alias_map = None if scaled else found.alias_map
+    return replace(found, mean=mean, variance=variance, alias_map=alias_map), absolute
+
+
+def _turned(found: Spectrum, channel: Channel) -> np.ndarray:
+    """Direction (N,) in which a channel's harmonics were turned."""
+    factor = motion_factor(found, channel[0]) / motion_factor(found, channel[1])
+    return factor / np.abs(factor)
+
+
+def _wider(part: np.ndarray, orders: int) -> np.ndarray:
+    """An array with zeros for harmonics that it does not have."""
+    return np.pad(part, [(0, 0)] * (part.ndim - 1) + [(0, orders - part.shape[-1])])

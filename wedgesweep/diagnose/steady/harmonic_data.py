@@ -111,11 +111,23 @@ class HarmonicData(WhitenedHarmonics, FitData):
         stated = np.column_stack([np.zeros(self.tests), np.full(self.tests, np.nan)])
         return stated, at_rest(self.tests)
 
-    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> _Simulated:
-        rows = [
-            simulation.records(self.model, self.law, each.values, self.omega, self.amplitudes(each.point))
-            for each in scenarios
+    def records(self, scenario: Scenario) -> np.ndarray:
+        """Parameter records (T,) of the tests in a scenario."""
+        amplitudes = self.amplitudes(scenario.point)
+        if self.models is None:
+            return simulation.records(self.model, self.law, scenario.values, self.omega, amplitudes)
+        each = [
+            simulation.records(model, self.law, scenario.values, self.omega[t : t + 1], amplitudes[t : t + 1])
+            for t, model in enumerate(self.models)
         ]
+        return np.concatenate(each)
+
+    def decorrelated(self, residual: np.ndarray) -> np.ndarray:
+        """Residuals (..., T, m) over the noise of the responses as such of unit covariance."""
+        return residual
+
+    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> _Simulated:
+        rows = [self.records(each) for each in scenarios]
         phase = np.concatenate([each.point.nuisance[:, 1] for each in scenarios])
         warm = joined([each.point.warm for each in scenarios])
         toned = self.has_tone(scenarios[0].values)
@@ -146,6 +158,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         whitened = self.whiten(harmonics)
         phase, aliases = self._aligned(simulated, whitened)
         residual = real(self.whitened - self.whiten(aliases) - self.rotated(whitened, phase))
+        residual = self.decorrelated(residual)
         return [
             Comparison(
                 SteadyResponse(harmonics[i], whitened[i], phase[i], aliases[i]),
@@ -178,7 +191,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         there = self.rotated(self.whiten(self.compared(simulated)), phase)
         aliases = np.where(response.aliased, self.aliases(simulated, phase), 0.0) - response.aliases
         change = self.rotated(response.whitened, response.phase) - there - self.whiten(aliases)
-        return real(change), found
+        return self.decorrelated(real(change)), found
 
     def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
         """Derivative of the residual by the start phase, (T, m, 1)."""
@@ -189,7 +202,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def response_change(self, here: Evaluation, there: Evaluation) -> np.ndarray:
         both = np.stack([there.response.whitened, here.response.whitened])
         both = self.rotated(both, np.stack([here.response.phase] * 2))
-        return real(both[0] - both[1])
+        return self.decorrelated(real(both[0] - both[1]))
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         return tuple(name for name in effects if name != TONE or self.tone is not None)

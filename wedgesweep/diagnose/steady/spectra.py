@@ -246,6 +246,15 @@ def fitted(
     )
 
 
+def noise_coherence(time: np.ndarray, channels: np.ndarray, frequency: float) -> complex:
+    """Coherence of the noise of two channels (2, n): of the second with the first."""
+    time = time - time[0]
+    design = _design(time, time[-1] / (time.size - 1), frequency, None, False)
+    inverse = np.linalg.inv(design.matrix.T @ design.matrix)
+    residual = channels - (design.matrix @ (inverse @ (design.matrix.T @ channels.T))).T
+    return noise_psd.levels(residual, _noise_lines(time, frequency, design, inverse, None, False))[1]
+
+
 class _Design(NamedTuple):
     """Columns of a fit, and the places of the cosines and sines that are kept; a tone comes last."""
 

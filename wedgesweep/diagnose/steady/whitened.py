@@ -27,6 +27,7 @@ class WhitenedHarmonics:
     (Hz) of a spurious tone in the records, with its standard deviation ``tone_std``; its complex amplitude
     is one more column behind the harmonics, with a phase of its own in each test. ``input_phase`` (T,):
     phase (rad) of the input at the first sample of each record, None before a first fit has found it.
+    ``models``: the base model of each test, if they differ.
     """
 
     model: Config
@@ -39,6 +40,7 @@ class WhitenedHarmonics:
     tone: float | None = None
     tone_std: float = 0.0
     input_phase: np.ndarray | None = None
+    models: tuple[Config, ...] | None = None
 
     @property
     def tests(self) -> int:
@@ -87,6 +89,7 @@ class WhitenedHarmonics:
             amplitude=self.amplitude[rows],
             amplitude_std=self.amplitude_std[rows],
             input_phase=None if self.input_phase is None else self.input_phase[rows],
+            models=None if self.models is None else tuple(self.models[i] for i in rows),
         )
 
     def _padded(self, values: list[np.ndarray], fill: float) -> np.ndarray:

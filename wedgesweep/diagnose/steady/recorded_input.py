@@ -1,0 +1,240 @@
+"""Steady harmonics under a recorded input: amplitude, phase and distortion are what was measured.
+
+The Fourier coefficients of the input become the base motion of the simulation. Their noise reaches the
+comparison through the response: with K the derivative of the residual by the coefficients, and V their
+covariance, the residual has the covariance
+
+    I + K V K^T + C K^T + K C^T
+
+in units of the responses' own noise, C being the covariance of the latter with that of the input.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from wedgesweep import excitation
+from wedgesweep.diagnose.fit_data import Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData
+from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.diagnose.steady.whitened import real
+
+# A harmonic counts by the share of its square that exceeds this many times its noise.
+ABOVE_NOISE = 2.0
+# Finite-difference step of a coefficient, in standard deviations of its noise, and at least this share of the
+# fundamental: simulations must not hide it.
+STEP, LEAST_STEP = 1.0, 1e-3
+
+
+class InputHarmonics(NamedTuple):
+    """Recorded inputs of T tests.
+
+    ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, from the first sample, what may
+    be noise left out. ``variance`` (T, N): of such a number that remains unknown (m^2). ``absolute`` (T, C,
+    N): share of each of them in a channel's data, which are relative to the base.
+    ``shared`` (T, C, H), complex: covariance of the noise of channels and input, over both standard
+    deviations.
+    """
+
+    displacement: np.ndarray
+    variance: np.ndarray
+    absolute: np.ndarray
+    shared: np.ndarray
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Of the fundamental, (T,), in m."""
+        return np.abs(self.displacement[:, 0])
+
+    @property
+    def phase(self) -> np.ndarray:
+        """Of the fundamental as a sine, at the first sample, (T,)."""
+        return np.angle(1j * self.displacement[:, 0])
+
+    @property
+    def shape(self) -> np.ndarray:
+        """Harmonics (T, N) over the amplitude, from phase 0 of the fundamental."""
+        orders = np.arange(1, self.displacement.shape[1] + 1)
+        turned = self.displacement * np.exp(-1j * self.phase[:, None] * orders)
+        turned /= self.amplitude[:, None]
+        turned[:, 0] = -1j
+        return turned
+
+    def of(self, rows: np.ndarray) -> "InputHarmonics":
+        """Some of the tests."""
+        return InputHarmonics(*(each[rows] for each in self))
+
+
+def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Harmonics (N,) without what may be noise, and the variance of what remains unknown.
+
+    A harmonic that does not stand out of its noise is left out: as an acceleration, its noise would be large.
+    """
+    power = np.abs(measured) ** 2
+    share = 1.0 - ABOVE_NOISE * variance / np.maximum(power, ABOVE_NOISE * variance + 1e-300)
+    share[0] = 1.0
+    return share * measured, share * variance
+
+
+@dataclass(frozen=True)
+class RecordedInputData(HarmonicData):
+    """Harmonics of steady tests whose input was recorded.
+
+    ``inputs``: the recorded inputs. ``whitening`` (T, m, m): turns residuals over the noise of the responses
+    into such of unit covariance; None before the covariance is known. ``untold``: effects that these channels
+    cannot show.
+    """
+
+    inputs: InputHarmonics | None = None
+    whitening: np.ndarray | None = None
+    untold: tuple[str, ...] = ()
+
+    eliminated = 0
+
+    @property
+    def recorded(self) -> InputHarmonics:
+        assert self.inputs is not None
+        return self.inputs
+
+    @property
+    def dof(self) -> np.ndarray:
+        """Observations of each test, (T,): nothing of the input is free."""
+        return self.observations
+
+    @cached_property
+    def power(self) -> np.ndarray:
+        """Squared misfit of a simulation of nothing at all, (T,)."""
+        return (self.decorrelated(real(self.whitened)) ** 2).sum(-1)
+
+    def subset(self, rows: np.ndarray) -> Self:
+        some = super().subset(rows)
+        whitening = None if self.whitening is None else self._cut(self.whitening[rows], some)
+        return replace(some, inputs=self.recorded.of(rows), whitening=whitening)
+
+    def _cut(self, whitening: np.ndarray, some: HarmonicData) -> np.ndarray:
+        """The matrices for data padded to fewer harmonics or channels."""
+        mine, its = (self.shape, some.shape)
+        kept = np.zeros((2, *mine), bool)
+        kept[:, : its[0], : its[1]] = True
+        place = np.flatnonzero(kept)
+        return whitening[:, place[:, None], place]
+
+    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+        return (AMPLITUDE,)
+
+    def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
+        return tuple(name for name in super().candidates(effects) if name not in self.untold)
+
+    def records(self, scenario: Scenario) -> np.ndarray:
+        rows = super().records(scenario)
+        excitation.set_series(rows, self.recorded.shape)
+        return rows
+
+    def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
+        """Phase (rad) of the input at the first sample, as recorded."""
+        return np.broadcast_to(self.recorded.phase, simulated.shape[:-2]).copy()
+
+    def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
+        return np.zeros((*here.residual.shape, 0))
+
+    def decorrelated(self, residual: np.ndarray) -> np.ndarray:
+        if self.whitening is None:
+            return residual
+        return np.einsum("tij,...tj->...ti", self.whitening, residual)
+
+    def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
+        return step
+
+    def aligned_to(self, evaluation: Evaluation) -> Self:
+        return self
+
+    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
+        """New noise on responses and inputs; what the simulation was fed stays the truth."""
+        sample = super().bootstrap_sample(truth, rng)
+        for order, variance in enumerate(self.recorded.variance.T):
+            real_part, imaginary = rng.normal(size=(2, self.tests)) * np.sqrt(0.5 * variance)
+            sample = sample._with_coefficient(order, real_part + 1j * imaginary)
+        return sample
+
+    def with_covariance(self, scenario: Scenario) -> Self:
+        """The data with the covariance of its residuals, by the response in a scenario."""
+        bare = replace(self, whitening=None)
+        tests, orders = self.recorded.displacement.shape
+        here = bare.compare([scenario], TOLERANCE)[0]
+        warm = replace(scenario.point, warm=here.warm)
+        width = 2 * self.shape[0] * self.columns
+        covariance = np.tile(np.eye(width), (tests, 1, 1))
+        shared = self._shared_noise()
+        for order in range(orders):
+            std = np.sqrt(0.5 * self.recorded.variance[:, order])
+            if not std.any():
+                continue
+            step = np.maximum(STEP * std, LEAST_STEP * self.recorded.amplitude)
+            for part, turn in enumerate((1.0, 1j)):
+                moved = bare._with_coefficient(order, turn * step)
+                there = moved.compare([Scenario(scenario.values, warm)], TOLERANCE)[0]
+                found = here.found & there.found
+                change = np.where(found[:, None], there.residual - here.residual, 0.0)
+                column = change * (std / step)[:, None]
+                covariance += column[:, :, None] * column[:, None, :]
+                if order < shared.shape[-1]:
+                    cross = column[:, :, None] * shared[:, part, :, order][:, None, :]
+                    covariance += cross + np.swapaxes(cross, 1, 2)
+        return replace(self, whitening=_inverse_root(covariance))
+
+    def _with_coefficient(self, order: int, change: np.ndarray) -> Self:
+        """The data as if a coefficient of the inputs had been recorded with a change (T,) in m."""
+        displacement = self.recorded.displacement.copy()
+        displacement[:, order] += change
+        spectra = []
+        for t, spectrum in enumerate(self.spectra):
+            mean = spectrum.mean.copy()
+            if order < mean.shape[1]:
+                mean[:, order] += self.recorded.absolute[t, : len(mean), order] * change[t]
+            spectra.append(replace(spectrum, mean=mean))
+        inputs = self.recorded._replace(displacement=displacement)
+        return replace(self, inputs=inputs, spectra=tuple(spectra), amplitude=inputs.amplitude)
+
+    def _shared_noise(self) -> np.ndarray:
+        """Covariance (T, 2, m, H) of whitened residuals with real and imaginary part of each harmonic.
+
+        The latter over their standard deviation.
+        """
+        channels, columns = self.shape[0], self.columns
+        found = np.zeros((self.recorded.shared.shape[0], 2, 2, channels, columns, columns))
+        full = np.zeros((found.shape[0], channels, columns), complex)
+        given = self.recorded.shared[:, :channels, :columns]
+        full[:, : given.shape[1], : given.shape[2]] = given
+        scale = np.sqrt(2.0) / np.where(self.weight > 0.0, self.weight, np.inf)
+        both = self.whiten(full * scale) / np.sqrt(2.0)
+        for h in range(columns):
+            found[:, 0, 0, :, h, h], found[:, 0, 1, :, h, h] = both[..., h].real, both[..., h].imag
+            found[:, 1, 0, :, h, h], found[:, 1, 1, :, h, h] = -both[..., h].imag, both[..., h].real
+        return found.reshape(found.shape[0], 2, 2 * channels * columns, columns)
+
+
+def _inverse_root(covariance: np.ndarray) -> np.ndarray:
+    """Symmetric matrices W (T, m, m) with W covariance W = 1; noise is not taken for less than a tenth."""
+    values, vectors = np.linalg.eigh(covariance)
+    return (vectors / np.sqrt(np.maximum(values, 0.1))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+
+
+def input_harmonics(spectrum: Spectrum, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement harmonics (N,) in m of a recorded quantity, and their variances."""
+    factor = motion_factor(spectrum, quantity)
+    return spectrum.mean[0] * factor, spectrum.variance[0] * np.abs(factor) ** 2
+
+
+def motion_factor(spectrum: Spectrum, quantity: str) -> np.ndarray:
+    """What turns the harmonics (N,) of a quantity into those of the displacement."""
+    order = ("displacement", "velocity", "acceleration").index(quantity)
+    return (2j * np.pi * spectrum.frequency * np.arange(1, spectrum.mean.shape[1] + 1)) ** -order
+
+
+def stated(data: RecordedInputData) -> Scenario:
+    """The base model as stated."""
+    return Scenario({}, Point(np.ones(len(data.uncertain)), *data.start()))
