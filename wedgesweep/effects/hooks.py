@@ -73,6 +73,21 @@ def base_acceleration(u2, t, p):
 
 
 @_chain
+def base_velocity(u1, t, p):
+    """Velocity of the input (m/s)."""
+
+
+@_chain
+def base_displacement(u, t, p):
+    """Displacement of the input (m)."""
+
+
+@_chain
+def input_force(force, t, p):
+    """Force of the input on the mass (N)."""
+
+
+@_chain
 def fastest(omega, p):
     """Highest angular frequency of the input (rad/s)."""
 

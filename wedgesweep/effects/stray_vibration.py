@@ -7,7 +7,7 @@ the response is not periodic in the forcing.
 Neutral and default: acceleration = 0; frequency must be given.
 """
 
-from math import nan, pi, sin
+from math import cos, nan, pi, sin
 
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
@@ -51,6 +51,24 @@ def base_acceleration(u2, t, p):
         return u2
     own = p.stray_vibration
     return u2 + own.acceleration * sin(2.0 * pi * own.frequency * t + own.phase)
+
+
+@inlined
+def base_velocity(u1, t, p):
+    """U' (m/s) with the tone, from that without."""
+    if not acts(p):
+        return u1
+    own, rate = p.stray_vibration, 2.0 * pi * p.stray_vibration.frequency
+    return u1 - own.acceleration / rate * cos(rate * t + own.phase)
+
+
+@inlined
+def base_displacement(u, t, p):
+    """U (m) with the tone, from that without."""
+    if not acts(p):
+        return u
+    own, rate = p.stray_vibration, 2.0 * pi * p.stray_vibration.frequency
+    return u - own.acceleration / rate**2 * sin(rate * t + own.phase)
 
 
 @inlined
