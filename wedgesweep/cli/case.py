@@ -102,8 +102,9 @@ def _print_numbers(ds: "xr.Dataset") -> None:
     from wedgesweep.sweep.cases import describe
     from wedgesweep.sweep.dataset import VARIABLES
 
-    where = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
-    click.echo(f"{describe(*where, ds['amplitude'].attrs['units'])}, {ds['frequency'].item():.6g} Hz")
+    law, beta, amplitude = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
+    where = describe(law, beta, amplitude, ds["amplitude"].attrs["units"])
+    click.echo(f"{where}, {ds['frequency'].item():.6g} Hz")
     for variable in VARIABLES:
         if variable.dims or variable.name in ("status", "message") or variable.name not in ds:
             continue

@@ -27,13 +27,32 @@ def compact(parameters: np.ndarray) -> np.ndarray:
     return parameters
 
 
+def is_oscillator(parameters: np.ndarray) -> bool:
+    """Whether records are those of the oscillator."""
+    return "oscillator" in (parameters.dtype.names or ())
+
+
 def _kits(parameters: np.ndarray) -> np.ndarray:
-    return parameters["oscillator" if "oscillator" in (parameters.dtype.names or ()) else "geometry"]["kit"]
+    return parameters["oscillator" if is_oscillator(parameters) else "geometry"]["kit"]
 
 
 def has_own_mechanics(parameters: np.ndarray) -> np.ndarray:
     """Whether effects of records, shape (n,), need more than the base model's mechanics."""
     return _kits(parameters) != 0
+
+
+def driven_mass(parameters: np.ndarray) -> np.ndarray:
+    """Mass (kg) that the base acceleration drives, of records of any shape."""
+    if is_oscillator(parameters):
+        return parameters["oscillator"]["mass"]
+    return suspension.driven_mass(parameters)
+
+
+def moving_mass(parameters: np.ndarray) -> np.ndarray:
+    """Mass (kg) that the motion accelerates, of records of any shape."""
+    if is_oscillator(parameters):
+        return parameters["oscillator"]["mass"]
+    return suspension.moving_mass(parameters)
 
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -14,7 +14,6 @@ from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
-from wedgesweep.systems.suspension import parameters
 
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
@@ -39,8 +38,7 @@ class Responses(NamedTuple):
 def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Parameter records (n,) of tests with given angular frequencies (rad/s) and input amplitudes (m)."""
     numbers = effects.merge(model.effects, values)
-    one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, numbers)
-    rows = np.repeat(one, omega.size)
+    rows = np.repeat(model.record_with(numbers, law), omega.size)
     rows["input"]["omega"], rows["input"]["amplitude"] = omega, amplitude
     return rows
 
