@@ -1,4 +1,4 @@
-"""Input: motion of the side frame (the paper's Eq. 4: u = a sin(omega t)), with the effects on it.
+"""Input: a force, or motion of the base (the paper's Eq. 4: u = a sin(omega t)), with the effects on it.
 
 A recorded input is a Fourier series in place of the sine:
 
@@ -102,6 +102,12 @@ def velocity(t, p):
 def acceleration(t, p):
     """U'' in m/s^2 of the side frame, or of the table that carries it."""
     return hooks.base_acceleration(-p.input.amplitude * p.input.omega**2 * _bend(t, p), t, p)
+
+
+@inlined
+def force(t, p):
+    """Force on the mass in N, where the input is one and its amplitude in N."""
+    return hooks.input_force(p.input.amplitude * _shape(t, p), t, p)
 
 
 @inlined

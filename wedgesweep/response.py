@@ -7,8 +7,9 @@ import numpy as np
 
 from wedgesweep import sensor
 from wedgesweep.compiled import compiled
+from wedgesweep.effects.states import input_length
 from wedgesweep.solvers.trajectory import Trajectory
-from wedgesweep.systems.suspension.parameters import compact
+from wedgesweep.systems import compact
 
 # The numbers of a response (see dataset.VARIABLES), a record.
 NUMBERS = np.dtype(
@@ -91,7 +92,7 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     """
     fourier(-x, periods, spectra[0])
     fourier(-velocity, periods, spectra[1])
-    gain, amplitude = p.displacement_gain.scale, p.input.amplitude
+    gain, amplitude = p.displacement_gain.scale, input_length(p)
     slipping_time = sums.time - (sums.stuck_time if p.friction.set_valued else 0.0)
     # The window closes on itself: sticking that runs over its end is one phase.
     onsets = sums.onsets - sums.began_stuck * sums.is_stuck

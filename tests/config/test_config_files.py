@@ -16,6 +16,8 @@ from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 CONFIGS = sorted((Path(__file__).parents[2] / "configs").glob("*.toml"))
+# Keys of a case that exclude others.
+OTHERS = ("# frequency_hz", "# amplitude_N")
 GRID = {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 0.1}
 
 
@@ -37,7 +39,7 @@ def test_template_shows_every_key_and_states_the_defaults():
 def test_template_stays_valid_with_its_cases_uncommented():
     before, after = config.template().split("\n[sweep]\n")
     cases = after[after.index("# [[sweep.case]]") :].split("\n\n")[0].splitlines()
-    lines = [line.removeprefix("# ") for line in cases if not line.startswith("# frequency_hz")]
+    lines = [line.removeprefix("# ") for line in cases if not line.startswith(OTHERS)]
     assert config.parse(before + "\n" + "\n".join(lines)).case_list() == [Case("coulomb", 0.4, 1e-3)]
 
 

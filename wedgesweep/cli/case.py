@@ -30,7 +30,8 @@ PICTURE = "phase-portrait"
 @click.option("--law", help="Friction law; default: the config's first.")
 @click.option("--beta", type=float, help="Input frequency as a ratio to omega_n.")
 @click.option("--frequency", type=float, metavar="HZ", help="Input frequency in Hz, instead of --beta.")
-@click.option("--amplitude", type=float, metavar="MM", required=True, help="Input amplitude in mm.")
+@click.option("--amplitude", type=float, metavar="MM", help="Input amplitude in mm.")
+@click.option("--force", type=float, metavar="N", help="Amplitude of the force in N, where the input is one.")
 @click.option(
     "-o",
     "--output",
@@ -38,14 +39,13 @@ PICTURE = "phase-portrait"
     metavar="STEM",
     help="Write STEM.nc and STEM.png; default: a name made from the case, in the current directory.",
 )
-@click.pass_context
 def case(
-    ctx: click.Context,
     config_path: Path,
     law: str | None,
     beta: float | None,
     frequency: float | None,
-    amplitude: float,
+    amplitude: float | None,
+    force: float | None,
     output: Path | None,
 ) -> None:
     """Solve one case of any law, frequency and amplitude.
@@ -55,25 +55,29 @@ def case(
     if (beta is None) == (frequency is None):
         message = "give either --beta or --frequency"
         raise click.UsageError(message)
+    if (amplitude is None) == (force is None):
+        message = "give either --amplitude or --force"
+        raise click.UsageError(message)
     from wedgesweep import config
 
-    settings = config.load(config_path).single_case(amplitude, beta, frequency, law)
+    settings = config.load(config_path).single_case(amplitude, beta, frequency, law, force)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
-    announce_compiling(settings.solver.method)
+    announce_compiling(settings.solver.method, system=settings.system)
     from wedgesweep.sweep.run import Sweep
 
     ds = Sweep(settings, stem, command_line()).run_here()
     _print_numbers(ds)
     if ds["status"].item():
         click.echo(f"failed: {ds['message'].item()}", err=True)
-        ctx.exit(SOME_FAILED)
+        click.get_current_context().exit(SOME_FAILED)
     _write(ds, stem)
 
 
 def _name(config_path: Path, settings: "Config") -> str:
     law, beta, amplitude = settings.case_list()[0]
-    return f"{config_path.stem}-{law}-{beta:.6g}-{amplitude * 1e3:.6g}mm"
+    size = f"{amplitude:.6g}N" if settings.forced else f"{amplitude * 1e3:.6g}mm"
+    return f"{config_path.stem}-{law}-{beta:.6g}-{size}"
 
 
 def _with_suffix(stem: Path, suffix: str) -> Path:
@@ -96,15 +100,16 @@ def _print_numbers(ds: "xr.Dataset") -> None:
     from wedgesweep.sweep.cases import describe
     from wedgesweep.sweep.dataset import VARIABLES
 
-    where = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
-    click.echo(f"{describe(*where)}, {ds['frequency'].item():.6g} Hz")
+    law, beta, amplitude = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
+    where = describe(law, beta, amplitude, ds["amplitude"].attrs["units"])
+    click.echo(f"{where}, {ds['frequency'].item():.6g} Hz")
     for variable in VARIABLES:
-        if variable.dims or variable.name in ("status", "message"):
+        if variable.dims or variable.name in ("status", "message") or variable.name not in ds:
             continue
         factor, unit = DISPLAY_UNITS.get(variable.units, (1.0, variable.units))
         number = f"{ds[variable.name].item() * factor:.6g}"
         name = variable.name.replace("_", " ")
-        click.echo(f"  {name:<21}{number:>12} {unit:<5} {variable.long_name}")
+        click.echo(f"  {name:<21}{number:>12} {unit:<5} {ds[variable.name].attrs['long_name']}")
 
 
 def _write(ds: "xr.Dataset", stem: Path) -> None:

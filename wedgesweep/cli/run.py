@@ -133,7 +133,7 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> i
     if stored is not None:
         click.echo(f"{sweep.out}: already complete; use --fresh to run it again")
         return print_summary(stored)
-    announce_compiling(sweep.settings.method, sweep.extended)
+    announce_compiling(sweep.settings.method, sweep.extended, sweep.config.system)
     if sweep.config.remark:
         click.echo(sweep.config.remark, err=True)
     started = perf_counter()
@@ -143,11 +143,11 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> i
     return code
 
 
-def announce_compiling(method: str, extended: bool = False) -> None:
+def announce_compiling(method: str, extended: bool = False, system: str = "suspension") -> None:
     """Announce the compilation that delays a first run."""
     from wedgesweep.sweep.cases import is_compiled
 
-    if not is_compiled(method, extended):
+    if not is_compiled(method, extended, system):
         click.echo("compiling the solver (once, up to a minute)", err=True)
 
 

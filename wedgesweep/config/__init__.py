@@ -14,9 +14,13 @@ import numpy as np
 from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
+from wedgesweep.natural_units import natural_units
 
 # With this effect a suspension may have no equilibrium.
 SOFTENING = "cubic_stiffness"
+OSCILLATOR = "oscillator"
+# What beta refers to where there is no spring: 1 Hz, in rad/s.
+UNIT_FREQUENCY = 2.0 * pi
 
 # Imports that load numba or scipy come late, so that `wedgesweep --help` does not wait for them.
 if TYPE_CHECKING:
@@ -30,7 +34,7 @@ class ConfigError(InputError):
 
 
 class Case(NamedTuple):
-    """One case of a sweep; amplitude in m."""
+    """One case of a sweep; amplitude in m, under a force in N."""
 
     law: str
     beta: float
@@ -41,7 +45,8 @@ class Case(NamedTuple):
 class Cases:
     """The cases: a grid, or a list in ``cases`` (the grid is then empty).
 
-    ``beta`` and ``amplitude`` (m) have shapes (n,) and (m,); beta refers to ``omega_n`` (rad/s).
+    ``beta`` and ``amplitude`` (m; under a force N) have shapes (n,) and (m,); beta refers to ``omega_n``
+    (rad/s).
     """
 
     friction_law: tuple[str, ...]
@@ -69,9 +74,50 @@ class Config:
 
     def natural_units(self, travel: float | None = None) -> "NaturalUnits":
         """Natural units of the model, whose measured motion has some travel (m)."""
+        if self.system == OSCILLATOR:
+            own = self.oscillator
+            return natural_units(own["mass"], own["spring"], travel=travel)
         from wedgesweep.systems.suspension.parameters import natural_units_of
 
         return natural_units_of(self.suspension, travel)
+
+    @property
+    def system(self) -> str:
+        """Name of the mechanical system: suspension or oscillator."""
+        return OSCILLATOR if OSCILLATOR in self.document else "suspension"
+
+    @cached_property
+    def oscillator(self) -> dict[str, Any]:
+        """SI numbers of the oscillator, and its contact."""
+        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY
+        from wedgesweep.systems.oscillator.parameters import OSCILLATOR as QUANTITIES
+
+        given = self.document[OSCILLATOR]
+        belt = (BELT_VELOCITY,) if BELT_VELOCITY.key in given else ()
+        return {**_si((*QUANTITIES, *belt), given), "contact": given["contact"]}
+
+    @property
+    def possible_effects(self) -> tuple[str, ...]:
+        """Names of the effects that a model may lack; all of them for a suspension.
+
+        An oscillator has no wedge. If it rubs, more friction of its surface is another level of friction; if
+        not, there is nothing that the effects on the law of friction could change.
+        """
+        from wedgesweep.effects import EFFECTS
+        from wedgesweep.systems.oscillator import parameters
+
+        if self.system != OSCILLATOR:
+            return tuple(EFFECTS)
+        rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
+        without = {parameters.LATERAL} if rubs else {*parameters.OF_FRICTION}
+        if self.oscillator["spring"] == 0.0:
+            without.add("bolster_stiffness")
+        return tuple(name for name in parameters.effect_names() if name not in without)
+
+    @property
+    def excitation(self) -> str:
+        """What the input is: "base" (its motion) or "force"."""
+        return self.document["sweep"].get("excitation", "base")
 
     @cached_property
     def friction(self) -> dict[str, float]:
@@ -91,13 +137,13 @@ class Config:
         given = self.document["sweep"]
         omega_n = given["omega_n_rad_per_s"]
         cases = tuple(
-            Case(each["friction_law"], *_betas(each, omega_n), *_metres([each["amplitude_mm"]]))
+            Case(each["friction_law"], *_betas(each, omega_n), *_amplitudes(each))
             for each in given.get("case", ())
         )
         return Cases(
             tuple(given.get("friction_law", ())),
             np.array(_betas(given, omega_n)),
-            np.array(_metres(given.get("amplitude_mm", []))),
+            np.array(_amplitudes(given)),
             omega_n,
             cases or None,
         )
@@ -130,18 +176,26 @@ class Config:
         return Config(document)
 
     def single_case(
-        self, amplitude_mm: float, beta: float | None, frequency_hz: float | None, law: str | None
+        self,
+        amplitude_mm: float | None,
+        beta: float | None,
+        frequency_hz: float | None,
+        law: str | None,
+        amplitude_N: float | None = None,
     ) -> "Config":
         """The same config with a grid of one case, whose waveforms are kept; raises ConfigError.
 
-        Either ``beta`` or ``frequency_hz`` is given; ``law`` is by default the config's first.
+        Either ``beta`` or ``frequency_hz`` is given, and one of the amplitudes; ``law`` is by default the
+        config's first.
         """
         given = {
             "friction_law": law or self.case_list()[0].law,
             "beta": beta,
             "frequency_hz": frequency_hz,
+            "excitation": self.document["sweep"].get("excitation"),
             "amplitude_mm": amplitude_mm,
-            "omega_n_rad_per_s": self.sweep.omega_n,
+            "amplitude_N": amplitude_N,
+            "omega_n_rad_per_s": None if self.has_no_spring else self.sweep.omega_n,
         }
         grid = {key: value for key, value in given.items() if value is not None}
         solver = self.document["solver"] | {"keep_waveforms": True, "continuation": False}
@@ -174,25 +228,40 @@ class Config:
             betas, amplitudes = np.array([case[1:] for case in sweep.cases]).T
             shape = (len(laws),)
         frequencies = betas * sweep.omega_n / (2.0 * pi)
+        unit, amplitude = ("N", "amplitude of the force") if self.forced else ("m", "input amplitude a")
+        beta = "input frequency over 1 Hz" if self.has_no_spring else "input frequency over omega_n"
         return shape, {
             "friction_law": (dims[0], laws, {"long_name": "friction law"}),
-            "beta": (dims[1], betas, {"units": "1", "long_name": "input frequency over omega_n"}),
-            "amplitude": (dims[2], amplitudes, {"units": "m", "long_name": "input amplitude a"}),
+            "beta": (dims[1], betas, {"units": "1", "long_name": beta}),
+            "amplitude": (dims[2], amplitudes, {"units": unit, "long_name": amplitude}),
             "frequency": (dims[1], frequencies, {"units": "Hz", "long_name": "input frequency"}),
         }
 
     def record(self, case: Case) -> np.ndarray:
         """Parameter record of a case, shape (1,)."""
-        from wedgesweep.systems.suspension import parameters
+        return self.record_with(self.effects, case.law, case.amplitude, case.beta * self.sweep.omega_n)
 
-        return parameters.record(
-            law=case.law,
-            amplitude=case.amplitude,
-            omega=case.beta * self.sweep.omega_n,
-            suspension=self.suspension,
-            friction=self.friction,
-            effects=self.effects,
-        )
+    def record_with(
+        self, effects: Mapping[str, Mapping[str, float]], law: str, amplitude: float = 1.0, omega: float = 1.0
+    ) -> np.ndarray:
+        """Parameter record, shape (1,), with other effects (SI); amplitude in m or N, omega in rad/s."""
+        from wedgesweep.systems import oscillator, suspension
+
+        if self.system == OSCILLATOR:
+            own = self.oscillator
+            return oscillator.record(law, amplitude, omega, own, self.friction, effects, self.excitation)
+        return suspension.record(law, amplitude, omega, self.suspension, self.friction, effects)
+
+    @property
+    def forced(self) -> bool:
+        """Whether the input is a force, and amplitudes are in N."""
+        return self.excitation == "force"
+
+    @property
+    def has_no_spring(self) -> bool:
+        """Whether there is no natural frequency that frequencies could be compared with."""
+        own, omega_n = self.document.get(OSCILLATOR, {}), self.document["sweep"]["omega_n_rad_per_s"]
+        return own.get("spring_N_per_mm") == 0.0 and omega_n == UNIT_FREQUENCY
 
     def records(self) -> np.ndarray:
         """Parameter records of all cases, shape (n,)."""
@@ -221,7 +290,8 @@ class Config:
         from wedgesweep.systems.suspension import parameters
 
         law, sweep = "coulomb", self.sweep
-        if law not in (sweep.friction_law or [case.law for case in sweep.cases or ()]):
+        laws = sweep.friction_law or [case.law for case in sweep.cases or ()]
+        if self.system == OSCILLATOR or law not in laws:
             return None
         if not parameters.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
             return None
@@ -267,13 +337,22 @@ def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
     problems += contradictions(document)
     if problems:
         raise ConfigError([f"{source}: {problem}" for problem in problems])
-    suspension, sweep = document["suspension"], document["sweep"]
-    stiffness = suspension["bolster_spring_N_per_mm"] * 1e3
-    sweep.setdefault("omega_n_rad_per_s", sqrt(stiffness / suspension["bolster_mass_kg"]))
+    document["sweep"].setdefault("omega_n_rad_per_s", _natural_frequency(document))
+    if OSCILLATOR in document and "title" not in given:
+        document["title"] = "friction oscillator"
     found = Config(document)
-    if SOFTENING in found.effects:
+    if SOFTENING in found.effects and found.system != OSCILLATOR:
         _require_rest(found, source)
     return found
+
+
+def _natural_frequency(document: Mapping[str, Any]) -> float:
+    """The omega_n (rad/s) that beta refers to; 1 Hz where there is no spring."""
+    own = document.get(OSCILLATOR)
+    if own is None:
+        own = document["suspension"]
+        return sqrt(own["bolster_spring_N_per_mm"] * 1e3 / own["bolster_mass_kg"])
+    return sqrt(own["spring_N_per_mm"] * 1e3 / own["mass_kg"]) or UNIT_FREQUENCY
 
 
 def _require_rest(found: Config, source: str) -> None:
@@ -306,6 +385,13 @@ def _betas(given: Mapping[str, Any], omega_n: float) -> list[float]:
     if "frequency_hz" in given:
         return [2.0 * pi * f / omega_n for f in _listed(given["frequency_hz"])]
     return _listed(given.get("beta", []))
+
+
+def _amplitudes(given: Mapping[str, Any]) -> list[float]:
+    """Amplitudes of the input in m, or of a force in N."""
+    if "amplitude_N" in given:
+        return _listed(given["amplitude_N"])
+    return _metres(_listed(given.get("amplitude_mm", [])))
 
 
 def _metres(amplitudes: list[float]) -> list[float]:

@@ -1,13 +1,17 @@
 """Settings of a config that are valid alone, but contradict each other."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from math import nan
+from collections.abc import Iterator, Mapping
+from math import inf, nan
 from typing import Any
 
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield all contradictions, each as a line that names the key and a valid setting."""
     yield from _geometry(document)
+    yield from _laws(document)
+    yield from _excitation(document)
+    if "oscillator" in document:
+        yield from _oscillator(document)
     yield from _settling(document)
 
 
@@ -19,13 +23,73 @@ def _geometry(document: Mapping[str, Any]) -> Iterator[str]:
             f"suspension.column_angle_deg: {column} closes a wedge of {wedge} deg; "
             "the sum of both angles must be positive"
         )
-    cases: Iterable[Mapping[str, Any]] = filter(None, sweep.get("case", ()))
-    laws = [*sweep.get("friction_law", ()), *(case.get("friction_law") for case in cases)]
-    if "coulomb" in laws and column == 0.0 and document.get("friction", {}).get("dynamic", 0.0) > 0.0:
+    if (
+        "coulomb" in _named_laws(sweep)
+        and column == 0.0
+        and document.get("friction", {}).get("dynamic", 0.0) > 0.0
+    ):
         yield (
             "suspension.column_angle_deg: at 0 the bolster face does not slip, and coulomb "
             "does not determine its friction; use friction.dynamic = 0, another law, or another angle"
         )
+
+
+def _cases(sweep: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    return list(filter(None, sweep.get("case", ())))
+
+
+def _named_laws(sweep: Mapping[str, Any]) -> list[str]:
+    return [*sweep.get("friction_law", ()), *(case.get("friction_law", "") for case in _cases(sweep))]
+
+
+def _laws(document: Mapping[str, Any]) -> Iterator[str]:
+    """Laws that a suspension does not have."""
+    from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
+
+    if "oscillator" in document:
+        return
+    for law in set(OSCILLATOR_LAWS).intersection(_named_laws(document.get("sweep", {}))):
+        yield f"sweep.friction_law: {law} is a law of [oscillator]; valid here: {', '.join(LAW_NAMES)}"
+
+
+def _excitation(document: Mapping[str, Any]) -> Iterator[str]:
+    """Amplitudes in the unit of the other excitation."""
+    sweep = document.get("sweep", {})
+    forced = sweep.get("excitation") == "force"
+    if forced and "oscillator" not in document:
+        yield 'sweep.excitation: a suspension is driven by its side frame; write "base", or [oscillator]'
+        return
+    right, wrong = ("amplitude_N", "amplitude_mm") if forced else ("amplitude_mm", "amplitude_N")
+    for place, given in (("sweep", sweep), *(("sweep.case", case) for case in _cases(sweep))):
+        if wrong in given:
+            kind = "force" if forced else "base"
+            other = "base" if forced else "force"
+            yield f'{place}.{wrong}: excitation is "{kind}"; write {right}, or excitation = "{other}"'
+
+
+def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
+    own, sweep = document["oscillator"], document.get("sweep", {})
+    given = [sweep, *_cases(sweep)]
+    no_reference = own.get("spring_N_per_mm") == 0.0 and "omega_n_rad_per_s" not in sweep
+    if no_reference and any("beta" in each for each in given):
+        yield "sweep.beta: without a spring there is no omega_n; write frequency_hz"
+    on_belt = own.get("contact") == "belt"
+    if on_belt and "belt_velocity_mm_per_s" not in own:
+        yield 'oscillator.belt_velocity_mm_per_s: missing; contact = "belt" needs it, as in 200.0'
+    if not on_belt and "belt_velocity_mm_per_s" in own:
+        yield f'oscillator.belt_velocity_mm_per_s: contact is "{own.get("contact")}"; write contact = "belt"'
+    forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
+    if not on_belt and 0.0 in forces:
+        yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
+    from wedgesweep.systems.oscillator.parameters import effect_names
+
+    for name in document.get("effects", {}):
+        if name not in effect_names():
+            yield f"effects.{name}: an oscillator has no such part; valid here: {', '.join(effect_names())}"
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
 def _settling(document: Mapping[str, Any]) -> Iterator[str]:

@@ -13,12 +13,18 @@ from wedgesweep.friction.names import LAW_NAMES
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
 from wedgesweep.solvers.names import SOLVERS
+from wedgesweep.systems.oscillator.parameters import BASE, BELT_VELOCITY, CONTACTS, EXCITATIONS, OSCILLATOR
 from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "input amplitude a of the side frame", above=0.0)
-OMEGA_N = Quantity("omega_n_rad_per_s", nan, "omega_n that beta refers to; default: sqrt(k_b/M_b)", above=0.0)
+FORCE_AMPLITUDE = Quantity(
+    "amplitude_N", nan, 'amplitude of the force on the mass, for excitation = "force"', minimum=0.0
+)
+OMEGA_N = Quantity(
+    "omega_n_rad_per_s", nan, "omega_n that beta refers to; default: sqrt(k_b/M_b), or sqrt(k/m)", above=0.0
+)
 # The laws are looked up when a config is read: one may be registered until then.
 LAW = Choice(key="friction_law", meaning="friction law", choices=LAWS.keys(), example=LAW_NAMES[0])
 
@@ -30,6 +36,15 @@ def _series(quantity: Quantity, example: object) -> Series:
         item=Number.of(quantity),
         example=example,
     )
+
+
+EXCITATION = Choice(
+    key="excitation",
+    meaning='motion of the base, or (oscillator only) a force on the mass; default: "base"',
+    choices=EXCITATIONS,
+    optional=True,
+    example=BASE,
+)
 
 
 def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: int, **more: Any) -> Whole:
@@ -60,7 +75,11 @@ GRID = table(
         _series(BETA, {"start": 0.1, "stop": 3.0, "num": 30}),
         _series(FREQUENCY, [20.0, 30.0]),
     ),
-    _series(AMPLITUDE, [0.005, 0.015, 0.1, 0.3, 1.0]),
+    EXCITATION,
+    (
+        _series(AMPLITUDE, [0.005, 0.015, 0.1, 0.3, 1.0]),
+        _series(FORCE_AMPLITUDE, [1.0, 2.0]),
+    ),
     OMEGA_N_KEY,
 )
 
@@ -68,6 +87,7 @@ LISTED = table(
     "sweep",
     "a list of cases",
     OMEGA_N_KEY,
+    EXCITATION,
     TableList(
         key="case",
         meaning="one case each",
@@ -76,7 +96,7 @@ LISTED = table(
             "one case",
             LAW,
             (Number.of(BETA, example=0.4), Number.of(FREQUENCY, example=20.0)),
-            Number.of(AMPLITUDE, example=1.0),
+            (Number.of(AMPLITUDE, example=1.0), Number.of(FORCE_AMPLITUDE, example=1.0)),
         ),
     ),
 )
@@ -142,17 +162,37 @@ SOLVER = table(
 )
 
 
+OSCILLATOR_TABLE = table(
+    "oscillator",
+    "instead of a suspension: a mass that rubs on a surface, m x'' + c (x' - u') + k (x - u) + mu(v) N = F",
+    *(
+        Number.of(quantity, example=example)
+        for quantity, example in zip(OSCILLATOR, (3.0, 1.2, 0.0, 2.5), strict=True)
+    ),
+    Choice(
+        key="contact",
+        meaning="what the rubbing surface moves with: base (v = x' - u'), ground (v = x') or belt",
+        choices=CONTACTS,
+        default=BASE,
+    ),
+    Number.of(BELT_VELOCITY, optional=True, example=200.0),
+)
+
+
 def root() -> Table:
     """The whole config, with the effects that are registered by now."""
     return table(
         "",
         "Config of wedgesweep",
         Text(key="title", meaning="title of the sweep", default="wedge suspension"),
-        table(
-            "suspension",
-            "the suspension; defaults: Table 1 of the paper",
-            *map(Number.of, SUSPENSION),
-            default={},
+        (
+            table(
+                "suspension",
+                "the suspension; defaults: Table 1 of the paper",
+                *map(Number.of, SUSPENSION),
+                default={},
+            ),
+            OSCILLATOR_TABLE,
         ),
         table("friction", "friction on both faces of each wedge", *map(Number.of, FRICTION), default={}),
         table(

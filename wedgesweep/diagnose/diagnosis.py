@@ -139,6 +139,8 @@ def _candidates(
     effects: Sequence[str], measurement: Measurement, progress: Callable[[str], None]
 ) -> tuple[str, ...]:
     """Effects that the base model may lack."""
+    possible = measurement.model.possible_effects
+    effects = [name for name in effects if name in possible]
     own = acting(measurement.model.effects)
     there = [name for name in effects if name in own and name not in SCALES]
     if there:

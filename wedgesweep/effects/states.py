@@ -8,19 +8,47 @@ from collections.abc import Callable, Mapping
 from math import inf, pi
 from typing import Any
 
-from wedgesweep.compiled import by_record, function_of
+from wedgesweep.compiled import by_record, forward, function_of
 from wedgesweep.hybrid.vectors import replaced
 
 # Kinds, and their natural sizes.
 LENGTH, VELOCITY, SHARE, TIME = "length", "velocity", "share", "time"
 SIZES = {
-    LENGTH: "p.input.amplitude",
-    VELOCITY: "p.input.amplitude * p.input.omega",
+    LENGTH: "input_length(p)",
+    VELOCITY: "input_length(p) * p.input.omega",
     SHARE: "1.0",
     TIME: "2.0 * pi / p.input.omega",
 }
 # Displacement from rest and velocity of the mass.
 MASS = (LENGTH, VELOCITY)
+
+
+# How systems measure a motion whose input is no displacement, by the field that marks their records.
+_LENGTHS: dict[str, Callable] = {}
+
+
+def measured_by(owner: str) -> Callable[[Callable], Callable]:
+    """Let a compiled function (p) be the ``input_length`` of records that have a field ``owner``."""
+
+    def decorate(written: Callable) -> Callable:
+        _LENGTHS[owner] = written
+        return input_length
+
+    return decorate
+
+
+def input_length(p):
+    """What motions are compared with (m): the input amplitude, or what a system names."""
+
+
+def _choose_length(fields: Mapping[str, Any]) -> Callable:
+    for owner, written in _LENGTHS.items():
+        if owner in fields:
+            return forward(["p"], written)
+    return function_of(["p"], "p.input.amplitude")
+
+
+by_record(input_length, _choose_length)
 
 
 def kinds(fields: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -74,7 +102,7 @@ def _of_all(expressions: Mapping[str, str]) -> Callable[[Callable], Callable]:
 
     def choose(fields: Mapping[str, Any]) -> Callable:
         parts = ", ".join(expressions[kind] for _, kind in kinds(fields))
-        return function_of(["p"], f"({parts},)", pi=pi, inf=inf)
+        return function_of(["p"], f"({parts},)", pi=pi, inf=inf, input_length=input_length)
 
     return lambda function: by_record(function, choose)
 

@@ -6,19 +6,21 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "amplitude-ratio"
 DESCRIPTION = "amplitude ratio over frequency, all laws and amplitudes (Fig. 4)"
 NEEDS = ("amplitude_ratio", "omega_n", "frictionless_resonance", "config")
 
+# Where spring and inertia cancel to this share there is no finite ratio to draw.
+LEAST_STIFFNESS = 1e-6
 LOWEST = 0.01  # of the axis; smaller ratios do not matter
 FEW_BETAS = 40  # up to here every case gets a dot
 
 
 def frictionless_ratio(ds: xr.Dataset, beta: np.ndarray) -> np.ndarray:
-    """Compute the amplitude ratio of the suspension without friction.
+    """Compute the amplitude ratio of the system without friction.
 
     With the wedge travelling r z along the column, m = M_b + 2 M_w r^2 is the moving mass and
     M_b + 2 M_w r cos(gamma) the mass that the base acceleration u'' drives. The ratio is NaN next to the
@@ -29,10 +31,22 @@ def frictionless_ratio(ds: xr.Dataset, beta: np.ndarray) -> np.ndarray:
 
     # Any law will do: none of these numbers depends on it.
     p = config.parse(ds.attrs["config"]).record(config.Case("static-dynamic", 1.0, 1e-3))[0]
+    if ds.attrs.get("system") == "oscillator":
+        return _linear_ratio(p["oscillator"], beta * ds.attrs["omega_n"])
     squared = (beta * ds.attrs["omega_n"] / ds.attrs["frictionless_resonance"]) ** 2
     detuning = np.abs(1.0 - squared)
     detuning[detuning < 1e-6] = np.nan
     return driven_mass(p) / moving_mass(p) * squared / detuning
+
+
+def _linear_ratio(own: np.void, omega: np.ndarray) -> np.ndarray:
+    """Amplitude ratio of a mass on spring and damper without friction, over angular frequency (rad/s)."""
+    inertia, support = own["mass"] * omega**2, own["spring"] + 1j * own["damping"] * omega
+    total = np.abs(support - inertia)
+    total[total < LEAST_STIFFNESS * own["spring"]] = np.nan
+    if own["forced"]:
+        return (own["spring"] or inertia) / total
+    return np.abs(support) / total if own["absolute"] else inertia / total
 
 
 def _limits(beta: np.ndarray) -> tuple[float, float]:
@@ -49,34 +63,35 @@ def _draw_reference(ax: Axes, ds: xr.Dataset) -> None:
     ax.plot(beta, ratio, color="black", linestyle="--", linewidth=1, label="no friction", zorder=3)
 
 
-def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm) -> bool:
+def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm, factor: float) -> bool:
     marker = "." if law.sizes["beta"] <= FEW_BETAS else ""
     missing = False
     for amplitude in law["amplitude"].values:
         ratio = law["amplitude_ratio"].sel(amplitude=amplitude)
-        color = style.SEQUENTIAL(norm(amplitude * style.MM))
+        color = style.SEQUENTIAL(norm(amplitude * factor))
         ax.plot(law["beta"], ratio, color=color, linewidth=1.1, marker=marker, markersize=3)
         missing |= style.mark_missing(ax, law["beta"].values[np.isnan(ratio.values)], style.VERMILLION)
     return missing
 
 
 def _amplitude_norm(amplitudes: np.ndarray) -> LogNorm:
-    """Scale the colours of input amplitudes (m), in mm."""
-    low, high = amplitudes.min() * style.MM, amplitudes.max() * style.MM
+    """Scale the colours of input amplitudes (mm or N)."""
+    low, high = amplitudes.min() or 1e-9, amplitudes.max() or 1e-9
     return LogNorm(low, high) if high > low else LogNorm(0.5 * low, 2.0 * high)
 
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, the input amplitude as colour, the frictionless response dashed."""
     names = cases.laws(ds)
-    norm = _amplitude_norm(ds["amplitude"].values)
+    words = labels.of(ds)
+    norm = _amplitude_norm(ds["amplitude"].values * words.factor)
     top = 1.5 * float(np.fmax(ds["amplitude_ratio"].max(), 1.5))
     made = panels(target, len(names), size=(3.3, 3.8))
     axes = made.axes
     axes[0].set_yscale("log")
     missing = False
     for ax, law in zip(axes, names, strict=True):
-        missing |= _draw_law(ax, ds.sel(friction_law=law), norm)
+        missing |= _draw_law(ax, ds.sel(friction_law=law), norm, words.factor)
         _draw_reference(ax, ds)
         style.add_hertz_axis(ax, ds)
         ax.set_title(law, fontsize=10)
@@ -84,11 +99,11 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     axes[0].set(xlim=_limits(ds["beta"].values), ylim=(LOWEST, top))
     if axes[0].get_legend_handles_labels()[0]:
         axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
-    style.label(axes, style.BETA, "amplitude ratio $|x-y|/a$ [1]")
-    bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), style.AMPLITUDE)
+    style.label(axes, style.BETA, words.ratio)
+    bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), words.amplitude)
     style.decimal_ticks(bar.ax.yaxis)
     made.title(
-        "Half peak-to-peak of $x-y$ (side frame minus bolster) over the input amplitude",
+        f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}",
         f"ratios below {LOWEST} are not shown"
         + ("; $\\times$ no result (failed or not run)" if missing else ""),
     )

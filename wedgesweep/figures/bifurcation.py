@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "bifurcation"
@@ -45,7 +45,7 @@ def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Pane
     middle = ds["amplitude"].values[ds.sizes["amplitude"] // 2]
     place = cases.nearest(ds["amplitude"], middle if amplitude is None else amplitude)[0]
     ds = ds.isel(amplitude=place)
-    names = cases.laws(ds)
+    names, words = cases.laws(ds), labels.of(ds)
     made = panels(target, len(names), size=(3.3, 3.5))
     axes = made.axes
     missing = False
@@ -53,11 +53,11 @@ def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Pane
         missing |= _draw_law(ax, ds.sel(friction_law=law))
         style.add_hertz_axis(ax, ds)
         ax.set_title(law, fontsize=10)
-    style.label(axes, style.BETA, style.DISPLACEMENT)
+    style.label(axes, style.BETA, words.displacement)
     made.legend(*axes[0].get_legend_handles_labels(), columns=6)
     made.title(
-        f"Displacement at forcing phase 0 ($u$ = 0, rising) of each kept period, "
-        f"$a$ = {ds['amplitude'].item() * style.MM:.4g} mm",
-        style.SIGN + ("; $\\times$ no result" if missing else ""),
+        f"Displacement at forcing phase 0 (${words.input}$ = 0, rising) of each kept period, "
+        f"{words.size(ds['amplitude'].item(), 4)}",
+        words.sign + ("; $\\times$ no result" if missing else ""),
     )
     return made

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "peak-to-peak"
@@ -26,21 +26,22 @@ def _draw_amplitude(ax: Axes, ds: xr.Dataset) -> bool:
         frequency = ds["frequency"].values
         ax.plot(frequency, height, linewidth=1.3, markersize=3, label=law, **look)
         missing |= style.mark_missing(ax, frequency[np.isnan(height)], look["color"])
-    ax.set_title(f"$a$ = {ds['amplitude'].item() * style.MM:.4g} mm", fontsize=10)
+    ax.set_title(labels.of(ds).size(ds["amplitude"].item(), 4), fontsize=10)
     ax.set_ylim(bottom=0.0)
     return missing
 
 
 def draw(target: Target, ds: xr.Dataset, amplitudes: ArrayLike | None = None) -> Panels:
     """Draw a panel per amplitude (m; nearest ones, by default three at which something slips)."""
+    words = labels.of(ds)
     places = cases.pick_amplitudes(ds, amplitudes, PANELS)
     made = panels(target, len(places), size=(3.2, 3.2), share=False)
     axes = made.axes
     missing = [_draw_amplitude(ax, ds.isel(amplitude=at)) for ax, at in zip(axes, places, strict=True)]
-    style.label(axes, "frequency [Hz]", "peak-to-peak of $x-y$ [mm]")
+    style.label(axes, "frequency [Hz]", f"peak-to-peak of ${words.motion}$ [mm]")
     made.legend(*axes[0].get_legend_handles_labels(), columns=4)
     made.title(
-        "Peak-to-peak of $x-y$ (side frame minus bolster) at fixed input amplitude",
+        f"Peak-to-peak of ${words.motion}$ ({words.whose}) at fixed input amplitude",
         "$\\times$ no result (failed or not run)" if any(missing) else "",
     )
     return made

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "phase-portrait"
@@ -43,9 +43,14 @@ def _from_list(
     return [ds.isel(case=place) for place in np.flatnonzero(keep)]
 
 
+def _size(case: xr.Dataset) -> float:
+    """Size (mm) that a motion is compared with: the input amplitude, 1 mm under a force."""
+    return 1.0 if labels.of(case).unit == "N" else case["amplitude"].item() * style.MM
+
+
 def _draw_still(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
     """Give a case that does not move, or has no result, axes of the size of its input."""
-    reach = np.array([-1.0, 1.0]) * case["amplitude"].item() * style.MM
+    reach = np.array([-1.0, 1.0]) * _size(case)
     middle = np.nan_to_num(case["displacement"].values[0] * style.MM)
     ax.set(xlim=middle + reach, ylim=reach * case["beta"].item() * omega_n)
     note = "no result" if np.isnan(case["displacement"]).all() else "no motion"
@@ -53,17 +58,17 @@ def _draw_still(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
 
 
 def _draw_case(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
-    law, amplitude = case["friction_law"].item(), case["amplitude"].item() * style.MM
+    law, amplitude = case["friction_law"].item(), case["amplitude"].item()
     x, v = case["displacement"].values * style.MM, case["velocity"].values * style.MM
     stuck = case["stuck"].values == 1
     ax.plot(x, v, color=style.law_style(law)["color"], linewidth=1.2, zorder=2)
     ax.plot(x[stuck], v[stuck], "o", color=style.STUCK, markersize=7, markeredgewidth=0, zorder=1)
     # Written so that NaN counts as still.
-    if not np.ptp(x) > STILL * amplitude:
+    if not np.ptp(x) > STILL * _size(case):
         _draw_still(ax, case, omega_n)
     ax.locator_params(nbins=5)
     frequency = style.frequency(case["beta"].item(), omega_n)
-    ax.set_title(f"{law}, $a$ = {amplitude:.3g} mm\n{frequency}", fontsize=9)
+    ax.set_title(f"{law}, {labels.of(case).size(amplitude, 3)}\n{frequency}", fontsize=9)
 
 
 def draw(
@@ -84,10 +89,11 @@ def draw(
     made = panels(target, len(shown), columns=columns, size=(2.9, 2.5), share=False)
     for ax, case in zip(made.axes, shown, strict=True):
         _draw_case(ax, case, ds.attrs["omega_n"])
-    style.label(made.axes, style.DISPLACEMENT, style.VELOCITY, columns)
+    words = labels.of(ds)
+    style.label(made.axes, words.displacement, words.velocity, columns)
     left_out = f"; first {len(shown)} of {len(found)} cases" if len(found) > len(shown) else ""
     made.title(
         "Phase portraits; yellow: stuck (coulomb) or slip below $v_t$" + left_out,
-        style.SIGN,
+        words.sign,
     )
     return made

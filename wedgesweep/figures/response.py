@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "response"
@@ -20,8 +20,11 @@ HEIGHT = 0.75  # of the largest waveform about its middle, in distances between 
 
 
 def _normalised(ds: xr.Dataset) -> xr.DataArray:
-    """Return (x - y) / a, centred between its extremes."""
-    waves = ds["displacement"] / ds["amplitude"]
+    """Return (x - y) / a, or a motion over what it is compared with, centred between its extremes."""
+    forced = labels.of(ds).unit == "N"
+    waves = ds["displacement"] / (
+        0.5 * ds["peak_to_peak"] / ds["amplitude_ratio"] if forced else ds["amplitude"]
+    )
     return waves - 0.5 * (waves.max("phase") + waves.min("phase"))
 
 
@@ -44,12 +47,19 @@ def _nice(value: float) -> float:
     return power * max(step for step in (1, 2, 5) if step * power <= value * (1 + 1e-9))
 
 
-def _draw_scale(ax: Axes, per_ratio: float, largest: float) -> None:
-    """Draw a bar beside the panel: how high a given x - y is in these rows."""
+def _draw_scale(ax: Axes, per_ratio: float, largest: float, words: labels.Labels) -> None:
+    """Draw a bar beside the panel: how high a given motion is in these rows."""
     ratio = _nice(largest)
     where = {"transform": ax.get_yaxis_transform(), "clip_on": False}
     ax.plot([1.04, 1.04], [0.0, ratio * per_ratio], color="black", linewidth=2, **where)
-    ax.text(1.07, 0.5 * ratio * per_ratio, f"$x-y$\n= {ratio:g} $a$", fontsize=8, va="center", **where)
+    ax.text(
+        1.07,
+        0.5 * ratio * per_ratio,
+        f"${words.motion}$\n= {ratio:g} ${words.scale}$",
+        fontsize=8,
+        va="center",
+        **where,
+    )
 
 
 def draw(target: Target, ds: xr.Dataset, beta: float = 0.3, amplitudes: ArrayLike | None = None) -> Panels:
@@ -65,7 +75,7 @@ def draw(target: Target, ds: xr.Dataset, beta: float = 0.3, amplitudes: ArrayLik
     largest = float(np.nan_to_num(np.abs(waves).max()))
     per_ratio = HEIGHT / largest if largest > 0.0 else 1.0
     time = ds["phase"].values / (ds["beta"].item() * ds.attrs["omega_n"])
-    names = cases.laws(ds)
+    names, words = cases.laws(ds), labels.of(ds)
     made = panels(target, len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
     axes = made.axes
     for ax, law in zip(axes, names, strict=True):
@@ -74,14 +84,15 @@ def draw(target: Target, ds: xr.Dataset, beta: float = 0.3, amplitudes: ArrayLik
             wave, stuck = waves.sel(case).values * per_ratio, ds["stuck"].sel(case).values
             _draw_row(ax, time, wave, stuck, row, style.law_style(law)["color"])
         ax.set_title(law, fontsize=10)
-    axes[0].set_yticks(range(len(rows)), [f"{a * style.MM:.3g}" for a in ds["amplitude"].values])
+    axes[0].set_yticks(range(len(rows)), [f"{a * words.factor:.3g}" for a in ds["amplitude"].values])
     axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))
-    style.label(axes, "time [s]", f"{style.AMPLITUDE}, one row each")
+    style.label(axes, "time [s]", f"{words.amplitude}, one row each")
     if largest > 0.0:
-        _draw_scale(axes[-1], per_ratio, largest)
+        _draw_scale(axes[-1], per_ratio, largest, words)
     frequency = style.frequency(ds["beta"].item(), ds.attrs["omega_n"])
     made.title(
-        f"Relative displacement $x-y$ (side frame minus bolster) at {frequency}",
-        "each row is divided by its input amplitude and centred; yellow: stuck (coulomb) or slip below $v_t$",
+        f"{words.name} ${words.motion}$ ({words.whose}) at {frequency}",
+        f"each row is divided by {words.own_reference} and centred; "
+        "yellow: stuck (coulomb) or slip below $v_t$",
     )
     return made

@@ -9,13 +9,14 @@ from matplotlib.collections import QuadMesh
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "stick-map"
 DESCRIPTION = "stick fraction over frequency and amplitude, with lift-off and breakaway"
-NEEDS = ("stick_fraction", "lift_off_fraction", "omega_n", "breakaway_acceleration")
+NEEDS = ("stick_fraction", "omega_n", "breakaway_acceleration")
 
+LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
 FEW_FAILURES = 50
 COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
 
@@ -52,11 +53,12 @@ def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -
     law = law.transpose("amplitude", "beta", ...)
     fraction = np.ma.masked_invalid(law["stick_fraction"].values)
     mesh = ax.pcolormesh(*edges, fraction, cmap=COLOURS, vmin=0.0, vmax=1.0, rasterized=True)
-    _hatch(ax, *edges, law["lift_off_fraction"].values > 0.0)
+    if LIFT_OFF in law:
+        _hatch(ax, *edges, law[LIFT_OFF].values > 0.0)
     rows, columns = np.nonzero(np.isnan(law["stick_fraction"].values))
     if 0 < len(rows) <= FEW_FAILURES:
         # On a fine grid the colour of a single cell would be overlooked.
-        amplitudes, beta = law["amplitude"].values[rows] * style.MM, law["beta"].values[columns]
+        amplitudes, beta = law["amplitude"].values[rows] * labels.of(law).factor, law["beta"].values[columns]
         ax.plot(beta, amplitudes, "x", color=style.PURPLE, markersize=6, markeredgewidth=1.8)
     return mesh
 
@@ -76,7 +78,7 @@ def _legend(made: Panels, ds: xr.Dataset) -> None:
     handles: list[Artist] = []
     if np.isfinite(ds.attrs["breakaway_acceleration"]):
         handles.append(Line2D([], [], label="breakaway from rest, $a = A/ω^2$", **line))
-    if (ds["lift_off_fraction"] > 0.0).any():
+    if LIFT_OFF in ds and (ds[LIFT_OFF] > 0.0).any():
         handles.append(Patch(label="lift-off at some time", **hatched))
     if ds["stick_fraction"].isnull().any():
         handles.append(Patch(facecolor=style.PURPLE, label="no result (failed or not run)"))
@@ -86,7 +88,8 @@ def _legend(made: Panels, ds: xr.Dataset) -> None:
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, lift-off hatched, and the line above which coulomb slip begins."""
-    amplitudes = ds["amplitude"].values * style.MM
+    words = labels.of(ds)
+    amplitudes = ds["amplitude"].values * words.factor
     logarithmic = is_logarithmic(amplitudes)
     edges = cell_edges(ds["beta"].values, False), cell_edges(amplitudes, logarithmic)
     names = cases.laws(ds)
@@ -104,7 +107,8 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
         _draw_breakaway(ax, ds)
         style.add_hertz_axis(ax, ds)
     made.colorbar(mesh, "stick fraction of a period [1]")
-    style.label(axes, style.BETA, style.AMPLITUDE)
+    style.label(axes, style.BETA, words.amplitude)
     _legend(made, ds)
-    made.title("Share of time stuck (coulomb) or with column slip below $v_t$ (other laws)")
+    face = "" if ds.attrs.get("system") == "oscillator" else "column "
+    made.title(f"Share of time stuck (coulomb) or with {face}slip below $v_t$ (other laws)")
     return made

@@ -15,11 +15,11 @@ from typing import Any
 
 from wedgesweep.compiled import by_record, function_of, inlined
 from wedgesweep.effects import hooks
-from wedgesweep.friction.names import LAW_NAMES
+from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 
 # The laws by name; a law's place is its code in parameter records. ``register`` adds another.
 LAWS: dict[str, ModuleType] = {
-    name: import_module(f"{__name__}.{name.replace('-', '_')}") for name in LAW_NAMES
+    name: import_module(f"{__name__}.{name.replace('-', '_')}") for name in (*LAW_NAMES, *OSCILLATOR_LAWS)
 }
 
 

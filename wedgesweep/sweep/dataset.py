@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -130,25 +131,30 @@ def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
 
 
 def assemble(
-    records: np.ndarray, coords: Mapping[str, Any], shape: tuple[int, ...], attrs: Mapping[str, Any]
+    records: np.ndarray,
+    coords: Mapping[str, Any],
+    shape: tuple[int, ...],
+    attrs: Mapping[str, Any],
+    long_names: Mapping[str, str | None] = MappingProxyType({}),
 ) -> xr.Dataset:
     """Assemble the dataset from the records of all cases, in any order.
 
     ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), one
-    for a list (case).
+    for a list (case). ``long_names``: those of another system, by variable; None: it does not have it.
     """
     case_dims = GRID if len(shape) == 3 else ("case",)
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
     for variable in VARIABLES + CONTINUED:
-        if variable.name not in (records.dtype.names or ()):
+        long_name = long_names.get(variable.name, variable.long_name)
+        if variable.name not in (records.dtype.names or ()) or long_name is None:
             continue
         values = ordered[variable.name]
         if variable.dtype == "str":
             values = np.array([text.decode("utf-8", "replace") for text in values.tolist()], object)
         values = values.reshape(shape + values.shape[1:])
-        variables[variable.name] = (case_dims + variable.dims, values, _attributes(variable))
+        variables[variable.name] = (case_dims + variable.dims, values, _attributes(variable, long_name))
     return xr.Dataset(variables, coords, {"Conventions": "CF-1.13", **attrs})
 
 
@@ -167,8 +173,8 @@ def coordinates(case_coords: Mapping[str, Any], sizes: Mapping[str, int]) -> dic
     return coords
 
 
-def _attributes(variable: Variable) -> dict[str, Any]:
-    attributes: dict[str, Any] = {"long_name": variable.long_name}
+def _attributes(variable: Variable, long_name: str) -> dict[str, Any]:
+    attributes: dict[str, Any] = {"long_name": long_name}
     if variable.units:
         attributes["units"] = variable.units
     if variable.name in FLAGS:

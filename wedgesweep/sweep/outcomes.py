@@ -18,7 +18,7 @@ SETTLED = 1e-3
 
 
 class CaseResult(NamedTuple):
-    """How one case ended; amplitude in m.
+    """How one case ended; amplitude in ``unit``, m or N.
 
     ``period`` and ``periodicity`` are the dataset's variables of these names.
     """
@@ -30,6 +30,7 @@ class CaseResult(NamedTuple):
     message: str
     period: int
     periodicity: float
+    unit: str = "m"
 
     @property
     def settled(self) -> bool:
@@ -37,7 +38,7 @@ class CaseResult(NamedTuple):
         return self.period > 0 if self.period >= 0 else self.periodicity <= SETTLED
 
     def __str__(self) -> str:
-        where = describe(self.law, self.beta, self.amplitude)
+        where = describe(self.law, self.beta, self.amplitude, self.unit)
         return f"{where}: {self.status}: {self.message}"
 
 
@@ -45,6 +46,7 @@ def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
     """How each case of a dataset ended."""
     frame = ds[["status", "message", "period", "periodicity"]].to_dataframe().reset_index()
     frame = frame.rename(columns={"friction_law": "law"})
+    frame["unit"] = ds["amplitude"].attrs["units"]
     columns = {name: frame[name].tolist() for name in CaseResult._fields}
     columns["status"] = map(Outcome, columns["status"])
     return list(map(CaseResult, *columns.values()))
@@ -61,6 +63,7 @@ def of_journal(path: Path) -> list[CaseResult]:
             message=record["message"].decode(),
             period=int(record["period"]),
             periodicity=float(record["periodicity"]),
+            unit="N" if settings.forced else "m",
         )
         for record in journal.read(path, Sweep(settings, path).dtype)
     ]

@@ -12,7 +12,10 @@ from wedgesweep.sweep.fingerprint import fingerprint
 
 PACKAGE = Path(__file__).parents[1]
 PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "joblib")
-SOURCE = "wedgesweep: friction wedge suspension of a three-piece bogie, half model"
+SOURCES = {
+    "suspension": "wedgesweep: friction wedge suspension of a three-piece bogie, half model",
+    "oscillator": "wedgesweep: mass on a spring that rubs on a surface",
+}
 REFERENCES = (
     "Numerical investigation on the friction wedge damper dynamics - a comparative study; "
     "Den Hartog (1930), Forced vibrations with combined Coulomb and viscous friction"
@@ -25,7 +28,7 @@ def attributes(config: Config, started: datetime, command: str) -> dict[str, str
     commit = git_commit()
     return {
         "title": config.title,
-        "source": f"{SOURCE}, version {__version__}",
+        "source": f"{SOURCES[config.system]}, version {__version__}",
         "references": REFERENCES,
         "history": f"{stamp}: {command}",
         "start_time": stamp,

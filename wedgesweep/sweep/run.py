@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from functools import cached_property, partial
 from math import nan
 from pathlib import Path
+from typing import Any
 
 import joblib
 import numpy as np
@@ -20,13 +21,13 @@ from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset, journal, provenance
+from wedgesweep.sweep import dataset, journal, labels, provenance
 from wedgesweep.sweep.backend import Backend, local
 from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
+from wedgesweep.systems import has_own_mechanics, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
-from wedgesweep.systems.suspension.parameters import has_own_mechanics
 
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
@@ -202,7 +203,7 @@ class Sweep:
         rows = self.together
         todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
         if todo.size:
-            compile_once(self.settings.method, self.extended)
+            compile_once(self.settings.method, self.extended, self.config.system)
         yield whole[~np.isin(whole["index"], todo)]
         with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:
@@ -238,7 +239,10 @@ class Sweep:
         failed = records[records["status"] != Outcome.OK]
         if failed.size:
             case = self.config.case_list()[failed[0]["index"]]
-            message = f"{describe(*case)}: {failed[0]['message'].decode()}"
+            unit = "N" if self.config.forced else "m"
+            message = (
+                f"{describe(case.law, case.beta, case.amplitude, unit)}: {failed[0]['message'].decode()}"
+            )
             raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:
@@ -249,11 +253,19 @@ class Sweep:
             dataset.coordinates(coords, self.sizes),
             shape,
             {**self._physics(), **provenance.attributes(self.config, started, self.command)},
+            labels.of(self.config),
         )
 
-    def _physics(self) -> dict[str, float]:
-        """Properties of the suspension that figures refer to (SI)."""
+    def _physics(self) -> dict[str, Any]:
+        """Properties of the system that figures refer to (SI)."""
         p = self.parameters[0]
+        if self.config.system == "oscillator":
+            return {
+                "omega_n": self.config.sweep.omega_n,
+                "frictionless_resonance": oscillator.resonance(p) or nan,
+                "breakaway_acceleration": oscillator.breakaway_acceleration(p),
+                **labels.attributes(self.config),
+            }
         numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
         if self.extended:  # not defined for the extended mechanics
             return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}

@@ -18,7 +18,7 @@ from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
-from wedgesweep.systems.suspension.parameters import has_own_mechanics
+from wedgesweep.systems import has_own_mechanics
 
 # A bolster that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
@@ -64,6 +64,8 @@ def synthesize(
     files.require_free(directory)
     problems: list[str] = []
     _, law = with_law(config, source, problems)
+    if config.forced:
+        problems.append(f'{source}: sweep.excitation: tests are of a moving base; write "base"')
     if problems:
         raise SynthesisError(problems)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
@@ -85,7 +87,8 @@ def _name(i: int, test: TrueTest) -> str:
 
 def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
     """Simulate the tests; raises SynthesisError with every test that fails."""
-    compile_once("radau", bool(has_own_mechanics(truth.record(truth.tests[0]))[0]))
+    extended = bool(has_own_mechanics(truth.record(truth.tests[0]))[0])
+    compile_once("radau", extended, truth.config.system)
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
         joblib.delayed(_motion)(

@@ -57,16 +57,8 @@ class Truth:
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""
-        from wedgesweep.systems.suspension import parameters
-
-        record = parameters.record(
-            law=self.law,
-            amplitude=test.amplitude_mm * 1e-3,
-            omega=2.0 * pi * test.plan.frequency_hz,
-            suspension=self.config.suspension,
-            friction=self.config.friction,
-            effects=self.effects,
-        )
+        amplitude, omega = test.amplitude_mm * 1e-3, 2.0 * pi * test.plan.frequency_hz
+        record = self.config.record_with(self.effects, self.law, amplitude, omega)
         if test.stray_phase_deg is not None:
             record[STRAY]["phase"] = np.radians(test.stray_phase_deg)
         return record

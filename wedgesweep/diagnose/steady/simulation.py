@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep import effects
+from wedgesweep import effects, systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.fit_parameters import Values
@@ -15,7 +15,6 @@ from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
-from wedgesweep.systems.suspension import parameters
 
 MOST_PERIODS = 40
 SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
@@ -42,8 +41,7 @@ class Responses(NamedTuple):
 def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """Parameter records (n,) of tests with given angular frequencies (rad/s) and input amplitudes (m)."""
     numbers = effects.merge(model.effects, values)
-    one = parameters.record(law, 1.0, 1.0, model.suspension, model.friction, numbers)
-    rows = np.repeat(one, omega.size)
+    rows = np.repeat(model.record_with(numbers, law), omega.size)
     rows["input"]["omega"], rows["input"]["amplitude"] = omega, amplitude
     return rows
 
@@ -58,7 +56,7 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOL
 
 def _count(rows: np.ndarray, periods: np.ndarray | int) -> None:
     """Count the work of simulated cases (n,) over so many periods (n,)."""
-    weight = np.where(parameters.has_own_mechanics(rows), WORK_OF_OWN_MECHANICS, 1.0)
+    weight = np.where(systems.has_own_mechanics(rows), WORK_OF_OWN_MECHANICS, 1.0)
     work.add(float((WORK_OF_CASE + weight * periods).sum()))
 
 

@@ -10,7 +10,7 @@ from wedgesweep.diagnose.steady.accelerations import accelerations
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
-from wedgesweep.systems.suspension.parameters import compact, driven_mass, has_own_mechanics, moving_mass
+from wedgesweep.systems import compact, driven_mass, has_own_mechanics, is_oscillator, moving_mass
 
 PHASES = 256
 # A harmonic counts by the share of its square that exceeds this many times its noise.
@@ -74,7 +74,11 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
     """
     rows = _rows(data, fit)
     fundamental = fundamental / rows["displacement_gain"]["scale"]
-    fundamental = np.where(rows["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
+    if "fixture_resonance" in (rows.dtype.names or ()):
+        fundamental = np.where(rows["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
+    if is_oscillator(rows):
+        # Its displacement is that of the mass, and what rubs on the ground is not driven by inertia.
+        fundamental = np.where(rows["oscillator"]["absolute"], np.nan, -fundamental)
     given = rows["input"]
     return pi * driven_mass(rows) * given["amplitude"] * given["omega"] ** 2 * fundamental.real
 
@@ -100,11 +104,13 @@ def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.nd
     if has_own_mechanics(rows).any() or set(acting(data.model.effects)) & set(SENSOR):
         return np.full((data.tests, PHASES), np.nan)
     weight = _wiener_weight(data)
+    # A suspension's displacement is that of the side frame against the bolster.
+    sign = 1.0 if is_oscillator(rows) else -1.0
     rate = velocity(data, harmonics)
-    x, v = -waveform(weight * harmonics[:, 0]), -waveform(weight * rate)
+    x, v = sign * waveform(weight * harmonics[:, 0]), sign * waveform(weight * rate)
     model = np.array([_about_mean_position(rows[t : t + 1], x[t], v[t]) for t in range(data.tests)])
     simulated = 2.0 / PHASES * np.fft.rfft(model)[:, 1 : data.shape[1] + 1]
-    measured = -1j * data.omega[:, None] * data.orders * rate
+    measured = sign * 1j * data.omega[:, None] * data.orders * rate
     return moving_mass(rows)[:, None] * waveform(weight * (measured - simulated))
 
 

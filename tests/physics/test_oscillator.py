@@ -1,0 +1,129 @@
+"""The oscillator against closed forms and published numbers."""
+
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+import pytest
+
+from wedgesweep import response
+from wedgesweep.reproduce import stick_slip
+from wedgesweep.solvers import event_driven, radau
+from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems.oscillator import parameters
+
+SOLVERS = {"event-driven": event_driven, "radau": radau}
+M, K = 2.0, 800.0
+OMEGA_N = sqrt(K / M)
+AMPLITUDE = 2e-3
+
+
+def oscillator(**numbers):
+    return {"mass": M, "spring": K, "damping": 0.0, "normal_force": 1.0, "contact": "base", **numbers}
+
+
+def coulomb(coefficient):
+    return {"dynamic": coefficient, "static": coefficient}
+
+
+def closed_form(r, force_ratio):
+    """Den Hartog: K X / P without stops, for a friction force F = force_ratio P."""
+    v = 1.0 / (1.0 - r**2)
+    u = sin(pi / r) / (r * (1.0 + cos(pi / r)))
+    return sqrt(v**2 - (force_ratio * u) ** 2)
+
+
+def steady(case, solver="event-driven", rtol=1e-12, settle=600, periods=2, samples=256):
+    window = Window(float(case["input"]["omega"][0]), settle, periods, samples)
+    return response.evaluate(SOLVERS[solver].solve(case, window, rtol, time_limit=120.0), case, harmonics=9)
+
+
+@pytest.mark.parametrize("force_ratio", [0.05, 0.3, 0.5])
+@pytest.mark.parametrize("r", [0.6, 0.8, 1.2, 1.5, 2.0])
+def test_den_hartog_under_a_force(r, force_ratio):
+    force = 3.0
+    case = parameters.record(
+        "coulomb", force, r * OMEGA_N, oscillator(), coulomb(force_ratio * force), excitation="force"
+    )
+    found = steady(case).numbers
+    assert found["stick_fraction"] == 0.0
+    assert found["amplitude_ratio"] == pytest.approx(closed_form(r, force_ratio), rel=1e-8)
+
+
+@pytest.mark.parametrize(("r", "force_ratio"), [(0.8, 0.5), (1.5, 0.3)])
+def test_den_hartog_on_a_base(r, force_ratio):
+    omega = r * OMEGA_N
+    friction = coulomb(force_ratio * M * omega**2 * AMPLITUDE)
+    found = steady(parameters.record("coulomb", AMPLITUDE, omega, oscillator(), friction)).numbers
+    assert found["amplitude_ratio"] / r**2 == pytest.approx(closed_form(r, force_ratio), rel=1e-8)
+
+
+@pytest.mark.parametrize("damping", [0.0, 12.0])
+def test_wall_friction_on_a_moving_base_is_that_under_the_force_of_spring_and_damper(damping):
+    omega = 0.9 * OMEGA_N
+    rubbing = oscillator(damping=damping, contact="ground")
+    samples = 4096  # sampled from one phase or another, harmonics beyond the samples must be small
+    moved = steady(parameters.record("coulomb", AMPLITUDE, omega, rubbing, coulomb(0.8)), samples=samples)
+    # k u + c u' = sqrt(k^2 + c^2 omega^2) a sin(omega t + lead)
+    force, lead = AMPLITUDE * np.hypot(K, damping * omega), np.arctan2(damping * omega, K)
+    case = parameters.record("coulomb", force, omega, rubbing, coulomb(0.8), excitation="force")
+    pushed = steady(case, samples=samples)
+    assert moved.numbers["peak_to_peak"] == pytest.approx(pushed.numbers["peak_to_peak"], rel=1e-9)
+    turn = np.exp(1j * lead * np.arange(1, 10))
+    first, second = (each.spectra["displacement_harmonics"] @ [1.0, 1j] for each in (moved, pushed))
+    assert first == pytest.approx(second * turn, rel=1e-6, abs=1e-9 * AMPLITUDE)
+    lag = pushed.numbers["phase_lag"] - lead
+    assert moved.numbers["phase_lag"] == pytest.approx(lag, abs=1e-8)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_free_decay_loses_4_friction_over_stiffness_a_cycle(solver):
+    friction = 0.5
+    case = parameters.record(
+        "coulomb",
+        0.0,
+        OMEGA_N,
+        oscillator(contact="belt", belt_velocity=0.0),
+        coulomb(friction),
+        excitation="force",
+    )
+    case["input"]["amplitude"] = 1e-9
+    start = 10.3 * friction / K
+    run = SOLVERS[solver].solve(case, Window(OMEGA_N, 0, 4, 256), 1e-10, 60.0, start=(start, 0.0))
+    tops = run.samples.x[::256]
+    assert tops[:3] == pytest.approx(-start + 4.0 * friction / K * np.arange(3), rel=1e-7)
+    assert run.samples.sticks[-1]
+
+
+# A block on a belt (Leine et al., 1998): k = m = F_s = 1, belt 0.2, F = F_s / (1 + 3 |v|).
+BLOCK = {"mass": 1.0, "spring": 1.0, "normal_force": 1.0, "contact": "belt", "belt_velocity": 0.2}
+HYPERBOLIC = {"static": 1.0, "threshold_velocity": 1.0 / 3.0}
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_block_on_a_belt(solver):
+    case = parameters.record("hyperbolic", 0.0, 2.0 * pi / 12.0, BLOCK, HYPERBOLIC, excitation="force")
+    run = SOLVERS[solver].solve(case, Window(2.0 * pi / 12.0, 5, 3, 16384), 1e-10, 120.0)
+    cycle = stick_slip.measured(run.samples.t, -run.samples.x, -run.samples.velocity, run.samples.sticks, 0.2)
+    assert cycle.period == pytest.approx(12.00103, abs=1e-5)
+    assert cycle.slip == pytest.approx(4.29600, abs=1e-5)
+    assert cycle.stick == pytest.approx(7.70503, abs=1e-5)
+    assert cycle.sticks_from == pytest.approx(-0.5410064, abs=1e-6)
+    assert cycle.highest == pytest.approx(1.1339447, abs=1e-6)
+    assert cycle.lowest == pytest.approx(-0.5554327, abs=1e-6)
+    assert -run.sums["lowest"][0] == pytest.approx(1.1339447, abs=1e-7)
+    assert -run.sums["highest"][0] == pytest.approx(-0.5554327, abs=1e-7)
+
+
+@pytest.mark.parametrize("excitation", ["base", "force"])
+@pytest.mark.parametrize("contact", ["base", "ground", "belt"])
+@pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential", "hyperbolic"])
+def test_energy_balances_and_solvers_agree(law, contact, excitation):
+    numbers = oscillator(damping=6.0, contact=contact, belt_velocity=0.05)
+    friction = {"dynamic": 0.5, "static": 0.6, "threshold_velocity": 2e-3}
+    amplitude = AMPLITUDE if excitation == "base" else AMPLITUDE * K
+    case = parameters.record(law, amplitude, 0.7 * OMEGA_N, numbers, friction, excitation=excitation)
+    found = [steady(case, solver, rtol=1e-8, settle=60).numbers for solver in SOLVERS]
+    for each in found:
+        assert each["supplied_energy"] == pytest.approx(each["dissipated_energy"], rel=1e-5)
+    for name in ("amplitude_ratio", "dissipated_energy", "stick_fraction", "phase_lag"):
+        assert found[0][name] == pytest.approx(found[1][name], rel=1e-5, abs=1e-7), name

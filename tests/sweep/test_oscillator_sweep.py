@@ -1,0 +1,140 @@
+"""Sweeps of the oscillator: from its config to a dataset and figures."""
+
+from math import cos, pi, sin, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wedgesweep import config, figures
+from wedgesweep.config import ConfigError
+from wedgesweep.reproduce import stick_slip
+from wedgesweep.sweep.run import Sweep
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+SMALL = """
+[oscillator]
+mass_kg = 3.08
+spring_N_per_mm = 1.191
+damping_N_s_per_m = 0.669
+normal_force_N = 2.45
+contact = "CONTACT"
+[sweep]
+friction_law = ["coulomb", "static-dynamic"]
+excitation = "EXCITATION"
+frequency_hz = [2.0, 3.0, 4.5]
+AMPLITUDE
+[solver]
+method = "event-driven"
+settle = "steady"
+"""
+INPUTS = {"base": "amplitude_mm = [0.5, 2.0]", "force": "amplitude_N = [1.0, 2.0]"}
+
+
+def parsed(contact="base", excitation="base", **changes):
+    text = SMALL.replace("CONTACT", contact).replace("EXCITATION", excitation)
+    text = text.replace("AMPLITUDE", INPUTS[excitation])
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    return config.parse(text)
+
+
+def run(settings):
+    return Sweep(settings, Path("unused.nc")).run_here()
+
+
+def den_hartog(r, force_ratio):
+    v = 1.0 / (1.0 - r**2)
+    u = sin(pi / r) / (r * (1.0 + cos(pi / r)))
+    return sqrt(v**2 - (force_ratio * u) ** 2)
+
+
+def test_den_hartog_config():
+    ds = run(config.load(CONFIGS / "den-hartog.toml")).sel(friction_law="coulomb")
+    assert (ds["status"] == 0).all()
+    without_stops = 0
+    for r in ds["beta"].values:
+        for force in ds["amplitude"].values:
+            case = ds.sel(beta=r, amplitude=force)
+            if case["stick_fraction"] == 0.0:
+                expected = den_hartog(r, 1.0 / force)
+                assert case["amplitude_ratio"].item() == pytest.approx(expected, rel=1e-8)
+                without_stops += 1
+    assert without_stops > 20
+
+
+def test_belt_config():
+    ds = run(config.load(CONFIGS / "belt.toml")).squeeze()
+    t = ds["phase"].values / (2.0 * pi * ds["frequency"].item())
+    motion = (ds[name].values.astype(float) for name in ("displacement", "velocity", "stuck"))
+    cycle = stick_slip.measured(t, *motion, belt=0.2)
+    assert cycle.period == pytest.approx(12.00103, abs=1e-5)
+    assert cycle.slip == pytest.approx(4.29600, abs=1e-5)
+    assert cycle.stick == pytest.approx(7.70503, abs=1e-5)
+    assert cycle.sticks_from == pytest.approx(-0.5410064, abs=1e-6)
+    assert (cycle.highest, cycle.lowest) == pytest.approx((1.1339447, -0.5554327), abs=1e-6)
+
+
+@pytest.mark.parametrize("excitation", INPUTS)
+@pytest.mark.parametrize("contact", ["base", "ground"])
+def test_dataset_says_what_it_holds(contact, excitation):
+    ds = run(parsed(contact, excitation))
+    assert (ds["status"] == 0).all()
+    assert ds["amplitude"].attrs["units"] == {"base": "m", "force": "N"}[excitation]
+    symbol = "x - u" if (contact, excitation) == ("base", "base") else "x"
+    assert ds["displacement"].attrs["long_name"] == f"displacement {symbol} of the mass"
+    assert "normal_force_column" not in ds
+    assert ds["supplied_energy"].values == pytest.approx(ds["dissipated_energy"].values, rel=1e-4, abs=1e-9)
+    for kind in figures.FIGURES:
+        figures.draw(ds, kind).draw_without_rendering()
+
+
+def test_frictionless_dataset_is_linear():
+    settings = parsed("ground", "base", **{"normal_force_N = 2.45": "normal_force_N = 0.0"})
+    ds = run(settings).sel(friction_law="coulomb")
+    omega = 2.0 * pi * ds["frequency"].values
+    support = 1191.0 + 0.669j * omega
+    expected = np.abs(support / (support - 3.08 * omega**2))
+    for amplitude in ds["amplitude"].values:
+        assert ds["amplitude_ratio"].sel(amplitude=amplitude).values == pytest.approx(expected, rel=1e-5)
+
+
+def test_no_spring():
+    settings = parsed("base", "base", **{"spring_N_per_mm = 1.191": "spring_N_per_mm = 0.0"})
+    ds = run(settings)
+    assert ds["beta"].values == pytest.approx(ds["frequency"].values)
+    assert "1 Hz" in ds["beta"].attrs["long_name"]
+    assert (ds["status"] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("[oscillator]", "[suspension]\n[oscillator]", "suspension and oscillator exclude each other"),
+        ("mass_kg = 3.08", "", "oscillator.mass_kg: missing"),
+        ('contact = "base"', 'contact = "belt"', "oscillator.belt_velocity_mm_per_s: missing"),
+        ('contact = "base"', "belt_velocity_mm_per_s = 1.0", 'write contact = "belt"'),
+        ("amplitude_mm = [0.5, 2.0]", "amplitude_N = 1.0", 'sweep.amplitude_N: excitation is "base"'),
+        ('excitation = "base"', 'excitation = "force"', 'sweep.amplitude_mm: excitation is "force"'),
+        ("[solver]", "[effects.column_compliance]\nstiffness_N_per_mm = 1.0\n[solver]", "no such part"),
+        (
+            "spring_N_per_mm = 1.191",
+            "spring_N_per_mm = 0.0",
+            "sweep.beta: without a spring there is no omega_n; write frequency_hz",
+        ),
+    ],
+)
+def test_contradictions_are_told(old, new, problem):
+    changes = {old: new}
+    if "sweep.beta" in problem:
+        changes["frequency_hz ="] = "beta ="
+    with pytest.raises(ConfigError, match=problem):
+        parsed(**changes)
+
+
+def test_a_suspension_has_no_force_and_no_hyperbolic_law():
+    text = '[sweep]\nfriction_law = "hyperbolic"\nbeta = 1.0\nexcitation = "force"\namplitude_N = 1.0\n'
+    with pytest.raises(ConfigError) as caught:
+        config.parse(text)
+    assert "a law of [oscillator]" in str(caught.value)
+    assert "driven by its side frame" in str(caught.value)

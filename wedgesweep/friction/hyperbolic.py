@@ -1,0 +1,39 @@
+"""Friction that falls with velocity for good, as in studies of stick-slip (Leine et al., 1998).
+
+mu = mu_s sign(v) / (1 + |v| / v_t)     for v != 0
+mu in [-mu_s, mu_s]                     for v = 0: the face sticks
+
+For oscillators only. v_t is the velocity at which it has fallen to half.
+"""
+
+import numpy as np
+
+from wedgesweep.compiled import inlined
+
+SET_VALUED = True
+
+# A trial step may look a little past zero velocity, where this would run to infinity. No solution gets there.
+SLOWEST = -0.5
+
+
+@inlined
+def static(p):
+    """Coefficient at which friction lets go."""
+    return p.friction.mu_s
+
+
+@inlined
+def sliding(speed, p):
+    """Coefficient of slip at a speed (m/s)."""
+    return p.friction.mu_s / (1.0 + max(speed / p.friction.v_t, SLOWEST))
+
+
+@inlined
+def constant(p):
+    """Whether ``sliding`` does not depend on the speed."""
+    return False
+
+
+def bound(p: np.void) -> float:
+    """Largest coefficient."""
+    return p["friction"]["mu_s"]

@@ -1,0 +1,66 @@
+"""What the variables of a dataset are called where they are not those of the suspension."""
+
+from typing import TypedDict
+
+from wedgesweep.config import Config
+
+
+class Attributes(TypedDict):
+    """Global attributes of an oscillator's dataset; ``reference`` is what motions are compared with."""
+
+    system: str
+    contact: str
+    excitation: str
+    reference: str
+
+
+def attributes(config: Config) -> Attributes:
+    """Return what tells how to read the dataset of an oscillator."""
+    return {
+        "system": config.system,
+        "contact": config.oscillator["contact"],
+        "excitation": config.excitation,
+        "reference": _reference(config),
+    }
+
+
+def of(config: Config) -> dict[str, str | None]:
+    """Return the long names of variables by name, None for those that the system does not have."""
+    if config.system != "oscillator":
+        return {}
+    contact = config.oscillator["contact"]
+    relative = contact == "base" and not config.forced
+    x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
+    size = _reference(config)
+    return {
+        "amplitude_ratio": f"half peak-to-peak of {x} over {size}",
+        "peak_to_peak": f"peak-to-peak of the displacement {x}",
+        "peak_velocity": f"largest magnitude of the velocity {v}",
+        "mean_displacement": f"mean of {x}",
+        "stick_fraction": "share of time stuck (set-valued laws) or slipping below the threshold velocity",
+        "displacement_harmonics": f"D_h of {x} = Re sum D_h exp(i h omega t)",
+        "velocity_harmonics": f"V_h of {v} = Re sum V_h exp(i h omega t)",
+        "phase_lag": f"lag of the fundamental of {x} behind the input",
+        "supplied_energy": "energy supplied by the input"
+        + " and the belt" * (contact == "belt")
+        + " per period",
+        "dissipated_energy": "energy dissipated by friction and dampers per period",
+        "minimum_normal_force": None,
+        "lift_off_fraction": None,
+        "normal_force_column": None,
+        "normal_force_bolster": None,
+        "periodicity": f"largest change of {x} from the last period but one to the last, over {size}",
+        "displacement": f"displacement {x} of the mass",
+        "velocity": f"velocity {v} of the mass",
+    }
+
+
+def _reference(config: Config) -> str:
+    """What motions are compared with (see systems/oscillator/forces.py)."""
+    if not config.forced:
+        return "the amplitude of u"
+    sprung = config.oscillator["spring"] > 0.0
+    unforced = not config.sweep.amplitude.any() and config.sweep.cases is None
+    if unforced:
+        return "belt velocity over " + ("omega_n" if sprung else "omega")
+    return "force amplitude over " + ("k" if sprung else "m omega^2")

@@ -1,0 +1,107 @@
+"""Forces on the mass, and their power.
+
+    m x'' + c (x' - u') + k (x - u) + T = F
+
+T is the friction of the rubbing surface, at the slip velocity v = x' - u', x' or x' - belt velocity. The
+state holds the displacement against the base (x - u) where the mass rubs on the base, else x itself, so that
+a mass that sticks has a constant velocity.
+"""
+
+from wedgesweep import friction
+from wedgesweep.compiled import inlined
+from wedgesweep.effects import directional_friction, end_stop, guide_friction, hooks, presliding, states
+from wedgesweep.excitation import acceleration, displacement, force, velocity
+from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, X, slip, stuck
+
+
+@states.measured_by("oscillator")
+@inlined
+def input_length(p):
+    """What motions are compared with (m).
+
+    The amplitude of the base; under a force the deflection that it causes at rest, or without a spring the
+    motion of the free mass; without input the motion on the belt.
+    """
+    own, given = p.oscillator, p.input
+    if given.amplitude == 0.0:
+        fastest = max((own.spring / own.mass) ** 0.5, given.omega if own.spring == 0.0 else 0.0)
+        return abs(own.belt_velocity) / fastest
+    if own.forced:
+        return given.amplitude / (own.spring if own.spring > 0.0 else own.mass * given.omega**2)
+    return given.amplitude
+
+
+@inlined
+def elongation(t, y, p):
+    """Elongation of the spring (m)."""
+    if p.oscillator.absolute and not p.oscillator.forced:
+        return y[X] - displacement(t, p)
+    return y[X]
+
+
+@inlined
+def elongation_rate(t, y, p):
+    """Its rate (m/s)."""
+    if p.oscillator.absolute and not p.oscillator.forced:
+        return y[VELOCITY] - velocity(t, p)
+    return y[VELOCITY]
+
+
+@inlined
+def support(t, y, mode, p):
+    """Force on the mass (N) of all that stands between it and the base."""
+    stretch, rate = elongation(t, y, p), elongation_rate(t, y, p)
+    own = -p.oscillator.spring * stretch - p.oscillator.damping * rate
+    return own + hooks.force_on_mass(stretch, rate, y, p) + end_stop.force(stretch, mode.stop, p)
+
+
+@inlined
+def applied(t, p):
+    """Force of the input on the mass (N): the force itself, or inertia against a base that it rubs on."""
+    if p.oscillator.forced:
+        return force(t, p)
+    if p.oscillator.absolute:
+        return 0.0
+    return -p.oscillator.mass * acceleration(t, p)
+
+
+@inlined
+def load(t, y, mode, p):
+    """All forces on the mass (N) but friction."""
+    return support(t, y, mode, p) + applied(t, p)
+
+
+@inlined
+def friction_force(y, mode, p):
+    """Friction T (N) on a branch that no jump and no sticking holds, positive against positive slip."""
+    rubbing, normal = slip(y, p), p.oscillator.normal_force
+    factor = directional_friction.factor(mode.direction, p)
+    if presliding.acts(p):
+        most = p.friction.mu_d * normal + guide_friction.acts(p) * p.guide_friction.force
+        return factor * most * presliding.bristle(y, p)
+    if p.friction.set_valued and mode.clock:
+        coefficient = mode.column * friction.static(1, y, p)
+    else:
+        coefficient = friction.coefficient(rubbing, mode.column, friction.static(mode.clock, y, p), p)
+    return factor * (coefficient * normal - guide_friction.force(rubbing, mode.column, p))
+
+
+@inlined
+def resistance(now, y, mode, p):
+    """Friction T (N) under the load ``now``: all of it where the mass keeps its velocity."""
+    if stuck(mode, p) or abs(mode.column) == HELD:
+        return now
+    return friction_force(y, mode, p)
+
+
+@inlined
+def powers(t, y, mode, p):
+    """Power (W) that friction and dampers take, and power of the input and the belt."""
+    own, pull = p.oscillator, support(t, y, mode, p)
+    against = resistance(pull + applied(t, p), y, mode, p)
+    rate = elongation_rate(t, y, p)
+    taken = against * slip(y, p) + own.damping * rate * rate + hooks.power(rate, y, p)
+    supplied = applied(t, p) * y[VELOCITY] - against * own.belt_velocity
+    if own.absolute and not own.forced:
+        supplied += pull * velocity(t, p)
+    return taken, supplied

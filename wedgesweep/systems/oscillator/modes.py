@@ -1,0 +1,36 @@
+"""Modes of the oscillator: which smooth piece of its equations holds."""
+
+from typing import NamedTuple
+
+from wedgesweep.compiled import inlined
+
+# Displacement (m), against the base or the ground, and its rate: the first two states.
+X, VELOCITY = 0, 1
+# Branch of friction whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
+HELD = 2
+
+
+class Mode(NamedTuple):
+    """Which smooth piece of the equations holds.
+
+    ``column``: slip branch (-1, 0, 1, or +-HELD) of the rubbing face, by the name that effects know; 0 is
+    stuck under a set-valued law. ``direction``: sign of the slip where friction depends on it, else 0.
+    ``stop``: -1, 0, 1, the end stop in contact. ``clock``: 1 while the time at rest runs.
+    """
+
+    column: int
+    direction: int
+    stop: int
+    clock: int
+
+
+@inlined
+def stuck(mode, p):
+    """Whether set-valued friction holds the mass to the rubbing surface."""
+    return p.friction.set_valued != 0 and mode.column == 0
+
+
+@inlined
+def slip(y, p):
+    """Velocity of the mass against the rubbing surface (m/s)."""
+    return y[VELOCITY] - p.oscillator.belt_velocity

@@ -1,0 +1,188 @@
+"""Everything that one case of the oscillator depends on, as one value: a record in SI units.
+
+As for the suspension, Python holds the full record, and compiled code gets the smaller one of two kits:
+without effects that add forces, coefficients, states or events of their own, or with all effects.
+"""
+
+from collections.abc import Mapping
+from functools import cache
+from math import nan, sqrt
+from types import MappingProxyType
+
+import numpy as np
+
+from wedgesweep import effects as known
+from wedgesweep import friction as laws
+from wedgesweep.excitation import SERIES_FIELDS, SINE, has_series, set_series
+from wedgesweep.friction.quantities import FRICTION, SYMBOLS
+from wedgesweep.quantity import Quantity
+
+OSCILLATOR = (
+    Quantity("mass_kg", nan, "mass, m", above=0.0),
+    Quantity("spring_N_per_mm", nan, "stiffness of the spring, k; 0: none", minimum=0.0),
+    Quantity("damping_N_s_per_m", 0.0, "viscous damping beside the spring, c", minimum=0.0),
+    Quantity("normal_force_N", 0.0, "normal force on the rubbing surface, N", minimum=0.0),
+)
+BELT_VELOCITY = Quantity("belt_velocity_mm_per_s", nan, 'velocity of the belt, for contact = "belt"')
+# What the rubbing surface moves with, and what the input moves.
+BASE, GROUND, BELT = CONTACTS = ("base", "ground", "belt")
+FORCE = "force"
+EXCITATIONS = (BASE, FORCE)
+
+# Effects that scale a number of the oscillator.
+SCALED = {"bolster_stiffness": "spring", "bolster_mass": "mass"}
+# All effects that need no wedge.
+EFFECTS = (
+    *(*SCALED, "friction_level", "stribeck", "presliding", "ageing", "directional_friction"),
+    *("viscous_damping", "cubic_stiffness", "guide_friction", "end_stop"),
+    *("input_distortion", "stray_vibration", "velocity_lag", "displacement_gain"),
+)
+# Friction beside that of the normal force, and effects on the latter.
+LATERAL = "guide_friction"
+OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")
+# Marks records of the kit without effects that have mechanics of their own.
+PLAIN = "plain_oscillator"
+
+
+def effect_names() -> tuple[str, ...]:
+    """Effects that an oscillator may have, those that ``effects.register`` added among them."""
+    return tuple(name for name in known.EFFECTS if name in EFFECTS or name not in known.NAMES)
+
+
+@cache
+def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype]:
+    """Record types by kit, with or without the Fourier series of an input."""
+    simple = [name for name in names if not known.EFFECTS[name].extends]
+    part: list[tuple] = [("series", SERIES_FIELDS)] if series else []
+    return _dtype([(PLAIN, np.int64), *part], simple), _dtype(part, names)
+
+
+def _dtype(parts: list[tuple], names: tuple[str, ...] | list[str]) -> np.dtype:
+    for name in names:
+        if name in SCALED or hasattr(known.REGISTERED[name], "adjust"):
+            continue
+        derived = getattr(known.REGISTERED[name], "DERIVED", ())
+        numbers = [quantity.name for quantity in known.EFFECTS[name].quantities]
+        parts = [*parts, (name, [(each, np.float64) for each in (*numbers, *derived)])]
+    coefficients = [(name, np.float64) for name in SYMBOLS.values()]
+    # ``absolute``: the displacement is against the ground, not against the base.
+    own = [*((name, np.int64) for name in ("kit", "absolute", "forced")), ("belt_velocity", np.float64)]
+    return np.dtype(
+        [
+            *parts,
+            ("friction", [("law", np.int64), ("set_valued", np.int64), *coefficients]),
+            ("input", [("amplitude", np.float64), ("omega", np.float64)]),
+            ("oscillator", [*own, *((quantity.name, np.float64) for quantity in OSCILLATOR)]),
+        ]
+    )
+
+
+def record_type() -> np.dtype:
+    """Type of the full record."""
+    return _kits(effect_names(), True)[-1]
+
+
+def record(
+    law: str,
+    amplitude: float,
+    omega: float,
+    oscillator: Mapping[str, float | str],
+    friction: Mapping[str, float] = MappingProxyType({}),
+    effects: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
+    excitation: str = BASE,
+) -> np.ndarray:
+    """Parameters of one case.
+
+    Parameters
+    ----------
+    law : str
+        Name of a friction law.
+    amplitude, omega : float
+        Of the input: m, or N under a force; rad/s.
+    oscillator : mapping
+        SI numbers by the names of their quantities; ``contact`` is one of CONTACTS (default: base), and
+        ``belt_velocity`` (m/s) goes with a belt.
+    friction, effects : mapping
+        SI numbers by the names of their quantities; what is not given has its default.
+    excitation : str
+        Whether the base moves or a force acts on the mass.
+
+    Returns
+    -------
+    structured array, shape (1,)
+        Of ``record_type()``.
+    """
+    case = np.zeros(1, record_type())
+    p = case[0]
+    contact, own = oscillator.get("contact", BASE), p["oscillator"]
+    for quantity in OSCILLATOR:
+        own[quantity.name] = oscillator.get(quantity.name, quantity.default * quantity.factor)
+    own["absolute"], own["forced"] = contact != BASE, excitation == FORCE
+    own["belt_velocity"] = oscillator["belt_velocity"] if contact == BELT else 0.0
+    for quantity in FRICTION:
+        value = friction.get(quantity.name, quantity.default * quantity.factor)
+        p["friction"][SYMBOLS[quantity.name]] = value
+    p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
+    p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
+    set_series(case, SINE)
+    for name in effect_names():
+        quantities = known.EFFECTS[name].quantities
+        neutral = {each.name: each.neutral * each.factor for each in quantities}
+        _set(p, name, {**neutral, **effects.get(name, {})})
+    own["kit"] = _acts(p)
+    if p["presliding"]["length"] > 0.0:
+        p["friction"]["set_valued"] = 0  # bristles yield before they slip
+    return case
+
+
+def _set(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
+    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
+    module = known.REGISTERED[effect]
+    if effect in SCALED:
+        p["oscillator"][SCALED[effect]] *= numbers["scale"]
+        return
+    if hasattr(module, "adjust"):
+        module.adjust(p, **numbers)
+        return
+    for name, value in numbers.items():
+        p[effect][name] = value
+    if hasattr(module, "prepare"):
+        module.prepare(p)
+
+
+def _acts(p: np.void) -> bool:
+    """Whether any effect needs mechanics of its own."""
+    return any(
+        p[name][quantity.name] != quantity.neutral * quantity.factor
+        for name in effect_names()
+        for quantity in known.EFFECTS[name].quantities
+        if quantity.name in known.EFFECTS[name].extends
+    )
+
+
+def compact(rows: np.ndarray) -> np.ndarray:
+    """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
+    kits = _kits(effect_names(), bool(has_series(rows).any()))
+    kind = kits[int(rows["oscillator"]["kit"].max(initial=0))]
+    if kind == rows.dtype:
+        return rows
+    small = np.zeros(rows.shape, kind)
+    for name in set(kind.names or ()) & set(rows.dtype.names or ()):
+        small[name] = rows[name]
+    return small
+
+
+def resonance(p: np.void) -> float:
+    """Angular frequency (rad/s) without friction and damping."""
+    return sqrt(p["oscillator"]["spring"] / p["oscillator"]["mass"])
+
+
+def breakaway_acceleration(p: np.void) -> float:
+    """Amplitude of the base's acceleration (m/s^2) at which set-valued friction slips from rest.
+
+    NaN where friction holds the mass to something else than the base, or nothing but a force moves it.
+    """
+    own = p["oscillator"]
+    if own["absolute"] or own["forced"]:
+        return nan
+    return float((p["friction"]["mu_d"] * own["normal_force"] + p["guide_friction"]["force"]) / own["mass"])
