@@ -191,7 +191,10 @@ class FitData(Protocol):
 
     @abstractmethod
     def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
-        """Simulate scenarios and compare each with the measurement, eliminated nuisances at their best."""
+        """Simulate scenarios and compare each with the measurement, eliminated nuisances at their best.
+
+        What the simulations take is counted by ``work.add``, or no budget ends a search.
+        """
 
     @abstractmethod
     def changes(

@@ -43,7 +43,7 @@ HELD_ITERATIONS = 8
 SLIGHT = 1.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
 # that pairs get even if unknown amplitudes made single effects expensive.
-WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1.5e5, 12, 1.0 / 3.0
+WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
 # Effects with states of their own take longest to fit, and begin first.
 SLOWEST = ("column_compliance", "fixture_resonance", "presliding")
 
