@@ -12,7 +12,8 @@ PACKAGE = Path(__file__).parent.parent / "wedgesweep"
 FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
 
 NUMERICS = (
-    *("compiled.py", "inner_code.py", "outcome.py", "quantity.py", "excitation.py", "sensor.py"),
+    *("compiled.py", "inner_code.py", "outcome.py", "natural_units.py", "quantity.py"),
+    *("excitation.py", "sensor.py"),
     *("friction/", "effects/", "hybrid/", "systems/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (

@@ -1,13 +1,19 @@
 """The size of a rig changes nothing in a diagnosis but its numbers, and costs no simulations."""
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import drawn
-from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER
+from tests.diagnose.synthetic import MODEL, drawn
+from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER, SIZES
+from wedgesweep import config
 from wedgesweep.diagnose import diagnosis, verdict
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.steady import next_test, simulation
+from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.effects import EFFECTS
+from wedgesweep.measured import Measurement, TestRecord
 
 # Rounding may end a fit an iteration earlier or later.
 MORE = 1.1
@@ -61,3 +67,46 @@ def test_verdict_causes_numbers_and_next_test_are_those_of_the_bench(effects, si
     assert rig.next.frequency * size.time == pytest.approx(bench.next.frequency)
     assert rig.next.amplitude / size.length == pytest.approx(bench.next.amplitude)
     assert rig.simulated <= MORE * bench.simulated
+
+
+def measured(size, tone):
+    """Records of two tests, with a slow tone (Hz on the bench) and noise."""
+    random, records = np.random.default_rng(0), []
+    for hertz, amplitude in ((17.0, 0.2e-3), (23.0, 0.1e-3)):
+        time = np.arange(6000) * 5e-4
+        signal = amplitude * np.sin(2.0 * np.pi * hertz * time) + 2e-5 * np.sin(2.0 * np.pi * tone * time)
+        signal += 1e-5 * random.normal(size=time.size)
+        records.append(
+            TestRecord(
+                name=f"{hertz:g} Hz",
+                file="",
+                frequency=hertz / size.time,
+                amplitude=amplitude * size.length,
+                amplitude_std=0.01,
+                time=time * size.time,
+                displacement=signal * size.length,
+                velocity=None,
+            )
+        )
+    return Measurement(
+        path=Path("measured.toml"),
+        title="",
+        model=size.config(config.parse(MODEL)),
+        law="static-dynamic",
+        uncertain={},
+        tests=tuple(records),
+        derived_velocity=False,
+        columns={},
+    )
+
+
+@pytest.mark.parametrize("size", SIZES.values(), ids=SIZES)
+@pytest.mark.parametrize("tone", [0.6, 3.7])
+def test_a_slow_tone_is_found_where_it_is_no_drift_on_a_rig_of_that_size(size, tone):
+    bench, rig = (harmonic_data(measured(each, tone)) for each in (BENCH_SIZE, size))
+    assert (bench.tone is not None) == (tone > 1.0)
+    if bench.tone is None:
+        assert rig.tone is None
+    else:
+        assert rig.tone == pytest.approx(bench.tone / size.time, rel=1e-6)
+        assert rig.tone_std == pytest.approx(bench.tone_std / size.time, rel=1e-3)

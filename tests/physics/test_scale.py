@@ -64,3 +64,14 @@ def test_motion_is_the_same_to_the_last_bits_where_factors_round_nothing(name, l
 )
 def test_the_reference_solver_has_no_units_of_its_own(name, law, size):
     assert all(in_proportion(size, law, {name: mild(name)}, 1e-9, radau))
+
+
+@pytest.mark.parametrize("name", ["preload", "cubic_stiffness", "column_compliance", "velocity_lag"])
+@pytest.mark.parametrize("lean", [4.0, -4.0])
+def test_load_dependent_friction_is_nominal_at_the_column_face_s_force_at_rest(name, lean):
+    still, omega = 1e-12, 2.0 * pi * HERTZ
+    suspension = {"column_angle": np.radians(lean)}
+    nothing = {"dynamic": 0.0, "static": 0.0}
+    record = parameters.record("static-dynamic", still, omega, suspension, nothing, {name: mild(name)})
+    normal = event_driven.solve(record, Window(omega, 0, 1, 16), rtol=1e-9, time_limit=60.0).samples.normal
+    assert record["load_dependent_friction"]["reference"][0] == pytest.approx(normal[0, 0], rel=1e-6)
