@@ -7,19 +7,19 @@ path). The group ``uncertain``, if there is one, has an attribute for each uncer
 over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed from
 displacement has the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute
 ``quantity``; ``acceleration`` is a further response, and responses may have the attribute ``of``. The
-attribute ``model`` of a test holds its numbers of the model as TOML text; ``input_gain_std`` is one of the
-file.
+attribute ``model`` of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is an
+attribute of the file.
 """
 
+import json
 import os
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.config import Config, toml
+from wedgesweep.config import Config
 from wedgesweep.config.keys import hint, show
 from wedgesweep.config.tables import Table
 from wedgesweep.measured import overrides
@@ -68,7 +68,7 @@ def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
         "frequency_hz": test.frequency,
         "amplitude_mm": millimetres,
         "amplitude_std": None if test.amplitude is None else test.amplitude_std,
-        "model": toml.inline(dict(test.model)) if test.model else None,
+        "model": json.dumps(dict(test.model)) if test.model else None,
     }
     group.setncatts({name: value for name, value in given.items() if value is not None})
     group.createDimension("sample", test.time.size)
@@ -209,8 +209,8 @@ def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:
-        return attributes | {"model": tomllib.loads(f"model = {attributes['model']}")["model"]}
-    except tomllib.TOMLDecodeError:
+        return attributes | {"model": json.loads(attributes["model"])}
+    except json.JSONDecodeError:
         return attributes
 
 

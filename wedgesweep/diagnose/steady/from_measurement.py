@@ -88,6 +88,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         amplitude_std=np.full(len(spectra), measurement.input_gain_std),
         uncertain=dict(measurement.uncertain),
         models=_models(measurement),
+        input_phase=inputs.phase,
         inputs=inputs,
         untold=_untold(told, any(of == "absolute" for *_, of in named)),
     )

@@ -18,16 +18,18 @@ import numpy as np
 
 from wedgesweep import excitation
 from wedgesweep.diagnose.fit_data import Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.model import TIGHT
 from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.diagnose.steady.whitened import real
 
+# Effects of sensors, with the number that stands for none.
+SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
 # A harmonic counts by the share of its square that exceeds this many times its noise.
 ABOVE_NOISE = 2.0
-# Finite-difference step of a coefficient, in standard deviations of its noise, and at least this share of the
-# fundamental: simulations must not hide it.
-STEP, LEAST_STEP = 1.0, 1e-3
+# Least finite-difference step of a coefficient, times its order and over the fundamental, so that the error
+# of simulations does not hide it; else its standard deviation.
+LEAST_STEP = 1e-4
 
 
 class InputHarmonics(NamedTuple):
@@ -117,11 +119,26 @@ class RecordedInputData(HarmonicData):
 
     def _cut(self, whitening: np.ndarray, some: HarmonicData) -> np.ndarray:
         """The matrices for data padded to fewer harmonics or channels."""
-        mine, its = (self.shape, some.shape)
-        kept = np.zeros((2, *mine), bool)
-        kept[:, : its[0], : its[1]] = True
+        kept = np.zeros((2, self.shape[0], self.columns), bool)
+        kept[:, : some.shape[0], : some.shape[1]] = True
+        if self.tone is not None:
+            kept[:, : some.shape[0], -1] = True
         place = np.flatnonzero(kept)
         return whitening[:, place[:, None], place]
+
+    def with_undetected(self, effect: str) -> Self:
+        if effect in self.untold:
+            return self
+        wider = super().with_undetected(effect)
+        if self.whitening is None:
+            return wider
+        # The noise of a recorded input at a tone between its harmonics does not matter here.
+        harmonic = np.zeros((2, self.shape[0], wider.columns), bool)
+        harmonic[..., : self.shape[1]] = True
+        place = np.flatnonzero(harmonic)
+        whitening = np.tile(np.eye(harmonic.size), (self.tests, 1, 1))
+        whitening[:, place[:, None], place] = self.whitening
+        return replace(wider, whitening=whitening)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         return (AMPLITUDE,)
@@ -130,7 +147,11 @@ class RecordedInputData(HarmonicData):
         return tuple(name for name in super().candidates(effects) if name not in self.untold)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        rows = super().records(scenario)
+        told = {name: each for name, each in scenario.values.items() if name not in self.untold}
+        rows = super().records(scenario._replace(values=told))
+        for sensor, number, neutral in SENSORS:
+            if sensor in self.untold:
+                rows[sensor][number] = neutral
         excitation.set_series(rows, self.recorded.shape)
         return rows
 
@@ -160,11 +181,15 @@ class RecordedInputData(HarmonicData):
             sample = sample._with_coefficient(order, real_part + 1j * imaginary)
         return sample
 
+    def bare(self) -> Self:
+        """The data as if inputs had no noise."""
+        return replace(self, whitening=None)
+
     def with_covariance(self, scenario: Scenario) -> Self:
         """The data with the covariance of its residuals, by the response in a scenario."""
-        bare = replace(self, whitening=None)
+        bare = self.bare()
         tests, orders = self.recorded.displacement.shape
-        here = bare.compare([scenario], TOLERANCE)[0]
+        here = bare.compare([scenario], TIGHT)[0]
         warm = replace(scenario.point, warm=here.warm)
         width = 2 * self.shape[0] * self.columns
         covariance = np.tile(np.eye(width), (tests, 1, 1))
@@ -173,12 +198,12 @@ class RecordedInputData(HarmonicData):
             std = np.sqrt(0.5 * self.recorded.variance[:, order])
             if not std.any():
                 continue
-            step = np.maximum(STEP * std, LEAST_STEP * self.recorded.amplitude)
+            step = np.maximum(std, LEAST_STEP / (order + 1) * self.recorded.amplitude)
             for part, turn in enumerate((1.0, 1j)):
-                moved = bare._with_coefficient(order, turn * step)
-                there = moved.compare([Scenario(scenario.values, warm)], TOLERANCE)[0]
-                found = here.found & there.found
-                change = np.where(found[:, None], there.residual - here.residual, 0.0)
+                moved = [bare._with_coefficient(order, sign * turn * step) for sign in (1.0, -1.0)]
+                above, below = (each.compare([Scenario(scenario.values, warm)], TIGHT)[0] for each in moved)
+                found = above.found & below.found
+                change = np.where(found[:, None], 0.5 * (above.residual - below.residual), 0.0)
                 column = change * (std / step)[:, None]
                 covariance += column[:, :, None] * column[:, None, :]
                 if order < shared.shape[-1]:

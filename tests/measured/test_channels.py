@@ -1,0 +1,104 @@
+"""Recorded inputs, further channels and numbers that differ from test to test."""
+
+import numpy as np
+import pytest
+
+from tests import fixture_measured
+from tests.fixture_measured import MEASURED, vibration
+from wedgesweep import measured
+from wedgesweep.measured.netcdf import write_netcdf
+
+RECORDED = (
+    MEASURED.replace("amplitude_mm = 0.3\namplitude_std = 0.01\n", "")
+    .replace(
+        'velocity = { column = "v", unit = "mm/s" }',
+        'input = { column = "v", unit = "g", quantity = "acceleration" }',
+    )
+    .replace('title = "bench"', 'title = "bench"\ninput_gain_std = 0.02')
+)
+
+
+def read(directory, text):
+    return measured.read(fixture_measured.write(directory, text))
+
+
+def problems(directory, text):
+    with pytest.raises(measured.MeasuredError) as caught:
+        read(directory, text)
+    return "\n".join(caught.value.problems)
+
+
+def test_a_recorded_input_has_the_unit_of_its_quantity(tmp_path):
+    found = read(tmp_path, RECORDED)
+    assert found.recorded_input == "acceleration"
+    assert found.input_gain_std == 0.02
+    np.testing.assert_allclose(found.tests[0].input, 9.80665 * vibration()[2], rtol=1e-5)
+    assert found.tests[0].amplitude is None
+
+
+def test_an_absolute_acceleration_alone_is_a_response(tmp_path):
+    text = RECORDED.replace(
+        'displacement = { column = "d", unit = "mm" }',
+        'acceleration = { column = "d", unit = "mm/s^2", of = "absolute" }',
+    )
+    found = read(tmp_path, text)
+    assert found.tests[0].displacement is None
+    assert found.columns["acceleration"]["of"] == "absolute"
+    np.testing.assert_allclose(found.tests[0].acceleration, 1e-3 * vibration()[1], rtol=1e-5)
+
+
+def test_a_test_has_numbers_of_its_own(tmp_path):
+    found = read(tmp_path, RECORDED + 'model = { "suspension.bolster_mass_kg" = 1.4 }\n')
+    assert found.model_of(found.tests[0]).suspension["bolster_mass"] == 1.4
+    assert found.model.suspension["bolster_mass"] == 0.7
+
+
+def test_one_netcdf_file_holds_the_same(tmp_path):
+    found = read(tmp_path, RECORDED + 'model = { "suspension.bolster_mass_kg" = 1.4 }\n')
+    write_netcdf(found, tmp_path / "all.nc")
+    again = measured.read(tmp_path / "all.nc")
+    assert again.input_gain_std == 0.02
+    assert again.recorded_input == "acceleration"
+    assert again.columns["displacement"]["of"] == "relative"
+    assert dict(again.tests[0].model) == {"suspension.bolster_mass_kg": 1.4}
+    np.testing.assert_array_equal(again.tests[0].input, found.tests[0].input)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('quantity = "acceleration"', 'quantity = "displacement"', 'columns.input.unit: "g" is no unit of'),
+        ('unit = "g", quantity = "acceleration"', 'unit = "N", quantity = "force"', "no force drives it"),
+        ('displacement = { column = "d", unit = "mm" }\n', "", "input: there is no response"),
+        ("displacement = {", "force = {", "force.unit"),
+        (
+            'displacement = { column = "d", unit = "mm" }',
+            'force = { column = "d", unit = "N" }',
+            "a suspension has no measured force",
+        ),
+        ("frequency_hz = 20.0", "frequency_hz = 20.0\namplitude_mm = 0.3", "amplitude_mm: the input is"),
+        (
+            "frequency_hz = 20.0",
+            'frequency_hz = 20.0\nmodel = { "suspension.bolster_mass" = 1.0 }',
+            'test[0].model: suspension.bolster_mass: the model has no such number',
+        ),
+        (
+            "frequency_hz = 20.0",
+            'frequency_hz = 20.0\nmodel = { "suspension.bolster_mass_kg" = -1.0 }',
+            "test[0].model: suspension.bolster_mass_kg: -1.0 is out of range",
+        ),
+        (
+            'input = { column = "v", unit = "g", quantity = "acceleration" }\n',
+            "",
+            "measurement.input_gain_std: there is no recorded input",
+        ),
+    ],
+)  # fmt: skip
+def test_faults(tmp_path, old, new, words):
+    assert old in RECORDED
+    assert words in problems(tmp_path, RECORDED.replace(old, new))
+
+
+def test_absolute_motion_needs_the_input(tmp_path):
+    text = MEASURED.replace('unit = "mm" }', 'unit = "mm", of = "absolute" }')
+    assert "displacement.of: without a recorded input" in problems(tmp_path, text)
