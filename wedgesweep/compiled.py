@@ -146,15 +146,16 @@ def forward(arguments: Sequence[str], target: Callable) -> Callable:
     return function_of(arguments, f"target({', '.join(arguments)})", target=target)
 
 
-def term(owner: str, off: str) -> Callable[[Function], Function]:
+def term(owner: str, off: str, **scope: Any) -> Callable[[Function], Function]:
     """Let a function of a record p act where the record has a part named ``owner``.
 
-    For other records it is the expression ``off`` of its arguments, which costs nothing.
+    For other records it is the expression ``off`` of its arguments, which costs nothing; ``scope`` holds the
+    functions in it.
     """
 
     def decorate(function: Function) -> Function:
         arguments = list(inspect.signature(function).parameters)
-        present, absent = forward(arguments, inlined(function)), function_of(arguments, off)
+        present, absent = forward(arguments, inlined(function)), function_of(arguments, off, **scope)
         return by_record(function, lambda fields: present if owner in fields else absent)
 
     return decorate

@@ -1,37 +1,116 @@
-"""Input: a force, or motion of the base (the paper's Eq. 4: u = a sin(omega t)), with the effects on it."""
+"""Input: a force, or motion of the base (the paper's Eq. 4: u = a sin(omega t)), with the effects on it.
+
+A recorded input is a Fourier series in place of the sine:
+
+    u = a sum_h (cosine_h cos(h omega t) + sine_h sin(h omega t)),  h = 1..count
+
+with the phase of omega t so that its fundamental is the sine (cosine_1 = 0, sine_1 = 1). Records without the
+part ``series`` do not contain its code.
+"""
 
 from math import cos, sin
 
-from wedgesweep.compiled import inlined
+import numpy as np
+
+from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.effects import hooks
+
+# Harmonics of a Fourier series that a record has room for.
+HARMONICS = 16
+SERIES_FIELDS = [
+    ("count", np.int64),
+    ("cosine", np.float64, (HARMONICS,)),
+    ("sine", np.float64, (HARMONICS,)),
+]
+# Shape of the paper's base motion, as ``set_series`` takes it.
+SINE = np.array([-1j])
+
+
+def set_series(rows: np.ndarray, harmonics: np.ndarray) -> None:
+    """Put the shape of a base motion into full records, shape (n,), in place.
+
+    Parameters
+    ----------
+    rows : structured array, shape (n,)
+        Their input amplitude and frequency stay as they are.
+    harmonics : ndarray, shape (n, H) or (H,)
+        Complex, over the amplitude: u = a Re sum_h harmonics_h exp(i h omega t); the first is -i, H <= 16.
+    """
+    part = rows["series"]
+    orders = np.arange(1, harmonics.shape[-1] + 1)
+    part["count"] = np.maximum((orders * (harmonics != 0.0)).max(axis=-1), 1)
+    part["cosine"], part["sine"] = 0.0, 0.0
+    part["cosine"][..., : orders.size] = harmonics.real
+    part["sine"][..., : orders.size] = -harmonics.imag
+
+
+def has_series(rows: np.ndarray) -> np.ndarray:
+    """Whether the base motion of full records, shape (n,), has more harmonics than the first."""
+    return rows["series"]["count"] > 1
+
+
+@inner
+def _series(t, power, p):
+    """Sums of h**power times the cosine and sine parts, and times the quadrature, over all harmonics."""
+    turn_cos, turn_sin = cos(p.input.omega * t), sin(p.input.omega * t)
+    c, s, in_phase, quadrature = turn_cos, turn_sin, 0.0, 0.0
+    for i in range(p.series.count):
+        weight = float(i + 1) ** power
+        in_phase += weight * (p.series.cosine[i] * c + p.series.sine[i] * s)
+        quadrature += weight * (p.series.sine[i] * c - p.series.cosine[i] * s)
+        c, s = c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin
+    return in_phase, quadrature
+
+
+@term("series", off="sin(p.input.omega * t)", sin=sin)
+def _shape(t, p):
+    """Displacement over amplitude."""
+    return _series(t, 0, p)[0]
+
+
+@term("series", off="cos(p.input.omega * t)", cos=cos)
+def _slope(t, p):
+    """Velocity over amplitude and angular frequency."""
+    return _series(t, 1, p)[1]
+
+
+@term("series", off="sin(p.input.omega * t)", sin=sin)
+def _bend(t, p):
+    """Negative acceleration over amplitude and squared angular frequency."""
+    return _series(t, 2, p)[0]
+
+
+@term("series", off="1")
+def _highest(p):
+    """Highest harmonic of the input."""
+    return max(p.series.count, 1)
+
+
+@inlined
+def displacement(t, p):
+    """U in m of the side frame, or of the table that carries it."""
+    return hooks.base_displacement(p.input.amplitude * _shape(t, p), t, p)
+
+
+@inlined
+def velocity(t, p):
+    """U' in m/s of the side frame, or of the table that carries it."""
+    return hooks.base_velocity(p.input.amplitude * p.input.omega * _slope(t, p), t, p)
 
 
 @inlined
 def acceleration(t, p):
     """U'' in m/s^2 of the side frame, or of the table that carries it."""
-    fundamental = -p.input.amplitude * p.input.omega**2 * sin(p.input.omega * t)
-    return hooks.base_acceleration(fundamental, t, p)
-
-
-@inlined
-def velocity(t, p):
-    """U' in m/s."""
-    return hooks.base_velocity(p.input.amplitude * p.input.omega * cos(p.input.omega * t), t, p)
-
-
-@inlined
-def displacement(t, p):
-    """U in m."""
-    return hooks.base_displacement(p.input.amplitude * sin(p.input.omega * t), t, p)
+    return hooks.base_acceleration(-p.input.amplitude * p.input.omega**2 * _bend(t, p), t, p)
 
 
 @inlined
 def force(t, p):
     """Force on the mass in N, where the input is one and its amplitude in N."""
-    return hooks.input_force(p.input.amplitude * sin(p.input.omega * t), t, p)
+    return hooks.input_force(p.input.amplitude * _shape(t, p), t, p)
 
 
 @inlined
 def fastest(p):
     """Highest angular frequency (rad/s) of the input."""
-    return hooks.fastest(p.input.omega, p)
+    return hooks.fastest(_highest(p) * p.input.omega, p)

@@ -240,7 +240,9 @@ class Sweep:
         if failed.size:
             case = self.config.case_list()[failed[0]["index"]]
             unit = "N" if self.config.forced else "m"
-            message = f"{describe(*case, unit=unit)}: {failed[0]['message'].decode()}"
+            message = (
+                f"{describe(case.law, case.beta, case.amplitude, unit)}: {failed[0]['message'].decode()}"
+            )
             raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from wedgesweep.effects import states
+from wedgesweep.excitation import has_series
 from wedgesweep.systems.oscillator import hybrid as _oscillator_hybrid  # noqa: F401
 from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension import hybrid as _suspension_hybrid  # noqa: F401
@@ -57,7 +58,7 @@ def moving_mass(parameters: np.ndarray) -> np.ndarray:
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Records, shape (n,), by the kit that they need: their places, and the compact records."""
-    kits = _kits(parameters)
+    kits = 2 * _kits(parameters) + has_series(parameters)
     for kit in np.unique(kits):
         rows = np.flatnonzero(kits == kit)
         yield rows, compact(parameters[rows])

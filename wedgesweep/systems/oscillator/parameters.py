@@ -1,7 +1,8 @@
 """Everything that one case of the oscillator depends on, as one value: a record in SI units.
 
 As for the suspension, Python holds the full record, and compiled code gets the smaller one of two kits:
-without effects that add forces, coefficients, states or events of their own, or with all effects.
+without effects that add forces, coefficients, states or events of their own, or with all effects; with or
+without the Fourier series of a recorded input.
 """
 
 from collections.abc import Mapping
@@ -12,6 +13,7 @@ from types import MappingProxyType
 import numpy as np
 
 from wedgesweep import effects as known
+from wedgesweep import excitation
 from wedgesweep import friction as laws
 from wedgesweep.friction.quantities import FRICTION, SYMBOLS
 from wedgesweep.quantity import Quantity
@@ -49,9 +51,10 @@ def effect_names() -> tuple[str, ...]:
 
 
 @cache
-def _kits(names: tuple[str, ...]) -> tuple[np.dtype, np.dtype]:
+def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype]:
     simple = [name for name in names if not known.EFFECTS[name].extends]
-    return _dtype([(PLAIN, np.int64)], simple), _dtype([], names)
+    part: list[tuple] = [("series", excitation.SERIES_FIELDS)] if series else []
+    return _dtype([*part, (PLAIN, np.int64)], simple), _dtype(part, names)
 
 
 def _dtype(parts: list[tuple], names: tuple[str, ...] | list[str]) -> np.dtype:
@@ -76,7 +79,7 @@ def _dtype(parts: list[tuple], names: tuple[str, ...] | list[str]) -> np.dtype:
 
 def record_type() -> np.dtype:
     """Type of the full record."""
-    return _kits(effect_names())[-1]
+    return _kits(effect_names(), True)[-1]
 
 
 def record(
@@ -86,7 +89,7 @@ def record(
     oscillator: Mapping[str, float | str],
     friction: Mapping[str, float] = MappingProxyType({}),
     effects: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
-    excitation: str = BASE,
+    input_kind: str = BASE,
 ) -> np.ndarray:
     """Parameters of one case.
 
@@ -101,7 +104,7 @@ def record(
         ``belt_velocity`` (m/s) goes with a belt.
     friction, effects : mapping
         SI numbers by the names of their quantities; what is not given has its default.
-    excitation : str
+    input_kind : str
         Whether the base moves or a force acts on the mass.
 
     Returns
@@ -114,13 +117,14 @@ def record(
     contact, own = oscillator.get("contact", BASE), p["oscillator"]
     for quantity in OSCILLATOR:
         own[quantity.name] = oscillator.get(quantity.name, quantity.default * quantity.factor)
-    own["absolute"], own["forced"] = contact != BASE, excitation == FORCE
+    own["absolute"], own["forced"] = contact != BASE, input_kind == FORCE
     own["belt_velocity"] = oscillator["belt_velocity"] if contact == BELT else 0.0
     for quantity in FRICTION:
         value = friction.get(quantity.name, quantity.default * quantity.factor)
         p["friction"][SYMBOLS[quantity.name]] = value
     p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
     p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
+    excitation.set_series(case, excitation.SINE)
     for name in effect_names():
         quantities = known.EFFECTS[name].quantities
         neutral = {each.name: each.neutral * each.factor for each in quantities}
@@ -158,7 +162,8 @@ def _acts(p: np.void) -> bool:
 
 def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
-    kind = _kits(effect_names())[int(rows["oscillator"]["kit"].max(initial=0))]
+    kits = _kits(effect_names(), bool(excitation.has_series(rows).any()))
+    kind = kits[int(rows["oscillator"]["kit"].max(initial=0))]
     if kind == rows.dtype:
         return rows
     small = np.zeros(rows.shape, kind)

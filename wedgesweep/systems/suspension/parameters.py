@@ -3,7 +3,7 @@
 The record is a one-element structured array with a part for each subject (``suspension``, ``friction``,
 ``input``, one for each effect, and ``geometry`` for what follows from them). Python always holds the full
 record; compiled code gets the smallest sufficient kit of parts (``compact``), so that effects which are
-off cost nothing.
+off cost nothing, nor does the Fourier series of a recorded input (part ``series``).
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 
 from wedgesweep import effects as known
+from wedgesweep import excitation
 from wedgesweep import friction as laws
 from wedgesweep.friction.quantities import FRICTION, SYMBOLS
 from wedgesweep.quantity import Quantity
@@ -60,16 +61,23 @@ REGULARISED_VELOCITY = 1e-6
 
 
 @cache
-def _kits(names: tuple[str, ...]) -> tuple[np.dtype, np.dtype, np.dtype]:
-    """Record types by kit. No type is the beginning of another: numba would mistake one for the other."""
+def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.dtype]:
+    """Record types by kit, with or without the Fourier series of an input.
+
+    No type is the beginning of another: numba would mistake one for the other.
+    """
     simple = [name for name in names if not known.EFFECTS[name].extends]
     own = [name for name in names if name not in known.NAMES]
     plain = [name for name in simple if name not in own]
+    if series:
+        # There is no closed form, so that ``base`` marks nothing here.
+        part: list[tuple] = [("series", excitation.SERIES_FIELDS)]
+        return _dtype(part, plain), _dtype(part, own + plain), _dtype(part, names)
     return _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], names)
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
-    parts: list[tuple] = marker
+    parts: list[tuple] = [*marker]
     for name in names:
         if hasattr(known.REGISTERED[name], "adjust"):
             continue
@@ -97,7 +105,7 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
 
 def record_type() -> np.dtype:
     """Type of the full record, with all effects that are known now."""
-    return _kits(tuple(known.EFFECTS))[ALL]
+    return _kits(tuple(known.EFFECTS), True)[ALL]
 
 
 def record(
@@ -133,6 +141,7 @@ def record(
         p["friction"][SYMBOLS[quantity.name]] = value
     p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
     p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
+    excitation.set_series(case, excitation.SINE)
     for name, effect in known.EFFECTS.items():
         neutral = {each.name: each.neutral * each.factor for each in effect.quantities}
         _set(p, name, {**neutral, **effects.get(name, {})})
@@ -226,7 +235,7 @@ def _always_well_posed(p: np.void, small: np.void) -> bool:
 
 def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
-    kits = _kits(tuple(known.EFFECTS))
+    kits = _kits(tuple(known.EFFECTS), bool(excitation.has_series(rows).any()))
     kind = kits[int(rows["geometry"]["kit"].max(initial=BASE))]
     if kind == rows.dtype:
         return rows
