@@ -183,7 +183,9 @@ def test_hypotheses_have_the_parameters_that_their_config_says(hypothesis):
         assert key == f"{effect}.{quantity.key}"
         assert low < value < high
         # Preload is no part of a record of its own: it is the model's.
-        found = record["suspension"]["wedge_preload"] if effect == "preload" else record[effect][quantity.name]
+        found = (
+            record["suspension"]["wedge_preload"] if effect == "preload" else record[effect][quantity.name]
+        )
         assert found == pytest.approx(value * quantity.factor)
 
 

@@ -317,7 +317,7 @@ def test_case_that_fails(here):
     [
         (["--amplitude", 1], "either --beta or --frequency"),
         (["--amplitude", 1, "--beta", 1, "--frequency", 20], "either --beta or --frequency"),
-        (["--beta", 1], "Missing option '--amplitude'"),
+        (["--beta", 1], "either --amplitude or --force"),
         (["--amplitude", -1, "--beta", 1], "sweep.amplitude_mm"),
         (["--amplitude", "nan", "--beta", 1], "sweep.amplitude_mm"),
         (["--amplitude", 1, "--beta", 0], "sweep.beta"),

@@ -62,7 +62,8 @@ def load_config(source: str | Path | Mapping[str, Any]) -> Config:
 def simulate_case(
     config: Config,
     *,
-    amplitude_mm: float,
+    amplitude_mm: float | None = None,
+    amplitude_N: float | None = None,
     beta: float | None = None,
     frequency_hz: float | None = None,
     law: str | None = None,
@@ -72,9 +73,11 @@ def simulate_case(
     Parameters
     ----------
     config : Config
-        The suspension, its effects and the solver; the cases of its sweep are not run.
+        The suspension or oscillator, its effects and the solver; the cases of its sweep are not run.
     amplitude_mm : float
-        Input amplitude of the side frame (mm).
+        Input amplitude of the side frame or base (mm).
+    amplitude_N : float
+        Amplitude of the force (N), if the config's sweep says ``excitation = "force"``.
     beta, frequency_hz : float
         Input frequency: either its ratio to omega_n, or in Hz.
     law : str, optional
@@ -90,7 +93,8 @@ def simulate_case(
     Raises
     ------
     ConfigError
-        A value is out of range, or ``beta`` and ``frequency_hz`` are both given or both missing.
+        A value is out of range, or ``beta`` and ``frequency_hz``, or both amplitudes, are both given or both
+        missing.
 
     References
     ----------
@@ -103,7 +107,7 @@ def simulate_case(
     >>> case = ws.simulate_case(config, law="coulomb", beta=0.8, amplitude_mm=1.0)  # doctest: +SKIP
     >>> case["amplitude_ratio"].item()  # doctest: +SKIP
     """
-    single = config.single_case(amplitude_mm, beta, frequency_hz, law)
+    single = config.single_case(amplitude_mm, beta, frequency_hz, law, amplitude_N)
     return Sweep(single, Path("case.nc"), "wedgesweep.simulate_case").run_here()
 
 

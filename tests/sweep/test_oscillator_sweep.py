@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.physics import stick_slip
 from wedgesweep import config, figures
 from wedgesweep.config import ConfigError
-from wedgesweep.reproduce import stick_slip
 from wedgesweep.sweep.run import Sweep
 
 CONFIGS = Path(__file__).parents[2] / "configs"

@@ -68,8 +68,8 @@ def rates(column_slip, acceleration, mode, y, p):
 
 
 @_chain
-def base_acceleration(u2, t, p):
-    """Acceleration of the input (m/s^2)."""
+def base_displacement(u, t, p):
+    """Displacement of the input (m)."""
 
 
 @_chain
@@ -78,13 +78,13 @@ def base_velocity(u1, t, p):
 
 
 @_chain
-def base_displacement(u, t, p):
-    """Displacement of the input (m)."""
+def input_force(force, t, p):
+    """Force of the input on the mass (N)."""
 
 
 @_chain
-def input_force(force, t, p):
-    """Force of the input on the mass (N)."""
+def base_acceleration(u2, t, p):
+    """Acceleration of the input (m/s^2)."""
 
 
 @_chain

@@ -30,6 +30,27 @@ EFFECT = Effect(
 
 
 @inlined
+def base_displacement(u, t, p):
+    """U (m) with the harmonics, from that without."""
+    own, phase = p.input_distortion, p.input.omega * t
+    wave = own.second * sin(2.0 * phase + own.second_phase) + own.third * sin(3.0 * phase + own.third_phase)
+    return u + p.input.amplitude * wave
+
+
+# A force has its harmonics in the same way.
+input_force = base_displacement
+
+
+@inlined
+def base_velocity(u1, t, p):
+    """U' (m/s) with the harmonics, from that without."""
+    own, phase = p.input_distortion, p.input.omega * t
+    wave = 2.0 * own.second * cos(2.0 * phase + own.second_phase)
+    wave += 3.0 * own.third * cos(3.0 * phase + own.third_phase)
+    return u1 + p.input.amplitude * p.input.omega * wave
+
+
+@inlined
 def base_acceleration(u2, t, p):
     """U'' (m/s^2) with the harmonics, from that without."""
     own, phase = p.input_distortion, p.input.omega * t
@@ -39,34 +60,6 @@ def base_acceleration(u2, t, p):
     if own.third != 0.0:
         wave += 9.0 * own.third * sin(3.0 * phase + own.third_phase)
     return u2 - p.input.amplitude * p.input.omega**2 * wave
-
-
-@inlined
-def base_velocity(u1, t, p):
-    """U' (m/s) with the harmonics, from that without."""
-    own, phase = p.input_distortion, p.input.omega * t
-    wave = 0.0
-    if own.second != 0.0:
-        wave += 2.0 * own.second * cos(2.0 * phase + own.second_phase)
-    if own.third != 0.0:
-        wave += 3.0 * own.third * cos(3.0 * phase + own.third_phase)
-    return u1 + p.input.amplitude * p.input.omega * wave
-
-
-@inlined
-def base_displacement(u, t, p):
-    """U (m) with the harmonics, from that without."""
-    own, phase = p.input_distortion, p.input.omega * t
-    wave = 0.0
-    if own.second != 0.0:
-        wave += own.second * sin(2.0 * phase + own.second_phase)
-    if own.third != 0.0:
-        wave += own.third * sin(3.0 * phase + own.third_phase)
-    return u + p.input.amplitude * wave
-
-
-# A force has its harmonics in the same way.
-input_force = base_displacement
 
 
 @inlined

@@ -45,12 +45,13 @@ def acts(p):
 
 
 @inlined
-def base_acceleration(u2, t, p):
-    """U'' (m/s^2) with the tone, from that without."""
+def base_displacement(u, t, p):
+    """U (m) with the tone, from that without."""
     if not acts(p):
-        return u2
+        return u
     own = p.stray_vibration
-    return u2 + own.acceleration * sin(2.0 * pi * own.frequency * t + own.phase)
+    omega = 2.0 * pi * own.frequency
+    return u - own.acceleration / omega**2 * sin(omega * t + own.phase)
 
 
 @inlined
@@ -58,17 +59,18 @@ def base_velocity(u1, t, p):
     """U' (m/s) with the tone, from that without."""
     if not acts(p):
         return u1
-    own, rate = p.stray_vibration, 2.0 * pi * p.stray_vibration.frequency
-    return u1 - own.acceleration / rate * cos(rate * t + own.phase)
+    own = p.stray_vibration
+    omega = 2.0 * pi * own.frequency
+    return u1 - own.acceleration / omega * cos(omega * t + own.phase)
 
 
 @inlined
-def base_displacement(u, t, p):
-    """U (m) with the tone, from that without."""
+def base_acceleration(u2, t, p):
+    """U'' (m/s^2) with the tone, from that without."""
     if not acts(p):
-        return u
-    own, rate = p.stray_vibration, 2.0 * pi * p.stray_vibration.frequency
-    return u - own.acceleration / rate**2 * sin(rate * t + own.phase)
+        return u2
+    own = p.stray_vibration
+    return u2 + own.acceleration * sin(2.0 * pi * own.frequency * t + own.phase)
 
 
 @inlined

@@ -1,7 +1,8 @@
 """Everything that one case of the oscillator depends on, as one value: a record in SI units.
 
 As for the suspension, Python holds the full record, and compiled code gets the smaller one of two kits:
-without effects that add forces, coefficients, states or events of their own, or with all effects.
+without effects that add forces, coefficients, states or events of their own, or with all effects; with or
+without the Fourier series of a recorded input.
 """
 
 from collections.abc import Mapping
@@ -89,7 +90,7 @@ def record(
     oscillator: Mapping[str, float | str],
     friction: Mapping[str, float] = MappingProxyType({}),
     effects: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
-    excitation: str = BASE,
+    input_kind: str = BASE,
 ) -> np.ndarray:
     """Parameters of one case.
 
@@ -104,7 +105,7 @@ def record(
         ``belt_velocity`` (m/s) goes with a belt.
     friction, effects : mapping
         SI numbers by the names of their quantities; what is not given has its default.
-    excitation : str
+    input_kind : str
         Whether the base moves or a force acts on the mass.
 
     Returns
@@ -117,7 +118,7 @@ def record(
     contact, own = oscillator.get("contact", BASE), p["oscillator"]
     for quantity in OSCILLATOR:
         own[quantity.name] = oscillator.get(quantity.name, quantity.default * quantity.factor)
-    own["absolute"], own["forced"] = contact != BASE, excitation == FORCE
+    own["absolute"], own["forced"] = contact != BASE, input_kind == FORCE
     own["belt_velocity"] = oscillator["belt_velocity"] if contact == BELT else 0.0
     for quantity in FRICTION:
         value = friction.get(quantity.name, quantity.default * quantity.factor)

@@ -1,0 +1,70 @@
+"""Effects on the oscillator: each balances its energy, in both solvers; at its neutral value it is absent."""
+
+import numpy as np
+import pytest
+
+from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, coulomb, oscillator, steady
+from wedgesweep.effects import EFFECTS
+from wedgesweep.solvers import event_driven
+from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems.oscillator import parameters
+
+# Strengths that change the response by some per cent or more, in SI units.
+STRENGTHS = {
+    "bolster_stiffness": {"scale": 1.1},
+    "bolster_mass": {"scale": 0.9},
+    "friction_level": {"scale": 1.3},
+    "stribeck": {"peak": 0.2, "velocity": 0.01},
+    "presliding": {"length": 2e-4},
+    "ageing": {"rate": 0.02, "time": 0.01},
+    "directional_friction": {"asymmetry": 0.3},
+    "viscous_damping": {"coefficient": 5.0},
+    "cubic_stiffness": {"coefficient": 4e7},
+    "guide_friction": {"force": 0.2},
+    "end_stop": {"clearance": 1e-3, "stiffness": 500.0},
+    "input_distortion": {"second": 0.1, "second_phase": 0.4, "third": 0.05, "third_phase": -1.0},
+    "displacement_gain": {"scale": 1.02},
+}
+MECHANICAL = [name for name in STRENGTHS if name != "displacement_gain"]
+
+
+def case(law="coulomb", contact="base", **effects):
+    numbers = oscillator(damping=6.0, contact=contact)
+    friction = {**coulomb(0.5), "threshold_velocity": 2e-3}
+    return parameters.record(law, AMPLITUDE, 0.8 * OMEGA_N, numbers, friction, effects)
+
+
+def test_every_effect_of_the_oscillator_is_tried():
+    assert set(STRENGTHS) == set(parameters.EFFECTS) - {"velocity_lag", "stray_vibration"}
+
+
+@pytest.mark.parametrize("law", ["coulomb", "exponential"])
+@pytest.mark.parametrize("name", MECHANICAL)
+def test_energy_balances_and_solvers_agree(name, law):
+    contact = "ground" if name in ("end_stop", "cubic_stiffness", "input_distortion") else "base"
+    effect = case(law, contact, **{name: STRENGTHS[name]})
+    found = [steady(effect, solver, rtol=1e-8, settle=30).numbers for solver in SOLVERS]
+    for each in found:
+        assert each["supplied_energy"] == pytest.approx(each["dissipated_energy"], rel=2e-5)
+    for number in ("amplitude_ratio", "dissipated_energy", "stick_fraction"):
+        assert found[0][number] == pytest.approx(found[1][number], rel=1e-5, abs=1e-6), number
+    without = steady(case(law, contact), rtol=1e-8, settle=30).numbers
+    assert abs(found[0]["amplitude_ratio"] / without["amplitude_ratio"] - 1.0) > 1e-3
+
+
+@pytest.mark.parametrize("name", STRENGTHS)
+def test_neutral_values_change_nothing(name):
+    neutral = {each.name: each.neutral * each.factor for each in EFFECTS[name].quantities}
+    assert case(**{name: neutral}) == case()
+
+
+@pytest.mark.parametrize(
+    ("effects", "held"),
+    [({}, 0.5 / K), ({"cubic_stiffness": {"coefficient": 4e7}}, np.roots([4e7, 0.0, K, -0.5]).real.max())],
+)
+def test_friction_holds_the_springs_up_to_its_level(effects, held):
+    record = case(contact="ground", **effects)
+    record["input"]["amplitude"] = 1e-9
+    for share, sticks in ((0.99, True), (1.01, False)):
+        run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, 60.0, start=(share * held, 0.0))
+        assert run.samples.sticks[0] == sticks
