@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, penalised
+from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, penalised
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.effects import confounded
 
@@ -20,8 +20,6 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 )
 # Explanations whose penalised misfits are closer than this cannot be told apart.
 GAP = 10.0
-# Least p-value of an explanation that is named; with less than POSSIBLE it is no explanation at all.
-ADEQUATE = 0.01
 # Least p-value of a base model from which nothing need be missing.
 TOLERABLE = 1e-4
 # The tests that hold this share of the base model's excess must be explained by themselves.

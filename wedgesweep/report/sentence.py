@@ -6,7 +6,7 @@ from typing import Any
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.effects import confounded
-from wedgesweep.report import phrases
+from wedgesweep.report import ladder, phrases
 
 
 def sentence(result: DiagnosisResult) -> str:
@@ -115,7 +115,8 @@ def _adequate_half(result: DiagnosisResult, pair: Sequence[str]) -> str | None:
 
 
 def _none(result: DiagnosisResult) -> str:
-    return f"{_wrong(result)}, and {_unexplained(result)}{_attempt(result)}."
+    strict = f"{_wrong(result)}, and {_unexplained(result)}{_attempt(result)}"
+    return "; ".join([strict, *ladder.told(result)]) + "."
 
 
 def _unconfirmed(result: DiagnosisResult) -> bool:

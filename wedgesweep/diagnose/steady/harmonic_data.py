@@ -162,6 +162,16 @@ class HarmonicData(WhitenedHarmonics, FitData):
         phase = self.start_phase(whitened, self.whiten(aliases))
         return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
 
+    def with_model_error(self, size: float) -> Self:
+        return replace(self, model_error=size)
+
+    def compared_again(self, here: Evaluation) -> Evaluation:
+        response: SteadyResponse = here.response
+        whitened, aliases = self.whiten(response.harmonics), self.whiten(response.aliases)
+        phase = self.start_phase(whitened, aliases)
+        residual = real(self.whitened - aliases - self.rotated(whitened, phase))
+        return replace(here, response=response._replace(whitened=whitened, phase=phase), residual=residual)
+
     def changes(
         self, here: Evaluation, scenarios: Sequence[Scenario], tolerance: float
     ) -> tuple[np.ndarray, np.ndarray]:
