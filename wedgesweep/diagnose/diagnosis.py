@@ -99,11 +99,12 @@ def diagnose(
     data = harmonic_data(measurement)
     effects = _candidates(effects, measurement, progress)
     search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
-    thresholds, calibration = verdict.DEFAULT, None
+    thresholds, calibration = verdict.thresholds_for(data), None
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
         result = calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
-        thresholds, calibration = result.thresholds, result.as_dict()
+        thresholds = verdict.thresholds_for(data, result.thresholds)
+        calibration = result.as_dict()
         finding = verdict.decide(base, explanations, thresholds)
     finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
     progress("scores")

@@ -1,12 +1,13 @@
 """From fits to one of six verdicts; a wrong name is the worst of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtrc
 
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, penalised
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.effects import confounded
 
@@ -47,6 +48,15 @@ class Thresholds:
 
 
 DEFAULT = Thresholds()
+
+
+def thresholds_for(data: FitData, given: Thresholds = DEFAULT) -> Thresholds:
+    """Thresholds under the model error that is allowed.
+
+    Model errors are no noise: one of the allowed size may have the shape of any effect. A cause must remove
+    more than all of them together could leave.
+    """
+    return replace(given, least_gain=max(given.least_gain, float(data.model_misfit.sum())))
 
 
 @dataclass(frozen=True)

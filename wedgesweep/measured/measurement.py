@@ -58,7 +58,8 @@ class Measurement:
     """Tests of one suspension, and the base model.
 
     ``law`` is the model's friction law; ``uncertain`` holds the relative std of numbers of the model by
-    the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel.
+    the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel;
+    ``model_error`` the relative error that a model may have.
     """
 
     path: Path
@@ -69,3 +70,4 @@ class Measurement:
     tests: tuple[TestRecord, ...]
     derived_velocity: bool
     columns: Mapping[str, Mapping[str, str]]
+    model_error: float = 0.0

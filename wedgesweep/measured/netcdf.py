@@ -1,11 +1,11 @@
 """Measured data as one netCDF file.
 
-Layout: the attributes of the file are ``title`` and ``model`` (the text of the model's config, not its
-path). The group ``uncertain``, if there is one, has an attribute for each uncertain number. The group
-``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm`` and
-``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally, ``velocity``
-over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed from
-displacement has the attribute ``derived`` = 1.
+Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
+config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
+The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``,
+``amplitude_mm`` and ``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and,
+optionally, ``velocity`` over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is
+computed from displacement has the attribute ``derived`` = 1.
 """
 
 import os
@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.config.keys import hint, show
+from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.declarations import MODEL_ERROR, TEST, UNCERTAIN, UNITS
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
 
 SUFFIXES = (".nc", ".nc4")
-ROOT_NAMES = ("title", "model")
+ROOT_NAMES = ("title", "model", "model_error")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s"}
 LONG_NAMES = {"time": "time", "displacement": "side frame minus bolster", "velocity": "rate of displacement"}
 
@@ -37,6 +37,7 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
     try:
         with netCDF4.Dataset(partial, "w") as root:
             root.setncatts({"title": measurement.title, "model": measurement.model.to_toml()})
+            root.setncattr("model_error", measurement.model_error)
             root.createGroup("uncertain").setncatts(dict(measurement.uncertain))
             tests = root.createGroup("tests")
             for i, test in enumerate(measurement.tests):
@@ -90,6 +91,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     problems.extend(f"{path}: {name}: unknown attribute; {hint(name, ROOT_NAMES)}" for name in unknown)
     config, law = _model(attributes, path, model, problems)
     uncertain = _uncertain(root, path, problems)
+    model_error = _model_error(attributes, path, problems)
     tests = [_test(group, path, problems) for group in groups]
     complete = tuple(test for test in tests if test)
     velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
@@ -110,6 +112,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         tests=complete,
         derived_velocity=derived == {True},
         columns={each.name: {"column": each.name, "unit": each.units} for each in variables},
+        model_error=model_error,
     )
 
 
@@ -122,6 +125,13 @@ def _model(
         problems.append(f"{path}: model: missing; it is the text of a config")
         return None, ""
     return parse_model(attributes["model"], f"{path}: model", problems)
+
+
+def _model_error(attributes: Mapping[str, Any], path: Path, problems: list[str]) -> float:
+    found: list[str] = []
+    value = Number.of(MODEL_ERROR).read(attributes.get("model_error", 0.0), "model_error", found)
+    problems.extend(f"{path}: {problem}" for problem in found)
+    return 0.0 if value is None else float(value)
 
 
 def _uncertain(root: Any, path: Path, problems: list[str]) -> dict[str, float]:

@@ -36,6 +36,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         tests=tuple(tests),
         derived_velocity=columns.get("velocity", {}).get("derived", False),
         columns={name: {"column": each["column"], "unit": each["unit"]} for name, each in columns.items()},
+        model_error=measurement["model_error"],
     )
 
 

@@ -19,7 +19,7 @@ def _nothing_missing(result: DiagnosisResult) -> str:
     p = phrases.p_value(result.document["misfit"]["p_base"])
     return (
         f"Nothing is missing: over {tests} the error of the simulation is {_error(result, 'base')}, which "
-        f"noise alone may leave ({p})."
+        f"{'these' if result.document['method'].get('model_error') else 'noise'} alone may leave ({p})."
     )
 
 
@@ -179,7 +179,9 @@ def _cause(cause: Mapping[str, Any]) -> str:
 
 def _error(result: DiagnosisResult, model: str) -> str:
     misfit = result.document["misfit"]
-    return phrases.times_noise(misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"]))
+    error = phrases.times_noise(misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"]))
+    allowed = result.document["method"].get("model_error")
+    return f"{error} and a model error of {phrases.accuracy(allowed)}" if allowed else error
 
 
 def _improvement(result: DiagnosisResult) -> str:
@@ -187,7 +189,7 @@ def _improvement(result: DiagnosisResult) -> str:
     before, after = _error(result, "base"), _error(result, "extended")
     it = "the first" if result.verdict == "tied" else "it" if len(result.added) == 1 else "they"
     verb = "reduces" if it != "they" else "reduce"
-    return f"{it} {verb} the error from {before.removesuffix(' times the noise')} to {after}{_gain(result)}"
+    return f"{it} {verb} the error from {before.split(' times the noise')[0]} to {after}{_gain(result)}"
 
 
 def _gain(result: DiagnosisResult) -> str:

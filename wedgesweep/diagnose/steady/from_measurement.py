@@ -27,6 +27,7 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         uncertain=dict(measurement.uncertain),
         tone=found.frequency if found else None,
         tone_std=found.std if found else 0.0,
+        model_error=measurement.model_error,
     )
 
 

@@ -255,7 +255,9 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
         response: SteadyResponse = truth.response
         exact = self.rotated(response.harmonics, response.phase) + response.aliases
-        spectra = (resampled(s, mean, rng) for s, mean in zip(self.spectra, exact, strict=True))
+        spectra = (
+            resampled(s, mean, self.model_error, rng) for s, mean in zip(self.spectra, exact, strict=True)
+        )
         return replace(self, spectra=tuple(spectra))
 
 
