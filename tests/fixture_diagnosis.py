@@ -13,6 +13,7 @@ from scipy.stats import chi2
 
 OMEGA_N, RESONANCE, MASS = 85.356, 97.506, 0.75
 HARMONICS, PHASES = 16, 256
+FLOOR = 0.004  # noise of what is compared over the response
 NOISE = 0.04  # std of one sample over the rms of its channel
 PERIODS, SAMPLES = 8, 600
 TEXT = {
@@ -193,12 +194,39 @@ def _document(verdict, data, causes, attempt, rivals, known):
             "enough_distance": 30.0,
             "strong_excess": 800.0,
             "adequate_p": 0.01,
+            "model_error": 0.0,
+            "noise_floor": FLOOR,
             "dof": dof,
             "harmonics": HARMONICS,
             "calibrated": None,
         },
+        "ladder": _ladder(verdict, attempt),
         "candidates": _candidates(base, extended, dof, attempt),
     }
+
+
+def _ladder(verdict, attempt):
+    """Base model, single effects, and pairs where the attempt is one or nothing is adequate."""
+    if verdict == "nothing-missing":
+        return [_rung(([], 0.0)), _rung((["stribeck"], 0.0), (["guide_friction"], 0.0))]
+    left = 0.012 if verdict == "none-of-mine" else 0.0
+    single = attempt if len(attempt) == 1 else ["stribeck"]
+    other = "guide_friction" if single == ["stribeck"] else "stribeck"
+    singles = [(single, left if single == attempt else 0.08), ([other], 0.14), (["end_stop"], 0.3)]
+    rungs = [_rung(([], 0.35)), _rung(*singles)]
+    if len(attempt) == 2 or left:
+        pair = attempt if len(attempt) == 2 else ["stribeck", "velocity_lag"]
+        rungs.append(
+            _rung((pair, 0.8 * left), (["stribeck", "end_stop"], 0.011), (["stribeck", "ageing"], None))
+        )
+    return rungs
+
+
+def _rung(*rated):
+    (effects, best), *others = rated
+    rivals = [{"effects": each, "accuracy": size} for each, size in others]
+    distinct = rivals[0]["accuracy"] / best if rivals and best else None
+    return {"effects": effects, "accuracy": best, "distinct": distinct, "rivals": rivals}
 
 
 def _cause(effect, numbers):

@@ -53,8 +53,13 @@ class Decays(FitData):
 
     measured: np.ndarray
     stated: np.ndarray
+    model_error: float = 0.0
     uncertain = MappingProxyType({})
     eliminated = 1
+
+    @cached_property
+    def std(self):
+        return np.sqrt(STD**2 + self.model_error**2 * self.measured.var(axis=1, keepdims=True))
 
     @property
     def tests(self):
@@ -74,7 +79,15 @@ class Decays(FitData):
 
     @cached_property
     def power(self):
-        return ((self.measured / STD) ** 2).sum(axis=1)
+        return ((self.measured / self.std) ** 2).sum(axis=1)
+
+    @property
+    def model_misfit(self):
+        return (TIME.size * (1.0 - STD**2 / self.std**2))[:, 0]
+
+    @property
+    def noise_floor(self):
+        return np.sqrt(np.mean(STD**2 / self.measured.var(axis=1)))
 
     def nuisances(self, effects, point):
         return (NuisanceParameter(step=1e-3, max_step=0.1),)
@@ -94,20 +107,26 @@ class Decays(FitData):
     def compared(self, response):
         left = self.measured - response
         offset = left.mean(axis=1, keepdims=True)
-        return Comparison(response, (left - offset) / STD, np.full(self.tests, True), NoWarmStart())
+        return Comparison(response, (left - offset) / self.std, np.full(self.tests, True), NoWarmStart())
+
+    def with_model_error(self, size):
+        return replace(self, model_error=size)
+
+    def compared_again(self, here):
+        return replace(here, residual=self.compared(here.response).residual)
 
     def changes(self, here, scenarios, tolerance):
-        change = np.array([here.response - self.simulate(each) for each in scenarios]) / STD
+        change = np.array([here.response - self.simulate(each) for each in scenarios]) / self.std
         return change, np.full((len(scenarios), self.tests), True)
 
     def eliminated_derivatives(self, here):
-        return np.full((*self.measured.shape, 1), -1.0 / STD)
+        return np.repeat(-1.0 / self.std, TIME.size, axis=1)[..., None]
 
     def response_change(self, here, there):
-        return (there.response - here.response) / STD
+        return (there.response - here.response) / self.std
 
     def bootstrap_sample(self, truth, rng):
-        return replace(self, measured=truth.response + STD * rng.normal(size=truth.response.shape))
+        return replace(self, measured=truth.response + self.std * rng.normal(size=truth.response.shape))
 
     def held_out_groups(self):
         return [("displacement", np.array([test])) for test in range(self.tests)]

@@ -255,6 +255,20 @@ def test_an_uncertain_number_is_a_cause_beyond_three_deviations(scale, named):
     assert (found.verdict == "named") is named
 
 
+@pytest.mark.parametrize(
+    ("base", "best", "expected"),
+    [(500.0, 60.0, "nothing-missing"), (1300.0, 700.0, "data-insufficient"), (5000.0, 300.0, "named")],
+)
+def test_a_cause_removes_more_than_model_errors_may_leave(base, best, expected):
+    """They may have the shape of any effect."""
+    data = SimpleNamespace(model_misfit=np.full(12, 0.9 * DOF / 12))
+    thresholds = verdict.thresholds_for(data)
+    assert verdict_of(explained(base), explained(best, "stribeck"), thresholds=thresholds).verdict == expected
+    calibrated = verdict.thresholds_for(data, Thresholds(least_gain=2000.0))
+    assert calibrated.least_gain == 2000.0
+    assert verdict.thresholds_for(SimpleNamespace(model_misfit=np.zeros(12))) == verdict.DEFAULT
+
+
 def test_calibrated_thresholds_replace_the_general_ones():
     base, best = explained(1000.0), explained(705.0, "stribeck")
     assert verdict_of(base, best, thresholds=Thresholds(strong=0.0)).verdict == "named"

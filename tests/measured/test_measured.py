@@ -78,6 +78,15 @@ def test_the_scales_of_the_parameters_family_can_be_uncertain(tmp_path):
     assert set(PARAMETERS) == {"bolster_stiffness", "wedge_stiffness", "bolster_mass", "friction_level"}
 
 
+def test_a_model_error_is_allowed_where_it_is_stated(tmp_path, bench):
+    assert bench.model_error == 0.0
+    text = MEASURED.replace("[measurement]\n", "[measurement]\nmodel_error = 0.015\n", 1)
+    found = measured.read(fixture_measured.write(tmp_path, text))
+    assert found.model_error == 0.015
+    write_netcdf(found, tmp_path / "bench.nc")
+    assert measured.read(tmp_path / "bench.nc").model_error == 0.015
+
+
 def edited(number, edit):
     """The CSV with one line changed; line numbers from 1."""
     csv = lines()
@@ -103,6 +112,10 @@ TOML_FAULTS = {
     "std of 2": (
         ("[[measurement.test]]", "[measurement.uncertain]\nbolster_mass = 2.0\n[[measurement.test]]"),
         "measurement.uncertain.bolster_mass: 2.0 is out of range; it must be less than 1",
+    ),
+    "model error in per cent": (
+        ("[measurement]\n", "[measurement]\nmodel_error = 2.0\n"),
+        "measurement.model_error: 2.0 is out of range; it must be less than 1",
     ),
     "no model": (('model = "model.toml"\n', ""), 'measurement.model: missing; write model = "model.toml"'),
     "absent model": (("model.toml", "none.toml"), "none.toml: No such file"),
@@ -357,6 +370,10 @@ def test_netcdf_holds_the_same(tmp_path):
 
 
 NETCDF_FAULTS = {
+    "model error": (
+        lambda file, test: file.setncattr("model_error", -0.1),
+        "model_error: -0.1 is out of range",
+    ),
     "unknown attribute": (lambda file, test: file.setncattr("titel", "x"), 'did you mean "title"?'),
     "no model": (lambda file, test: file.delncattr("model"), "model: missing"),
     "faulty model": (

@@ -8,6 +8,7 @@ from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.ladder import Rung, ladder
 from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.pairs import component_fits, fit_pairs
@@ -54,6 +55,7 @@ class Diagnosis:
     gain: Gain | None
     next_test: NextTest | None
     thresholds: Thresholds
+    ladder: tuple[Rung, ...]
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
 
@@ -103,11 +105,12 @@ def diagnose(
     data = harmonic_data(measurement)
     effects = _candidates(effects, measurement, progress)
     search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
-    thresholds, calibration = verdict.DEFAULT, None
+    thresholds, calibration = verdict.thresholds_for(data), None
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
         result = calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
-        thresholds, calibration = result.thresholds, result.as_dict()
+        thresholds = verdict.thresholds_for(data, result.thresholds)
+        calibration = result.as_dict()
         finding = verdict.decide(base, explanations, thresholds)
     finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
     progress("scores")
@@ -118,6 +121,8 @@ def diagnose(
         gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
         finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
         gain = gain if finding.best is not None else None
+    progress("accuracy")
+    rungs = ladder(search, base, explanations)
     progress("next test")
     next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
@@ -130,6 +135,7 @@ def diagnose(
         gain=gain,
         next_test=next_test,
         thresholds=thresholds,
+        ladder=rungs,
         calibration=calibration,
         untried=tuple(search.budget.untried),
     )

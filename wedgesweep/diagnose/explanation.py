@@ -10,8 +10,8 @@ from wedgesweep.diagnose.parameter_constancy import Constancy, parameter_constan
 
 # Each parameter costs ln n + PENALTY in chi-squared: with 21 candidates clean data keep the base model.
 PENALTY = 6.0
-# Least p-value at which a model is possible at all.
-POSSIBLE = 1e-3
+# Least p-value of an adequate model, and of one that is possible at all.
+ADEQUATE, POSSIBLE = 0.01, 1e-3
 
 
 @dataclass(frozen=True)

@@ -169,6 +169,16 @@ class FitData(Protocol):
         """Prior standard deviation of the first P nuisance parameters (T, P): 0 exact, inf unknown."""
 
     @property
+    @abstractmethod
+    def model_misfit(self) -> np.ndarray:
+        """Squared misfit (T,) that model errors of the allowed size would leave on average; 0 for none."""
+
+    @property
+    @abstractmethod
+    def noise_floor(self) -> float:
+        """Rms of the noise over that of the response."""
+
+    @property
     def known(self) -> Mapping[str, tuple[float, float]]:
         return {}
 
@@ -195,6 +205,18 @@ class FitData(Protocol):
 
         What the simulations take is counted by ``work.add``, or no budget ends a search.
         """
+
+    @abstractmethod
+    def with_model_error(self, size: float) -> Self:
+        """The data under a model that may be wrong by some relative ``size``.
+
+        The variance of each compared number grows by that of an error of ``size`` times the rms of the
+        response in its channel and test.
+        """
+
+    @abstractmethod
+    def compared_again(self, here: Evaluation) -> Evaluation:
+        """What was simulated for the same tests under another model error, compared with these data."""
 
     @abstractmethod
     def changes(

@@ -31,15 +31,18 @@ def parameter_constancy(fit: Fit) -> Constancy:
     if not (size and fit.evaluation.found):
         return Constancy(1.0, None)
     project = Projector(fit)
-    p = [_constant(project, project.by_parameter[..., i]) for i in range(size)]
+    # A model error has one shape in each test, which may be that of a change of the parameter.
+    variance = 1.0 + float(fit.model.data.model_misfit.mean())
+    p = [_constant(project, project.by_parameter[..., i], variance) for i in range(size)]
     least = int(np.argmin(p))
     return Constancy(min(1.0, size * p[least]), fit.model.hypothesis.parameters[least].name)
 
 
-def _constant(project: Projector, derivative: np.ndarray) -> float:
+def _constant(project: Projector, derivative: np.ndarray, variance: float = 1.0) -> float:
     """Probability of the misfit along changes of one parameter in single tests; ``derivative`` (T, m)."""
     alone = derivative[None] * np.eye(len(derivative))[..., None]
     directions = np.array([project(each) for each in alone])
     _, size, basis = np.linalg.svd(directions, full_matrices=False)
     basis = basis[size > FAINT * np.linalg.norm(derivative, axis=1).max()]
-    return float(chdtrc(len(basis), ((basis @ project.misfit) ** 2).sum())) if len(basis) else 1.0
+    along = ((basis @ project.misfit) ** 2).sum() / variance
+    return float(chdtrc(len(basis), along)) if len(basis) else 1.0

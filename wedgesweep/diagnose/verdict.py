@@ -1,12 +1,13 @@
 """From fits to one of six verdicts; a wrong name is the worst of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, penalised
+from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, penalised
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.effects import confounded
 
@@ -20,8 +21,6 @@ NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
 )
 # Explanations whose penalised misfits are closer than this cannot be told apart.
 GAP = 10.0
-# Least p-value of an explanation that is named; with less than POSSIBLE it is no explanation at all.
-ADEQUATE = 0.01
 # Least p-value of a base model from which nothing need be missing.
 TOLERABLE = 1e-4
 # The tests that hold this share of the base model's excess must be explained by themselves.
@@ -49,6 +48,15 @@ class Thresholds:
 
 
 DEFAULT = Thresholds()
+
+
+def thresholds_for(data: FitData, given: Thresholds = DEFAULT) -> Thresholds:
+    """Thresholds under the model error that is allowed.
+
+    Model errors are no noise: one of the allowed size may have the shape of any effect. A cause must remove
+    more than all of them together could leave.
+    """
+    return replace(given, least_gain=max(given.least_gain, float(data.model_misfit.sum())))
 
 
 @dataclass(frozen=True)

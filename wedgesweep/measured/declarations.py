@@ -29,6 +29,14 @@ FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent"
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
 AMPLITUDE_STD = Quantity("amplitude_std", 0.0, "relative std of the amplitude", minimum=0.0, below=1.0)
 
+MODEL_ERROR = Quantity(
+    "model_error",
+    0.0,
+    "relative error that a model may have: 0.01 takes the verdict at 1 % of the response",
+    minimum=0.0,
+    below=1.0,
+)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Inline(Table):
@@ -165,6 +173,7 @@ MEASUREMENT = table(
     "measured data",
     Text(key="title", meaning="title of the measurement", default="measurement"),
     Text(key="model", meaning="the base model: a config, relative to this file", example="model.toml"),
+    Number.of(MODEL_ERROR),
     COLUMNS,
     Number.of(INPUT_GAIN_STD),
     UNCERTAIN,

@@ -1,8 +1,8 @@
 """Measured data as one netCDF file.
 
-Layout: the attributes of the file are ``title`` and ``model`` (the text of the model's config, not its
-path). The group ``uncertain``, if there is one, has an attribute for each uncertain number. The group
-``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm`` and
+Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
+config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
+The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm`` and
 ``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally, ``velocity``
 over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed from
 displacement has the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute
@@ -20,18 +20,18 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.config.keys import hint, show
+from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
 from wedgesweep.measured import overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, keys_faults, model_faults
-from wedgesweep.measured.declarations import INPUT, QUANTITIES, TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.declarations import INPUT, MODEL_ERROR, QUANTITIES, TEST, UNCERTAIN, UNITS
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
 
 SUFFIXES = (".nc", ".nc4")
-ROOT_NAMES = ("title", "model", "input_gain_std")
+ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
 LONG_NAMES = {
     "time": "time",
@@ -50,6 +50,7 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
     try:
         with netCDF4.Dataset(partial, "w") as root:
             root.setncatts({"title": measurement.title, "model": measurement.model.to_toml()})
+            root.setncattr("model_error", measurement.model_error)
             if measurement.input_gain_std:
                 root.setncattr("input_gain_std", measurement.input_gain_std)
             root.createGroup("uncertain").setncatts(dict(measurement.uncertain))
@@ -108,6 +109,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     problems.extend(f"{path}: {name}: unknown attribute; {hint(name, ROOT_NAMES)}" for name in unknown)
     config, law = _model(attributes, path, model, problems)
     uncertain = _uncertain(root, path, problems)
+    model_error = _model_error(attributes, path, problems)
     tests = [_test(group, path, problems) for group in groups]
     complete = tuple(test for test in tests if test)
     velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
@@ -142,6 +144,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         derived_velocity=derived == {True},
         columns=columns[0],
         input_gain_std=float(gain_std),
+        model_error=model_error,
     )
 
 
@@ -166,6 +169,13 @@ def _model(
         problems.append(f"{path}: model: missing; it is the text of a config")
         return None, ""
     return parse_model(attributes["model"], f"{path}: model", problems)
+
+
+def _model_error(attributes: Mapping[str, Any], path: Path, problems: list[str]) -> float:
+    found: list[str] = []
+    value = Number.of(MODEL_ERROR).read(attributes.get("model_error", 0.0), "model_error", found)
+    problems.extend(f"{path}: {problem}" for problem in found)
+    return 0.0 if value is None else float(value)
 
 
 def _uncertain(root: Any, path: Path, problems: list[str]) -> dict[str, float]:

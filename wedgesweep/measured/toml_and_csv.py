@@ -47,6 +47,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
             for name, each in columns.items()
         },
         input_gain_std=measurement["input_gain_std"],
+        model_error=measurement["model_error"],
     )
 
 

@@ -9,6 +9,7 @@ from wedgesweep.report import (
     extension,
     held_out,
     html,
+    ladder,
     limits,
     method,
     misfit,
@@ -29,6 +30,7 @@ MEANINGS = {
 }
 CONTENTS = {
     "candidates": "Candidates",
+    "accuracy": "Accuracy",
     "model": "Extended model",
     "gain": "Gain",
     "limits": "What can be shown",
@@ -47,6 +49,7 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
             _contents(result),
             misfit.section(result, draw),
             candidates.section(result, draw),
+            ladder.section(result, draw),
             extension.section(result),
             held_out.section(result, draw),
             limits.section(result),
@@ -76,6 +79,8 @@ def _answer(result: DiagnosisResult) -> Markup:
 
 def _contents(result: DiagnosisResult) -> Markup:
     headings = {"misfit": misfit.heading(result), **CONTENTS}
+    if not ladder.rungs_of(result):
+        del headings["accuracy"]
     links = (html.element("a", text, href=f"#{name}") for name, text in headings.items())
     return html.element("nav", html.items(links), aria_label="Contents")
 

@@ -119,6 +119,13 @@ def combination(effects: Sequence[str]) -> str:
     return " + ".join(effects) or "base model"
 
 
+def accuracy(size: float | None) -> str:
+    """A relative model error as a share of the response; 0 is noise alone."""
+    if size is None:
+        return "none"
+    return "noise" if size == 0.0 else f"{short(100.0 * size, 2)}{NO_BREAK}%"
+
+
 def times_noise(q: float | None, dof: float) -> str:
     """The error that a misfit stands for, in standard deviations of the noise."""
     return f"{number(None if q is None or dof <= 0 else sqrt(q / dof))} times the noise"

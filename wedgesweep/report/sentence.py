@@ -6,7 +6,7 @@ from typing import Any
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.effects import confounded
-from wedgesweep.report import phrases
+from wedgesweep.report import ladder, phrases
 
 
 def sentence(result: DiagnosisResult) -> str:
@@ -29,7 +29,7 @@ def _nothing_missing(result: DiagnosisResult) -> str:
     p = phrases.p_value(result.document["misfit"]["p_base"])
     return (
         f"Nothing is missing: over {tests} the error of the simulation is {_error(result, 'base')}, which "
-        f"noise alone may leave ({p})."
+        f"{'these' if result.document['method'].get('model_error') else 'noise'} alone may leave ({p})."
     )
 
 
@@ -125,7 +125,8 @@ def _adequate_half(result: DiagnosisResult, pair: Sequence[str]) -> str | None:
 
 
 def _none(result: DiagnosisResult) -> str:
-    return f"{_wrong(result)}, and {_unexplained(result)}{_attempt(result)}."
+    strict = f"{_wrong(result)}, and {_unexplained(result)}{_attempt(result)}"
+    return "; ".join([strict, *ladder.told(result)]) + "."
 
 
 def _unconfirmed(result: DiagnosisResult) -> bool:
@@ -188,7 +189,9 @@ def _cause(cause: Mapping[str, Any]) -> str:
 
 def _error(result: DiagnosisResult, model: str) -> str:
     misfit = result.document["misfit"]
-    return phrases.times_noise(misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"]))
+    error = phrases.times_noise(misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"]))
+    allowed = result.document["method"].get("model_error")
+    return f"{error} and a model error of {phrases.accuracy(allowed)}" if allowed else error
 
 
 def _improvement(result: DiagnosisResult) -> str:
@@ -196,7 +199,7 @@ def _improvement(result: DiagnosisResult) -> str:
     before, after = _error(result, "base"), _error(result, "extended")
     it = "the first" if result.verdict == "tied" else "it" if len(result.added) == 1 else "they"
     verb = "reduces" if it != "they" else "reduce"
-    return f"{it} {verb} the error from {before.removesuffix(' times the noise')} to {after}{_gain(result)}"
+    return f"{it} {verb} the error from {before.split(' times the noise')[0]} to {after}{_gain(result)}"
 
 
 def _gain(result: DiagnosisResult) -> str:

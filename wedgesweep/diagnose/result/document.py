@@ -10,13 +10,17 @@ import numpy as np
 from wedgesweep import __version__
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation
+from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
+from wedgesweep.diagnose.ladder import Rated, Rung
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
-from wedgesweep.diagnose.verdict import ADEQUATE, p_where_it_shows
+from wedgesweep.diagnose.verdict import p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
+
+# Rivals of each size on the accuracy ladder.
+RIVALS = 5
 
 
 def document(found: Diagnosis) -> dict[str, Any]:
@@ -38,6 +42,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         },
         "not_testable": hidden,
         "next_test": _following(found.next_test),
+        "ladder": [_rung(each) for each in found.ladder],
         "extended": list(best.effects),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
@@ -162,6 +167,19 @@ def _following(following: NextTest | None) -> dict[str, Any] | None:
     }
 
 
+def _rung(rung: Rung) -> dict[str, Any]:
+    """The most accurate explanation of a number of effects, with its rivals; 0.01 is 1 % of the response."""
+    return {
+        **_rated(rung.best),
+        "distinct": finite(rung.distinct),
+        "rivals": [_rated(each) for each in rung.rivals[:RIVALS]],
+    }
+
+
+def _rated(each: Rated) -> dict[str, Any]:
+    return {"effects": list(each.effects), "accuracy": finite(each.accuracy)}
+
+
 def _method(found: Diagnosis) -> dict[str, Any]:
     return {
         "penalty_per_parameter": PENALTY + log(found.data.observations.sum()),
@@ -169,6 +187,8 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "enough_distance": SEPARATED,
         "strong_excess": finite(found.thresholds.strong),
         "adequate_p": ADEQUATE,
+        "model_error": found.data.model_error,
+        "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
         "harmonics": found.data.shape[1],
@@ -178,6 +198,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
 
 def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]:
     scores = {score.effect: score for score in found.scores}
+    accuracies = {each.effects: each.accuracy for rung in found.ladder for each in rung.rated}
     rows = []
     for each in sorted([found.base, *found.explanations], key=lambda one: one.penalised):
         score = scores.get(each.effects[0]) if len(each.effects) == 1 else None
@@ -190,6 +211,7 @@ def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]
                 "dof": each.fit.dof,
                 "p": finite(each.fit.p),
                 "penalised": finite(each.penalised),
+                "accuracy": finite(accuracies.get(each.effects)),
                 "parameters": {
                     f"{name}.{key}": value for name, own in numbers.items() for key, value in own.items()
                 },

@@ -46,6 +46,7 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         tone=found.frequency if found else None,
         tone_std=found.std if found else 0.0,
         models=_models(measurement),
+        model_error=measurement.model_error,
     )
 
 
@@ -69,7 +70,8 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
     quantity = measurement.recorded_input
     assert quantity is not None
     named = _compared(measurement)
-    read = [_read_test(test, named, quantity) for test in measurement.tests]
+    motions = [_motion_of_channel(measurement.model, of) for *_, of in named]
+    read = [_read_test(test, named, motions, quantity) for test in measurement.tests]
     spectra = tuple(each[0] for each in read)
     orders = max(each[1].displacement.shape[1] for each in read)
     inputs = InputHarmonics(
@@ -90,6 +92,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         models=_models(measurement),
         input_phase=inputs.phase,
         inputs=inputs,
+        model_error=measurement.model_error,
         untold=_untold(told, any(of == "absolute" for *_, of in named)),
     )
     return data.with_covariance(stated(data))
@@ -118,12 +121,27 @@ def _compared(measurement: Measurement) -> list[Channel]:
     return [(name, slots[i], measurement.columns[name].get("of", "relative")) for i, name in enumerate(named)]
 
 
-def _read_test(test: TestRecord, named: list[Channel], quantity: str) -> tuple[Spectrum, InputHarmonics]:
-    """Spectrum of the responses of a test and harmonics of its input."""
+def _motion_of_channel(model: Config, of: str) -> tuple[float, float]:
+    """Factors of a channel and of the input in what the solvers record as displacement.
+
+    That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
+    where its contact does not move with the base.
+    """
+    if model.system == "suspension":
+        return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
+    absolute = model.oscillator["contact"] != "base"
+    if of == "relative":
+        return 1.0, 1.0 if absolute else 0.0
+    return 1.0, 0.0 if absolute else -1.0
+
+
+def _read_test(
+    test: TestRecord, named: list[Channel], motions: list[tuple[float, float]], quantity: str
+) -> tuple[Spectrum, InputHarmonics]:
+    """Spectrum of the responses of a test and harmonics of its input; ``motions``: see _motion_of_channel."""
     frequency = test.refined_frequency
-    # The displacement is that of the base less that of the mass.
     signals = np.array(
-        [-getattr(test, name) if of == "absolute" else getattr(test, name) for name, _, of in named]
+        [sign * getattr(test, name) for (name, *_), (sign, _) in zip(named, motions, strict=True)]
     )
     assert test.input is not None
     found = fitted(test.time, signals, frequency)
@@ -132,7 +150,7 @@ def _read_test(test: TestRecord, named: list[Channel], quantity: str) -> tuple[S
     shared = np.array(
         [noise_coherence(test.time, np.array([test.input, each]), frequency) for each in signals]
     )[: len(found.mean)]
-    found, absolute = _as_motion(found, named, displacement)
+    found, absolute = _as_motion(found, named, [share for _, share in motions], displacement)
     # Of the input as recorded; as a displacement it is turned as its harmonics are.
     turn = motion_factor(recorded, quantity)
     turn /= np.abs(turn)
@@ -143,20 +161,19 @@ def _read_test(test: TestRecord, named: list[Channel], quantity: str) -> tuple[S
 
 
 def _as_motion(
-    found: Spectrum, named: list[Channel], displacement: np.ndarray
+    found: Spectrum, named: list[Channel], shares: list[float], displacement: np.ndarray
 ) -> tuple[Spectrum, np.ndarray]:
-    """The spectrum as relative displacement and velocity, and the share (C, N) of the input in each."""
+    """The spectrum as displacement and velocity as solvers record them, and the input's share (C, N) in each."""
     mean, variance = found.mean.copy(), found.variance.copy()
     absolute = np.zeros(mean.shape, complex)
     scaled = False
-    for i, (name, slot, of) in enumerate(named[: len(mean)]):
+    for i, (name, slot, _) in enumerate(named[: len(mean)]):
         factor = motion_factor(found, name) / motion_factor(found, slot)
         scaled = scaled or name != slot
         mean[i] *= factor
         variance[i] *= np.abs(factor) ** 2
-        if of == "absolute":
-            absolute[i] = 1.0 / motion_factor(found, slot)
-            mean[i] += absolute[i] * displacement[: mean.shape[1]]
+        absolute[i] = shares[i] / motion_factor(found, slot)
+        mean[i] += absolute[i] * displacement[: mean.shape[1]]
     alias_map = None if scaled else found.alias_map
     return replace(found, mean=mean, variance=variance, alias_map=alias_map), absolute
 

@@ -182,6 +182,16 @@ class HarmonicData(WhitenedHarmonics, FitData):
         phase = self.start_phase(whitened, self.whiten(aliases))
         return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
 
+    def with_model_error(self, size: float) -> Self:
+        return replace(self, model_error=size)
+
+    def compared_again(self, here: Evaluation) -> Evaluation:
+        response: SteadyResponse = here.response
+        whitened, aliases = self.whiten(response.harmonics), self.whiten(response.aliases)
+        phase = self.start_phase(whitened, aliases)
+        residual = self.decorrelated(real(self.whitened - aliases - self.rotated(whitened, phase)))
+        return replace(here, response=response._replace(whitened=whitened, phase=phase), residual=residual)
+
     def changes(
         self, here: Evaluation, scenarios: Sequence[Scenario], tolerance: float
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -265,7 +275,9 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
         response: SteadyResponse = truth.response
         exact = self.rotated(response.harmonics, response.phase) + response.aliases
-        spectra = (resampled(s, mean, rng) for s, mean in zip(self.spectra, exact, strict=True))
+        spectra = (
+            resampled(s, mean, self.model_error, rng) for s, mean in zip(self.spectra, exact, strict=True)
+        )
         return replace(self, spectra=tuple(spectra))
 
 

@@ -211,6 +211,23 @@ class RecordedInputData(HarmonicData):
                     covariance += cross + np.swapaxes(cross, 1, 2)
         return replace(self, whitening=_inverse_root(covariance))
 
+    def with_model_error(self, size: float) -> Self:
+        some = super().with_model_error(size)
+        if self.whitening is None:
+            return some
+        inverse, unit = np.linalg.inv(self.whitening), np.eye(self.whitening.shape[-1])
+        turn = _real_matrix(some.whitening_of_responses @ np.linalg.pinv(self.whitening_of_responses))
+        by_input = turn @ (inverse @ inverse - unit) @ np.swapaxes(turn, 1, 2)
+        return replace(some, whitening=_inverse_root(unit + by_input))
+
+    @property
+    def whitening_of_responses(self) -> np.ndarray:
+        """What ``whiten`` does as matrices (T, n, n) for the n harmonics of all channels."""
+        size = self.shape[0] * self.columns
+        unit = np.eye(size, dtype=complex).reshape(size, 1, self.shape[0], self.columns)
+        columns = self.whiten(np.repeat(unit, self.tests, axis=1)).reshape(size, self.tests, size)
+        return columns.transpose(1, 2, 0)
+
     def _with_coefficient(self, order: int, change: np.ndarray) -> Self:
         """The data as if a coefficient of the inputs had been recorded with a change (T,) in m."""
         displacement = self.recorded.displacement.copy()
@@ -240,6 +257,12 @@ class RecordedInputData(HarmonicData):
             found[:, 0, 0, :, h, h], found[:, 0, 1, :, h, h] = both[..., h].real, both[..., h].imag
             found[:, 1, 0, :, h, h], found[:, 1, 1, :, h, h] = -both[..., h].imag, both[..., h].real
         return found.reshape(found.shape[0], 2, 2 * channels * columns, columns)
+
+
+def _real_matrix(matrices: np.ndarray) -> np.ndarray:
+    """Matrices (T, n, n) for complex vectors as (T, 2 n, 2 n) for their real and imaginary parts."""
+    top = np.concatenate([matrices.real, -matrices.imag], axis=2)
+    return np.concatenate([top, np.concatenate([matrices.imag, matrices.real], axis=2)], axis=1)
 
 
 def _inverse_root(covariance: np.ndarray) -> np.ndarray:

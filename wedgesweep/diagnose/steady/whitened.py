@@ -28,6 +28,7 @@ class WhitenedHarmonics:
     is one more column behind the harmonics, with a phase of its own in each test. ``input_phase`` (T,):
     phase (rad) of the input at the first sample of each record, None before a first fit has found it.
     ``models``: the base model of each test, if they differ.
+    ``model_error``: relative error that a model may have; its variance is part of that of the harmonics.
     """
 
     model: Config
@@ -41,6 +42,7 @@ class WhitenedHarmonics:
     tone_std: float = 0.0
     input_phase: np.ndarray | None = None
     models: tuple[Config, ...] | None = None
+    model_error: float = 0.0
 
     @property
     def tests(self) -> int:
@@ -107,9 +109,32 @@ class WhitenedHarmonics:
         return self._padded([s.mean for s in self.spectra], 0.0)
 
     @cached_property
+    def _noise(self) -> np.ndarray:
+        """Variance (T, C, H) of the noise of a harmonic, real and imaginary part together; inf if absent."""
+        return self._padded([s.variance for s in self.spectra], inf)
+
+    @cached_property
+    def _power(self) -> np.ndarray:
+        """Variance (T, C, H) that a model error as large as the response gives a harmonic; 0 where absent.
+
+        The error has the rms of the response of its channel, spread evenly over what is compared.
+        """
+        power = [(np.abs(s.mean) ** 2).mean(axis=1, keepdims=True) + 0.0 * s.variance for s in self.spectra]
+        return self._padded(power, 0.0)
+
+    @cached_property
+    def _noise_share(self) -> np.ndarray:
+        """Share (T, C, H) of noise in the variance, the rest being model error; 1 without model error."""
+        noise = np.where(np.isinf(self._noise), 1.0, self._noise)
+        return noise / (noise + self.model_error**2 * self._power)
+
+    @cached_property
     def weight(self) -> np.ndarray:
-        """One over the noise of a real part, (T, C, H); 0 where absent or masked by a tone."""
-        weight = np.sqrt(2.0 / self._padded([s.variance for s in self.spectra], inf))
+        """One over the std of a real part by noise and model error, (T, C, H).
+
+        0 where absent or masked by a tone.
+        """
+        weight = np.sqrt(2.0 / (self._noise + self.model_error**2 * self._power))
         for row, spectrum in zip(weight, self.spectra, strict=True):
             if spectrum.masked_harmonic is not None:
                 row[:, spectrum.masked_harmonic - 1] = 0.0
@@ -117,8 +142,20 @@ class WhitenedHarmonics:
 
     @cached_property
     def coherence(self) -> np.ndarray:
-        """Coherence of the noise of both channels, complex, (T,)."""
-        return np.array([s.coherence for s in self.spectra])
+        """Coherence (T, H) of what both channels scatter by, complex; model errors are independent."""
+        coherence = np.array([s.coherence for s in self.spectra])
+        return coherence[:, None] * np.sqrt(self._noise_share[:, 0] * self._noise_share[:, -1])
+
+    @property
+    def model_misfit(self) -> np.ndarray:
+        """Squared misfit (T,) that model errors of the allowed size would leave on average."""
+        return 2.0 * np.where(self.weight > 0.0, 1.0 - self._noise_share, 0.0).sum(axis=(-2, -1))
+
+    @property
+    def noise_floor(self) -> float:
+        """Rms of the noise over that of the response, in what is compared."""
+        seen = (self.weight > 0.0) & (self._power > 0.0)
+        return float(np.sqrt(np.mean(self._noise[seen] / self._power[seen]))) if seen.any() else nan
 
     @cached_property
     def whitened(self) -> np.ndarray:
@@ -134,7 +171,7 @@ class WhitenedHarmonics:
         """Harmonics (..., T, C, H) over their noise, complex, the channels' common noise removed."""
         scaled = harmonics[..., : self.shape[0], :] * self.weight
         if self.shape[0] == 2 and self.coherence.any():
-            share = self.coherence[:, None]
+            share = self.coherence
             second = (scaled[..., 1, :] - share * scaled[..., 0, :]) / np.sqrt(1.0 - abs(share) ** 2)
             scaled = np.stack([scaled[..., 0, :], second], axis=-2)
         return scaled

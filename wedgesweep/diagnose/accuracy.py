@@ -1,0 +1,110 @@
+"""How accurate a model is: the smallest relative model error at which it is adequate.
+
+No model is right to within the noise of a good sensor. If the variance of each compared number grows by what
+an error of tau times the response gives it, chi-squared falls as tau grows, and a model is adequate from some
+tau on: that is its accuracy. Where the noise is small it is the rms of what the model leaves over that of the
+response.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import exp, inf, log
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import chdtri
+
+from wedgesweep.diagnose.explanation import ADEQUATE
+from wedgesweep.diagnose.fit_data import Evaluation, FitData
+from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.model import Fit
+
+# Range in which an accuracy is searched, and how closely.
+SMALLEST, LARGEST, PRECISION = 1e-6, 100.0, 1e-3
+# A fit is repeated at its accuracy until this share of it is all that is gained, at most this many times.
+GAINED, ROUNDS = 0.01, 3
+# Iterations of such a fit.
+ITERATIONS = 12
+
+
+class Accuracy(NamedTuple):
+    """Accuracy of a model (0: adequate without any model error; inf: at none), and its fit there."""
+
+    size: float
+    fit: Fit
+
+
+def smallest_adequate(chi2: Callable[[float], float], dof: float) -> float:
+    """Smallest model error at which a chi-squared that falls with it is adequate; inf if at none."""
+    limit = float(chdtri(dof, ADEQUATE))
+    if chi2(0.0) <= limit:
+        return 0.0
+    if not chi2(LARGEST) < limit:
+        return inf
+    if chi2(SMALLEST) <= limit:
+        return SMALLEST
+
+    def over(logarithm: float) -> float:
+        return log(max(chi2(exp(logarithm)), 1e-300) / limit)
+
+    return exp(brentq(over, log(SMALLEST), log(LARGEST), xtol=PRECISION))
+
+
+def of_response(data: FitData, evaluation: Evaluation, dof: float) -> float:
+    """Accuracy of what was simulated, pulls on priors left out; inf if a response does not exist."""
+    if not evaluation.found:
+        return inf
+
+    def chi2(size: float) -> float:
+        again = data.with_model_error(size).compared_again(evaluation)
+        return float((again.residual**2).sum())
+
+    return smallest_adequate(chi2, dof)
+
+
+def of_fit(fit: Fit) -> float:
+    """Accuracy of a fit where it ended."""
+
+    def chi2(size: float) -> float:
+        return fit.model.data.with_model_error(size).compared_again(fit.evaluation).chi2
+
+    return smallest_adequate(chi2, fit.dof) if fit.evaluation.found else inf
+
+
+def refined(fit: Fit) -> Accuracy:
+    """Accuracy of a model, fitted again where noise and model error have their shares of the weight.
+
+    A fit at the weights of noise alone is not the best one at a large model error: tests with little noise
+    dominate it, and nuisance parameters go far from stated to please them.
+    """
+    best = Accuracy(of_fit(fit), fit)
+    size = min(best.size, of_response(fit.model.data, fit.evaluation, fit.dof))
+    for _ in range(ROUNDS):
+        if size in (0.0, inf):
+            break
+        again = _minimised(best.fit, size)
+        found = of_fit(again)
+        gained = found < best.size
+        done = found > (1.0 - GAINED) * min(size, best.size)
+        best = Accuracy(found, again) if gained else best
+        # Where pulls on priors alone are too large, a larger model error relaxes them.
+        size = best.size if best.size < inf else 2.0 * size
+        if done and best.size < inf:
+            break
+    return best
+
+
+def _minimised(fit: Fit, size: float) -> Fit:
+    """The fit under a model error, from where it is or with nuisance parameters as stated."""
+    data = fit.model.data.with_model_error(size)
+    model = replace(fit.model, data=data)
+    here = data.compared_again(fit.evaluation)
+    stated, at_rest = data.start()
+    priors = model.nuisance_weight.shape[1]
+    known = np.isfinite(data.nuisance_std)
+    nuisance = fit.point.nuisance.copy()
+    nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
+    x = np.r_[fit.x[: model.size], np.ones(len(model.uncertain))]
+    as_stated = model.evaluate(replace(fit.point, x=x, nuisance=nuisance, warm=at_rest))
+    return minimise(model, min(here, as_stated, key=lambda each: each.chi2), ITERATIONS)

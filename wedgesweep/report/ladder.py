@@ -1,0 +1,86 @@
+"""The accuracy ladder: how well no effect, one and two explain the tests, as shares of the response."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.report import html, phrases
+from wedgesweep.report.html import Markup
+from wedgesweep.report.inline_figures import InlineFigures
+
+HEAD = ("effects", "explanation", "accuracy", "next best", "its accuracy")
+# A pair is told beside its better component if it is so many times as accurate.
+MUCH_BETTER = 2.0
+READING = (
+    "The accuracy is the smallest error of the model, as a share of the rms of the response, with which the "
+    "explanation is adequate (p ≥ 0.01): 1 % means that it explains all tests to 1 % of the response. An "
+    "explanation with “noise” needs no such error. What lies below the noise floor is not resolved."
+)
+
+
+CAPTION = (
+    "Filled marks are the best explanations with no effect, one and two, open ones their rivals. Further "
+    "left is better; below the noise floor differences are not resolved."
+)
+
+
+def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
+    """Section with the figure and a table of the best explanations of each size."""
+    rungs = rungs_of(result)
+    if not rungs:
+        return Markup()
+    rows = [_row(rung) for rung in rungs]
+    floor = result.document["method"].get("noise_floor")
+    return html.section(
+        "accuracy",
+        "Accuracy",
+        html.paragraph(" ".join([*(f"{one[0].upper()}{one[1:]}." for one in told(result)), READING])),
+        draw("ladder", CAPTION),
+        html.table("The most accurate explanations", HEAD, rows, 2),
+        html.paragraph(f"Noise floor: {phrases.accuracy(floor)}.") if floor else Markup(),
+    )
+
+
+def _row(rung: Mapping[str, Any]) -> list[str]:
+    rival = next(iter(rung["rivals"]), None)
+    return [
+        str(len(rung["effects"])),
+        phrases.combination(rung["effects"]),
+        phrases.accuracy(rung["accuracy"]),
+        phrases.combination(rival["effects"]) if rival else formatting.NONE,
+        phrases.accuracy(rival["accuracy"]) if rival else formatting.NONE,
+    ]
+
+
+def rungs_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
+    """The rungs of the ladder, the base model's first; empty in results of older versions."""
+    return result.document.get("ladder", [])
+
+
+def told(result: DiagnosisResult) -> list[str]:
+    """What the best single effect explains, and the best pair where it is much better, as clauses."""
+    rungs = rungs_of(result)
+    if not rungs:
+        return []
+    base, *better = rungs
+    clauses: list[str] = []
+    reached = base["accuracy"]
+    for rung in better:
+        if rung["accuracy"] is None or (clauses and rung["accuracy"] * MUCH_BETTER > (reached or 0.0)):
+            continue
+        clauses.append(_told(rung, base))
+        reached = rung["accuracy"]
+    return clauses
+
+
+def _told(rung: Mapping[str, Any], base: Mapping[str, Any]) -> str:
+    meanings = phrases.listing([phrases.meaning(effect) for effect in rung["effects"]])
+    verb = "explains" if len(rung["effects"]) == 1 else "explain"
+    beside = [f"without: {phrases.accuracy(base['accuracy'])}"]
+    for rival in rung["rivals"][:1]:
+        name = phrases.combination(rival["effects"])
+        beside.append(f"next best, {name}: {phrases.accuracy(rival['accuracy'])}")
+    size, names = rung["accuracy"], phrases.combination(rung["effects"])
+    to = f"to {phrases.accuracy(size)} of the response" if size else "to within the noise"
+    return f"{to}, {meanings} ({names}) {verb} all tests ({'; '.join(beside)})"
