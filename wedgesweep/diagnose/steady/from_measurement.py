@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from wedgesweep.config import Config
 from wedgesweep.diagnose.steady import tone
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.recorded_input import (
@@ -163,7 +164,7 @@ def _read_test(
 def _as_motion(
     found: Spectrum, named: list[Channel], shares: list[float], displacement: np.ndarray
 ) -> tuple[Spectrum, np.ndarray]:
-    """The spectrum as displacement and velocity as solvers record them, and the input's share (C, N) in each."""
+    """The spectrum as what solvers record, and the share (C, N) of the input in each channel."""
     mean, variance = found.mean.copy(), found.variance.copy()
     absolute = np.zeros(mean.shape, complex)
     scaled = False
