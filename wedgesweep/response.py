@@ -39,29 +39,30 @@ NO_MOTION = 1e-9
 def mean_period(signal, out):
     """Write the mean of the periods of a signal, each as many samples as ``out`` holds."""
     out[:] = 0.0
-    for i in range(signal.size):
-        out[i % out.size] += signal[i]
+    for start in range(0, signal.size, out.size):
+        for i in range(min(out.size, signal.size - start)):
+            out[i] += signal[start + i]
     out *= out.size / signal.size
 
 
 @compiled
-def fourier(signal, periods, out):
-    """Write D_h, h = 1..n, of signal = Re sum D_h exp(i h omega t); out has shape (n, 2): real, imaginary.
+def fourier(first, second, out):
+    """Write D_h, h = 1..n, of two signals = Re sum D_h exp(i h omega t); out: (2, n, 2), real, imaginary.
 
-    ``signal`` covers whole forcing periods on an even grid; their mean is taken first.
+    The signals, shape (samples,), cover one forcing period on an even grid. Both share one rotation.
     """
-    samples = signal.size // periods
-    mean = np.empty(samples)
-    mean_period(signal, mean)
-    for h in range(1, out.shape[0] + 1):
+    samples = first.size
+    for h in range(1, out.shape[1] + 1):
         turn_cos, turn_sin = cos(2.0 * pi * h / samples), sin(2.0 * pi * h / samples)
-        c, s, real, imaginary = 1.0, 0.0, 0.0, 0.0
+        c, s, real, imaginary, other_real, other_imaginary = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for i in range(samples):
-            real += mean[i] * c
-            imaginary -= mean[i] * s
+            real += first[i] * c
+            imaginary -= first[i] * s
+            other_real += second[i] * c
+            other_imaginary -= second[i] * s
             c, s = c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin
-        out[h - 1, 0] = 2.0 * real / samples
-        out[h - 1, 1] = 2.0 * imaginary / samples
+        out[0, h - 1, 0], out[0, h - 1, 1] = 2.0 * real / samples, 2.0 * imaginary / samples
+        out[1, h - 1, 0], out[1, h - 1, 1] = 2.0 * other_real / samples, 2.0 * other_imaginary / samples
 
 
 @compiled
@@ -90,8 +91,10 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     ``x`` and ``velocity`` are the samples of the kept window; ``spectra`` has shape (2, n, 2): displacement
     or velocity, harmonic, real or imaginary part. Both are as the sensors show them.
     """
-    fourier(-x, periods, spectra[0])
-    fourier(-velocity, periods, spectra[1])
+    mean = np.empty((2, x.size // periods))
+    mean_period(x, mean[0])
+    mean_period(velocity, mean[1])
+    fourier(-mean[0], -mean[1], spectra)
     gain, amplitude = p.displacement_gain.scale, input_length(p)
     slipping_time = sums.time - (sums.stuck_time if p.friction.set_valued else 0.0)
     # The window closes on itself: sticking that runs over its end is one phase.

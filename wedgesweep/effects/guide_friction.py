@@ -29,5 +29,5 @@ def acts(p):
 def force(velocity, branch, p):
     """Force on the bolster (N, up positive) at z' = ``velocity`` on the given slip branch."""
     if branch == 0 and not p.friction.set_valued:
-        return -p.guide_friction.force * velocity / p.friction.v_t
+        return -p.guide_friction.force / p.friction.v_t * velocity
     return -p.guide_friction.force * branch

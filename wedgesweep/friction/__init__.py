@@ -83,7 +83,7 @@ def sliding(speed, p):
 def coefficient(velocity, branch, highest, p):
     """Signed coefficient of a face on a branch of the law; ``highest`` is its static one."""
     if branch == 0 and not p.friction.set_valued:
-        return highest * velocity / p.friction.v_t
+        return highest / p.friction.v_t * velocity
     return branch * sliding(branch * velocity, p)
 
 

@@ -38,7 +38,7 @@ def first_sample(t, recorder):
     return max(int(np.ceil((t - recorder.start) / recorder.step - 1e-9)), 0)
 
 
-@inner
+@inlined
 def put_node(t, y, weight, mode, recorder, p):
     """Add a node to the sums; ``weight`` in s."""
     if recorder.energies:

@@ -12,7 +12,8 @@ from numba.extending import overload
 from wedgesweep.compiled import INNER, function_of, inlined
 
 _set_item: Any = tuple_setitem
-INLINE: Any = INNER | {"forceinline": True}
+# A product and its sum may be rounded once: each stage of a Runge-Kutta step waits for them.
+INLINE: Any = INNER | {"forceinline": True, "fastmath": {"contract"}}
 
 
 def weighted(start, scale, weights, vectors):

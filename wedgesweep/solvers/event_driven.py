@@ -143,9 +143,9 @@ def _settled(y, near, settle_periods, case, settings, room, period_map):
     """
     if settings.steady:
         unknown = np.full((y.size, y.size), np.nan)
-        shooting = Shooting(
-            case, period_map, settings.tolerance, settings.max_periods, room, np.array(scales(case[0]))
-        )
+        size = np.array(scales(case[0]))
+        # The kept periods are run after the search.
+        shooting = Shooting(case, period_map, settings.tolerance, settings.max_periods, room, size, False)
         found = settle(y, near, unknown, shooting)
         return found.outcome, found.period, found.run
     outcome = OK

@@ -4,7 +4,7 @@ The continuous extension of order 4 is Hairer's (Hairer, Norsett and Wanner, Sol
 of the tableau are left out: each weight belongs to the stage at the same place in the calls below.
 """
 
-from wedgesweep.compiled import inner
+from wedgesweep.compiled import inlined
 from wedgesweep.hybrid.interface import rate
 from wedgesweep.hybrid.vectors import combination, weighted
 from wedgesweep.solvers.step import connected, over_tolerance
@@ -29,7 +29,7 @@ DENSE = (
 )
 
 
-@inner
+@inlined
 def step(t, h, y, k1, mode, p, rtol):
     """One step from y, whose rate is k1.
 

@@ -82,7 +82,7 @@ class _Place(NamedTuple):
 
 
 @searched(_Place)
-@inner
+@inlined
 def _value(share, place):
     step = place.step
     y = inside(share, step)

@@ -141,9 +141,8 @@ def _respond_all(cases, rows, accuracy, room, found, motion, period_map):
         n = len(scales(case[0]))
         y, before = found.warm.state[i, :n].copy(), found.warm.period[i]
         jacobian = found.warm.map[i, :n, :n].copy()
-        shooting = Shooting(
-            case, period_map, accuracy.tolerance, accuracy.most_periods, room, np.array(scales(case[0]))
-        )
+        size = np.array(scales(case[0]))
+        shooting = Shooting(case, period_map, accuracy.tolerance, accuracy.most_periods, room, size, True)
         outcome, period, run, kept = settle(y, before, jacobian, shooting)
         if outcome == OK and not kept:
             # If the response does not repeat, its mean over as many periods as there is room for.

@@ -41,7 +41,10 @@ EXTRAPOLATION_GAIN = 0.5
 
 
 class Shooting(NamedTuple):
-    """A search for a steady state: the case (1,), its map, tolerance, limit of periods, and workspace."""
+    """A search for a steady state: the case (1,), its map, tolerance, limit of periods, and workspace.
+
+    ``records``: whether the memory keeps the last periods of a state that Newton's method has found.
+    """
 
     case: Any
     period_map: Any
@@ -49,6 +52,7 @@ class Shooting(NamedTuple):
     most_periods: int
     memory: Any
     size: Any  # natural sizes of the states (n,)
+    records: bool
 
 
 class Found(NamedTuple):
@@ -195,7 +199,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         keeping = last < KEPT_BELOW or run == 0
         if keeping:
             clear(shooting.memory.sums)
-        outcome = _run(image, periods, keeping, shooting)
+        outcome = _run(image, periods, keeping and shooting.records, shooting)
         run += periods
         if outcome != OK:
             y[:] = best

@@ -215,7 +215,7 @@ class _Piece(NamedTuple):
 
 
 @searched(_Piece)
-@inner
+@inlined
 def _value(time, piece):
     """An event function some time (s) after the phase of a piece."""
     which, phase, o, mode, p = piece

@@ -1,6 +1,6 @@
 """Power in the frame of the table: what friction and damping take, what the base supplies."""
 
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import inlined
 from wedgesweep.effects import (
     column_compliance,
     fixture_resonance,
@@ -12,7 +12,7 @@ from wedgesweep.systems.suspension.faces import bolster_slip, coefficients, colu
 from wedgesweep.systems.suspension.modes import VELOCITY
 
 
-@inner
+@inlined
 def friction_power(t, y, mode, now, p):
     """Power (W) that friction takes on all faces, from the forces ``now``."""
     column_mu, bolster_mu = coefficients(t, y, mode, p)

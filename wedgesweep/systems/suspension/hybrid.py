@@ -97,7 +97,7 @@ def sticks(y, mode, p):
     return abs(mode.column) != 1
 
 
-@inner
+@inlined
 def _forces_and_power(t, y, mode, p):
     """Normal forces on column and bolster, and the power (W) of friction, on a mode that slips."""
     if held(mode):
@@ -108,7 +108,7 @@ def _forces_and_power(t, y, mode, p):
 
 
 @implement(interface.powers, SUSPENSION)
-@inner
+@inlined
 def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces."""
     column, bolster, power = nan, nan, 0.0

@@ -101,10 +101,9 @@ def loads(t, y, mode, p):
     s, g = p.suspension, p.geometry
     z, velocity = g.rest + y[X], y[VELOCITY]
     wedge = s.wedge_preload - s.wedge_spring * _rise(z, y, p) - s.wedge_mass * s.gravity
-    bolster = (
-        guide_friction.force(velocity, mode.guide, p) - s.bolster_spring * z - s.bolster_mass * s.gravity
-    )
-    bolster += hooks.force_on_mass(z, velocity, y, p) + end_stop.force(y[X], mode.stop, p)
+    bolster = hooks.force_on_mass(z, velocity, y, p) + end_stop.force(y[X], mode.stop, p)
+    bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
+    bolster += guide_friction.force(velocity, mode.guide, p)
     return Loads(
         wedge * g.cos_column,
         wedge * g.sin_column,
@@ -117,15 +116,23 @@ def loads(t, y, mode, p):
 
 @inlined
 def reactions(load, mu, p):
-    """Forces, and the determinant of their equations, which is negative without friction."""
+    """Forces, and the determinant of their equations, which is negative without friction.
+
+    Each stage of an integrator waits for this result: what does not depend on the loads is not multiplied
+    into what does.
+    """
     s, g = p.suspension, p.geometry
     lift = g.sin_wedge + mu.bolster * g.cos_wedge
-    vertical = load.vertical + 2.0 * mu.bolster_tau * g.cos_wedge
-    inertia = s.wedge_mass * g.column_ratio / s.bolster_mass
+    mobility = 1.0 / s.bolster_mass
+    inertia = s.wedge_mass * g.column_ratio * mobility
     a11, a12 = mu.column, g.sin_included + mu.bolster * g.cos_included + 2.0 * lift * inertia
     a21, a22 = 1.0, mu.bolster * g.sin_included - g.cos_included
-    tangential = load.tangential - mu.column_tau - mu.bolster_tau * g.cos_included - inertia * vertical
-    normal = load.normal - mu.bolster_tau * g.sin_included
+    tangential, normal, vertical = load.tangential, load.normal, load.vertical
+    if load_dependent_friction.acts(p):
+        tangential -= mu.column_tau + mu.bolster_tau * g.cos_included
+        normal -= mu.bolster_tau * g.sin_included
+        vertical += 2.0 * mu.bolster_tau * g.cos_wedge
+    tangential -= inertia * vertical
 
     outward, outward_per_force = 0.0, 0.0
     if column_compliance.acts(p):
@@ -163,7 +170,7 @@ def reactions(load, mu, p):
     frame = base
     if fixture_resonance.acts(p):
         frame += base_per_column * column + base_per_bolster * bolster
-    rising = (vertical + 2.0 * bolster * lift) / s.bolster_mass - frame
+    rising = vertical * mobility - frame + (2.0 * lift * mobility) * bolster
     return Forces(
         rising, outward + outward_per_force * column, frame - load.base, column, bolster
     ), determinant
