@@ -28,9 +28,9 @@ STRENGTHS = {
 MECHANICAL = [name for name in STRENGTHS if name != "displacement_gain"]
 
 
-def case(law="coulomb", contact="base", **effects):
+def case(law="coulomb", contact="base", level=0.5, **effects):
     numbers = oscillator(damping=6.0, contact=contact)
-    friction = {**coulomb(0.5), "threshold_velocity": 2e-3}
+    friction = {**coulomb(level), "threshold_velocity": 2e-3}
     return parameters.record(law, AMPLITUDE, 0.8 * OMEGA_N, numbers, friction, effects)
 
 
@@ -42,14 +42,21 @@ def test_every_effect_of_the_oscillator_is_tried():
 @pytest.mark.parametrize("name", MECHANICAL)
 def test_energy_balances_and_solvers_agree(name, law):
     contact = "ground" if name in ("end_stop", "cubic_stiffness", "input_distortion") else "base"
-    effect = case(law, contact, **{name: STRENGTHS[name]})
+    # Time at rest strengthens friction only where there is some.
+    level = 0.9 if name == "ageing" else 0.5
+    effect = case(law, contact, level, **{name: STRENGTHS[name]})
     found = [steady(effect, solver, rtol=1e-8, settle=30).numbers for solver in SOLVERS]
     for each in found:
         assert each["supplied_energy"] == pytest.approx(each["dissipated_energy"], rel=2e-5)
-    for number in ("amplitude_ratio", "dissipated_energy", "stick_fraction"):
+    # Bristles have no event where the slip velocity passes the bound of sticking: its share is a quadrature.
+    numbers = ["amplitude_ratio", "dissipated_energy", *["stick_fraction"] * (name != "presliding")]
+    for number in numbers:
         assert found[0][number] == pytest.approx(found[1][number], rel=1e-5, abs=1e-6), number
-    without = steady(case(law, contact), rtol=1e-8, settle=30).numbers
-    assert abs(found[0]["amplitude_ratio"] / without["amplitude_ratio"] - 1.0) > 1e-3
+    neutral = {each.name: each.neutral * each.factor for each in EFFECTS[name].quantities}
+    without = steady(case(law, contact, level, **{name: neutral}), rtol=1e-8, settle=30).numbers
+    # Friction that differs by direction moves the mean only.
+    changed = "mean_displacement" if name == "directional_friction" else "amplitude_ratio"
+    assert abs(found[0][changed] - without[changed]) > 1e-3 * abs(found[0][changed])
 
 
 @pytest.mark.parametrize("name", STRENGTHS)

@@ -2,13 +2,12 @@
 
 Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
 config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
-The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``,
-``amplitude_mm`` and ``amplitude_std`` as in measured.toml, and variables ``time``,
-``displacement`` and, optionally, ``velocity`` over the dimension ``sample``, with
-``units`` as in measured.toml. A velocity that is computed from displacement has the attribute ``derived`` = 1.
-A recorded input is the variable ``input`` with the attribute
-``quantity``; ``acceleration`` is a further response, and responses may have the attribute ``of``. The
-attribute ``model`` of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is an
+The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm``
+and ``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally,
+``velocity`` over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed
+from displacement has the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the
+attribute ``quantity``; ``acceleration`` is a further response, and responses may have the attribute ``of``.
+The attribute ``model`` of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is an
 attribute of the file.
 """
 
