@@ -23,7 +23,7 @@ run: install  ## run configs/quick.toml; dataset and figures in out/
 	$(BIN)/wedgesweep plot all $(OUT)/quick.nc -o $(OUT)/quick-figures
 
 test: install  ## all tests
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 lint: install  ## linter and types
 	$(BIN)/ruff check .
