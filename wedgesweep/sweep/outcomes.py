@@ -46,7 +46,7 @@ def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
     """How each case of a dataset ended."""
     frame = ds[["status", "message", "period", "periodicity"]].to_dataframe().reset_index()
     frame = frame.rename(columns={"friction_law": "law"})
-    frame["unit"] = ds["amplitude"].attrs["units"]
+    frame["unit"] = ds["amplitude"].attrs.get("units", "m")
     columns = {name: frame[name].tolist() for name in CaseResult._fields}
     columns["status"] = map(Outcome, columns["status"])
     return list(map(CaseResult, *columns.values()))
