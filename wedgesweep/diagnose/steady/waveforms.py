@@ -8,8 +8,8 @@ from scipy.optimize import root_scalar
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady.accelerations import accelerations
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.steady.simulation import records
 from wedgesweep.effects import EFFECTS, acting
+from wedgesweep.excitation import has_series
 from wedgesweep.systems import compact, driven_mass, has_own_mechanics, is_oscillator, moving_mass
 
 PHASES = 256
@@ -61,7 +61,8 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
     """Energy (J) that the base puts in per period, shape (T,).
 
     It is the work of the inertia forces that friction dissipates, pi m a omega^2 Re D_1, with the amplitudes
-    and the moving mass of the fit. NaN where the data are not relative to the base.
+    and the moving mass of the fit. NaN where the data are not relative to the base, or where
+    its motion is not a sine.
 
     Parameters
     ----------
@@ -79,6 +80,7 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
     if is_oscillator(rows):
         # Its displacement is that of the mass, and what rubs on the ground is not driven by inertia.
         fundamental = np.where(rows["oscillator"]["absolute"], np.nan, -fundamental)
+    fundamental = np.where(has_series(rows), np.nan, fundamental)
     given = rows["input"]
     return pi * driven_mass(rows) * given["amplitude"] * given["omega"] ** 2 * fundamental.real
 
@@ -138,4 +140,4 @@ def _wiener_weight(data: HarmonicData) -> np.ndarray:
 
 def _rows(data: HarmonicData, fit: Fit) -> np.ndarray:
     """Parameter records (T,) of a fit."""
-    return records(data.model, data.law, fit.model.values(fit.x), data.omega, data.amplitudes(fit.point))
+    return data.records(fit.model.scenario(fit.point))
