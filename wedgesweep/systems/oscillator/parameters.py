@@ -5,7 +5,7 @@ without effects that add forces, coefficients, states or events of their own, or
 without the Fourier series of a recorded input.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from math import nan, sqrt
 from types import MappingProxyType
@@ -13,10 +13,9 @@ from types import MappingProxyType
 import numpy as np
 
 from wedgesweep import effects as known
-from wedgesweep import friction as laws
-from wedgesweep.excitation import SERIES_FIELDS, SINE, has_series, set_series
-from wedgesweep.friction.quantities import FRICTION, SYMBOLS
+from wedgesweep.excitation import has_series
 from wedgesweep.quantity import Quantity
+from wedgesweep.systems import records
 
 OSCILLATOR = (
     Quantity("mass_kg", nan, "mass, m", above=0.0),
@@ -54,28 +53,16 @@ def effect_names() -> tuple[str, ...]:
 def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype]:
     """Record types by kit, with or without the Fourier series of an input."""
     simple = [name for name in names if not known.EFFECTS[name].extends]
-    part: list[tuple] = [("series", SERIES_FIELDS)] if series else []
+    part = records.SERIES if series else []
     return _dtype([(PLAIN, np.int64), *part], simple), _dtype(part, names)
 
 
-def _dtype(parts: list[tuple], names: tuple[str, ...] | list[str]) -> np.dtype:
-    for name in names:
-        if name in SCALED or hasattr(known.REGISTERED[name], "adjust"):
-            continue
-        derived = getattr(known.REGISTERED[name], "DERIVED", ())
-        numbers = [quantity.name for quantity in known.EFFECTS[name].quantities]
-        parts = [*parts, (name, [(each, np.float64) for each in (*numbers, *derived)])]
-    coefficients = [(name, np.float64) for name in SYMBOLS.values()]
+def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
     # ``absolute``: the displacement is against the ground, not against the base.
     own = [*((name, np.int64) for name in ("kit", "absolute", "forced")), ("belt_velocity", np.float64)]
-    return np.dtype(
-        [
-            *parts,
-            ("friction", [("law", np.int64), ("set_valued", np.int64), *coefficients]),
-            ("input", [("amplitude", np.float64), ("omega", np.float64)]),
-            ("oscillator", [*own, *((quantity.name, np.float64) for quantity in OSCILLATOR)]),
-        ]
-    )
+    own += [(quantity.name, np.float64) for quantity in OSCILLATOR]
+    effects = records.effect_parts(name for name in names if name not in SCALED)
+    return np.dtype([*parts, *effects, *records.COMMON, ("oscillator", own)])
 
 
 def record_type() -> np.dtype:
@@ -120,57 +107,23 @@ def record(
         own[quantity.name] = oscillator.get(quantity.name, quantity.default * quantity.factor)
     own["absolute"], own["forced"] = contact != BASE, input_kind == FORCE
     own["belt_velocity"] = oscillator["belt_velocity"] if contact == BELT else 0.0
-    for quantity in FRICTION:
-        value = friction.get(quantity.name, quantity.default * quantity.factor)
-        p["friction"][SYMBOLS[quantity.name]] = value
-    p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
-    p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
-    set_series(case, SINE)
+    records.set_common(case, law, friction, (amplitude, omega))
     for name in effect_names():
-        quantities = known.EFFECTS[name].quantities
-        neutral = {each.name: each.neutral * each.factor for each in quantities}
-        _set(p, name, {**neutral, **effects.get(name, {})})
-    own["kit"] = _acts(p)
+        numbers = records.with_neutral(name, effects.get(name, {}))
+        if name in SCALED:
+            own[SCALED[name]] *= numbers["scale"]
+        else:
+            records.set_effect(p, name, numbers)
+    own["kit"] = bool(records.acting(p, effect_names()))
     if p["presliding"]["length"] > 0.0:
         p["friction"]["set_valued"] = 0  # bristles yield before they slip
     return case
 
 
-def _set(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
-    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
-    module = known.REGISTERED[effect]
-    if effect in SCALED:
-        p["oscillator"][SCALED[effect]] *= numbers["scale"]
-        return
-    if hasattr(module, "adjust"):
-        module.adjust(p, **numbers)
-        return
-    for name, value in numbers.items():
-        p[effect][name] = value
-    if hasattr(module, "prepare"):
-        module.prepare(p)
-
-
-def _acts(p: np.void) -> bool:
-    """Whether any effect needs mechanics of its own."""
-    return any(
-        p[name][quantity.name] != quantity.neutral * quantity.factor
-        for name in effect_names()
-        for quantity in known.EFFECTS[name].quantities
-        if quantity.name in known.EFFECTS[name].extends
-    )
-
-
 def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
     kits = _kits(effect_names(), bool(has_series(rows).any()))
-    kind = kits[int(rows["oscillator"]["kit"].max(initial=0))]
-    if kind == rows.dtype:
-        return rows
-    small = np.zeros(rows.shape, kind)
-    for name in set(kind.names or ()) & set(rows.dtype.names or ()):
-        small[name] = rows[name]
-    return small
+    return records.converted(rows, kits[int(rows["oscillator"]["kit"].max(initial=0))])
 
 
 def resonance(p: np.void) -> float:

@@ -16,9 +16,9 @@ import numpy as np
 from wedgesweep import effects as known
 from wedgesweep import excitation
 from wedgesweep import friction as laws
-from wedgesweep.friction.quantities import FRICTION, SYMBOLS
 from wedgesweep.natural_units import VELOCITY, NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
+from wedgesweep.systems import records
 from wedgesweep.systems.suspension.equilibrium import determinant, equilibrium
 
 SUSPENSION = (
@@ -72,36 +72,20 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.
     plain = [name for name in simple if name not in own]
     if series:
         # There is no closed form, so that ``base`` marks nothing here.
-        part: list[tuple] = [("series", excitation.SERIES_FIELDS)]
+        part = records.SERIES
         return _dtype(part, plain), _dtype(part, own + plain), _dtype(part, names)
     return _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], names)
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
-    parts: list[tuple] = [*marker]
-    for name in names:
-        if hasattr(known.REGISTERED[name], "adjust"):
-            continue
-        derived = getattr(known.REGISTERED[name], "DERIVED", ())
-        numbers = [quantity.name for quantity in known.EFFECTS[name].quantities]
-        parts.append((name, [(each, np.float64) for each in (*numbers, *derived)]))
-    coefficients = [(name, np.float64) for name in SYMBOLS.values()]
-    return np.dtype(
-        [
-            *parts,
-            ("friction", [("law", np.int64), ("set_valued", np.int64), *coefficients]),
-            ("input", [("amplitude", np.float64), ("omega", np.float64)]),
-            ("suspension", [(quantity.name, np.float64) for quantity in SUSPENSION]),
-            (
-                "geometry",
-                [
-                    ("kit", np.int64),
-                    ("always_well_posed", np.int64),
-                    *((name, np.float64) for name in GEOMETRY),
-                ],
-            ),
-        ]
-    )
+    own = [(quantity.name, np.float64) for quantity in SUSPENSION]
+    geometry = [
+        ("kit", np.int64),
+        ("always_well_posed", np.int64),
+        *((name, np.float64) for name in GEOMETRY),
+    ]
+    effects = records.effect_parts(names)
+    return np.dtype([*marker, *effects, *records.COMMON, ("suspension", own), ("geometry", geometry)])
 
 
 def record_type() -> np.dtype:
@@ -138,15 +122,9 @@ def record(
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
     nominal = p["suspension"].copy()
-    for quantity in FRICTION:
-        value = friction.get(quantity.name, quantity.default * quantity.factor)
-        p["friction"][SYMBOLS[quantity.name]] = value
-    p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
-    p["input"]["amplitude"], p["input"]["omega"] = amplitude, omega
-    excitation.set_series(case, excitation.SINE)
-    for name, effect in known.EFFECTS.items():
-        neutral = {each.name: each.neutral * each.factor for each in effect.quantities}
-        _set(p, name, {**neutral, **effects.get(name, {})})
+    records.set_common(case, law, friction, (amplitude, omega))
+    for name in known.EFFECTS:
+        records.set_effect(p, name, records.with_neutral(name, effects.get(name, {})))
     p["geometry"]["kit"] = _kit_of(p)
     if is_regularised(p):
         _regularise(p, nominal)
@@ -154,26 +132,9 @@ def record(
     return case
 
 
-def _set(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
-    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
-    module = known.REGISTERED[effect]
-    if hasattr(module, "adjust"):
-        module.adjust(p, **numbers)
-        return
-    for name, value in numbers.items():
-        p[effect][name] = value
-    if hasattr(module, "prepare"):
-        module.prepare(p)
-
-
 def _acting(p: np.void) -> list[str]:
     """Effects of a record that need mechanics of their own."""
-    return [
-        name
-        for name, effect in known.EFFECTS.items()
-        for quantity in effect.quantities
-        if quantity.name in effect.extends and p[name][quantity.name] != quantity.neutral * quantity.factor
-    ]
+    return records.acting(p, known.EFFECTS)
 
 
 def _kit_of(p: np.void) -> int:
@@ -262,13 +223,7 @@ def _always_well_posed(p: np.void, small: np.void) -> bool:
 def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
     kits = _kits(tuple(known.EFFECTS), bool(excitation.has_series(rows).any()))
-    kind = kits[int(rows["geometry"]["kit"].max(initial=BASE))]
-    if kind == rows.dtype:
-        return rows
-    small = np.zeros(rows.shape, kind)
-    for name in set(kind.names or ()) & set(rows.dtype.names or ()):
-        small[name] = rows[name]
-    return small
+    return records.converted(rows, kits[int(rows["geometry"]["kit"].max(initial=BASE))])
 
 
 def has_own_mechanics(rows: np.ndarray) -> np.ndarray:

@@ -1,0 +1,90 @@
+"""What parameter records of all systems have in common: friction, input, and a part for each effect."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from wedgesweep import effects as known
+from wedgesweep import excitation
+from wedgesweep import friction as laws
+from wedgesweep.friction.quantities import FRICTION, SYMBOLS
+
+# Parts of a record type.
+COMMON: list[tuple] = [
+    (
+        "friction",
+        [
+            ("law", np.int64),
+            ("set_valued", np.int64),
+            *((name, np.float64) for name in SYMBOLS.values()),
+        ],
+    ),
+    ("input", [("amplitude", np.float64), ("omega", np.float64)]),
+]
+SERIES: list[tuple] = [("series", excitation.SERIES_FIELDS)]
+
+
+def effect_parts(names: Iterable[str]) -> list[tuple]:
+    """Parts of a record type for effects; those that adjust other parts have none."""
+    parts: list[tuple] = []
+    for name in names:
+        module = known.REGISTERED[name]
+        if not hasattr(module, "adjust"):
+            numbers = [quantity.name for quantity in known.EFFECTS[name].quantities]
+            numbers += getattr(module, "DERIVED", ())
+            parts.append((name, [(each, np.float64) for each in numbers]))
+    return parts
+
+
+def set_common(case: np.ndarray, law: str, friction: Mapping[str, float], given: tuple[float, float]) -> None:
+    """Put the law, its numbers (SI by name) and the input into a full record, shape (1,), in place.
+
+    ``given``: amplitude (m or N) and angular frequency (rad/s).
+    """
+    p = case[0]
+    for quantity in FRICTION:
+        value = friction.get(quantity.name, quantity.default * quantity.factor)
+        p["friction"][SYMBOLS[quantity.name]] = value
+    p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
+    p["input"]["amplitude"], p["input"]["omega"] = given
+    excitation.set_series(case, excitation.SINE)
+
+
+def with_neutral(name: str, numbers: Mapping[str, float]) -> dict[str, Any]:
+    """Numbers (SI) of an effect; what is not given is neutral."""
+    neutral = {each.name: each.neutral * each.factor for each in known.EFFECTS[name].quantities}
+    return {**neutral, **numbers}
+
+
+def set_effect(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
+    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
+    module = known.REGISTERED[effect]
+    if hasattr(module, "adjust"):
+        module.adjust(p, **numbers)
+        return
+    for name, value in numbers.items():
+        p[effect][name] = value
+    if hasattr(module, "prepare"):
+        module.prepare(p)
+
+
+def acting(p: np.void, names: Iterable[str]) -> list[str]:
+    """Which of some effects need mechanics of their own in a record."""
+    return [
+        name
+        for name in names
+        for quantity in known.EFFECTS[name].quantities
+        if quantity.name in known.EFFECTS[name].extends
+        and p[name][quantity.name] != quantity.neutral * quantity.factor
+    ]
+
+
+def converted(rows: np.ndarray, kind: np.dtype) -> np.ndarray:
+    """Records, shape (n,), with the parts of another record type that they have."""
+    if kind == rows.dtype:
+        return rows
+    small = np.zeros(rows.shape, kind)
+    for name in set(kind.names or ()) & set(rows.dtype.names or ()):
+        small[name] = rows[name]
+    return small
