@@ -200,6 +200,16 @@ def test_a_regularised_law_without_friction_has_numbers():
     assert found["dissipated_energy"] == 0.0
 
 
+def test_a_release_that_grazes_ends_where_rounding_is_coarser_than_the_search():
+    # At t = 0.26 s doubles lie farther apart than the search for the minimum of an event function asked for.
+    suspension = {"column_angle": 0.004395868272498038, "wedge_preload": 1e-6}
+    friction = {"dynamic": 0.4154653590797869, "static": 0.48060306205586123}
+    record = parameters.record("coulomb", 1e-5, 325.0258722265154, suspension, friction)
+    found = solved(record, replace(SHORT, steady=True, settle_periods=None, max_periods=30))
+    assert STATUSES[found["status"]] == "ok"
+    assert found["dissipated_energy"] == pytest.approx(found["supplied_energy"], rel=1e-6)
+
+
 @hypothesis_settings(max_examples=300, deadline=None)
 @given(records(), strategies.booleans())
 def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):

@@ -114,7 +114,10 @@ def minimum(context, low, high, close):
     """Place between two others at which a function is smallest, or at least not positive (golden section)."""
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     at_left, at_right = _value(left, context)[0], _value(right, context)[0]
-    while high - low > close:
+    # The count ends a search whose places are too large for rounding to let them come this close.
+    for _ in range(MOST_ITERATIONS):
+        if high - low <= close:
+            break
         if at_left <= 0.0:
             return left
         if at_right <= 0.0:
