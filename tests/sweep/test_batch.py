@@ -207,7 +207,7 @@ def test_a_release_that_grazes_ends_where_rounding_is_coarser_than_the_search():
     record = parameters.record("coulomb", 1e-5, 325.0258722265154, suspension, friction)
     found = solved(record, replace(SHORT, steady=True, settle_periods=None, max_periods=30))
     assert STATUSES[found["status"]] == "ok"
-    assert found["dissipated_energy"] == pytest.approx(found["supplied_energy"], rel=1e-6)
+    assert found["dissipated_energy"] == pytest.approx(found["supplied_energy"], rel=1e-5)
 
 
 @hypothesis_settings(max_examples=300, deadline=None)
