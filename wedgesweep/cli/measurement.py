@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from wedgesweep.measured import Measurement, TestRecord
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
+LOOP_HEADINGS = ("file", "duration", "samples", "low-pass", "noise", "of velocity", "blocks")
+LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
 UNITS = ("", "Hz", "mm", "", "per period", "of responses", "")
 
 
@@ -20,11 +22,32 @@ def print_measurement(measurement: "Measurement") -> None:
         click.echo(f"uncertain: {name}, {100.0 * std:.3g} %")
     derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
-    rows = [HEADINGS, UNITS, *map(_row, measurement.tests)]
+    if measurement.kind == "loop":
+        rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
+    else:
+        rows = [HEADINGS, UNITS, *map(_row, measurement.tests)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
+
+
+def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
+    """What is compared of each loop."""
+    from wedgesweep.diagnose.loop.from_measurement import loop_data
+
+    return [
+        (
+            test.file,
+            f"{test.duration:.4g}",
+            f"{test.time.size}",
+            f"{own.low_pass.cutoff:.4g}",
+            f"{own.noise:.3g} N ({100.0 * own.noise / float(own.force.std()):.2g} %)",
+            f"{1e3 * own.motion.velocity_noise:.3g} mm/s",
+            f"{len(own.blocks)}",
+        )
+        for test, own in zip(measurement.tests, loop_data(measurement).recordings, strict=True)
+    ]
 
 
 def _row(test: "TestRecord") -> tuple[str, ...]:

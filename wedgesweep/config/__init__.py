@@ -72,11 +72,11 @@ class Config:
 
         return _si(SUSPENSION, self.document["suspension"])
 
-    def natural_units(self, travel: float | None = None) -> "NaturalUnits":
-        """Natural units of the model, whose measured motion has some travel (m)."""
+    def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
+        """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
         if self.system == OSCILLATOR:
             own = self.oscillator
-            return natural_units(own["mass"], own["spring"], travel=travel)
+            return natural_units(own["mass"], own["spring"], travel=travel, omega=omega)
         from wedgesweep.systems.suspension.parameters import natural_units_of
 
         return natural_units_of(self.suspension, travel)

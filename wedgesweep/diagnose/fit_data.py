@@ -131,7 +131,7 @@ def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:
 
 
 class FitData(Protocol):
-    """T measured tests of one kind of record.
+    """T measured tests of one ``kind`` of record, a name of ``measured.declarations.KINDS``.
 
     ``eliminated``: number of nuisance parameters of each test whose best value has a closed form (start
     phase). ``known``: numbers that the records tell directly, "effect.key" to value and standard deviation
@@ -139,6 +139,7 @@ class FitData(Protocol):
     standard deviations.
     """
 
+    kind: str
     names: tuple[str, ...]
     uncertain: dict[str, float]
     eliminated: int

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.measured import sampling
-from wedgesweep.measured.declarations import INPUT, UNITS, units
+from wedgesweep.measured.declarations import INPUT, LOOP, STEADY, UNITS, units
+from wedgesweep.measured.loops import loop_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
@@ -56,6 +57,13 @@ def build_record(
         acceleration=channels.si("acceleration"),
         input=channels.si(INPUT),
         model=given.get("model", {}),
+        kind=given.get("kind", STEADY),
+        force=channels.si("force"),
+        cutoff=given.get("lowpass_hz"),
     )
-    problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
+    problems.extend(
+        loop_faults(test, channels.file, at)
+        if test.kind == LOOP
+        else frequency_faults(test, channels.file, at) or channel_faults(test, channels.file)
+    )
     return None if len(problems) > before else test

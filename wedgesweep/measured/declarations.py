@@ -25,10 +25,19 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
+# Kinds of test: a periodic response, or a force under an imposed motion.
+STEADY, LOOP = KINDS = ("steady", "loop")
+
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
 AMPLITUDE_STD = Quantity("amplitude_std", 0.0, "relative std of the amplitude", minimum=0.0, below=1.0)
 
+LOWPASS = Quantity(
+    "lowpass_hz",
+    nan,
+    "loop: cut-off frequency; by default as high as the noise of the displacement allows",
+    above=0.0,
+)
 MODEL_ERROR = Quantity(
     "model_error",
     0.0,
@@ -158,9 +167,18 @@ UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain
 
 TEST = RecordTable(
     key="test",
-    meaning="one record of steady vibration",
+    meaning="one record",
     groups=(
         (Text(key="file", meaning="CSV file, relative to this one", example="20hz.csv"),),
+        (
+            Choice(
+                key="kind",
+                meaning="steady: a periodic response; loop: the force under an imposed motion",
+                choices=KINDS,
+                default=STEADY,
+            ),
+        ),
+        (Number.of(LOWPASS, optional=True),),
         (Number.of(FREQUENCY, optional=True),),
         (Number.of(AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),

@@ -3,7 +3,7 @@
 Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
 config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
 The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm``
-and ``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally,
+``amplitude_std``, ``kind`` and ``lowpass_hz`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally,
 ``velocity`` over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed
 from displacement has the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the
 attribute ``quantity``; ``acceleration`` is a further response, and responses may have the attribute ``of``.
@@ -22,7 +22,7 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
-from wedgesweep.measured import overrides
+from wedgesweep.measured import loops, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, keys_faults, model_faults
 from wedgesweep.measured.declarations import INPUT, MODEL_ERROR, QUANTITIES, TEST, UNCERTAIN, UNITS
@@ -38,6 +38,7 @@ LONG_NAMES = {
     "displacement": "side frame minus bolster",
     "velocity": "rate of displacement",
     "acceleration": "rate of velocity",
+    "force": "force on the mass",
     "input": "recorded input",
 }
 
@@ -70,6 +71,8 @@ def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
         "amplitude_mm": millimetres,
         "amplitude_std": None if test.amplitude is None else test.amplitude_std,
         "model": json.dumps(dict(test.model)) if test.model else None,
+        "kind": test.kind,
+        "lowpass_hz": test.cutoff,
     }
     group.setncatts({name: value for name, value in given.items() if value is not None})
     group.createDimension("sample", test.time.size)
@@ -127,7 +130,10 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
         problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
         gain_std = 0.0
-    problems += [f"{path}: tests: {fault}" for fault in channel_faults(columns[0], gain_std)]
+    kinds = [{"kind": test.kind} for test in complete]
+    problems += [f"{path}: tests: {fault}" for fault in loops.kind_faults(kinds)]
+    told = loops.column_faults(columns[0]) if loops.is_loop(kinds) else channel_faults(columns[0], gain_std)
+    problems += [f"{path}: tests: {fault}" for fault in told]
     if config is not None:
         problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns[0])]
         for test in complete:
@@ -201,7 +207,8 @@ def _test(group: Any, path: Path, problems: list[str]) -> TestRecord | None:
     at = f"{path}: {group.path.lstrip('/')}"
     before = len(problems)
     given = _checked(TEST, {"file": group.name, **_read_numbers(_attributes(group))}, at, problems)
-    problems.extend(f"{at}: {fault}" for fault in keys_faults(given, group.variables))
+    keys = loops.key_faults(given) if loops.is_loop([given]) else keys_faults(given, group.variables)
+    problems.extend(f"{at}: {fault}" for fault in keys)
     columns = {
         name: np.ma.filled(variable[:].astype(float), np.nan) for name, variable in group.variables.items()
     }

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep.config import Config
-from wedgesweep.measured import channels, csv_columns, overrides
+from wedgesweep.measured import channels, csv_columns, loops, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import ROOT
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
@@ -24,8 +24,12 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     if model is None and "model" in measurement:
         model = path.parent / measurement["model"]
     columns = measurement.get("columns", {})
+    given_tests = measurement.get("test", ())
+    problems += [f"{path}: measurement.{fault}" for fault in loops.kind_faults(given_tests)]
     if not problems:
         told = channels.channel_faults(columns, measurement["input_gain_std"])
+        if loops.is_loop(given_tests):
+            told = loops.column_faults(columns)
         problems += [f"{path}: {_at(fault)}" for fault in told]
     config, law = load_model(model, problems) if model else (None, "")
     if config is not None:
@@ -108,7 +112,8 @@ def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns))
+        keys = loops.key_faults(given) if loops.is_loop([given]) else channels.keys_faults(given, columns)
+        problems.extend(f"{at}.{fault}" for fault in keys)
         if complete:
             tests += _test(path.parent / file, at, given, columns, problems)
     return tests

@@ -8,8 +8,10 @@ import xarray as xr
 from wedgesweep import __version__
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.result import loops
 from wedgesweep.diagnose.steady import waveforms
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.measured.declarations import LOOP
 
 CHANNELS = ("displacement", "velocity")
 # Dimensions, values, unit and meaning of a variable.
@@ -34,6 +36,8 @@ class Arrays(NamedTuple):
 
 def dataset(found: Diagnosis) -> xr.Dataset:
     """Everything that a figure or a notebook draws of a diagnosis."""
+    if found.data.kind == LOOP:
+        return loops.dataset(found)
     data = found.data
     arrays = _arrays(found)
     variables = {

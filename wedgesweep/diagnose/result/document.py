@@ -12,12 +12,14 @@ from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
+from wedgesweep.diagnose.result import loops
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.verdict import p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
+from wedgesweep.measured.declarations import LOOP
 
 # Rivals of each size on the accuracy ladder.
 RIVALS = 5
@@ -46,6 +48,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "extended": list(best.effects),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
+        "kind": data.kind,
         "model": {"law": data.law, "title": data.model.title},
         "uncertain": uncertain(best.fit),
         "version": __version__,
@@ -106,6 +109,8 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
+    if found.data.kind == LOOP:
+        return loops.tests(found)
     data, base, best = found.data, found.base.fit, found.extended
     amplitude = data.amplitudes(best.point)
     rows = []
@@ -191,7 +196,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        "harmonics": found.data.shape[1],
+        **({} if found.data.kind == LOOP else {"harmonics": found.data.shape[1]}),
         "calibrated": found.calibration,
     }
 

@@ -4,6 +4,7 @@ from wedgesweep import effects
 from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.result.estimates import uncertain
+from wedgesweep.measured.declarations import LOOP
 
 
 def extended(found: Diagnosis) -> str:
@@ -12,6 +13,8 @@ def extended(found: Diagnosis) -> str:
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
+    if data.kind == LOOP:
+        return _heading(found) + toml.dumps(document)
     # Repeated tests are one case, and single cases do not continue one another.
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))

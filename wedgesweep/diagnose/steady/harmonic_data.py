@@ -68,6 +68,7 @@ class _Simulated(NamedTuple):
 class HarmonicData(WhitenedHarmonics, FitData):
     """Harmonics of steady tests; see WhitenedHarmonics for the attributes."""
 
+    kind = "steady"
     eliminated = 1
 
     @cached_property
