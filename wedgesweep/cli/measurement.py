@@ -9,7 +9,6 @@ if TYPE_CHECKING:
     from wedgesweep.measured import Measurement, TestRecord
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
-UNITS = ("", "Hz", "mm", "", "per period", "of responses", "")
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -20,20 +19,22 @@ def print_measurement(measurement: "Measurement") -> None:
         click.echo(f"uncertain: {name}, {100.0 * std:.3g} %")
     derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
-    rows = [HEADINGS, UNITS, *map(_row, measurement.tests)]
+    unit = measurement.model.amplitude_unit
+    units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
+    rows = [HEADINGS, units, *(_row(test, unit.factor) for test in measurement.tests)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
 
 
-def _row(test: "TestRecord") -> tuple[str, ...]:
+def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     frequency = test.refined_frequency
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
         f"{frequency:.6g}{_told(test.frequency, frequency)}",
-        _amplitude(test),
+        _amplitude(test, size),
         f"{test.duration * frequency:.2f}",
         f"{test.sampling_rate / frequency:.4g}",
         noise,
@@ -48,13 +49,14 @@ def _told(stated: float | None, used: float) -> str:
     return "" if used == stated else f" (stated: {stated:.6g})"
 
 
-def _amplitude(test: "TestRecord") -> str:
+def _amplitude(test: "TestRecord", size: float) -> str:
+    """The input amplitude in a unit of some size."""
     if test.input is not None:
         return "recorded"
     if test.amplitude is None:
         return "unknown"
     std = f" +- {100.0 * test.amplitude_std:.3g} %" if test.amplitude_std else ""
-    return f"{test.amplitude * 1e3:.6g}{std}"
+    return f"{test.amplitude / size:.6g}{std}"
 
 
 def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:

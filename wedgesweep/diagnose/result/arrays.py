@@ -121,10 +121,11 @@ def _waveforms(arrays: Arrays) -> Variables:
 
 def _inputs(arrays: Arrays) -> Variables:
     data, fitted = arrays.data, np.array([arrays.data.amplitudes(fit.point) for fit in arrays.fits])
+    unit = "N" if data.model.forced else "m"
     return {
         "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),
-        "amplitude": (BY_TEST, data.amplitude, "m", "input amplitude as stated"),
-        "amplitude_fitted": (BY_MODEL, fitted, "m", "input amplitude as fitted"),
+        "amplitude": (BY_TEST, data.amplitude, unit, "input amplitude as stated"),
+        "amplitude_fitted": (BY_MODEL, fitted, unit, "input amplitude as fitted"),
     }
 
 
@@ -139,7 +140,7 @@ def _energies(arrays: Arrays) -> Variables:
             for fit in arrays.fits
         ]
     )
-    meaning = "energy that the base puts in per period"
+    meaning = "energy that the input puts in per period"
     return {
         "measured_energy": (BY_TEST, measured, "J", f"{meaning}, measured"),
         "simulated_energy": (BY_MODEL, simulated, "J", f"{meaning}, simulated"),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import __version__
+from wedgesweep.config import AmplitudeUnit
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
@@ -41,7 +42,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
         "not_testable": hidden,
-        "next_test": _following(found.next_test),
+        "next_test": _following(found.next_test, data.model.amplitude_unit),
         "ladder": [_rung(each) for each in found.ladder],
         "extended": list(best.effects),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
@@ -107,6 +108,7 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
+    unit, size = data.model.amplitude_unit
     amplitude = data.amplitudes(best.point)
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
@@ -115,8 +117,8 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
             {
                 "name": name,
                 "frequency_hz": spectrum.frequency,
-                "amplitude_mm": finite(1e3 * data.amplitude[t]),
-                "amplitude_fitted_mm": finite(1e3 * amplitude[t]),
+                f"amplitude_{unit}": finite(data.amplitude[t] / size),
+                f"amplitude_fitted_{unit}": finite(amplitude[t] / size),
                 "periods": spectrum.periods,
                 "noise_displacement_mm": 1e3 * noise[0],
                 "noise_velocity_mm_per_s": 1e3 * noise[1] if noise.size > 1 else None,
@@ -156,12 +158,12 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
     }
 
 
-def _following(following: NextTest | None) -> dict[str, Any] | None:
+def _following(following: NextTest | None, unit: AmplitudeUnit) -> dict[str, Any] | None:
     if following is None:
         return None
     return {
         "frequency_hz": following.frequency,
-        "amplitude_mm": 1e3 * following.amplitude,
+        unit.key: following.amplitude / unit.factor,
         "separates": list(following.separates),
         "distance": following.distance,
     }

@@ -13,15 +13,17 @@ def extended(found: Diagnosis) -> str:
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
     # Repeated tests are one case, and single cases do not continue one another.
+    unit = data.model.amplitude_unit
     cases = dict.fromkeys(
-        (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))
+        (spectrum.frequency, float(f"{amplitude / unit.factor:.7g}"))
         for spectrum, amplitude in zip(data.spectra, data.amplitudes(best.point), strict=True)
     )
     document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {
         "omega_n_rad_per_s": data.model.sweep.omega_n,
+        "excitation": data.model.excitation,
         "case": [
-            {"friction_law": data.law, "frequency_hz": frequency, "amplitude_mm": amplitude}
+            {"friction_law": data.law, "frequency_hz": frequency, unit.key: amplitude}
             for frequency, amplitude in cases
         ],
     }
