@@ -11,7 +11,6 @@ if TYPE_CHECKING:
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
 LOOP_HEADINGS = ("file", "duration", "samples", "low-pass", "noise", "of velocity", "blocks")
 LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
-UNITS = ("", "Hz", "mm", "", "per period", "of responses", "")
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -25,7 +24,9 @@ def print_measurement(measurement: "Measurement") -> None:
     if measurement.kind == "loop":
         rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
     else:
-        rows = [HEADINGS, UNITS, *map(_row, measurement.tests)]
+        unit = measurement.model.amplitude_unit
+        units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
+        rows = [HEADINGS, units, *(_row(test, unit.factor) for test in measurement.tests)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
@@ -50,13 +51,13 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     ]
 
 
-def _row(test: "TestRecord") -> tuple[str, ...]:
+def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     frequency = test.refined_frequency
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
         f"{frequency:.6g}{_told(test.frequency, frequency)}",
-        _amplitude(test),
+        _amplitude(test, size),
         f"{test.duration * frequency:.2f}",
         f"{test.sampling_rate / frequency:.4g}",
         noise,
@@ -71,13 +72,14 @@ def _told(stated: float | None, used: float) -> str:
     return "" if used == stated else f" (stated: {stated:.6g})"
 
 
-def _amplitude(test: "TestRecord") -> str:
+def _amplitude(test: "TestRecord", size: float) -> str:
+    """The input amplitude in a unit of some size."""
     if test.input is not None:
         return "recorded"
     if test.amplitude is None:
         return "unknown"
     std = f" +- {100.0 * test.amplitude_std:.3g} %" if test.amplitude_std else ""
-    return f"{test.amplitude * 1e3:.6g}{std}"
+    return f"{test.amplitude / size:.6g}{std}"
 
 
 def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:

@@ -8,10 +8,10 @@ from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.ladder import Rung, ladder
 from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
 from wedgesweep.diagnose.loop.from_measurement import loop_data
+from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
@@ -28,6 +28,7 @@ from wedgesweep.diagnose.search import (
     single_fits,
 )
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.next_test import NextTest, recommend
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.diagnose.work import Untried
@@ -40,7 +41,7 @@ COMPARED = 6
 # Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
 MUCH = 0.9
 # What a fit sees of the tests of each kind.
-DATA: dict[str, Callable[[Measurement], FitData]] = {STEADY: harmonic_data, LOOP: loop_data}
+DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData]] = {STEADY: harmonic_data, LOOP: loop_data}
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Diagnosis:
     """
 
     measurement: Measurement
-    data: FitData
+    data: HarmonicData | LoopData
     base: Explanation
     explanations: tuple[Explanation, ...]
     scores: tuple[Score, ...]

@@ -30,6 +30,9 @@ STEADY, LOOP = KINDS = ("steady", "loop")
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
+FORCE_AMPLITUDE = Quantity(
+    "amplitude_N", nan, "amplitude of the force on the mass; omit it if unknown", above=0.0
+)
 AMPLITUDE_STD = Quantity("amplitude_std", 0.0, "relative std of the amplitude", minimum=0.0, below=1.0)
 
 LOWPASS = Quantity(
@@ -93,9 +96,10 @@ class RecordTable(Table):
     """Keys of a test."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
-        if isinstance(value, dict) and "amplitude_std" in value and "amplitude_mm" not in value:
+        stated = (AMPLITUDE.key, FORCE_AMPLITUDE.key)
+        if isinstance(value, dict) and "amplitude_std" in value and not value.keys() & set(stated):
             at = f"{path}." if path else ""
-            problems.append(f"{at}amplitude_std: given without amplitude_mm; omit it")
+            problems.append(f"{at}amplitude_std: given without {' or '.join(stated)}; omit it")
         return super().read(value, path, problems)
 
 
@@ -159,7 +163,7 @@ COLUMNS = table(
     _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, OF, optional=True),
     _channel("acceleration", "relative acceleration, x'' - y''", "a", "m/s^2", OF, optional=True),
     _channel("force", "force on the mass", "f", "N", optional=True),
-    _channel(INPUT, "motion of the side frame as recorded", "u", "mm", QUANTITY, optional=True),
+    _channel(INPUT, "input as recorded", "u", "mm", QUANTITY, optional=True),
     example="measurement.columns",
 )
 
@@ -181,6 +185,7 @@ TEST = RecordTable(
         (Number.of(LOWPASS, optional=True),),
         (Number.of(FREQUENCY, optional=True),),
         (Number.of(AMPLITUDE, optional=True),),
+        (Number.of(FORCE_AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured.declarations import LOOP
 from wedgesweep.measured.measurement import TestRecord
 
 # The motion must come back by this share of its range, or friction cannot be told from a spring.
@@ -18,14 +17,12 @@ FEWEST = 64
 OF_A_SINE = ("frequency_hz", "amplitude_mm")
 
 
-def kind_faults(tests: Sequence[Mapping[str, Any]]) -> list[str]:
+def kind_faults(kinds: Sequence[str]) -> list[str]:
     """Faults of the kinds of the tests together, as "key: fault"."""
-    kinds = {each.get("kind") for each in tests}
-    if len(kinds) < 2:
+    if len(set(kinds)) < 2:
         return []
-    return [
-        f"test.kind: {' and '.join(sorted(map(str, kinds)))} are mixed; write a measurement for each kind"
-    ]
+    mixed = " and ".join(sorted(set(kinds)))
+    return [f"test.kind: {mixed} are mixed; write a measurement for each kind"]
 
 
 def column_faults(columns: Mapping[str, Any]) -> list[str]:
@@ -60,8 +57,3 @@ def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
         told = "the displacement goes one way only, which cannot tell friction from a spring"
         return [f'{file}: {told}; record at least one cycle, or write kind = "steady" ({at}.kind)']
     return []
-
-
-def is_loop(tests: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether the tests are loops."""
-    return bool(tests) and all(each.get("kind") == LOOP for each in tests)

@@ -9,8 +9,8 @@ from wedgesweep.report.inline_figures import InlineFigures
 
 CAPTION = (
     "Above, the thick line is the measured force, the dashed line that of the base model. Below, what the "
-    "models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope on one side "
-    "only a damper that depends on the direction."
+    "models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope on one "
+    "side only a damper that depends on the direction."
 )
 HEAD = ("test", "samples", "low-pass [Hz]", "noise [N]")
 
@@ -43,6 +43,6 @@ def _overall(result: DiagnosisResult) -> str:
     blocks = phrases.counted(result.data.sizes["test"], "block")
     error = phrases.times_noise(misfit["chi2_base"], misfit["dof"])
     return (
-        f"The motion is imposed, and the force is compared in {blocks} of whole cycles, below the cut-off of a "
-        f"low-pass filter. With the zero of the force fitted, the base model leaves an error of {error}."
+        f"The motion is imposed, and the force is compared in {blocks} of whole cycles, below the cut-off "
+        f"of a low-pass filter. With the zero of the force fitted, the base model leaves an error of {error}."
     )

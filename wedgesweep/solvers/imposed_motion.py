@@ -70,14 +70,18 @@ def _follow_all(cases, motion, step, out):
         y = vector(np.zeros(len(scales(p))), scales(p))
         for i in range(motion.shape[1]):
             y = replaced(replaced(y, 0, motion[0, i]), 1, motion[1, i])
-            mode = initial_mode(0.0, y, p)[0]
-            out[k, i] = driving_force(0.0, motion[2, i], y, mode, p)
-            y = _advanced(y, mode, step, p)
+            out[k, i] = driving_force(0.0, motion[2, i], y, initial_mode(0.0, y, p)[0], p)
+            following = min(i + 1, motion.shape[1] - 1)
+            # States of effects see the mean motion between two samples.
+            y = replaced(y, 0, 0.5 * (motion[0, i] + motion[0, following]))
+            y = replaced(y, 1, 0.5 * (motion[1, i] + motion[1, following]))
+            y = _advanced(y, step, p)
 
 
 @inner
-def _advanced(y, mode, step, p):
+def _advanced(y, step, p):
     """The state vector with the effects' own states after a step."""
+    mode = initial_mode(0.0, y, p)[0]
     now, size = rate(0.0, y, mode, p)[0], scales(p)
     following = y
     for place in range(GIVEN, len(y)):

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.loop.recording import Recording
@@ -61,12 +62,12 @@ class LoopData(FitData):
         return own.name if len(own.blocks) == 1 else f"{own.name} {block + 1}"
 
     @property
-    def model(self) -> Any:
+    def model(self) -> Config:  # type: ignore[override]
         """The base model, with the numbers of the first test."""
         return self.recordings[0].model
 
     @property
-    def law(self) -> str:
+    def law(self) -> str:  # type: ignore[override]
         return self.recordings[0].law
 
     @property
@@ -192,7 +193,7 @@ class LoopData(FitData):
 
     def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
         simulated = self.simulated(scenarios)
-        found = np.isfinite(np.where(self.weight > 0.0, simulated, 0.0)).all(axis=-1)
+        found = np.asarray(np.isfinite(np.where(self.weight > 0.0, simulated, 0.0)).all(axis=-1))
         simulated = np.nan_to_num(simulated)
         residual = self._whitened(self._centred(self.measured - simulated))
         return [
@@ -220,7 +221,7 @@ class LoopData(FitData):
         self, here: Evaluation, scenarios: Sequence[Scenario], tolerance: float
     ) -> tuple[np.ndarray, np.ndarray]:
         simulated = self.simulated(scenarios)
-        found = np.isfinite(np.where(self.weight > 0.0, simulated, 0.0)).all(axis=-1)
+        found = np.asarray(np.isfinite(np.where(self.weight > 0.0, simulated, 0.0)).all(axis=-1))
         return self._whitened(here.response - np.nan_to_num(simulated)), found
 
     def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import hypot
 
 import numpy as np
@@ -124,4 +125,4 @@ def _blocks(velocity: np.ndarray) -> tuple[slice, ...]:
     # What is left after the last whole cycle belongs to the last block.
     if len(edges) > 2 and edges[-1] - edges[-2] < 0.5 * (edges[-2] - edges[-3]):
         del edges[-2]
-    return tuple(slice(first, last) for first, last in zip(edges, edges[1:], strict=False))
+    return tuple(slice(first, last) for first, last in pairwise(edges))

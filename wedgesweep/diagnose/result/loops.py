@@ -16,9 +16,8 @@ def _fits(found: Diagnosis) -> dict[str, Fit]:
     return {"base": found.base.fit, "extended": found.extended}
 
 
-def tests(found: Diagnosis) -> list[dict[str, Any]]:
+def tests(found: Diagnosis, data: LoopData) -> list[dict[str, Any]]:
     """Rows of the tests for diagnosis.json; errors are rms over the rms of the measured force."""
-    data: LoopData = found.data
     errors = {name: data.error(fit.evaluation) for name, fit in _fits(found).items()}
     rows = []
     for t, (name, (number, _)) in enumerate(zip(data.names, data.chosen, strict=True)):
@@ -41,9 +40,8 @@ def tests(found: Diagnosis) -> list[dict[str, Any]]:
     return rows
 
 
-def dataset(found: Diagnosis) -> xr.Dataset:
+def dataset(found: Diagnosis, data: LoopData) -> xr.Dataset:
     """Forces (N) over the imposed motion (m, m/s), NaN where nothing is compared."""
-    data: LoopData = found.data
     by_sample, by_model = ("test", "sample"), ("model", "test", "sample")
     shown = np.where(data.weight > 0.0, 1.0, np.nan)
     motions = [own.motion for own in data.recordings]
