@@ -15,7 +15,11 @@ from wedgesweep.figures.panels import Panels, Target, panels
 NAME = "gain"
 DESCRIPTION = "error on held-out tests before and after, a row per test"
 
-TITLES = {"frequency": "its frequency left out", "amplitude": "its amplitude left out"}
+TITLES = {
+    "frequency": "its frequency left out",
+    "amplitude": "its amplitude left out",
+    "test": "left out by itself",
+}
 NOISE = {"marker": "|", "linestyle": "none", "color": "black", "markersize": 11, "markeredgewidth": 1.6}
 
 
