@@ -11,7 +11,7 @@ from wedgesweep.cli.options import N_JOBS, require_place_for
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "candidates", "gain")}
+FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "candidates", "ladder", "gain")}
 # Figures of one kind of test only.
 OF_KIND = {"misfit": "steady", "loops": "loop"}
 

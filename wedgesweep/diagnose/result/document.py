@@ -178,6 +178,7 @@ def _rung(rung: Rung) -> dict[str, Any]:
     """The most accurate explanation of a number of effects, with its rivals; 0.01 is 1 % of the response."""
     return {
         **_rated(rung.best),
+        "accuracy_held_out": finite(rung.best.held_out),
         "distinct": finite(rung.distinct),
         "rivals": [_rated(each) for each in rung.rivals[:RIVALS]],
     }

@@ -18,6 +18,7 @@ DESCRIPTION = "error on held-out tests before and after, a row per test"
 TITLES = {
     "frequency": "its frequency left out",
     "amplitude": "its amplitude left out",
+    "test": "left out by itself",
     "block": "its block left out",
     "record": "its record left out",
 }
