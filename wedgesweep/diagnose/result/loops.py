@@ -58,7 +58,7 @@ def dataset(found: Diagnosis, data: LoopData) -> xr.Dataset:
         "velocity": (by_sample, velocity * shown, "m/s", "imposed velocity"),
         "measured_force": (by_sample, data.measured * shown, "N", "measured force"),
         "simulated_force": (by_model, simulated * shown, "N", "simulated force, with the fitted zero"),
-        "force_noise": (("test",), data.noise, "N", "noise of a compared force"),
+        "force_noise": (("test",), data.noise.max(axis=-1), "N", "noise of a compared force"),
         "q": (("model", "test"), q, "1", "squared misfit over noise"),
         "dof": (("test",), data.dof, "1", "degrees of freedom"),
     }
