@@ -9,8 +9,8 @@ from tests.command import invoke
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.loop.from_measurement import loop_data
-from wedgesweep.diagnose.loop.smoothing import LowPass, highest_cutoff, motion, white_noise
 from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.smoothing import LowPass, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
@@ -215,7 +215,7 @@ def test_files_figures_and_report(tmp_path):
 
 FAULTS = {
     "one way": ('kind = "loop"', "goes one way only"),
-    "amplitude": ('kind = "loop"\namplitude_mm = 1.0', "the motion of a loop is recorded"),
+    "amplitude": ('kind = "loop"\namplitude_mm = 1.0', "not for kind = .loop."),
     "cut-off": ('kind = "loop"\nlowpass_hz = 300.0', "times the sampling rate"),
 }
 

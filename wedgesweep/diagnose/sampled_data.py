@@ -67,7 +67,7 @@ class SampledData(FitData):
 
     @cached_property
     def std(self) -> np.ndarray:
-        """Standard deviation of noise and allowed model error together, (T, m); 1 where nothing is compared."""
+        """Standard deviation of noise and allowed model error together, (T, m); 1 elsewhere."""
         return np.where(self.weight > 0.0, np.hypot(self.noise, self.model_error * self.size), 1.0)
 
     @property

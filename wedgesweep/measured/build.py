@@ -13,10 +13,11 @@ from wedgesweep.measured.declarations import (
     INPUT,
     LOOP,
     STEADY,
+    TRANSIENT,
     UNITS,
     units,
 )
-from wedgesweep.measured.loops import loop_faults
+from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
@@ -69,9 +70,13 @@ def build_record(
         force=channels.si("force"),
         cutoff=given.get("lowpass_hz"),
     )
-    problems.extend(
-        loop_faults(test, channels.file, at)
-        if test.kind == LOOP
-        else frequency_faults(test, channels.file, at) or channel_faults(test, channels.file)
-    )
+    problems.extend(FAULTS[test.kind](test, channels.file, at))
     return None if len(problems) > before else test
+
+
+def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    return frequency_faults(test, file, at) or channel_faults(test, file)
+
+
+# Faults of a record (test, file, place of its keys) by its kind.
+FAULTS = {STEADY: _steady_faults, TRANSIENT: transient_faults, LOOP: loop_faults}

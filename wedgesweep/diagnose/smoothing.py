@@ -13,7 +13,7 @@ import numpy as np
 from scipy import signal
 from scipy.optimize import brentq
 
-from wedgesweep.measured.loops import HIGHEST
+from wedgesweep.measured.kinds import HIGHEST
 
 ORDER = 4
 # The cut-off is the highest one at which noise of the displacement makes up this share of the force, and at
