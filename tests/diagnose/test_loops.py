@@ -123,8 +123,9 @@ def test_misfit_of_the_true_model_is_noise(tmp_path):
         data = loop_data(read(write(tmp_path / str(seed), seed=seed)))
         fit = base_fit(Search.of(data, [])).base.fit
         ratios.append(fit.chi2 / fit.dof)
-    assert np.mean(ratios) == pytest.approx(1.0, abs=0.1)
-    assert max(ratios) < 1.2
+    # The noise that is assumed is the upper end of its interval.
+    assert 0.8 < np.mean(ratios) < 1.0
+    assert max(ratios) < 1.1
 
 
 def test_blocks_are_whole_cycles(tmp_path):

@@ -98,7 +98,7 @@ def test_a_damper_takes_the_same_share_of_every_swing():
 def test_starts_and_zero_are_found_and_the_misfit_is_noise(tmp_path):
     data = transient_data(read(write(tmp_path)))
     fit = base_fit(Search.of(data, [])).base.fit
-    assert fit.chi2 / fit.dof == pytest.approx(1.0, abs=0.1)
+    assert 0.75 < fit.chi2 / fit.dof < 1.05
     assert data.starts(fit.point) == pytest.approx(np.array(STARTS), abs=5e-4)
     assert data.zero(data.measured - fit.evaluation.response)[0] == pytest.approx(ZERO, abs=1e-5)
 
