@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.measured import sampling
-from wedgesweep.measured.declarations import INPUT, UNITS, units
+from wedgesweep.measured.declarations import (
+    AMPLITUDE,
+    FORCE_AMPLITUDE,
+    INPUT,
+    LOOP,
+    STEADY,
+    UNITS,
+    units,
+)
+from wedgesweep.measured.loops import loop_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
@@ -43,12 +52,12 @@ def build_record(
             problems.append(f"{channels.file}: {channel} is constant; there is no vibration in it")
     if len(problems) > before:
         return None
-    amplitude = given.get("amplitude_mm")
+    amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
         file=given.get("file", channels.file),
         frequency=given.get("frequency_hz"),
-        amplitude=None if amplitude is None else amplitude * 1e-3,
+        amplitude=amplitudes[0] if amplitudes else None,
         amplitude_std=given.get("amplitude_std", 0.0),
         time=grid * UNITS["time"][channels.units["time"]],
         displacement=channels.si("displacement"),
@@ -56,6 +65,13 @@ def build_record(
         acceleration=channels.si("acceleration"),
         input=channels.si(INPUT),
         model=given.get("model", {}),
+        kind=given.get("kind", STEADY),
+        force=channels.si("force"),
+        cutoff=given.get("lowpass_hz"),
     )
-    problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
+    problems.extend(
+        loop_faults(test, channels.file, at)
+        if test.kind == LOOP
+        else frequency_faults(test, channels.file, at) or channel_faults(test, channels.file)
+    )
     return None if len(problems) > before else test
