@@ -15,7 +15,8 @@ class Effect:
 
     At the ``off`` value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
     that add forces, coefficients, states or events to the base model when they are not off. An effect
-    without any is one that the base model's mechanics can do.
+    without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
+    of this one.
     """
 
     name: str
@@ -24,6 +25,7 @@ class Effect:
     meaning: str
     quantities: tuple[Quantity, ...]
     extends: tuple[str, ...] = ()
+    contains: tuple[str, ...] = ()
 
     def acts(self, numbers: Mapping[str, float]) -> bool:
         """Whether numbers (SI units; left out: off) change anything."""

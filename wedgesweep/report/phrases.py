@@ -12,6 +12,7 @@ INTERVAL = f"95{NO_BREAK}% interval"
 UNITS = {
     "_N_per_mm3": "N/mm³",
     "_N_per_mm": "N/mm",
+    "_N_s2_per_m2": "N s²/m²",
     "_N_s_per_m": "N s/m",
     "_m_per_s2": "m/s²",
     "_rad_per_s": "rad/s",
