@@ -46,6 +46,12 @@ def test_every_effect_of_the_oscillator_is_tried():
     assert set(STRENGTHS) == set(parameters.EFFECTS) - {"velocity_lag", "stray_vibration"}
 
 
+@pytest.mark.parametrize("name", parameters.EFFECTS)
+def test_words_name_parts_of_the_oscillator(name):
+    words = EFFECTS[name].described("oscillator")
+    assert not any(part in words for part in ("bolster", "wedge", "column", "side frame", "{"))
+
+
 @pytest.mark.parametrize("law", ["coulomb", "exponential"])
 @pytest.mark.parametrize("name", MECHANICAL)
 def test_energy_balances_and_solvers_agree(name, law):

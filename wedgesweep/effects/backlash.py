@@ -14,7 +14,7 @@ EFFECT = Effect(
     name="backlash",
     family="missing-force",
     branch=NUMERICAL,
-    meaning="play of the bolster's spring about its rest position",
+    meaning="play of the {mass}'s spring about its rest position",
     quantities=(
         Quantity(
             "clearance_mm",

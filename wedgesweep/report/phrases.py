@@ -110,9 +110,11 @@ def interval(gain: Mapping[str, Any]) -> str:
     return f"{INTERVAL} {percent(low)} to {percent(high)}"
 
 
-def meaning(effect: str) -> str:
-    """What an effect is, in words."""
-    return EFFECTS[effect].meaning if effect in EFFECTS else effect.replace("_", " ")
+def meaning(effect: str, document: Mapping[str, Any]) -> str:
+    """What an effect is, in words, on the system of a diagnosis."""
+    if effect not in EFFECTS:
+        return effect.replace("_", " ")
+    return EFFECTS[effect].described(document["model"].get("system", "suspension"))
 
 
 def combination(effects: Sequence[str]) -> str:
