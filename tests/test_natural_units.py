@@ -80,6 +80,7 @@ def test_without_weight_lengths_follow_the_travel_and_without_a_spring_times_the
 UNIT_NAMES = {
     "_N_per_mm3": r"$k_b/\ell^2$",
     "_N_per_mm": r"$k_b$",
+    "_N_s2_per_m2": r"$M_b/\ell$",
     "_N_s_per_m": r"$M_b\omega_n$",
     "_m_per_s2": r"$g$",
     "_mm_per_s": r"$\ell\omega_n$",

@@ -296,7 +296,7 @@ def test_equations_of_what_was_added(tmp_path):
     fixture_diagnosis.write(tmp_path, "consistent-with")
     page = Page(report.write(tmp_path).read_text(encoding="utf-8"))
     assert "R = -force sign(z')" in page.text
-    assert EFFECTS["guide_friction"].meaning in page.text
+    assert EFFECTS["guide_friction"].described() in page.text
     assert "Family: missing-force" in page.text
 
 

@@ -20,6 +20,7 @@ from wedgesweep.natural_units import (
 SI_FACTORS = {
     "_N_per_mm3": 1e9,
     "_N_per_mm": 1e3,
+    "_N_s2_per_m2": 1.0,
     "_N_s_per_m": 1.0,
     "_m_per_s2": 1.0,
     "_rad_per_s": 1.0,
@@ -35,6 +36,7 @@ SI_FACTORS = {
 DIMENSIONS = {
     "_N_per_mm3": Dimension(mass=1, length=-2, time=-2),
     "_N_per_mm": Dimension(mass=1, time=-2),
+    "_N_s2_per_m2": Dimension(mass=1, length=-1),
     "_N_s_per_m": Dimension(mass=1, time=-1),
     "_m_per_s2": ACCELERATION,
     "_rad_per_s": FREQUENCY,

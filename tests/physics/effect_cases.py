@@ -33,6 +33,9 @@ def mild(name):
         "preload": {"force": 1.0},
         "cubic_stiffness": {"coefficient": 1e9},
         "viscous_damping": {"coefficient": 5.0},
+        "directional_damping": {"coefficient": 5.0},
+        "quadratic_drag": {"coefficient": 100.0},
+        "backlash": {"clearance": 2e-5},
         "guide_friction": {"force": 0.3},
         "end_stop": {"clearance": 2e-4},
         "friction_level": {"scale": 0.9},
@@ -125,7 +128,12 @@ def residual(t, y, mode, p, result):
         + s["bolster_spring"] * z
         + p["cubic_stiffness"]["coefficient"] * z**3
         + p["viscous_damping"]["coefficient"] * velocity
+        + p["directional_damping"]["coefficient"]
+        * (1.0 + p["directional_damping"]["asymmetry"] * np.sign(velocity))
+        * velocity
+        + p["quadratic_drag"]["coefficient"] * abs(velocity) * velocity
         + p["end_stop"]["stiffness"] * beyond
+        - s["bolster_spring"] * np.clip(x, -p["backlash"]["clearance"], p["backlash"]["clearance"])
         + p["guide_friction"]["force"] * guide
         + 2 * on_bolster @ up
     )

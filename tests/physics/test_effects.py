@@ -48,7 +48,7 @@ def test_the_declared_order_is_that_of_the_families():
         "excitation",
         "sensor",
     )
-    assert len(EFFECTS) == 21
+    assert len(EFFECTS) == 24
 
 
 @pytest.mark.parametrize("name", EFFECTS)
@@ -141,6 +141,8 @@ def distance(law, name, values, beta=0.6, amplitude=0.8e-3):
         ("stribeck", "velocity", 1e-4, 1e-5, 10.0),
         ("cross_slip", "velocity", 1e-4, 1e-5, 100.0),
         ("viscous_damping", "coefficient", 1.0, 0.1, 10.0),
+        ("directional_damping", "coefficient", 1.0, 0.1, 10.0),
+        ("quadratic_drag", "coefficient", 10.0, 1.0, 10.0),
         ("cubic_stiffness", "coefficient", 1e8, 1e7, 10.0),
         ("directional_friction", "asymmetry", 0.02, 0.002, 10.0),
         ("load_dependent_friction", "exponent", 0.02, 0.002, 10.0),

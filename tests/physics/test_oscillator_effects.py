@@ -1,9 +1,12 @@
 """Effects on the oscillator: each balances its energy, in both solvers; at its neutral value it is absent."""
 
+from math import pi
+
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, coulomb, oscillator, steady
+from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, M, coulomb, oscillator, steady
 from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
@@ -19,12 +22,17 @@ STRENGTHS = {
     "ageing": {"rate": 0.02, "time": 0.01},
     "directional_friction": {"asymmetry": 0.3},
     "viscous_damping": {"coefficient": 5.0},
+    "directional_damping": {"coefficient": 5.0, "asymmetry": 0.6},
+    "quadratic_drag": {"coefficient": 100.0},
     "cubic_stiffness": {"coefficient": 4e7},
+    "backlash": {"clearance": 3e-4},
     "guide_friction": {"force": 0.2},
     "end_stop": {"clearance": 1e-3, "stiffness": 500.0},
     "input_distortion": {"second": 0.1, "second_phase": 0.4, "third": 0.05, "third_phase": -1.0},
     "displacement_gain": {"scale": 1.02},
 }
+# Those on what lies between mass and base are also tried where the mass rubs on something else.
+GROUNDED = ("directional_damping", "cubic_stiffness", "backlash", "end_stop", "input_distortion")
 MECHANICAL = [name for name in STRENGTHS if name != "displacement_gain"]
 
 
@@ -38,10 +46,16 @@ def test_every_effect_of_the_oscillator_is_tried():
     assert set(STRENGTHS) == set(parameters.EFFECTS) - {"velocity_lag", "stray_vibration"}
 
 
+@pytest.mark.parametrize("name", parameters.EFFECTS)
+def test_words_name_parts_of_the_oscillator(name):
+    words = EFFECTS[name].described("oscillator")
+    assert not any(part in words for part in ("bolster", "wedge", "column", "side frame", "{"))
+
+
 @pytest.mark.parametrize("law", ["coulomb", "exponential"])
 @pytest.mark.parametrize("name", MECHANICAL)
 def test_energy_balances_and_solvers_agree(name, law):
-    contact = "ground" if name in ("end_stop", "cubic_stiffness", "input_distortion") else "base"
+    contact = "ground" if name in GROUNDED else "base"
     # Time at rest strengthens friction only where there is some.
     level = 0.9 if name == "ageing" else 0.5
     effect = case(law, contact, level, **{name: STRENGTHS[name]})
@@ -75,3 +89,54 @@ def test_friction_holds_the_springs_up_to_its_level(effects, held):
     for share, sticks in ((0.99, True), (1.01, False)):
         run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, 60.0, start=(share * held, 0.0))
         assert run.samples.sticks[0] == sticks
+
+
+def free(solver, x, **effects):
+    """A run of the undamped mass without friction, released at x, for two periods of its linear vibration."""
+    record = parameters.record(
+        "coulomb", 1e-9, OMEGA_N, oscillator(normal_force=0.0), coulomb(0.0), effects, "force"
+    )
+    window = Window(OMEGA_N, 0, 2, 8192)
+    return SOLVERS[solver].solve(record, window, 1e-11, 60.0, start=(x, 0.0)).samples
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("asymmetry", [0.6, -0.6])
+def test_damping_by_direction_decays_at_the_rate_of_each_half_swing(solver, asymmetry):
+    mean = 8.0
+    samples = free(solver, 2e-3, directional_damping={"coefficient": mean, "asymmetry": asymmetry})
+    # State and recorded deflection have opposite signs.
+    x = -samples.x
+    assert x[0] == pytest.approx(2e-3)
+    swings = []
+    for damping in (mean * (1.0 - asymmetry), mean * (1.0 + asymmetry)):  # down, then up
+        ratio = damping / (2.0 * M * OMEGA_N)
+        swings.append(np.exp(-pi * ratio / np.sqrt(1.0 - ratio**2)))
+    turns = np.array([-swings[0], swings[0] * swings[1]]) * 2e-3
+    assert [x.min(), x[x.size // 4 :].max()] == pytest.approx(turns, rel=1e-6)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_drag_has_the_turning_points_of_its_first_integral(solver):
+    """From x = -A to B at positive speed: (1 - g B) exp(g B) = (1 + g A) exp(-g A), g = 2 c/m."""
+    coefficient, start = 300.0, 2e-3
+    g = 2.0 * coefficient / M
+    turn = brentq(
+        lambda x: (1.0 - g * x) * np.exp(g * x) - (1.0 + g * start) * np.exp(-g * start), 1e-4, start
+    )
+    x = -free(solver, -start, quadratic_drag={"coefficient": coefficient}).x
+    assert x.max() == pytest.approx(turn, rel=1e-6)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_play_lengthens_the_period_by_the_time_of_its_crossing(solver):
+    """Force-free for 2 clearances, twice a period, at the speed of the linear motion there."""
+    clearance, start = 4e-4, 2e-3
+    samples = free(solver, start, backlash={"clearance": clearance})
+    crossing = 4.0 * clearance / (OMEGA_N * (start - clearance))
+    t, v = samples.t[1:] - samples.t[0], samples.velocity[1:]
+    last = np.flatnonzero(np.diff(np.sign(v)))[:2]
+    turns = t[last] - v[last] * (t[last + 1] - t[last]) / (v[last + 1] - v[last])
+    period = 2.0 * pi / OMEGA_N + crossing
+    assert turns == pytest.approx([0.5 * period, period], rel=1e-6)
+    assert np.abs(samples.x).max() == pytest.approx(start, rel=1e-6)

@@ -123,7 +123,7 @@ class Config:
         rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
         without = {parameters.LATERAL} if rubs else {*parameters.OF_FRICTION}
         if self.oscillator["spring"] == 0.0:
-            without.add("bolster_stiffness")
+            without.update(parameters.OF_SPRING)
         if self.forced:
             without.add(parameters.OF_BASE)
         return tuple(name for name in parameters.effect_names() if name not in without)

@@ -54,7 +54,7 @@ def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: i
 
 def _effect(effect: Effect) -> Table:
     keys = (Number.of(each, example=_typical(each)) for each in effect.quantities)
-    return table(effect.name, effect.meaning, *keys, optional=True)
+    return table(effect.name, effect.described(), *keys, optional=True)
 
 
 def _typical(quantity: Quantity) -> float | None:

@@ -9,7 +9,7 @@ from scipy.special import chdtrc
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.effects import confounded
+from wedgesweep.effects import confounded, parts
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
     "nothing-missing",
@@ -98,15 +98,18 @@ def none_adequate(found: Sequence[Explanation]) -> bool:
 
 
 def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
-    """Explanations best first, without pairs that hardly beat one of their own components."""
+    """Explanations best first, without those that hardly beat a part of them."""
     allowed = sorted(filter(eligible, explanations), key=penalised)
-    single = {each.effects[0]: each.penalised for each in allowed if len(each.effects) == 1}
     return [
         each
         for each in allowed
-        if len(each.effects) == 1
-        or each.penalised < min(single.get(effect, float("inf")) for effect in each.effects) - gap
+        if not any(_is_part(other, each) and each.penalised >= other.penalised - gap for other in allowed)
     ]
+
+
+def _is_part(one: Explanation, other: Explanation) -> bool:
+    """Whether an explanation is another one without some of its effects, or with a special case of one."""
+    return set(one.effects) < set(other.effects) or parts(one.effects) < parts(other.effects)
 
 
 def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: Thresholds) -> Finding:
@@ -161,12 +164,11 @@ def _component_suffices(order: Sequence[Explanation], best: Explanation) -> bool
 
 
 def _adequate_alternatives(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
-    """Other explanations with an adequate misfit; subsets and supersets of the best one do not count.
+    """Other explanations with an adequate misfit; parts of the best one and what it is part of do not count.
 
     What others can imitate may be none of them.
     """
-    mine = set(best.effects)
-    others = [each for each in order if not (mine <= set(each.effects) or set(each.effects) <= mine)]
+    others = [each for each in order if not (each is best or _is_part(each, best) or _is_part(best, each))]
     return tuple(each for each in others if each.fit.p >= ADEQUATE)
 
 

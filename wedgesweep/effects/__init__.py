@@ -14,7 +14,8 @@ NAMES = (
     *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level"),
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
     *("cross_slip", "column_compliance"),
-    *("viscous_damping", "cubic_stiffness", "guide_friction", "end_stop"),
+    *("viscous_damping", "directional_damping", "quadratic_drag"),
+    *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),
     *("velocity_lag", "displacement_gain"),
 )
@@ -55,6 +56,11 @@ def confounded(names: Sequence[str]) -> bool:
     off look like a third: one that is no candidate, as the wedge's mass, may be.
     """
     return len(names) > 1 and {EFFECTS[name].family for name in names} == {OF_THE_MODEL}
+
+
+def parts(names: Sequence[str]) -> set[str]:
+    """Effects with their special cases."""
+    return {*names, *(part for name in names if name in EFFECTS for part in EFFECTS[name].contains)}
 
 
 def acting(effects: Numbers) -> dict[str, dict[str, float]]:

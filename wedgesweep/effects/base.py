@@ -9,13 +9,27 @@ from wedgesweep.quantity import Quantity
 NUMERICAL, EXPERIMENTAL = "numerical-model", "experimental-model"
 
 
+# What the parts that effects act on are called in each system.
+PARTS = {
+    "suspension": {
+        **{"body": "bolster", "mass": "bolster", "base": "side frame"},
+        **{"face": "column face", "faces": "wedges", "guide": "its lateral guide"},
+    },
+    "oscillator": {
+        **{"body": "oscillator", "mass": "mass", "base": "base"},
+        **{"face": "rubbing face", "faces": "rubbing surface", "guide": "the surface that it rubs on"},
+    },
+}
+
+
 @dataclass(frozen=True)
 class Effect:
     """One missing piece of physics, switched on by the config table ``[effects.NAME]``.
 
     At the ``off`` value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
     that add forces, coefficients, states or events to the base model when they are not off. An effect
-    without any is one that the base model's mechanics can do.
+    without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
+    of this one. ``meaning`` may hold names of PARTS in braces; see ``described``.
     """
 
     name: str
@@ -24,6 +38,11 @@ class Effect:
     meaning: str
     quantities: tuple[Quantity, ...]
     extends: tuple[str, ...] = ()
+    contains: tuple[str, ...] = ()
+
+    def described(self, system: str = "suspension") -> str:
+        """What the effect is, in words, on a system."""
+        return self.meaning.format(**PARTS[system])
 
     def acts(self, numbers: Mapping[str, float]) -> bool:
         """Whether numbers (SI units; left out: off) change anything."""

@@ -17,7 +17,7 @@ EFFECT = Effect(
     name="end_stop",
     family="missing-force",
     branch=NUMERICAL,
-    meaning="springs at the ends of the bolster's travel",
+    meaning="springs at the ends of the {mass}'s travel",
     quantities=(
         Quantity(
             "clearance_mm",

@@ -14,7 +14,7 @@ EFFECT = Effect(
     name="guide_friction",
     family="missing-force",
     branch=EXPERIMENTAL,
-    meaning="constant dry friction on the bolster from its lateral guide",
+    meaning="constant dry friction on the {mass} from {guide}",
     quantities=(Quantity("force_N", 0.0, "friction force of the guide", minimum=0.0, search=(0.0, 10.0)),),
 )
 

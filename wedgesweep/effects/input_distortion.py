@@ -15,7 +15,7 @@ EFFECT = Effect(
     name="input_distortion",
     family="excitation",
     branch=EXPERIMENTAL,
-    meaning="harmonics in the motion of the side frame",
+    meaning="harmonics in the input",
     quantities=(
         Quantity("second", 0.0, "second harmonic over the first", minimum=0.0, search=(0.0, 0.5)),
         Quantity("second_phase_deg", 0.0, "phase of the second harmonic", search=(-180.0, 180.0)),

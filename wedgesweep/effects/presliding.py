@@ -19,7 +19,7 @@ EFFECT = Effect(
     name="presliding",
     family="friction-law",
     branch=NUMERICAL,
-    meaning="elastic creep of the column face before it slips (Dahl)",
+    meaning="elastic creep of the {face} before it slips (Dahl)",
     quantities=(
         Quantity(
             "length_mm",

@@ -17,7 +17,7 @@ EFFECT = Effect(
     name="stray_vibration",
     family="excitation",
     branch=EXPERIMENTAL,
-    meaning="a foreign tone in the acceleration of the side frame",
+    meaning="a foreign tone in the acceleration of the {base}",
     quantities=(
         Quantity("acceleration_m_per_s2", 0.0, "amplitude of the tone", minimum=0.0, search=(0.0, 20.0)),
         Quantity(

@@ -13,7 +13,7 @@ EFFECT = Effect(
     name="viscous_damping",
     family="missing-force",
     branch=NUMERICAL,
-    meaning="viscous damping between bolster and side frame",
+    meaning="viscous damping between {mass} and {base}",
     quantities=(
         Quantity("coefficient_N_s_per_m", 0.0, "viscous coefficient", minimum=0.0, search=(0.0, 100.0)),
     ),

@@ -22,6 +22,10 @@ LAWS: dict[str, ModuleType] = {
     name: import_module(f"{__name__}.{name.replace('-', '_')}") for name in (*LAW_NAMES, *OSCILLATOR_LAWS)
 }
 
+# A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
+# end cannot go back and forth between both at one instant.
+OVERLAP = 1e-9
+
 
 def register(name: str, module: ModuleType) -> None:
     """Add a law that is not part of this package."""
@@ -93,3 +97,14 @@ def branch_at(speed, p):
     if speed > p.friction.v_t:
         return 1
     return -1 if speed < -p.friction.v_t else 0
+
+
+@inlined
+def write_branch_ends(slip, threshold, branch, place, out):
+    """Write the distances of a slip velocity to the lower and the upper end of its branch."""
+    if branch == 0:
+        threshold *= 1.0 + OVERLAP
+    if branch >= 0:
+        out[place] = slip - threshold if branch else slip + threshold
+    if branch <= 0:
+        out[place + 1] = -threshold - slip if branch else threshold - slip

@@ -46,7 +46,7 @@ def _effect(result: DiagnosisResult, effect: str) -> Markup:
     equation = explained(REGISTERED.get(effect))
     return html.join(
         [
-            html.element("h3", f"{effect}: {phrases.meaning(effect)}"),
+            html.element("h3", f"{effect}: {phrases.meaning(effect, result.document)}"),
             html.element("pre", equation) if equation else Markup(),
             html.table(f"Parameters of {effect}", HEAD, rows),
             html.paragraph(_place(result, effect)),

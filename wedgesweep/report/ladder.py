@@ -71,7 +71,7 @@ def told(result: DiagnosisResult) -> list[str]:
     for rung in better:
         if rung["accuracy"] is None or (clauses and rung["accuracy"] * MUCH_BETTER > (reached or 0.0)):
             continue
-        clauses.append(_told(rung, base))
+        clauses.append(_told(rung, base, result.document))
         reached = rung["accuracy"]
     return clauses
 
@@ -82,8 +82,8 @@ def held_out(rung: Mapping[str, Any]) -> str:
     return "" if size is None else f"held-out tests: {phrases.accuracy(size)}"
 
 
-def _told(rung: Mapping[str, Any], base: Mapping[str, Any]) -> str:
-    meanings = phrases.listing([phrases.meaning(effect) for effect in rung["effects"]])
+def _told(rung: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+    meanings = phrases.listing([phrases.meaning(effect, document) for effect in rung["effects"]])
     verb = "explains" if len(rung["effects"]) == 1 else "explain"
     beside = [f"without: {phrases.accuracy(base['accuracy'])}"]
     if predicted := held_out(rung):

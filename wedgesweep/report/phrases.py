@@ -13,6 +13,7 @@ INTERVAL = f"95{NO_BREAK}% interval"
 UNITS = {
     "_N_per_mm3": "N/mm³",
     "_N_per_mm": "N/mm",
+    "_N_s2_per_m2": "N s²/m²",
     "_N_s_per_m": "N s/m",
     "_m_per_s2": "m/s²",
     "_rad_per_s": "rad/s",
@@ -110,9 +111,11 @@ def interval(gain: Mapping[str, Any]) -> str:
     return f"{INTERVAL} {percent(low)} to {percent(high)}"
 
 
-def meaning(effect: str) -> str:
-    """What an effect is, in words."""
-    return EFFECTS[effect].meaning if effect in EFFECTS else effect.replace("_", " ")
+def meaning(effect: str, document: Mapping[str, Any]) -> str:
+    """What an effect is, in words, on the system of a diagnosis."""
+    if effect not in EFFECTS:
+        return effect.replace("_", " ")
+    return EFFECTS[effect].described(document["model"].get("system", "suspension"))
 
 
 def combination(effects: Sequence[str]) -> str:

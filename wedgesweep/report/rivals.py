@@ -11,7 +11,7 @@ def section(result: DiagnosisResult) -> Markup:
     rows = [
         [
             phrases.combination(each["effects"]),
-            "; ".join(map(phrases.meaning, each["effects"])),
+            "; ".join(phrases.meaning(effect, result.document) for effect in each["effects"]),
             formatting.number(each["gap"], 2),
         ]
         for each in result.document["rivals"]

@@ -72,15 +72,15 @@ def _varies(misfit: Mapping[str, Any]) -> bool:
 
 
 def _tied(result: DiagnosisResult) -> str:
-    rivals = [_rival(rival) for rival in result.document["rivals"]]
+    rivals = [_rival(rival, result.document) for rival in result.document["rivals"]]
     return (
         f"{_number(1 + len(rivals))} explanations fit the tests equally well: {_causes(result)}, or "
         f"{phrases.listing(rivals, 'or')}; {_improvement(result)}{_next_test(result, 'them')}."
     )
 
 
-def _rival(rival: Mapping[str, Any]) -> str:
-    meanings = phrases.listing([phrases.meaning(effect) for effect in rival["effects"]])
+def _rival(rival: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+    meanings = phrases.listing([phrases.meaning(effect, document) for effect in rival["effects"]])
     behind = formatting.number(rival["gap"], 2)
     return f"{meanings} ({phrases.combination(rival['effects'])}, behind by {behind})"
 
@@ -180,12 +180,12 @@ def _number(count: int) -> str:
 
 
 def _causes(result: DiagnosisResult) -> str:
-    return phrases.listing([_cause(cause) for cause in result.document["causes"]])
+    return phrases.listing([_cause(cause, result.document) for cause in result.document["causes"]])
 
 
-def _cause(cause: Mapping[str, Any]) -> str:
+def _cause(cause: Mapping[str, Any], document: Mapping[str, Any]) -> str:
     parameters = [phrases.estimate(key, value) for key, value in cause["parameters"].items()]
-    return f"{phrases.meaning(cause['effect'])} ({'; '.join([cause['effect'], *parameters])})"
+    return f"{phrases.meaning(cause['effect'], document)} ({'; '.join([cause['effect'], *parameters])})"
 
 
 def _error(result: DiagnosisResult, model: str) -> str:

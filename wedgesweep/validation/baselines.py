@@ -12,7 +12,7 @@ import xarray as xr
 LEAST_SCORE = 9.2
 # STLSQ drops terms whose rms is below this share of the bolster's inertia, in at most so many rounds.
 LEAST_TERM, ROUNDS, BOLSTER_MASS = 0.01, 10, 0.70
-# The effect that each term of the library stands for; |v|v stands for none of the candidates.
+# The effect that each term of the library stands for; |v|v is the independent simulator's drag.
 TERMS = {
     "1": "preload",
     "z": "bolster_stiffness",

@@ -254,7 +254,7 @@ def _hide_pair(one: DataSet, draft: Draft, random: np.random.Generator, attempt:
 
 
 def _hide_unknown(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
-    """Alternately an effect that is removed from the candidates and one that never was among them."""
+    """Alternately an effect of wedgesweep and one of another simulator, without its candidate."""
     turn, target = one.index // 2, one.draw_target(random)
     if one.index % 2:
         return _hide_unmodelled(turn, draft, target, random)
@@ -272,6 +272,7 @@ def _hide_unmodelled(turn: int, draft: Draft, target: float, random: np.random.G
     if found is None:
         return False
     draft.unmodelled = unmodelled.numbers(name, found)
+    draft.candidates = tuple(each for each in EFFECTS if each != unmodelled.CANDIDATES.get(name))
     draft.expected = draft.unmodelled_excess(draft.unmodelled)
     return draft.presses()
 

@@ -1,4 +1,4 @@
-"""Data of the independent simulator, with effects that no candidate of wedgesweep stands for."""
+"""Data of the independent simulator, with effects that no candidate stands for."""
 
 from collections.abc import Mapping, Sequence
 from math import ceil, pi
@@ -23,6 +23,8 @@ RANGES = {
     "drag": ("coefficient", 0.1, 5000.0),
     "drift": ("rise", 1e-3, 0.6),
 }
+# Candidates that stand for them, and are left out.
+CANDIDATES = {"backlash": "backlash", "drag": "quadratic_drag"}
 # Steps (s) of data and of estimates, and the periods before they start.
 STEP, COARSE_STEP, SETTLE, COARSE_SETTLE = 5e-6, 2e-5, 60, 30
 # Normal force (N) that the wedges must keep.

@@ -50,7 +50,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
         "kind": data.kind,
-        "model": {"law": data.law, "title": data.model.title},
+        "model": {"system": data.model.system, "law": data.law, "title": data.model.title},
         "uncertain": uncertain(best.fit),
         "version": __version__,
         "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),

@@ -9,7 +9,7 @@ a mass that sticks has a constant velocity.
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined
-from wedgesweep.effects import directional_friction, end_stop, guide_friction, hooks, presliding, states
+from wedgesweep.effects import directional_friction, guide_friction, hooks, presliding, states, travel
 from wedgesweep.excitation import acceleration, displacement, force, velocity
 from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, X, slip, stuck
 
@@ -51,8 +51,9 @@ def elongation_rate(t, y, p):
 def support(t, y, mode, p):
     """Force on the mass (N) of all that stands between it and the base."""
     stretch, rate = elongation(t, y, p), elongation_rate(t, y, p)
-    own = -p.oscillator.spring * stretch - p.oscillator.damping * rate
-    return own + hooks.force_on_mass(stretch, rate, y, p) + end_stop.force(stretch, mode.stop, p)
+    spring = p.oscillator.spring
+    own = -spring * stretch - p.oscillator.damping * rate
+    return own + hooks.force_on_mass(stretch, rate, y, p) + travel.force(stretch, mode.segment, spring, p)
 
 
 @inlined

@@ -1,17 +1,16 @@
 """The oscillator as a hybrid system: what solvers ask of it, see hybrid/interface.py."""
 
-from math import inf, nan, pi
+from math import inf, nan
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import (
     ageing,
     directional_friction,
-    end_stop,
     hooks,
     presliding,
     states,
-    stray_vibration,
+    travel,
 )
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
@@ -25,26 +24,19 @@ from wedgesweep.systems.oscillator.forces import (
 )
 from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, Mode, X, slip, stuck
 from wedgesweep.systems.oscillator.parameters import PLAIN
+from wedgesweep.systems.shared import implement_shared
 
 OSCILLATOR = "oscillator"
-# Pairs of event functions: ends of a slip branch (the only one without effects), end stops, sign of the slip,
-# time at rest.
-SLIP, STOP, DIRECTION, CLOCK = 0, 2, 4, 6
+# Pairs of event functions: ends of a slip branch (the only one without effects), segment of travel, sign of
+# the slip, time at rest.
+SLIP, TRAVEL, DIRECTION, CLOCK = 0, 2, 4, 6
 PLAIN_EVENTS, EVENTS = 2, 8
-# A ramp of friction reaches this much into the branches beside it: see the suspension's events.
-OVERLAP = 1e-9
 # Phase (rad) after which a force that passes zero now exceeds rounding errors, and the share that does not.
 LOOK_AHEAD, ROUNDING = 1e-8, 1e-11
 # A jump of friction below this share of it is none.
 SMOOTH = 1e-8
 
-for _declared, _written in (
-    (interface.scales, states.scales),
-    (interface.error_scales, states.error_scales),
-    (interface.active, states.active),
-    (interface.clocks, states.clocks),
-):
-    implement(_declared, OSCILLATOR)(_written)
+implement_shared(OSCILLATOR)
 
 
 @implement(interface.event_count, PLAIN)
@@ -61,25 +53,11 @@ def event_count(p):
     return EVENTS
 
 
-@implement(interface.cycle, OSCILLATOR)
-@inlined
-def cycle(p):
-    """Period of the input (s)."""
-    return 2.0 * pi / p.input.omega
-
-
 @implement(interface.fastest, OSCILLATOR)
 @inlined
 def fastest(p):
     """Highest angular frequency (rad/s) of the input and of the free oscillator, which a belt drives, too."""
     return max(excitation.fastest(p), (p.oscillator.spring / p.oscillator.mass) ** 0.5)
-
-
-@implement(interface.repeats, OSCILLATOR)
-@inlined
-def repeats(p):
-    """A foreign tone has a period of its own."""
-    return not stray_vibration.acts(p)
 
 
 @implement(interface.well_posed, OSCILLATOR)
@@ -172,7 +150,7 @@ def _breakaway(now, y, direction, p):
 @inlined
 def _slip_events(now, y, mode, p, out):
     """Write the distances of slip to both ends of its branch, or of the load to where friction lets go."""
-    value, branch, threshold = slip(y, p), mode.column, p.friction.v_t
+    value, branch = slip(y, p), mode.column
     if stuck(mode, p):
         out[SLIP] = _breakaway(now, y, -1, p)
         out[SLIP + 1] = -_breakaway(now, y, 1, p)
@@ -182,23 +160,14 @@ def _slip_events(now, y, mode, p, out):
         out[SLIP] = now - friction_force(y, _beside(mode, 0), p)
         out[SLIP + 1] = friction_force(y, _beside(mode, 1), p) - now
     else:
-        if branch == 0:
-            threshold *= 1.0 + OVERLAP
-        if branch >= 0:
-            out[SLIP] = value - threshold if branch else value + threshold
-        if branch <= 0:
-            out[SLIP + 1] = -threshold - value if branch else threshold - value
+        friction.write_branch_ends(value, p.friction.v_t, branch, SLIP, out)
 
 
 @inlined
 def _effect_events(t, y, mode, p, out):
     """Write the events of effects."""
-    if end_stop.acts(p):
-        x, clearance = elongation(t, y, p), end_stop.clearance(p)
-        if mode.stop >= 0:
-            out[STOP] = x - clearance if mode.stop else x + clearance
-        if mode.stop <= 0:
-            out[STOP + 1] = -clearance - x if mode.stop else clearance - x
+    if travel.acts(p):
+        travel.write_events(elongation(t, y, p), mode.segment, p, TRAVEL, out)
     if mode.direction != 0 and mode.column == 0 and not p.friction.set_valued:
         out[DIRECTION if mode.direction > 0 else DIRECTION + 1] = mode.direction * slip(y, p)
     if ageing.acts(p) and presliding.acts(p):
@@ -228,70 +197,59 @@ def event(place, t, y, mode, p, out):
 
 
 @inlined
-def _slipping(direction, stop, clock, p):
+def _slipping(direction, segment, clock, p):
     """Mode of slip in a direction; ``clock`` = 1: about to slip, still at rest."""
-    return Mode(direction, direction if directional_friction.acts(p) else 0, stop, clock)
+    return Mode(direction, direction if directional_friction.acts(p) else 0, segment, clock)
 
 
 @inlined
 def _beside(mode, higher):
     """Mode on the lower (0) or higher (1) side of the jump that holds the slip velocity."""
     column = (0 if mode.column > 0 else -1) + higher
-    return Mode(column, mode.direction, mode.stop, 0 if abs(column) == 1 else 1)
-
-
-@inlined
-def _stop_at(stretch, p):
-    """End stop in contact."""
-    if not end_stop.acts(p):
-        return 0
-    clearance = end_stop.clearance(p)
-    if stretch > clearance or (clearance == 0.0 and stretch >= 0.0):
-        return 1
-    return -1 if stretch < -clearance else 0
+    return Mode(column, mode.direction, mode.segment, 0 if abs(column) == 1 else 1)
 
 
 @inner
-def _mode_at_rest(t, y, stop, p):
+def _mode_at_rest(t, y, segment, p):
     """Mode that follows zero slip under a set-valued law."""
-    held = Mode(0, 0, stop, 1)
+    held = Mode(0, 0, segment, 1)
     now = load(t, y, held, p)
     forward, backward = _breakaway(now, y, 1, p), _breakaway(now, y, -1, p)
     nothing = ROUNDING * (abs(now) + p.oscillator.mass * p.input.omega**2 * states.input_length(p))
     if forward > nothing:
-        return _slipping(1, stop, 0, p)
+        return _slipping(1, segment, 0, p)
     if backward < -nothing:
-        return _slipping(-1, stop, 0, p)
+        return _slipping(-1, segment, 0, p)
     if backward - forward > nothing:
         return held
-    return _without_friction(t, y, stop, p)
+    return _without_friction(t, y, segment, p)
 
 
 @inner
-def _without_friction(t, y, stop, p):
+def _without_friction(t, y, segment, p):
     """Mode that follows zero slip where nothing holds the mass: the direction in which it soon moves."""
-    mode = _slipping(1, stop, 0, p)
+    mode = _slipping(1, segment, 0, p)
     for _ in range(4):
         moment = LOOK_AHEAD / fastest(p)
         y = weighted(y, moment, (1.0,), (rate(t + 0.5 * moment, y, mode, p)[0],))
         t += moment
-    return mode if slip(y, p) >= 0.0 else _slipping(-1, stop, 0, p)
+    return mode if slip(y, p) >= 0.0 else _slipping(-1, segment, 0, p)
 
 
 @implement(interface.initial_mode, OSCILLATOR)
 @inner
 def initial_mode(t, y, p):
     """Mode in which a run begins."""
-    stop, rubbing = _stop_at(elongation(t, y, p), p), slip(y, p)
+    segment, rubbing = travel.segment_at(elongation(t, y, p), p), slip(y, p)
     sign = 1 if rubbing >= 0.0 else -1
     direction = sign if directional_friction.acts(p) else 0
     if p.friction.set_valued:
         if rubbing == 0.0:
-            return _mode_at_rest(t, y, stop, p), True
-        return _slipping(sign, stop, 0, p), True
+            return _mode_at_rest(t, y, segment, p), True
+        return _slipping(sign, segment, 0, p), True
     branch = friction.branch_at(rubbing, p)
     clock = 1 if branch == 0 else 0
-    return Mode(sign if presliding.acts(p) else branch, direction, stop, clock), True
+    return Mode(sign if presliding.acts(p) else branch, direction, segment, clock), True
 
 
 @inner
@@ -299,39 +257,36 @@ def _cross(t, y, mode, upward, p):
     """Mode on the next branch of a regularised law, or held where the next branch points back."""
     if presliding.acts(p):
         direction = -mode.column if directional_friction.acts(p) else 0
-        return Mode(-mode.column, direction, mode.stop, mode.clock)
+        return Mode(-mode.column, direction, mode.segment, mode.clock)
     if abs(mode.column) == HELD:
         return _beside(mode, upward)
     column = mode.column + 2 * upward - 1
-    across = Mode(column, mode.direction, mode.stop, 0 if abs(column) == 1 else 1)
+    across = Mode(column, mode.direction, mode.segment, 0 if abs(column) == 1 else 1)
     onward = (2 * upward - 1) * (load(t, y, across, p) - friction_force(y, across, p))
     before = friction_force(y, mode, p)
     jump = abs(friction_force(y, across, p) - before)
     if onward >= 0.0 or jump <= SMOOTH * abs(before):
         return across
-    return Mode(HELD if mode.column + upward > 0 else -HELD, mode.direction, mode.stop, 1)
+    return Mode(HELD if mode.column + upward > 0 else -HELD, mode.direction, mode.segment, 1)
 
 
 @inner
 def _transition(t, y, mode, place, p):
     upward = place % 2
     if place >= CLOCK:
-        return y, Mode(mode.column, mode.direction, mode.stop, 1 - mode.clock)
+        return y, Mode(mode.column, mode.direction, mode.segment, 1 - mode.clock)
     if place >= DIRECTION:
-        return y, Mode(mode.column, -mode.direction, mode.stop, mode.clock)
-    if place >= STOP:
-        step = 2 * upward - 1
-        stop = mode.stop + step
-        if stop == 0 and end_stop.clearance(p) == 0.0:
-            stop = step
-        return y, Mode(mode.column, mode.direction, stop, mode.clock)
+        return y, Mode(mode.column, -mode.direction, mode.segment, mode.clock)
+    if place >= TRAVEL:
+        segment = travel.next_segment(mode.segment, upward, p)
+        return y, Mode(mode.column, mode.direction, segment, mode.clock)
     if not p.friction.set_valued:
         return y, _cross(t, y, mode, upward, p)
     y = replaced(y, VELOCITY, p.oscillator.belt_velocity)
     if stuck(mode, p):
-        return y, _slipping(2 * upward - 1, mode.stop, 0, p)
+        return y, _slipping(2 * upward - 1, mode.segment, 0, p)
     y = ageing.rejuvenated(y, p)
-    return y, _mode_at_rest(t, y, mode.stop, p)
+    return y, _mode_at_rest(t, y, mode.segment, p)
 
 
 @implement(interface.transition, OSCILLATOR)

@@ -15,12 +15,12 @@ class Mode(NamedTuple):
 
     ``column``: slip branch (-1, 0, 1, or +-HELD) of the rubbing face, by the name that effects know; 0 is
     stuck under a set-valued law. ``direction``: sign of the slip where friction depends on it, else 0.
-    ``stop``: -1, 0, 1, the end stop in contact. ``clock``: 1 while the time at rest runs.
+    ``segment`` of the travel: see effects/travel.py. ``clock``: 1 while the time at rest runs.
     """
 
     column: int
     direction: int
-    stop: int
+    segment: int
     clock: int
 
 

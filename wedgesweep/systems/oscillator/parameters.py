@@ -34,11 +34,14 @@ SCALED = {"bolster_stiffness": "spring", "bolster_mass": "mass"}
 # All effects that need no wedge.
 EFFECTS = (
     *(*SCALED, "friction_level", "stribeck", "presliding", "ageing", "directional_friction"),
-    *("viscous_damping", "cubic_stiffness", "guide_friction", "end_stop"),
+    *("viscous_damping", "directional_damping", "quadratic_drag"),
+    *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
     *("input_distortion", "stray_vibration", "velocity_lag", "displacement_gain"),
 )
 # A motion of the base beside the input.
 OF_BASE = "stray_vibration"
+# Effects on the spring.
+OF_SPRING = ("bolster_stiffness", "backlash")
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
 OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")

@@ -4,8 +4,9 @@ from math import inf
 
 import numpy as np
 
+from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import ageing, end_stop, guide_friction, presliding
+from wedgesweep.effects import ageing, guide_friction, presliding, travel
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
 from wedgesweep.systems.suspension.filippov import WIDTH, both_sides
 from wedgesweep.systems.suspension.modes import (
@@ -24,34 +25,11 @@ from wedgesweep.systems.suspension.modes import (
 from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
 from wedgesweep.systems.suspension.set_valued import breakaway
 
-# Places of the event functions beside those of the axes: normal forces, end stops (two), time at rest. Those
-# of the base model end with the normal forces.
+# Places of the event functions beside those of the axes: normal forces, ends of the segment of travel (two),
+# time at rest. Those of the base model end with the normal forces.
 COLUMN_NORMAL, BOLSTER_NORMAL, BASE_EVENTS = 6, 7, 8
-STOP, CLOCK = 2 * AXES, 2 * AXES + 2
+TRAVEL, CLOCK = 2 * AXES, 2 * AXES + 2
 EVENTS = CLOCK + 1
-# A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
-# end cannot go back and forth between both at one instant.
-OVERLAP = 1e-9
-
-
-@inlined
-def _branch_ends(value, threshold, now, place, out):
-    """Write the distances of a measure of slip to the lower and the upper end of its branch."""
-    if now == 0:
-        threshold *= 1.0 + OVERLAP
-    if now >= 0:
-        out[place] = value - threshold if now else value + threshold
-    if now <= 0:
-        out[place + 1] = -threshold - value if now else threshold - value
-
-
-@inlined
-def _stop_events(x, stop, p, out):
-    clearance = end_stop.clearance(p)
-    if stop >= 0:
-        out[STOP] = x - clearance if stop else x + clearance
-    if stop <= 0:
-        out[STOP + 1] = -clearance - x if stop else clearance - x
 
 
 @inlined
@@ -67,14 +45,15 @@ def _bristle_events(t, y, mode, p, out):
 @inlined
 def _slip_events(t, y, mode, p, out):
     """Write the events of a regularised law that no jump holds."""
+    v_t = p.friction.v_t
     if presliding.acts(p):
         _bristle_events(t, y, mode, p, out)
     elif abs(mode.column) != HELD:
-        _branch_ends(slip_measure(COLUMN, t, y, p), p.friction.v_t, mode.column, 2 * COLUMN, out)
+        friction.write_branch_ends(slip_measure(COLUMN, t, y, p), v_t, mode.column, 2 * COLUMN, out)
     if abs(mode.bolster) != HELD:
-        _branch_ends(slip_measure(BOLSTER, t, y, p), p.friction.v_t, mode.bolster, 2 * BOLSTER, out)
+        friction.write_branch_ends(slip_measure(BOLSTER, t, y, p), v_t, mode.bolster, 2 * BOLSTER, out)
     if guide_friction.acts(p) and abs(mode.guide) != HELD:
-        _branch_ends(y[VELOCITY], p.friction.v_t, mode.guide, 2 * GUIDE, out)
+        friction.write_branch_ends(y[VELOCITY], v_t, mode.guide, 2 * GUIDE, out)
     if abs(mode.direction) == 1:
         out[2 * DIRECTION if mode.direction > 0 else 2 * DIRECTION + 1] = mode.direction * y[VELOCITY]
 
@@ -93,8 +72,8 @@ def _held_events(t, y, mode, p, out):
 @inlined
 def _kinematic_events(t, y, mode, p, out):
     """Write the events that need no forces."""
-    if end_stop.acts(p):
-        _stop_events(y[X], mode.stop, p, out)
+    if travel.acts(p):
+        travel.write_events(y[X], mode.segment, p, TRAVEL, out)
     if p.friction.set_valued:
         out[2 * COLUMN if mode.column > 0 else 2 * COLUMN + 1] = mode.column * y[VELOCITY]
     else:
@@ -105,14 +84,14 @@ def _kinematic_events(t, y, mode, p, out):
 def events(now, t, y, mode, p, out):
     """Write the event functions, shape (EVENTS,), under the forces ``now`` (unused if held or stuck).
 
-    Units are m/s for slip velocities, m for the end stops, N for normal forces, m/s^2 for what is held or
+    Units are m/s for slip velocities, m for the travel, N for normal forces, m/s^2 for what is held or
     stuck; an event that the mode does not have is inf.
     """
     for i in range(EVENTS):
         out[i] = inf
     if stuck(mode, p):
-        out[2 * COLUMN] = breakaway(t, y, -1, mode.stop, p)
-        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.stop, p)
+        out[2 * COLUMN] = breakaway(t, y, -1, mode.segment, p)
+        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.segment, p)
         return
     _kinematic_events(t, y, mode, p, out)
     if held(mode):
@@ -126,7 +105,7 @@ def events(now, t, y, mode, p, out):
 def _is_kinematic(place, mode, p):
     if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         return False
-    return place >= STOP or abs(branch(mode, place // 2)) != HELD
+    return place >= TRAVEL or abs(branch(mode, place // 2)) != HELD
 
 
 @inner

@@ -1,13 +1,14 @@
 """The suspension as a hybrid system: what solvers ask of it, see hybrid/interface.py."""
 
-from math import nan, pi
+from math import nan
 
 from wedgesweep import excitation
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import presliding, states, stray_vibration
+from wedgesweep.effects import presliding, states
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.systems.shared import implement_shared
 from wedgesweep.systems.suspension import closed_form, events, stiffness, transitions  # noqa: F401
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip
@@ -29,13 +30,7 @@ for _declared, _written in (
 ):
     implement(_declared, SUSPENSION)(_written)
 
-for _declared, _written in (
-    (interface.scales, states.scales),
-    (interface.error_scales, states.error_scales),
-    (interface.active, states.active),
-    (interface.clocks, states.clocks),
-):
-    implement(_declared, SUSPENSION)(_written)
+implement_shared(SUSPENSION)
 
 
 @implement(interface.event_count, "base")
@@ -50,20 +45,6 @@ def base_event_count(p):
 def event_count(p):
     """Number of event functions."""
     return events.EVENTS
-
-
-@implement(interface.cycle, SUSPENSION)
-@inlined
-def cycle(p):
-    """Period of the input (s)."""
-    return 2.0 * pi / p.input.omega
-
-
-@implement(interface.repeats, SUSPENSION)
-@inlined
-def repeats(p):
-    """A foreign tone has a period of its own."""
-    return not stray_vibration.acts(p)
 
 
 @implement(interface.never_locks, SUSPENSION)

@@ -21,8 +21,8 @@ class ContactMode(NamedTuple):
     ``column``, ``bolster``, ``guide``: slip branch (-1, 0, 1, or +-HELD) of each face; 0 is stuck under a
     set-valued law. ``column_sign``, ``bolster_sign``: signs of the normal forces; the joints are bilateral
     and friction acts with |N|. ``direction``: sign of z' where friction depends on it, HELD where its jump
-    holds the bolster, else 0. ``stop``: -1, 0, 1, the end stop in contact. ``clock``: 1 while the time at
-    rest runs.
+    holds the bolster, else 0. ``segment`` of the travel: see effects/travel.py. ``clock``: 1 while the time
+    at rest runs.
     """
 
     column: int
@@ -31,7 +31,7 @@ class ContactMode(NamedTuple):
     column_sign: int
     bolster_sign: int
     direction: int
-    stop: int
+    segment: int
     clock: int
 
 
@@ -67,7 +67,7 @@ def branch(mode, axis):
 @inner
 def with_branch(mode, axis, value, p):
     """The mode with another branch of an axis; the time at rest runs while the column face does not slip."""
-    column, bolster, guide, column_sign, bolster_sign, direction, stop, clock = mode
+    column, bolster, guide, column_sign, bolster_sign, direction, segment, clock = mode
     if axis == COLUMN:
         column = value
         if not presliding.acts(p):
@@ -78,39 +78,39 @@ def with_branch(mode, axis, value, p):
         guide = value
     else:
         direction = value
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
 
 
 @inlined
 def with_signs(mode, column_sign, bolster_sign):
     """The mode with other signs of the normal forces."""
-    column, bolster, guide, _, _, direction, stop, clock = mode
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+    column, bolster, guide, _, _, direction, segment, clock = mode
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
 
 
 @inlined
-def with_stop(mode, stop):
-    """The mode in contact with another end stop."""
+def with_segment(mode, segment):
+    """The mode in another segment of the travel."""
     column, bolster, guide, column_sign, bolster_sign, direction, _, clock = mode
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
 
 
 @inlined
 def with_clock(mode, clock):
     """The mode in which the time at rest runs, or does not."""
-    column, bolster, guide, column_sign, bolster_sign, direction, stop, _ = mode
-    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, stop, clock)
+    column, bolster, guide, column_sign, bolster_sign, direction, segment, _ = mode
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, direction, segment, clock)
 
 
 @inner
-def slipping(direction, stop, clock, p):
+def slipping(direction, segment, clock, p):
     """Mode of a set-valued law while z' has the given sign; ``clock`` = 1: about to slip, still at rest."""
     ratio = p.geometry.bolster_ratio
     bolster = direction if ratio > 0.0 else -direction
     if ratio == 0.0:
         bolster = 0
     sign = direction if directional_friction.acts(p) else 0
-    return ContactMode(direction, bolster, direction, 1, 1, sign, stop, clock)
+    return ContactMode(direction, bolster, direction, 1, 1, sign, segment, clock)
 
 
 @inlined

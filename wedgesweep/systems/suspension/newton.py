@@ -19,11 +19,11 @@ from typing import NamedTuple
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import (
     column_compliance,
-    end_stop,
     fixture_resonance,
     guide_friction,
     hooks,
     load_dependent_friction,
+    travel,
 )
 from wedgesweep.excitation import acceleration
 from wedgesweep.systems.suspension.faces import coefficients
@@ -101,7 +101,7 @@ def loads(t, y, mode, p):
     s, g = p.suspension, p.geometry
     z, velocity = g.rest + y[X], y[VELOCITY]
     wedge = s.wedge_preload - s.wedge_spring * _rise(z, y, p) - s.wedge_mass * s.gravity
-    bolster = hooks.force_on_mass(z, velocity, y, p) + end_stop.force(y[X], mode.stop, p)
+    bolster = hooks.force_on_mass(z, velocity, y, p) + travel.force(y[X], mode.segment, s.bolster_spring, p)
     bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
     bolster += guide_friction.force(velocity, mode.guide, p)
     return Loads(

@@ -11,27 +11,27 @@ LOOK_AHEAD = 1e-8
 
 
 @inner
-def about_to_slip(t, y, direction, stop, p):
+def about_to_slip(t, y, direction, segment, p):
     """Mode on the verge of slip in a direction, its forces, and whether they are unique."""
-    return solve_for_signs(t, y, slipping(direction, stop, 1, p), p)
+    return solve_for_signs(t, y, slipping(direction, segment, 1, p), p)
 
 
 @inlined
-def breakaway(t, y, direction, stop, p):
+def breakaway(t, y, direction, segment, p):
     """Acceleration z'' (m/s^2) if the bolster broke away in a direction."""
-    return about_to_slip(t, y, direction, stop, p)[1].acceleration
+    return about_to_slip(t, y, direction, segment, p)[1].acceleration
 
 
 @inner
-def mode_at_zero_velocity(t, y, stop, p):
+def mode_at_zero_velocity(t, y, segment, p):
     """Mode that follows z' = 0 under a set-valued law, and whether it is unique."""
-    forward, rising, forward_unique = about_to_slip(t, y, 1, stop, p)
-    backward, falling, backward_unique = about_to_slip(t, y, -1, stop, p)
+    forward, rising, forward_unique = about_to_slip(t, y, 1, segment, p)
+    backward, falling, backward_unique = about_to_slip(t, y, -1, segment, p)
     unique = forward_unique and backward_unique
     unique = unique and not (rising.acceleration > 0.0 and falling.acceleration < 0.0)
     nearly_none = ROUNDING * (p.suspension.gravity + abs(acceleration(t, p)))
     if rising.acceleration <= nearly_none and falling.acceleration >= -nearly_none:
-        return ContactMode(0, 0, 0, 1, 1, 0, stop, 1), unique
+        return ContactMode(0, 0, 0, 1, 1, 0, segment, 1), unique
     mode = with_clock(forward if rising.acceleration > 0.0 else backward, 0)
     if friction.static(1, y, p) == friction.sliding(0.0, p):
         return mode, unique
@@ -40,9 +40,9 @@ def mode_at_zero_velocity(t, y, stop, p):
 
 
 @inner
-def breakaway_direction(t, y, direction, stop, p):
+def breakaway_direction(t, y, direction, segment, p):
     """Direction of breakaway; with hardly any friction that of the event may be noise."""
     ahead = t + LOOK_AHEAD / p.input.omega
-    onward = direction * breakaway(ahead, y, direction, stop, p)
-    back = -direction * breakaway(ahead, y, -direction, stop, p)
+    onward = direction * breakaway(ahead, y, direction, segment, p)
+    back = -direction * breakaway(ahead, y, -direction, segment, p)
     return -direction if onward <= 0.0 < back else direction

@@ -2,10 +2,10 @@
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import ageing, directional_friction, end_stop, hooks, presliding
+from wedgesweep.effects import ageing, directional_friction, hooks, presliding, travel
 from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid.vectors import replaced, weighted
-from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, STOP
+from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, TRAVEL
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
 from wedgesweep.systems.suspension.filippov import contact_forces, resolve_mode
 from wedgesweep.systems.suspension.modes import (
@@ -23,7 +23,7 @@ from wedgesweep.systems.suspension.modes import (
     stuck,
     with_branch,
     with_clock,
-    with_stop,
+    with_segment,
 )
 from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, at_rest, solve_for_signs
 from wedgesweep.systems.suspension.set_valued import (
@@ -80,25 +80,14 @@ def _with_direction(t, y, mode, p):
     return found, unique
 
 
-@inlined
-def _stop_at(x, p):
-    """End stop in contact."""
-    if not end_stop.acts(p):
-        return 0
-    clearance = end_stop.clearance(p)
-    if x > clearance or (clearance == 0.0 and x >= 0.0):
-        return 1
-    return -1 if x < -clearance else 0
-
-
 @inner
 def initial_mode(t, y, p):
     """Mode at the start of a run, and whether it is unique."""
-    stop = _stop_at(y[X], p)
+    segment = travel.segment_at(y[X], p)
     if p.friction.set_valued:
         if y[VELOCITY] == 0.0:
-            return mode_at_zero_velocity(t, y, stop, p)
-        found, _, unique = solve_for_signs(t, y, slipping(1 if y[VELOCITY] > 0.0 else -1, stop, 0, p), p)
+            return mode_at_zero_velocity(t, y, segment, p)
+        found, _, unique = solve_for_signs(t, y, slipping(1 if y[VELOCITY] > 0.0 else -1, segment, 0, p), p)
         return found, unique
     column = friction.branch_at(slip_measure(COLUMN, t, y, p), p)
     clock = 1 if column == 0 else 0
@@ -107,7 +96,7 @@ def initial_mode(t, y, p):
         column = 1 if column_slip(y, p) >= 0.0 else -1
     bolster = friction.branch_at(slip_measure(BOLSTER, t, y, p), p)
     guide = friction.branch_at(y[VELOCITY], p)
-    return _with_direction(t, y, ContactMode(column, bolster, guide, 1, 1, 0, stop, clock), p)
+    return _with_direction(t, y, ContactMode(column, bolster, guide, 1, 1, 0, segment, clock), p)
 
 
 @inner
@@ -116,7 +105,7 @@ def well_posed(t, y, mode, p):
     if p.geometry.always_well_posed:
         return True
     if stuck(mode, p):
-        return mode_at_zero_velocity(t, y, mode.stop, p)[1]
+        return mode_at_zero_velocity(t, y, mode.segment, p)[1]
     return resolve_mode(t, y, mode, p)[2]
 
 
@@ -165,24 +154,16 @@ def _cross_discontinuity(t, y, mode, place, p):
     return found, certain
 
 
-@inlined
-def _next_stop(mode, place, p):
-    """End stop in contact after one has been reached or left."""
-    step = 2 * (place % 2) - 1
-    following = mode.stop + step
-    return step if following == 0 and end_stop.clearance(p) == 0.0 else following
-
-
 @inner
 def _transition(t, y, mode, place, p):
     if place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         found, certain = _after_zero_force(t, y, mode, p)
         return y, found, certain
-    if place >= STOP:
+    if place >= TRAVEL:
         if place == CLOCK:
             mode = with_clock(mode, 1 - mode.clock)
         else:
-            mode = with_stop(mode, _next_stop(mode, place, p))
+            mode = with_segment(mode, travel.next_segment(mode.segment, place % 2, p))
         found, _, certain = resolve_mode(t, y, mode, p)
         return y, found, certain
     if not p.friction.set_valued:
@@ -191,10 +172,10 @@ def _transition(t, y, mode, place, p):
     y = replaced(y, VELOCITY, 0.0)
     if not stuck(mode, p):
         y = ageing.rejuvenated(y, p)
-        found, certain = mode_at_zero_velocity(t, y, mode.stop, p)
+        found, certain = mode_at_zero_velocity(t, y, mode.segment, p)
         return y, found, certain
-    direction = breakaway_direction(t, y, 1 if place == 2 * COLUMN + 1 else -1, mode.stop, p)
-    found, _, certain = solve_for_signs(t, y, slipping(direction, mode.stop, 0, p), p)
+    direction = breakaway_direction(t, y, 1 if place == 2 * COLUMN + 1 else -1, mode.segment, p)
+    found, _, certain = solve_for_signs(t, y, slipping(direction, mode.segment, 0, p), p)
     return y, found, certain
 
 

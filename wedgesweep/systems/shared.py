@@ -1,0 +1,32 @@
+"""What all systems under a periodic input write alike for the interface of hybrid systems."""
+
+from math import pi
+
+from wedgesweep.compiled import inlined
+from wedgesweep.effects import states, stray_vibration
+from wedgesweep.hybrid import interface
+
+
+@inlined
+def cycle(p):
+    """Period of the input (s)."""
+    return 2.0 * pi / p.input.omega
+
+
+@inlined
+def repeats(p):
+    """A foreign tone has a period of its own."""
+    return not stray_vibration.acts(p)
+
+
+def implement_shared(owner: str) -> None:
+    """Write these functions for the records that have a field ``owner``."""
+    for declared, written in (
+        (interface.scales, states.scales),
+        (interface.error_scales, states.error_scales),
+        (interface.active, states.active),
+        (interface.clocks, states.clocks),
+        (interface.cycle, cycle),
+        (interface.repeats, repeats),
+    ):
+        interface.implement(declared, owner)(written)
