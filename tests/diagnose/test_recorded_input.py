@@ -10,6 +10,8 @@ from tests.diagnose.synthetic import MODEL
 from wedgesweep import config, excitation
 from wedgesweep.diagnose.diagnosis import diagnose
 from wedgesweep.diagnose.fit_data import Scenario
+from wedgesweep.diagnose.fit_parameters import Hypothesis
+from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.recorded_input import stated, without_noise
@@ -159,7 +161,7 @@ def test_without_a_cause_nothing_is_missing_though_the_input_is_distorted():
     assert found.finding.verdict == "nothing-missing"
 
 
-# The resonance of the true rig is where the stated one is far above its own; the record of the input is noisy.
+# Tests at the resonance of the true rig, above that of the stated one; the record of the input is noisy.
 STIFF = {"bolster_stiffness": {"scale": 1.9}}
 AT_ITS_RESONANCE = (np.array([17.5, 18.0, 18.5, 19.0, 20.0]), 1e-3 * np.array([0.18, 0.18, 0.16, 0.16, 0.14]))
 
@@ -198,3 +200,19 @@ def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():
     later = data.with_covariance(stated(data)).with_model_error(0.02)
     by_input = [np.linalg.inv(each.whitening @ each.whitening) - np.eye(32) for each in (direct, later)]
     assert np.linalg.norm(by_input[0] - by_input[1]) < 0.01 * np.linalg.norm(by_input[1])
+
+
+def test_bootstrap_samples_have_the_noise_of_responses_and_inputs():
+    """And what both share: residuals of samples at the truth are of unit covariance again."""
+    data = harmonic_data(measurement(0, CAUSE, noise=0.005, input_noise=0.05))
+    shared = np.full_like(data.recorded.shared, 0.6 + 0.3j)
+    data = replace(data, inputs=data.recorded._replace(shared=shared)).with_covariance(stated(data))
+    truth = Model(data, Hypothesis(())).evaluate(stated(data).point)
+    rng, squares = np.random.default_rng(5), []
+    for _ in range(200):
+        sample = data.bootstrap_sample(truth, rng)
+        assert (sample.recorded.displacement == data.recorded.displacement).all()
+        squares.append(sample.compared_again(truth).chi2)
+    expected = data.observations.sum()
+    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / 200))
+    assert np.std(squares) == pytest.approx(np.sqrt(2.0 * expected), rel=0.25)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
@@ -124,7 +125,7 @@ def diagnose(
         next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement=measurement,
-        data=search.data,
+        data=cast("HarmonicData | LoopData", search.data),
         base=base,
         explanations=tuple(explanations),
         scores=tuple(scores),

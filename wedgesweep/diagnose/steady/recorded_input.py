@@ -169,19 +169,17 @@ class RecordedInputData(HarmonicData):
             return residual
         return np.einsum("tij,...tj->...ti", self.whitening, residual)
 
+    def correlated(self, noise: np.ndarray) -> np.ndarray:
+        """Noise of responses with that of inputs, as the response passes it on; inputs stay as recorded."""
+        if self.whitening is None:
+            return noise
+        return np.einsum("tij,...tj->...ti", np.linalg.inv(self.whitening), noise)
+
     def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
         return step
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return self
-
-    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
-        """New noise on responses and inputs; what the simulation was fed stays the truth."""
-        sample = super().bootstrap_sample(truth, rng)
-        for order, variance in enumerate(self.recorded.variance.T):
-            real_part, imaginary = rng.normal(size=(2, self.tests)) * np.sqrt(0.5 * variance)
-            sample = sample._with_coefficient(order, real_part + 1j * imaginary)
-        return sample
 
     def bare(self) -> Self:
         """The data as if inputs had no noise."""
