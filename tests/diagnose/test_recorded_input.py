@@ -1,12 +1,17 @@
 """Recorded inputs: what was fed in is simulated, and the noise of its record is part of the covariance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.special import chdtrc
 
 from tests.diagnose.synthetic import MODEL
 from wedgesweep import config, excitation
 from wedgesweep.diagnose.diagnosis import diagnose
 from wedgesweep.diagnose.fit_data import Scenario
+from wedgesweep.diagnose.fit_parameters import Hypothesis
+from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.recorded_input import stated, without_noise
@@ -40,12 +45,20 @@ def derivative(signal, time, frequency, order):
     return np.fft.irfft(spectrum * (1j * omega) ** order, signal.size)
 
 
-def measurement(seed=0, effects=None, columns=None, quantity="displacement", noise=NOISE, tests=slice(None)):
+def measurement(
+    seed=0,
+    effects=None,
+    columns=None,
+    quantity="displacement",
+    noise=NOISE,
+    input_noise=None,
+    bench=(FREQUENCIES, AMPLITUDES),
+):
     """Tests of 10 whole periods with noise on every channel, relative to its rms."""
     rng = np.random.default_rng(seed)
     columns = DISPLACEMENT if columns is None else columns
     records = []
-    for i, (f, a) in enumerate(zip(FREQUENCIES[tests], AMPLITUDES[tests], strict=True)):
+    for i, (f, a) in enumerate(zip(*bench, strict=True)):
         time = np.arange(2000) * 10.0 / f / 2000
         start = rng.uniform(0.0, 1.0 / f)
         d, u = signals(f, a, time + start, effects or {})
@@ -57,7 +70,8 @@ def measurement(seed=0, effects=None, columns=None, quantity="displacement", noi
             if name == quantity:
                 channels["input"] = derivative(u, time, f, order)
         for name, exact in channels.items():
-            channels[name] = exact + noise * exact.std() * rng.normal(size=exact.size)
+            level = noise if name != "input" or input_noise is None else input_noise
+            channels[name] = exact + level * exact.std() * rng.normal(size=exact.size)
         empty = {"displacement": None, "velocity": None}
         records.append(
             TestRecord(
@@ -145,3 +159,60 @@ def test_the_cause_is_named_and_the_distortion_is_not_blamed():
 def test_without_a_cause_nothing_is_missing_though_the_input_is_distorted():
     found = diagnose(measurement(2), ("viscous_damping", "input_distortion", "stribeck"))
     assert found.finding.verdict == "nothing-missing"
+
+
+# Tests at the resonance of the true rig, above that of the stated one; the record of the input is noisy.
+STIFF = {"bolster_stiffness": {"scale": 1.9}}
+AT_ITS_RESONANCE = (np.array([17.5, 18.0, 18.5, 19.0, 20.0]), 1e-3 * np.array([0.18, 0.18, 0.16, 0.16, 0.14]))
+
+
+def stiff(seed):
+    return measurement(seed, STIFF, noise=0.004, input_noise=0.08, bench=AT_ITS_RESONANCE)
+
+
+def test_the_noise_of_the_input_counts_as_the_right_model_passes_it_on():
+    """With the covariance of the stated model the truth itself would be rejected."""
+    before, after = [], []
+    for seed in range(8):
+        data = harmonic_data(stiff(seed))
+        truth = Scenario(STIFF, stated(data).point)
+        for found, each in ((before, data), (after, data.renewed(truth))):
+            q = (each.compare([truth], 1e-8)[0].residual ** 2).sum()
+            found.append(float(chdtrc(data.dof.sum(), q)))
+    assert np.median(before) < 1e-3
+    assert np.median(after) > 0.1
+
+
+def test_a_diagnosis_ends_with_the_covariance_of_its_cause():
+    found = diagnose(stiff(1), ("bolster_stiffness", "viscous_damping"))
+    assert found.finding.verdict in ("named", "consistent-with")
+    assert found.finding.best.effects == ("bolster_stiffness",)
+    fit = found.finding.best.fit
+    assert found.data.renewed(fit.model.scenario(fit.point)) is found.data
+    assert fit.model.data is found.data
+
+
+def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():
+    data = harmonic_data(measurement(0, CAUSE, noise=0.005))
+    shared = np.full_like(data.recorded.shared, 0.9)
+    data = replace(data, inputs=data.recorded._replace(shared=shared))
+    direct = data.with_model_error(0.02).with_covariance(stated(data))
+    later = data.with_covariance(stated(data)).with_model_error(0.02)
+    by_input = [np.linalg.inv(each.whitening @ each.whitening) - np.eye(32) for each in (direct, later)]
+    assert np.linalg.norm(by_input[0] - by_input[1]) < 0.01 * np.linalg.norm(by_input[1])
+
+
+def test_bootstrap_samples_have_the_noise_of_responses_and_inputs():
+    """And what both share: residuals of samples at the truth are of unit covariance again."""
+    data = harmonic_data(measurement(0, CAUSE, noise=0.005, input_noise=0.05))
+    shared = np.full_like(data.recorded.shared, 0.6 + 0.3j)
+    data = replace(data, inputs=data.recorded._replace(shared=shared)).with_covariance(stated(data))
+    truth = Model(data, Hypothesis(())).evaluate(stated(data).point)
+    rng, squares = np.random.default_rng(5), []
+    for _ in range(200):
+        sample = data.bootstrap_sample(truth, rng)
+        assert (sample.recorded.displacement == data.recorded.displacement).all()
+        squares.append(sample.compared_again(truth).chi2)
+    expected = data.observations.sum()
+    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / 200))
+    assert np.std(squares) == pytest.approx(np.sqrt(2.0 * expected), rel=0.25)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import cast
 
 from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
@@ -15,10 +15,10 @@ from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
+from wedgesweep.diagnose.renewal import Explained, with_renewed_covariance
 from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import (
     PAIRS_SHARE,
-    Scans,
     Search,
     base_fit,
     multistart,
@@ -77,15 +77,6 @@ class Diagnosis:
         return self.base.fit if best is None else best.fit
 
 
-class Explained(NamedTuple):
-    """Result of a search: the base model and all explanations, best first, with what was scanned."""
-
-    search: Search
-    base: Explanation
-    explanations: list[Explanation]
-    scans: Scans
-
-
 def diagnose(
     measurement: Measurement,
     effects: Sequence[str] = tuple(EFFECTS),
@@ -140,7 +131,7 @@ def diagnose(
         next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement=measurement,
-        data=data,
+        data=cast("HarmonicData | LoopData", search.data),
         base=base,
         explanations=tuple(explanations),
         scores=tuple(scores),
@@ -197,7 +188,7 @@ def explain(search: Search) -> Explained:
     if better.fit.chi2 < MUCH * base.fit.chi2:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
-    base = better
+    search, base, found, scans = with_renewed_covariance(Explained(search, better, found, scans))
     if verdict.none_adequate([base]):
         found = refit_best(search, found)
     if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
@@ -208,7 +199,7 @@ def explain(search: Search) -> Explained:
             found = found + multistart(search, scans)
     found = best_of_each(found, penalised)
     search, base = refit_base(search, base, found)
-    return Explained(search, base, found, scans)
+    return with_renewed_covariance(Explained(search, base, found, scans))
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:

@@ -273,6 +273,10 @@ class FitData(Protocol):
         """The data, with what an evaluation tells of the records' start."""
         return self
 
+    def renewed(self, scenario: Scenario) -> Self:
+        """The data with the covariance that their residuals have in a scenario, if it differs there."""
+        return self
+
     def repeats(self, effects: Iterable[str]) -> bool:
         """Whether responses repeat, so that a test may be left out of a fit and taken back in."""
         return True

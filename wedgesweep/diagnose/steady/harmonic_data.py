@@ -14,8 +14,7 @@ import numpy as np
 from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone, tone_phase
-from wedgesweep.diagnose.steady.bootstrap import resampled
-from wedgesweep.diagnose.steady.spectra import SIMULATED
+from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
 from wedgesweep.effects import acting
@@ -126,6 +125,10 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def decorrelated(self, residual: np.ndarray) -> np.ndarray:
         """Residuals (..., T, m) over the noise of the responses as such of unit covariance."""
         return residual
+
+    def correlated(self, noise: np.ndarray) -> np.ndarray:
+        """What ``decorrelated`` turns into some noise (..., T, m)."""
+        return noise
 
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> _Simulated:
         rows = [self.records(each) for each in scenarios]
@@ -276,10 +279,19 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
         response: SteadyResponse = truth.response
         exact = self.rotated(response.harmonics, response.phase) + response.aliases
-        spectra = (
-            resampled(s, mean, self.model_error, rng) for s, mean in zip(self.spectra, exact, strict=True)
-        )
+        noise = self.correlated(rng.normal(size=truth.residual.shape))
+        real_part, imaginary = np.split(noise, 2, axis=-1)
+        sample = exact + self.unwhiten((real_part + 1j * imaginary).reshape(exact.shape))
+        spectra = (self._with_mean(s, mean) for s, mean in zip(self.spectra, sample, strict=True))
         return replace(self, spectra=tuple(spectra))
+
+    def _with_mean(self, spectrum: Spectrum, padded: np.ndarray) -> Spectrum:
+        """A spectrum with other harmonics (C, H), a tone last, than the measured ones."""
+        channels = len(spectrum.mean)
+        mean = padded[:channels, : spectrum.harmonics]
+        if spectrum.tone is not None:
+            mean = np.concatenate([mean, padded[:channels, -1:]], axis=1)
+        return replace(spectrum, mean=mean)
 
 
 def groups(values: np.ndarray) -> list[np.ndarray]:

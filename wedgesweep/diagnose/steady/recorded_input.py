@@ -30,6 +30,8 @@ ABOVE_NOISE = 2.0
 # Least finite-difference step of a coefficient, times its order and over the fundamental, so that the error
 # of simulations does not hide it; else its standard deviation.
 LEAST_STEP = 1e-4
+# A covariance is taken anew if the variance of some combination of numbers changes by this factor.
+CHANGED = 1.1
 
 
 class InputHarmonics(NamedTuple):
@@ -167,19 +169,17 @@ class RecordedInputData(HarmonicData):
             return residual
         return np.einsum("tij,...tj->...ti", self.whitening, residual)
 
+    def correlated(self, noise: np.ndarray) -> np.ndarray:
+        """Noise of responses with that of inputs, as the response passes it on; inputs stay as recorded."""
+        if self.whitening is None:
+            return noise
+        return np.einsum("tij,...tj->...ti", np.linalg.inv(self.whitening), noise)
+
     def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
         return step
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return self
-
-    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
-        """New noise on responses and inputs; what the simulation was fed stays the truth."""
-        sample = super().bootstrap_sample(truth, rng)
-        for order, variance in enumerate(self.recorded.variance.T):
-            real_part, imaginary = rng.normal(size=(2, self.tests)) * np.sqrt(0.5 * variance)
-            sample = sample._with_coefficient(order, real_part + 1j * imaginary)
-        return sample
 
     def bare(self) -> Self:
         """The data as if inputs had no noise."""
@@ -210,6 +210,15 @@ class RecordedInputData(HarmonicData):
                     cross = column[:, :, None] * shared[:, part, :, order][:, None, :]
                     covariance += cross + np.swapaxes(cross, 1, 2)
         return replace(self, whitening=_inverse_root(covariance))
+
+    def renewed(self, scenario: Scenario) -> Self:
+        if self.whitening is None:
+            return self
+        there = self.with_covariance(scenario)
+        assert there.whitening is not None
+        both = self.whitening @ np.linalg.inv(there.whitening)
+        ratio = np.linalg.eigvalsh(both @ np.swapaxes(both, 1, 2))
+        return there if np.abs(np.log(ratio)).max() > np.log(CHANGED) else self
 
     def with_model_error(self, size: float) -> Self:
         some = super().with_model_error(size)
@@ -251,7 +260,8 @@ class RecordedInputData(HarmonicData):
         full = np.zeros((found.shape[0], channels, columns), complex)
         given = self.recorded.shared[:, :channels, :columns]
         full[:, : given.shape[1], : given.shape[2]] = given
-        scale = np.sqrt(2.0) / np.where(self.weight > 0.0, self.weight, np.inf)
+        # Of the noise alone; model errors have nothing to do with the input.
+        scale = np.sqrt(np.where(self.weight > 0.0, self._noise, 0.0))
         both = self.whiten(full * scale) / np.sqrt(2.0)
         for h in range(columns):
             found[:, 0, 0, :, h, h], found[:, 0, 1, :, h, h] = both[..., h].real, both[..., h].imag

@@ -176,6 +176,15 @@ class WhitenedHarmonics:
             scaled = np.stack([scaled[..., 0, :], second], axis=-2)
         return scaled
 
+    def unwhiten(self, whitened: np.ndarray) -> np.ndarray:
+        """Harmonics (..., T, C, H) that ``whiten`` turns into these; 0 where nothing is compared."""
+        scaled = whitened
+        if self.shape[0] == 2 and self.coherence.any():
+            share = self.coherence
+            second = np.sqrt(1.0 - abs(share) ** 2) * whitened[..., 1, :] + share * whitened[..., 0, :]
+            scaled = np.stack([whitened[..., 0, :], second], axis=-2)
+        return np.divide(scaled, self.weight, out=np.zeros_like(scaled), where=self.weight > 0.0)
+
     def compared(self, simulated: np.ndarray) -> np.ndarray:
         """Of simulated harmonics (..., K), a tone last, those that are compared (..., H)."""
         if self.tone is None:

@@ -1,0 +1,53 @@
+"""Residuals whose covariance depends on the model: it is taken where the best explanation ended.
+
+The noise of a recorded input reaches the comparison through the response. Near a resonance the base model may
+pass on much more or much less of it than the model that is right.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from wedgesweep.diagnose.explanation import Explanation, penalised
+from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.search import Scans, Search
+
+# So many of the best explanations are fitted again, in so many iterations.
+REFITTED, ITERATIONS = 8, 8
+
+
+class Explained(NamedTuple):
+    """Result of a search: the base model and all explanations, best first, with what was scanned."""
+
+    search: Search
+    base: Explanation
+    explanations: list[Explanation]
+    scans: Scans
+
+
+def with_renewed_covariance(explained: Explained) -> Explained:
+    """Everything compared again with the covariance of the best explanation, the leading ones refitted.
+
+    All explanations share one covariance, as only then are their misfits on one scale.
+    """
+    search, base, found, scans = explained
+    best = min([base, *found], key=penalised).fit
+    data = search.data.renewed(best.model.scenario(best.point))
+    if data is search.data:
+        return explained
+    search = replace(search, data=data)
+    found = sorted((_compared_again(search, each) for each in found), key=penalised)
+    again = [_compared_again(search, base), *found[:REFITTED]]
+    base, *leading = search.each(lambda each: _refitted(search, each), again)
+    found = sorted([*leading, *found[REFITTED:]], key=penalised)
+    scans = {effect: [data.compared_again(each) for each in scan] for effect, scan in scans.items()}
+    return Explained(search, base, found, scans)
+
+
+def _compared_again(search: Search, each: Explanation) -> Explanation:
+    model = replace(each.fit.model, data=search.data)
+    evaluation = search.data.compared_again(each.fit.evaluation)
+    return search.explanation(replace(each.fit, model=model, evaluation=evaluation))
+
+
+def _refitted(search: Search, each: Explanation) -> Explanation:
+    return search.explanation(minimise(each.fit.model, each.fit.evaluation, ITERATIONS))
