@@ -7,7 +7,17 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.measured import sampling
-from wedgesweep.measured.declarations import INPUT, UNITS, units
+from wedgesweep.measured.declarations import (
+    AMPLITUDE,
+    FORCE_AMPLITUDE,
+    INPUT,
+    LOOP,
+    STEADY,
+    TRANSIENT,
+    UNITS,
+    units,
+)
+from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.steadiness import frequency_faults
@@ -43,12 +53,12 @@ def build_record(
             problems.append(f"{channels.file}: {channel} is constant; there is no vibration in it")
     if len(problems) > before:
         return None
-    amplitude = given.get("amplitude_mm")
+    amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
         file=given.get("file", channels.file),
         frequency=given.get("frequency_hz"),
-        amplitude=None if amplitude is None else amplitude * 1e-3,
+        amplitude=amplitudes[0] if amplitudes else None,
         amplitude_std=given.get("amplitude_std", 0.0),
         time=grid * UNITS["time"][channels.units["time"]],
         displacement=channels.si("displacement"),
@@ -56,6 +66,17 @@ def build_record(
         acceleration=channels.si("acceleration"),
         input=channels.si(INPUT),
         model=given.get("model", {}),
+        kind=given.get("kind", STEADY),
+        force=channels.si("force"),
+        cutoff=given.get("lowpass_hz"),
     )
-    problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
+    problems.extend(FAULTS[test.kind](test, channels.file, at))
     return None if len(problems) > before else test
+
+
+def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    return frequency_faults(test, file, at) or channel_faults(test, file)
+
+
+# Faults of a record (test, file, place of its keys) by its kind.
+FAULTS = {STEADY: _steady_faults, TRANSIENT: transient_faults, LOOP: loop_faults}
