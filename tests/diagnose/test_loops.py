@@ -112,7 +112,7 @@ def test_noise_of_a_filter_and_of_derivatives():
 
 def test_the_cutoff_is_where_the_noise_of_the_inertia_is_small():
     cutoff = highest_cutoff(1e-6, 3.0, 2.0, 1000.0)
-    assert 2.0 * LowPass(cutoff, 1000.0).noise(1e-6, 2) == pytest.approx(0.002 * 3.0, rel=1e-2)
+    assert 2.0 * LowPass(cutoff, 1000.0).noise(1e-6, 2) == pytest.approx(0.005 * 3.0, rel=1e-2)
     assert highest_cutoff(1e-12, 3.0, 2.0, 1000.0) == 200.0
 
 

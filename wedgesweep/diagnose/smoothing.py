@@ -18,7 +18,7 @@ from wedgesweep.measured.kinds import HIGHEST
 ORDER = 4
 # The cut-off is the highest one at which noise of the displacement makes up this share of the force, and at
 # most and at least these shares of the sampling rate.
-NOISE_SHARE, LOWEST = 0.002, 1e-3
+NOISE_SHARE, LOWEST = 0.005, 1e-3
 # The motion passes a filter of its own first, with a cut-off this much higher, so that its derivatives are
 # right wherever forces are compared.
 WIDER = 2.0

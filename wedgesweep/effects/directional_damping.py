@@ -1,11 +1,16 @@
 """Viscous damping that differs by direction, as between bump and rebound of a damper.
 
-    R = -coefficient (1 + asymmetry sign(z')) z'     on the mass
+    R + R_0 = -(coefficient + c_0) (1 + asymmetry sign(z')) z'     on the mass
 
-Neutral and default: coefficient = 0, asymmetry = 0.
+c_0 is the damper that the model itself has (an oscillator's ``damping_N_s_per_m``; a suspension has none) and
+R_0 = -c_0 z' its force: asymmetry is that of all viscous damping. Neutral and default: coefficient = 0,
+asymmetry = 0.
 """
 
-from wedgesweep.compiled import inlined
+from collections.abc import Mapping
+from typing import Any
+
+from wedgesweep.compiled import by_record, function_of, inlined
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
@@ -15,7 +20,13 @@ EFFECT = Effect(
     branch=NUMERICAL,
     meaning="viscous damping that differs by direction",
     quantities=(
-        Quantity("coefficient_N_s_per_m", 0.0, "mean coefficient", minimum=0.0, search=(0.0, 100.0)),
+        Quantity(
+            "coefficient_N_s_per_m",
+            0.0,
+            "coefficient added to the model's, mean of both directions",
+            minimum=0.0,
+            search=(0.0, 100.0),
+        ),
         Quantity(
             "asymmetry",
             0.0,
@@ -25,16 +36,27 @@ EFFECT = Effect(
             search=(-1.0, 1.0),
         ),
     ),
-    extends=("coefficient",),
+    extends=("coefficient", "asymmetry"),
     contains=("viscous_damping",),
 )
+
+
+def _damper(p):
+    """Coefficient (N s/m) of the damper that the model itself has."""
+
+
+def _of_system(fields: Mapping[str, Any]) -> Any:
+    return function_of(["p"], "p.oscillator.damping" if "oscillator" in fields else "0.0")
+
+
+by_record(_damper, _of_system)
 
 
 @inlined
 def force_on_mass(z, velocity, y, p):
     """Force on the mass (N, up positive) at z (m) and z' (m/s)."""
     own = p.directional_damping
-    return -own.coefficient * (velocity + own.asymmetry * abs(velocity))
+    return -own.coefficient * velocity - (own.coefficient + _damper(p)) * own.asymmetry * abs(velocity)
 
 
 @inlined
