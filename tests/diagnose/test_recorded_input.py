@@ -16,6 +16,7 @@ from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.recorded_input import stated, without_noise
 from wedgesweep.measured.measurement import Measurement, TestRecord
+from wedgesweep.measured.overrides import with_numbers
 from wedgesweep.solvers.periodic import at_rest
 
 LAW = "static-dynamic"
@@ -27,10 +28,12 @@ NOISE = 0.02
 DISPLACEMENT = {"displacement": {"column": "d", "unit": "m"}}
 
 
-def signals(frequency, amplitude, time, effects):
+def signals(frequency, amplitude, time, effects, numbers):
     """Relative displacement and input (m), exact."""
     omega = 2.0 * np.pi * np.array([frequency])
-    rows = simulation.records(config.parse(MODEL), LAW, effects, omega, np.array([amplitude]))
+    rows = simulation.records(
+        with_numbers(config.parse(MODEL), numbers), LAW, effects, omega, np.array([amplitude])
+    )
     shape = -1j * np.array([1.0, SECOND * np.exp(1j * PHASE)])
     excitation.set_series(rows, shape)
     found = simulation.respond(rows, at_rest(1), simulation.SIMULATED, 1e-9).harmonics[0, 0]
@@ -53,15 +56,20 @@ def measurement(
     noise=NOISE,
     input_noise=None,
     bench=(FREQUENCIES, AMPLITUDES),
+    numbers=None,
 ):
-    """Tests of 10 whole periods with noise on every channel, relative to its rms."""
+    """Tests of 10 whole periods with noise on every channel, relative to its rms.
+
+    ``numbers``: of the model in each test.
+    """
     rng = np.random.default_rng(seed)
     columns = DISPLACEMENT if columns is None else columns
     records = []
     for i, (f, a) in enumerate(zip(*bench, strict=True)):
         time = np.arange(2000) * 10.0 / f / 2000
         start = rng.uniform(0.0, 1.0 / f)
-        d, u = signals(f, a, time + start, effects or {})
+        own = numbers[i] if numbers else {}
+        d, u = signals(f, a, time + start, effects or {}, own)
         channels = {}
         for order, name in enumerate(("displacement", "velocity", "acceleration")):
             if name in columns:
@@ -81,6 +89,7 @@ def measurement(
                 amplitude=None,
                 amplitude_std=0.0,
                 time=time,
+                model=own,
                 **(empty | channels),
             )
         )
@@ -216,3 +225,16 @@ def test_bootstrap_samples_have_the_noise_of_responses_and_inputs():
     expected = data.observations.sum()
     assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / 200))
     assert np.std(squares) == pytest.approx(np.sqrt(2.0 * expected), rel=0.25)
+
+
+def test_numbers_of_single_tests_are_part_of_the_model():
+    """A heavier bolster in every other test: known, it is not missing, and the same cause is found in all."""
+    heavier = [{}, {"suspension.bolster_mass_kg": 0.9}] * 2
+    given = measurement(3, CAUSE, numbers=heavier)
+    found = diagnose(given, ("viscous_damping", "bolster_mass"))
+    assert found.finding.best.effects == ("viscous_damping",)
+    assert found.finding.verdict in ("named", "consistent-with")
+    unknown = replace(given, tests=tuple(replace(test, model={}) for test in given.tests))
+    scenario = Scenario(CAUSE, found.finding.best.fit.point)
+    q = [(harmonic_data(each).compare([scenario], 1e-6)[0].residual ** 2).sum() for each in (given, unknown)]
+    assert 100.0 * q[0] < q[1]
