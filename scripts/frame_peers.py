@@ -21,7 +21,7 @@ HARMONICS = 16
 # Terms of SINDy whose contribution to the force is less than this share (rms) are dropped.
 SPARSITY = 0.05
 # SINDy sees samples at which the plate is faster than this share of its highest velocity: where it sticks,
-# its friction is no function of its velocity, and with those samples the regression fails.
+# friction is no function of velocity, and with those samples the regression fails.
 MOVING = 0.1
 
 

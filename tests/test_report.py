@@ -223,6 +223,16 @@ def test_sentence_says_what_the_budget_left_out(tmp_path):
         assert not re.search(r"\.\s", sentence)
 
 
+def test_sentence_names_tests_whose_history_matters(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "named")
+    complete = plain(report.sentence(tmp_path))
+    for names, words in ((["a"], "in 1 test (a)"), (list("abcd"), "in 4 tests (a, b and c, ...)")):
+        document["never_steady"] = names
+        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+        sentence = plain(report.sentence(tmp_path))
+        assert sentence.startswith(f"{complete.removesuffix('.')}; {words} friction keeps ageing")
+
+
 @pytest.mark.parametrize(
     ("candidates", "words"),
     [(0, "there is no candidate that these tests could show"), (1, "the only candidate does not explain it")],

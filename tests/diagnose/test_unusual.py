@@ -1,13 +1,16 @@
 """Measurements that are allowed and unusual, from the files to the files."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 import pytest
 
 from tests.command import invoke
+from tests.diagnose.synthetic import drawn
 from wedgesweep import config
 from wedgesweep import measured as measurements
+from wedgesweep.diagnose.fit_data import Point, Scenario
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnosis_result import read
@@ -111,3 +114,15 @@ def test_a_place_that_cannot_be_written_to_is_told_at_once(measured):
     said = invoke("diagnose", measured, "-o", measured / "below" / "it", code=2)
     assert f"{measured}: not a directory" in said
     assert "base model" not in said
+
+
+def test_a_test_in_which_faces_creep_and_age_is_told_apart():
+    ageing = {"ageing": {"rate": 0.05, "time": 1e-3}}
+    # Between sliding and creeping within the ramp of friction.
+    data = drawn(ageing, bench=(np.array([5.0, 24.0, 24.0]), 1e-3 * np.array([1.5, 0.09, 5e-4])))
+    for effects, expected in ((ageing, [False, False, True]), ({}, [False] * 3)):
+        here = Scenario(effects, Point(np.zeros(0), *data.start()))
+        (found,) = data.compare([here], 1e-6)
+        assert found.found.all()
+        there = Scenario(effects, replace(here.point, warm=found.warm))
+        assert data.never_steady(there).tolist() == expected

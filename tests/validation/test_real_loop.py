@@ -1,4 +1,4 @@
-"""A published recording of a positioning system: friction that differs by direction is found in its damping."""
+"""A published recording of a positioning system: direction shows in its damping."""
 
 import shutil
 from pathlib import Path

@@ -285,6 +285,10 @@ class FitData(Protocol):
         """Whether (T,) a response does not react to small steps, though the measured one is not so."""
         return np.zeros(self.tests, bool)
 
+    def never_steady(self, scenario: Scenario) -> np.ndarray:
+        """Whether (T,) the response depends on how long the rig had run, which the records do not tell."""
+        return np.zeros(self.tests, bool)
+
     def search_nuisances(self, model: "Model", points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations of points, each test's nuisance parameters without a prior searched globally."""
         return model.evaluate_all(points)

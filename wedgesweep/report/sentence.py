@@ -8,10 +8,29 @@ from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.effects import confounded
 from wedgesweep.report import ladder, phrases
 
+# Tests that a sentence names.
+SHOWN = 3
+
 
 def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
-    return TEMPLATES[result.verdict](result).removesuffix(".") + _untried(result) + "."
+    return (
+        TEMPLATES[result.verdict](result).removesuffix(".") + _never_steady(result) + _untried(result) + "."
+    )
+
+
+def _never_steady(result: DiagnosisResult) -> str:
+    """Tests whose history the records do not tell, and what depends on it; empty for most diagnoses."""
+    names = result.document.get("never_steady", [])
+    if not names:
+        return ""
+    which = phrases.listing(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
+    them = "it is" if len(names) == 1 else "they are"
+    where = f"{phrases.counted(len(names), 'test')} ({which})"
+    return (
+        f"; in {where} friction keeps ageing as the faces only creep: "
+        f"{them} simulated as after 100 periods, and rate and time of ageing hold only if that is true"
+    )
 
 
 def _untried(result: DiagnosisResult) -> str:

@@ -13,6 +13,7 @@ from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.sampled_data import SampledData
@@ -47,6 +48,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "next_test": _following(found.next_test, data.model.amplitude_unit),
         "ladder": [_rung(each) for each in found.ladder],
         "extended": list(best.effects),
+        "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
         "kind": data.kind,
@@ -57,6 +59,15 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
+
+
+def _never_steady(fit: Fit) -> list[str]:
+    """Tests whose simulation depends on how long the rig had run before they were recorded."""
+    data = fit.model.data
+    if not fit.evaluation.found:
+        return []
+    never = data.never_steady(fit.model.scenario(fit.point))
+    return [name for name, one in zip(data.names, never, strict=True) if one]
 
 
 def _not_testable(found: Diagnosis) -> list[str]:

@@ -18,7 +18,9 @@ from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
 from wedgesweep.effects import acting
+from wedgesweep.effects.states import TIME, kinds
 from wedgesweep.natural_units import NaturalUnits
+from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
 
 # Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
@@ -249,6 +251,12 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """Whether (T,) a test was measured to move, and sticks in the simulation."""
         moved = (np.abs(evaluation.response.whitened) ** 2).sum(axis=(-2, -1))
         return evaluation.found_tests & (moved < STICKS**2 * self.power)
+
+    def never_steady(self, scenario: Scenario) -> np.ndarray:
+        """Whether (T,) a clock ran for longer than any response takes to repeat."""
+        clocks = [kind == TIME for _, kind in kinds(self.records(scenario).dtype.names)]
+        elapsed = scenario.point.warm.state[:, : len(clocks)][:, clocks]
+        return (elapsed * self.omega[:, None] / (2.0 * np.pi) > LONGEST_PERIOD).any(axis=1)
 
     def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
         return amplitude_grid.best_amplitudes(model, points)
