@@ -10,7 +10,7 @@ import xarray as xr
 from wedgesweep.sweep.dataset import HARMONICS, STATUSES, VARIABLES
 
 LAWS = ("coulomb", "static-dynamic", "exponential")
-BETAS = (0.1, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.75, 2.2, 2.6, 3.0)
+BETAS = (0.1, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.75, 2.2, 2.6, 3.0, *np.linspace(3.1, 3.8, 8))
 AMPLITUDES = (1e-5, 5e-5, 2e-4, 5e-4, 1e-3, 4e-3)
 PERIODS, SAMPLES = 3, 64
 FAILED = {"friction_law": 1, "beta": 6, "amplitude": 4}
@@ -105,6 +105,8 @@ def _values(ds: xr.Dataset) -> dict[str, xr.DataArray]:
         "peak_velocity": swing * beta * OMEGA_N,
         "stick_fraction": stuck.mean("phase"),
         "stick_phases": 2.0 * (stuck.mean("phase") > 0.0),
+        "periodicity": 0.1 * (beta == 0.6) * (a > 3e-4),
+        "period": -1.0 + 0.0 * a,
         "lift_off_fraction": (0.4 * (a * beta**2 > 5e-4)).where(moving > 0.0),
         "displacement": swing * sine.clip(-cut, cut) / cut,
         "velocity": velocity.where(~stuck, 0.0),

@@ -268,6 +268,7 @@ def test_ctrl_c_stops_threads_at_once(here):
     assert process.returncode == 130, told
     assert "finished cases are stored in long.nc.partial; rerun the same command" in told
     assert "Traceback" not in told
+    assert "cases are drawn" in invoke("plot", "peak-to-peak", "long.nc")
     assert "from an earlier run" in run("long.toml", "--n-jobs", 2)
     run("long.toml", "-o", "other.nc", "--n-jobs", 1, "--backend", "loky")
     small_sweep.assert_same_numbers(xr.load_dataset("long.nc"), xr.load_dataset("other.nc"))
@@ -331,7 +332,7 @@ def test_case_faults(here, arguments, words):
 
 
 def test_plot_one_kind(here, drawn_dataset):
-    told = invoke("plot", "response", drawn_dataset, "--beta", 1.7, "--amplitude", 1, "-o", "r.svg")
+    told = invoke("plot", "response", drawn_dataset, "--beta", 1.75, "--amplitude", 1, "-o", "r.svg")
     assert told == "wrote r.svg\n"
     assert (here / "r.svg").read_text().startswith("<?xml")
     assert f"wrote {drawn_dataset.parent / 'stick-map.png'}" in invoke("plot", "stick-map", drawn_dataset)
@@ -342,8 +343,8 @@ def test_plot_one_kind(here, drawn_dataset):
 def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
     given = {}
 
-    def draw(target, ds, beta=None, amplitudes=None, law=None):
-        given.update(beta=beta, amplitudes=amplitudes, law=law)
+    def draw(target, ds, beta=None, amplitudes=None):
+        given.update(beta=beta, amplitudes=amplitudes, law=ds["friction_law"].item())
         return friction_laws.draw(target, ds)
 
     monkeypatch.setattr(phase_portrait, "draw", draw)
@@ -410,6 +411,37 @@ def test_plot_all(here, drawn_dataset):
     invoke("plot", "all", drawn_dataset, "-o", "new/figures", "--beta", 0.4)
     made = {path.name for path in (here / "new" / "figures").iterdir()}
     assert made == {f"{kind}.png" for kind in figures.DESCRIPTIONS}
+
+
+def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_dataset):
+    to = ("-o", "figure.png")
+    assert invoke("plot", "response", drawn_dataset, *to, "--beta", 0.4) == "wrote figure.png\n"
+    told = invoke("plot", "response", drawn_dataset, *to, "--frequency", 5.3, "--law", "COULOMB")
+    assert "beta 0.390139: the nearest one there is 0.4" in told
+    told = invoke("plot", "bifurcation", drawn_dataset, *to, "--amplitude", 1.05)
+    assert "amplitude 0.00105: the nearest one there is 0.001" in told
+    for arguments, words in (
+        (("response", "--beta", 99), "response: no beta near 99; the dataset has 20 from 0.1 to 3.8"),
+        (("bifurcation", "--amplitude", 50), "bifurcation: no amplitude near 0.05; the dataset has 6 from"),
+        (("response", "--beta", 1, "--frequency", 10), "give either --beta or --frequency"),
+        (("stick-map", "--law", "x"), "stick-map: no friction law 'x' in the dataset; it has coulomb, stat"),
+    ):
+        assert words in invoke("plot", arguments[0], drawn_dataset, *to, *arguments[1:], code=2)
+
+
+def test_what_lies_outside_of_validity_is_counted_and_told(here, drawn_dataset):
+    told = invoke("status", drawn_dataset, code=1)
+    assert "lift off, which the model leaves out: outside of its validity (variable lift_off_" in told
+    assert "did not reach steady state" in told
+    told = invoke("case", "few.toml", "--law", "Coulomb", "--beta", 1.1, "--amplitude", 1e9)
+    assert "outside of the model's validity: a joint lifts off in" in told
+
+
+def test_static_below_dynamic_friction_is_told(here):
+    assert "friction.static" not in invoke("check", "few.toml")
+    (here / "few.toml").write_text(FEW + "\n[friction]\nstatic = 0.1\ndynamic = 0.3\n")
+    for told in (invoke("check", "few.toml"), run("few.toml")):
+        assert "friction.static = 0.1 is below friction.dynamic = 0.3: friction rises once" in told
 
 
 def test_plot_of_a_diagnosis(here, drawn_dataset):

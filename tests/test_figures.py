@@ -9,12 +9,22 @@ from matplotlib.figure import Figure
 
 from tests import fixture_dataset
 from wedgesweep import config, figures
-from wedgesweep.figures import amplitude_ratio, bifurcation, cases, catalogue, friction_laws, stick_map
+from wedgesweep.figures import (
+    amplitude_ratio,
+    bifurcation,
+    cases,
+    catalogue,
+    friction_laws,
+    response,
+    stick_map,
+    validity,
+)
 from wedgesweep.friction import LAWS
 from wedgesweep.sweep.run import Sweep
 
 KINDS = sorted(figures.DESCRIPTIONS)
 FROM_LISTS = ("friction-laws", "phase-portrait")
+FEWEST = {"bifurcation": "20 frequencies", "stick-map": "4 amplitudes"}
 FROM_WAVEFORMS = ("bifurcation", "phase-portrait", "response")
 
 
@@ -60,6 +70,10 @@ def grid(request):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_small_and_large_grids(kind, grid):
+    if grid["status"].size == 1 and kind in FEWEST:
+        with pytest.raises(ValueError, match=f"^{kind}: needs {FEWEST[kind]} or more"):
+            figures.draw(grid, kind)
+        return
     figures.draw(grid, kind).draw_without_rendering()
 
 
@@ -167,7 +181,8 @@ def test_a_new_figure_is_one_file(dataset, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
-    one = dataset.sel(friction_law="coulomb").isel(amplitude=[4])
+    one = dataset.sel(friction_law="coulomb")
+    one = one if kind in FEWEST else one.isel(amplitude=[4])
     figure = Figure(layout="constrained")
     left, right = figure.subplots(1, 2)
     assert figures.draw(one, kind, ax=right) is figure
@@ -195,15 +210,15 @@ def test_several_panels_are_drawn_into_a_given_subfigure(kind, dataset):
 def test_a_case_is_selected_by_single_values(dataset):
     one = dataset.sel(friction_law="coulomb", beta=1.0, amplitude=1e-3)
     assert len(figures.draw(one, "phase-portrait").axes) == 1
-    (line,) = figures.draw(one, "peak-to-peak").axes[0].lines
+    line = figures.draw(one, "peak-to-peak").axes[0].lines[0]
     assert line.get_xdata() == pytest.approx(one["frequency"].item())
 
 
 def test_unknown_figures_and_options_list_the_valid_ones(dataset):
     with pytest.raises(ValueError, match=r"no figure 'stickmap'.*stick-map"):
         figures.draw(dataset, "stickmap")
-    with pytest.raises(ValueError, match=r"^response: unknown option 'law'; it takes beta, amplitudes"):
-        figures.draw(dataset, "response", law="coulomb")
+    with pytest.raises(ValueError, match=r"^response: unknown option 'laws'; it takes beta, amplitudes, law"):
+        figures.draw(dataset, "response", laws="coulomb")
 
 
 def test_frictionless_ratio(dataset):
@@ -215,7 +230,7 @@ def test_frictionless_ratio(dataset):
 
 def test_poincare_samples_are_one_per_period_at_phase_0(dataset):
     samples = bifurcation.poincare_samples(dataset)
-    assert samples.shape == (3, 12, 6, fixture_dataset.PERIODS)
+    assert samples.shape == (3, 20, 6, fixture_dataset.PERIODS)
     wave = dataset["displacement"].isel(friction_law=0, beta=5, amplitude=4)
     whole_turns = np.isclose(np.mod(dataset["phase"] / (2.0 * np.pi) + 1e-9, 1.0), 0.0, atol=1e-6)
     assert samples[0, 5, 4].tolist() == wave.values[whole_turns].tolist()
@@ -277,20 +292,66 @@ def test_stick_map_cells_enclose_their_centres():
         for logarithmic in (False, True):
             edges = stick_map.cell_edges(centres, logarithmic)
             assert ((edges[:-1] < centres) & (centres < edges[1:])).all()
-    assert stick_map.is_logarithmic(np.geomspace(0.005, 4.75, 20))
-    assert not stick_map.is_logarithmic(np.linspace(0.01, 0.1, 19))
 
 
 def test_nearest_case_is_chosen_and_named(dataset):
     figure = figures.draw(dataset, "response", beta=1.7, amplitudes=[0.9e-3, 1.1e-3])
     assert "1.75" in figure.get_suptitle()
     assert [tick.get_text() for tick in figure.axes[0].get_yticklabels()] == ["1"]
-    figure = figures.draw(dataset, "phase-portrait", beta=0.9, law="exponential")
+    figure = figures.draw(dataset, "phase-portrait", beta=0.9, law="Exponential")
     assert all("exponential" in ax.get_title() for ax in figure.axes)
-    figure = figures.draw(dataset, "bifurcation", amplitude=3e-3)
+    figure = figures.draw(dataset, "bifurcation", amplitude=3.5e-3)
     assert "4 mm" in figure.get_suptitle()
     figure = figures.draw(dataset, "peak-to-peak", amplitudes=5e-4)
     assert [ax.get_title() for ax in figure.axes] == ["$a$ = 0.5 mm"]
+
+
+def test_what_is_far_from_the_grid_is_an_error(dataset):
+    for kind, picks in (("response", {"beta": 99.0}), ("peak-to-peak", {"amplitudes": [0.05]})):
+        with pytest.raises(
+            ValueError, match=f"^{kind}: no (beta near 99|amplitude near 0.05); the dataset has"
+        ):
+            figures.draw(dataset, kind, **picks)
+
+
+def test_response_picks_a_beta_that_moves(dataset):
+    place = response._lowest_that_moves(dataset)
+    moving = (dataset["stick_fraction"] < cases.SLIPS).mean(["friction_law", "amplitude"])
+    assert moving[place] >= 0.5
+    assert (moving[:place] < 0.5).all()
+
+
+@pytest.mark.parametrize("kind", ["amplitude-ratio", "peak-to-peak", "stick-map"])
+def test_cases_outside_of_validity_and_unsettled_ones_are_marked(kind, dataset):
+    figure = figures.draw(dataset, kind)
+    told = str([text.get_text() for legend in figure.legends for text in legend.get_texts()])
+    assert "lift-off: outside of validity" in told
+    assert "not settled" in told
+    plain = dataset.assign(lift_off_fraction=0.0 * dataset["lift_off_fraction"], period=1 + dataset["status"])
+    told = str(
+        [text.get_text() for legend in figures.draw(plain, kind).legends for text in legend.get_texts()]
+    )
+    assert "lift-off" not in told
+    assert "not settled" not in told
+
+
+def test_marked_points_are_those_of_the_variables(dataset):
+    case = dataset.isel(friction_law=0, amplitude=5)
+    ax = Figure().subplots()
+    validity.mark(ax, case["beta"].values, case["amplitude_ratio"].values, case, "black")
+    hollow, grey = ax.lines
+    assert hollow.get_xdata().tolist() == case["beta"].values[case["lift_off_fraction"] > 0.0].tolist()
+    assert grey.get_xdata().tolist() == [0.6]
+    assert "24 of" not in validity.shares(case)
+    assert f"{len(hollow.get_xdata())} of 20 cases lift off" in validity.shares(case)
+
+
+@pytest.mark.parametrize("law", ["Coulomb", "EXPONENTIAL"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_figure_takes_a_law(kind, law, dataset):
+    told = str([ax.get_title() for ax in figures.draw(dataset, kind, law=law).axes])
+    assert kind == "peak-to-peak" or law.lower() in told
+    assert "static-dynamic" not in told
 
 
 def test_unknown_law_lists_those_of_the_dataset(dataset):

@@ -12,7 +12,7 @@ from wedgesweep import diagnosis_result, formatting, report
 from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
-from wedgesweep.report import html
+from wedgesweep.report import html, phrases, summary
 from wedgesweep.report.inline_figures import InlineFigures
 
 VOID = {"meta", "img", "link", "br"}
@@ -142,6 +142,31 @@ EXPECTED = {
         "explains all tests (held-out tests: 1.5 %; without: 35 %; next best, guide_friction: 14 %)",
     ),
 }
+
+
+LEADS = {
+    "nothing-missing": "The model misses nothing that these tests show.",
+    "named": "The model misses ",
+    "consistent-with": "; the evidence is weak.",
+    "tied": "; these tests cannot tell which.",
+    "data-insufficient": "The model misses something, and these tests cannot show what.",
+    "none-of-mine": "The model misses something that is none of the known effects.",
+}
+
+
+def test_the_page_begins_with_what_is_missing_in_plain_words(written):
+    verdict, directory, page = written
+    result = diagnosis_result.read(directory)
+    lead = summary.lead(result)
+    assert LEADS[verdict] in lead
+    assert "_" not in lead
+    assert page.text.index(plain(lead)) < page.text.index("Error before and after")
+    assert page.text.index("Error before and after") < page.text.index(plain(report.sentence(directory)))
+    assert "Next step: " in page.text
+    if verdict == "named":
+        assert "error of the model" in page.text
+        base = result.document["ladder"][0]["accuracy"]
+        assert plain(phrases.accuracy(base)) in page.text
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)

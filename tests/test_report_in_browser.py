@@ -48,7 +48,7 @@ def test_opens_without_error_and_without_network(tab, page):
     asked = {event["request"]["url"].partition(":")[0] for event in tab.of("Network.requestWillBeSent")}
     assert asked <= {"file", "data"}
     assert tab.of("Network.loadingFailed") == []
-    assert tab.evaluate("document.querySelector('main p').innerText") == report.sentence(page.parent)
+    assert tab.evaluate("document.querySelector('main .sentence').innerText") == report.sentence(page.parent)
 
 
 def test_the_browser_reports_errors(tab, tmp_path):

@@ -1,6 +1,10 @@
 """How a case can end."""
 
 from enum import IntEnum, auto
+from typing import Any
+
+# A case has settled if its last two periods differ by less than this share of the input amplitude.
+SETTLED = 1e-3
 
 
 class Outcome(IntEnum):
@@ -15,3 +19,11 @@ class Outcome(IntEnum):
 
     def __str__(self) -> str:
         return self.name.lower()
+
+
+def settled(period: Any, periodicity: Any) -> Any:
+    """Whether responses repeat; where no period was looked for, whether the last two periods agree.
+
+    The arguments are arrays: the dataset's variables of these names.
+    """
+    return (period > 0) | ((period < 0) & (periodicity <= SETTLED))

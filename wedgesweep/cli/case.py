@@ -7,7 +7,7 @@ import click
 
 from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.options import CONFIG, OutputPath, command_line
-from wedgesweep.cli.run import announce_compiling
+from wedgesweep.cli.run import announce_compiling, print_remark
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,6 +61,7 @@ def case(
     from wedgesweep import config
 
     settings = config.load(config_path).single_case(amplitude, beta, frequency, law, force)
+    print_remark(settings)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
     announce_compiling(settings.solver.method, system=settings.system)
@@ -71,7 +72,22 @@ def case(
     if ds["status"].item():
         click.echo(f"failed: {ds['message'].item()}", err=True)
         click.get_current_context().exit(SOME_FAILED)
+    _print_remarks(ds)
     _write(ds, stem)
+
+
+def _print_remarks(ds: "xr.Dataset") -> None:
+    """Tell what makes the numbers of a solved case doubtful."""
+    from wedgesweep.sweep import outcomes
+
+    (result,) = outcomes.of_dataset(ds)
+    if result.lifted:
+        share = f"{100.0 * result.lift_off_fraction:.2g} % of the slipping time"
+        click.echo(
+            f"outside of the model's validity: a joint lifts off in {share}, where it is held", err=True
+        )
+    if not result.settled:
+        click.echo("not settled: the response still changes from period to period", err=True)
 
 
 def _name(config_path: Path, settings: "Config") -> str:

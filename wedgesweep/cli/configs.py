@@ -10,6 +10,7 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, OutputPath
+from wedgesweep.cli.run import print_remark
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
@@ -57,6 +58,7 @@ def check(config_path: Path) -> None:
         return
     settings = config.load(config_path)
     click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
+    print_remark(settings)
     from wedgesweep.sweep import backend
     from wedgesweep.sweep.estimate import estimate
     from wedgesweep.sweep.run import Sweep

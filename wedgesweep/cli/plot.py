@@ -1,6 +1,7 @@
 """plot: figures of a dataset, or of a diagnosis."""
 
 import os
+from math import isclose, pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
+from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,6 +56,7 @@ POSITIVE = click.FloatRange(min=0.0, min_open=True)
 )
 @click.option("--format", "suffix", type=click.Choice(SUFFIXES), default="png", show_default=True)
 @click.option("--beta", type=POSITIVE, help="Frequency ratio; the nearest one in OUT is drawn.")
+@click.option("--frequency", type=POSITIVE, metavar="HZ", help="Frequency in Hz, instead of --beta.")
 @click.option(
     "--amplitude",
     type=POSITIVE,
@@ -61,7 +64,7 @@ POSITIVE = click.FloatRange(min=0.0, min_open=True)
     metavar="MM",
     help="Input amplitude in mm; the nearest one in OUT is drawn; may be repeated.",
 )
-@click.option("--law", help="Friction law to draw.")
+@click.option("--law", help="Friction law to draw; default: all.")
 @click.pass_context
 def plot(
     ctx: click.Context,
@@ -72,12 +75,13 @@ def plot(
     **picks: Any,
 ) -> None:
     """Draw a figure."""  # the text of --help is HELP
-    picks["amplitude"] = [value * 1e-3 for value in picks["amplitude"]]
-    options = {name: value for name, value in picks.items() if value not in (None, [])}
+    if None not in (picks["beta"], picks["frequency"]):
+        message = "give either --beta or --frequency"
+        raise click.UsageError(message)
     if kind == ALL:
         directory, found = output or _beside(path), _read(path)
         directory.mkdir(parents=True, exist_ok=True)
-        _draw_all(found, directory, suffix, options)
+        _draw_all(found, directory, suffix, _options(found, picks))
         return
     _require_kind(kind, path)
     asked = ctx.get_parameter_source("suffix") is not ParameterSource.DEFAULT
@@ -87,7 +91,8 @@ def plot(
     file = output or _beside(path) / f"{kind}.{suffix}"
     _require_place(file)
     try:
-        _draw(kind, _read(path), file, options)
+        found = _read(path)
+        _draw(kind, found, file, _options(found, picks))
     except ValueError as error:
         raise Failure(str(error)) from error
 
@@ -98,9 +103,40 @@ def _beside(path: Path) -> Path:
 
 def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     from wedgesweep import diagnosis_result
-    from wedgesweep.sweep import dataset
+    from wedgesweep.sweep import dataset, run
 
-    return diagnosis_result.read(path) if path.is_dir() else dataset.read(path)
+    if path.is_dir():
+        return diagnosis_result.read(path)
+    unfinished = run.unfinished(path)
+    if unfinished is None:
+        return dataset.read(path)
+    done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
+    click.echo(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn", err=True)
+    return unfinished
+
+
+def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> dict[str, Any]:
+    """The picks that were given, in the units of the dataset; tell where it holds only their neighbours."""
+    import numpy as np
+    import xarray as xr
+
+    given = {name: value for name, value in picks.items() if value not in (None, ())}
+    if not isinstance(found, xr.Dataset):
+        return given
+    if "frequency" in given:
+        given["beta"] = 2.0 * pi * given.pop("frequency") / found.attrs["omega_n"]
+    if "amplitude" in given:
+        factor = 1.0 if found.attrs.get("excitation") == "force" else 1e-3
+        given["amplitude"] = [value * factor for value in given["amplitude"]]
+    for name in ("beta", "amplitude"):
+        for value in np.atleast_1d(given.get(name, ())):
+            there = np.atleast_1d(found[name].values)
+            nearest = there[np.abs(there - value).argmin()]
+            if not isclose(nearest, value, rel_tol=1e-6):
+                unit = found[name].attrs.get("units", "1").replace("1", "")
+                told = f"{name} {value:.6g} {unit}".rstrip()
+                click.echo(f"{told}: the nearest one there is {nearest:.6g}", err=True)
+    return given
 
 
 def _require_kind(kind: str, path: Path) -> None:
@@ -142,7 +178,7 @@ def _draw_all(
 def _draw(
     kind: str, found: "xr.Dataset | DiagnosisResult", file: Path, options: dict[str, Any], strict: bool = True
 ) -> None:
-    picks = _accepted(kind, figures.of(found)[kind].picks, options, strict)
+    picks = _accepted(kind, figures.options(figures.of(found)[kind]), options, strict)
     figures.save(figures.draw(found, kind, **picks), file)
     click.echo(f"wrote {file}")
 

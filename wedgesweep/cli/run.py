@@ -134,13 +134,18 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> i
         click.echo(f"{sweep.out}: already complete; use --fresh to run it again")
         return print_summary(stored)
     announce_compiling(sweep.settings.method, sweep.extended, sweep.config.system)
-    if sweep.config.remark:
-        click.echo(sweep.config.remark, err=True)
+    print_remark(sweep.config)
     started = perf_counter()
     result = sweep.run(progress=progress, **options)
     code = print_summary(result)
     click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
     return code
+
+
+def print_remark(settings: "Config") -> None:
+    """Print what is to be known of the friction of a config."""
+    if settings.remark:
+        click.echo(f"note: {settings.remark}", err=True)
 
 
 def announce_compiling(method: str, extended: bool = False, system: str = "suspension") -> None:

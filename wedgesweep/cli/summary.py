@@ -29,13 +29,24 @@ def print_outcomes(found: Sequence["CaseResult"], total: int | None = None) -> i
     counts = ", ".join(f"{count} {status}" for status, count in outcomes.counts(found).most_common())
     remaining = "" if total is None else f", {total - len(found)} remaining"
     click.echo(f"{total or len(found)} cases: {counts or 'none finished'}{remaining}")
-    if unsettled := len(outcomes.unsettled(found)):
-        click.echo(
-            f"  {unsettled} of {len(found)} cases did not reach steady state (variables period, periodicity)"
-        )
+    _print_share(
+        len(outcomes.unsettled(found)),
+        len(found),
+        "did not reach steady state (variables period, periodicity)",
+    )
+    _print_share(
+        len(outcomes.lifted(found)),
+        len(found),
+        "lift off, which the model leaves out: outside of its validity (variable lift_off_fraction)",
+    )
     failed = outcomes.failures(found)
     for outcome in failed[:LISTED]:
         click.echo(f"  {outcome}")
     if len(failed) > LISTED:
         click.echo(f"  and {len(failed) - LISTED} more")
     return SOME_FAILED if failed else 0
+
+
+def _print_share(count: int, total: int, what: str) -> None:
+    if count:
+        click.echo(f"  {count} of {total} cases {what}: {100.0 * count / total:.3g} %")

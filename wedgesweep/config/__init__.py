@@ -203,7 +203,7 @@ class Config:
         config's first.
         """
         given = {
-            "friction_law": law or self.case_list()[0].law,
+            "friction_law": law.lower() if law else self.case_list()[0].law,
             "beta": beta,
             "frequency_hz": frequency_hz,
             "excitation": self.document["sweep"].get("excitation"),
@@ -323,7 +323,22 @@ class Config:
 
     @property
     def remark(self) -> str | None:
-        """A note for readers of the results if effects change a friction law."""
+        """What readers of the results should know of the friction: effects change it, or it is unusual."""
+        return "; ".join(filter(None, (self._regularised(), self._strengthening()))) or None
+
+    def _strengthening(self) -> str | None:
+        """Static friction that is below dynamic friction."""
+        static, dynamic = (self.friction[name] for name in ("static", "dynamic"))
+        if static >= dynamic:
+            return None
+        return (
+            f"friction.static = {static:g} is below friction.dynamic = {dynamic:g}: friction rises once the "
+            "faces slip, so that nothing makes them break away and stick again; dry friction has it the "
+            "other way round (coulomb knows dynamic friction only)"
+        )
+
+    def _regularised(self) -> str | None:
+        """Set-valued friction that effects make smooth."""
         from wedgesweep.systems.suspension import parameters
 
         law, sweep = "coulomb", self.sweep

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
+# The pick that figures of all datasets share.
+LAW = "law"
 
 FIGURES = catalogue.declared(Path(__file__).parent, __name__)
 DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
@@ -51,8 +53,8 @@ def draw(
         new figure is made, in a size that suits its panels.
     **picks
         Options of the figure, by the names that ``figures.FIGURES[name].picks`` lists: ``beta`` (frequency
-        ratio), ``amplitude`` or ``amplitudes`` (m) and ``law`` of a dataset, ``tests`` (indices) of a
-        diagnosis. The nearest values that the data hold are drawn.
+        ratio), ``amplitude`` or ``amplitudes`` (m) of a dataset, ``tests`` (indices) of a diagnosis; and
+        ``law`` of any dataset. The nearest values that the data hold are drawn, if they are near.
 
     Returns
     -------
@@ -75,13 +77,22 @@ def draw(
         raise ValueError(message)
     kind = kinds[name]
     try:
-        _require_known(picks, kind.picks)
-        checked = cases.checked(data, kind.needs, kind.case_lists) if isinstance(data, xr.Dataset) else data
+        _require_known(picks, options(kind))
+        checked = data
+        if isinstance(data, xr.Dataset):
+            checked = cases.checked(data, kind.needs, kind.case_lists)
+            if (law := picks.pop(LAW, None)) is not None:
+                checked = cases.of_law(checked, law)
         panels = kind.load().draw(figure if ax is None else ax, checked, **picks)
     except ValueError as error:
         message = f"{name}: {error}"
         raise ValueError(message) from error
     return panels.figure.figure  # of a subfigure: the figure that it is part of
+
+
+def options(kind: catalogue.FigureKind) -> tuple[str, ...]:
+    """Names of the picks of a figure: a law of any dataset, and its own."""
+    return kind.picks if kind.module.startswith(diagnosis.__name__) else (*kind.picks, LAW)
 
 
 def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:

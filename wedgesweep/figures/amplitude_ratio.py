@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "amplitude-ratio"
@@ -70,6 +70,7 @@ def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm, factor: float) -> bool:
         ratio = law["amplitude_ratio"].sel(amplitude=amplitude)
         color = style.SEQUENTIAL(norm(amplitude * factor))
         ax.plot(law["beta"], ratio, color=color, linewidth=1.1, marker=marker, markersize=3)
+        validity.mark(ax, law["beta"].values, ratio.values, law.sel(amplitude=amplitude), color)
         missing |= style.mark_missing(ax, law["beta"].values[np.isnan(ratio.values)], style.VERMILLION)
     return missing
 
@@ -102,9 +103,15 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     style.label(axes, style.BETA, words.ratio)
     bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), words.amplitude)
     style.decimal_ticks(bar.ax.yaxis)
+    marks = validity.handles(ds)
+    made.legend(marks, [str(mark.get_label()) for mark in marks])
+    notes = (
+        f"ratios below {LOWEST} are not shown",
+        "$\\times$ no result (failed or not run)" if missing else "",
+        validity.shares(ds),
+    )
     made.title(
         f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}",
-        f"ratios below {LOWEST} are not shown"
-        + ("; $\\times$ no result (failed or not run)" if missing else ""),
+        "; ".join(filter(None, notes)),
     )
     return made

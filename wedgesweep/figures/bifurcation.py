@@ -4,14 +4,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "bifurcation"
-DESCRIPTION = "Poincare samples of the displacement over frequency at one amplitude"
+DESCRIPTION = "Poincare samples over frequency at one amplitude, of 20 frequencies or more"
 NEEDS = ("displacement", "omega_n")
 
-FEW_BETAS = 60
+FEWEST_BETAS, FEW_BETAS = 20, 60
 
 
 def poincare_samples(ds: xr.Dataset) -> np.ndarray:
@@ -19,45 +19,59 @@ def poincare_samples(ds: xr.Dataset) -> np.ndarray:
     return ds["displacement"].transpose(..., "phase").values[..., :: cases.samples_per_period(ds)]
 
 
-def _draw_law(ax: Axes, law: xr.Dataset) -> bool:
-    samples = poincare_samples(law) * style.MM
+def _half_swing(law: xr.Dataset) -> np.ndarray:
+    """Half the largest peak-to-peak (m) of any law at each beta, NaN where nothing moves; shape (betas,)."""
+    waves = law["displacement"]
+    swing = 0.5 * (waves.max("phase") - waves.min("phase"))
+    largest = swing.max([name for name in swing.dims if name != "beta"]).values
+    return np.where(largest > 0.0, largest, np.nan)
+
+
+def _draw_law(ax: Axes, law: xr.Dataset, scale: np.ndarray) -> bool:
+    middle = 0.5 * (law["displacement"].max("phase") + law["displacement"].min("phase"))
+    samples = (poincare_samples(law) - middle.values[:, None]) / scale[:, None]
     periods = samples.shape[-1]
     largest = 7.5 if law.sizes["beta"] <= FEW_BETAS else 3.5
+    grey = validity.unsettled(law).values
     for period, values in enumerate(samples.T):
         # Rings that shrink from period to period keep coinciding samples visible.
-        size = largest * (1.0 - 0.65 * period / max(periods - 1, 1))
-        color = style.SEQUENTIAL(0.95 - 0.95 * period / max(periods - 1, 1))
+        share = period / max(periods - 1, 1)
+        look = {"markersize": largest * (1.0 - 0.65 * share), "markerfacecolor": "none"}
+        color = style.SEQUENTIAL(0.95 - 0.95 * share)
         name = f"kept period {period + 1}"
-        ax.plot(
-            law["beta"],
-            values,
-            "o",
-            markersize=size,
-            markerfacecolor="none",
-            color=color,
-            label=name,
-        )
+        ax.plot(law["beta"][~grey], values[~grey], "o", color=color, label=name, **look)
+        ax.plot(law["beta"][grey], values[grey], "o", color="0.75", zorder=1, **look)
     return style.mark_missing(ax, law["beta"].values[np.isnan(samples).all(axis=1)], style.GREY)
 
 
 def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Panels:
     """Draw a panel per law at the amplitude (m) nearest to the given one (default: the middle)."""
-    middle = ds["amplitude"].values[ds.sizes["amplitude"] // 2]
-    place = cases.nearest(ds["amplitude"], middle if amplitude is None else amplitude)[0]
+    if ds.sizes["beta"] < FEWEST_BETAS:
+        message = f"needs {FEWEST_BETAS} frequencies or more to show branches; there are {ds.sizes['beta']}"
+        raise ValueError(message)
+    place = ds.sizes["amplitude"] // 2 if amplitude is None else cases.nearest(ds["amplitude"], amplitude)[0]
     ds = ds.isel(amplitude=place)
     names, words = cases.laws(ds), labels.of(ds)
+    scale = _half_swing(ds)
     made = panels(target, len(names), size=(3.3, 3.5))
     axes = made.axes
     missing = False
     for ax, law in zip(axes, names, strict=True):
-        missing |= _draw_law(ax, ds.sel(friction_law=law))
+        missing |= _draw_law(ax, ds.sel(friction_law=law), scale)
         style.add_hertz_axis(ax, ds)
         ax.set_title(law, fontsize=10)
-    style.label(axes, style.BETA, words.displacement)
+    axes[0].set_ylim(-1.1, 1.1)
+    style.label(axes, style.BETA, f"${words.motion}$ from its middle, over the largest half swing [1]")
     made.legend(*axes[0].get_legend_handles_labels(), columns=6)
+    grey = int(validity.unsettled(ds).sum())
+    notes = (
+        words.sign,
+        "$\\times$ no result or no motion" if missing else "",
+        f"grey: {grey} of {ds['status'].size} cases that did not settle" if grey else "",
+    )
     made.title(
         f"Displacement at forcing phase 0 (${words.input}$ = 0, rising) of each kept period, "
-        f"{words.size(ds['amplitude'].item(), 4)}",
-        words.sign + ("; $\\times$ no result" if missing else ""),
+        f"{words.size(ds['amplitude'].item(), 4)}; the scale is that of each frequency",
+        "; ".join(filter(None, notes)),
     )
     return made

@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike
 
 # Amplitudes shown by default are those at which enough cases slip instead of creeping.
 SLIPS = 0.99  # stick fraction below which a case counts as slipping
+# A value that is asked for is answered by the nearest one there, if that differs by less than this share.
+FAR = 0.2
 SLIPPING_SHARE = 0.25  # of the cases at an amplitude
 
 
@@ -36,21 +38,38 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
     return ds
 
 
-def laws(ds: xr.Dataset, law: str | None = None) -> list[str]:
-    """Friction laws to draw, in the dataset's order: all of them, or the given one."""
-    present = list(dict.fromkeys(str(name) for name in np.atleast_1d(ds["friction_law"].values)))
-    if law is None:
-        return present
-    if law not in present:
+def laws(ds: xr.Dataset) -> list[str]:
+    """Friction laws to draw, in the dataset's order."""
+    return list(dict.fromkeys(str(name) for name in np.atleast_1d(ds["friction_law"].values)))
+
+
+def of_law(ds: xr.Dataset, law: str) -> xr.Dataset:
+    """Select the cases of a law, in capitals or not; raises ValueError if there are none."""
+    present = laws(ds)
+    if law.lower() not in present:
         message = f"no friction law '{law}' in the dataset; it has " + ", ".join(present)
         raise ValueError(message)
-    return [law]
+    if "friction_law" in ds.dims:
+        return ds.sel(friction_law=[law.lower()])
+    return ds.isel(case=ds["friction_law"].values == law.lower()) if "case" in ds.dims else ds
 
 
-def nearest(values: ArrayLike, wanted: ArrayLike) -> np.ndarray:
-    """Return indices of the values nearest to the wanted ones, each once, in order of index."""
-    values = np.atleast_1d(values)
-    return np.unique([np.abs(values - value).argmin() for value in np.atleast_1d(wanted)])
+def nearest(there: xr.DataArray, wanted: ArrayLike) -> np.ndarray:
+    """Return indices of the values nearest to the wanted ones, each once, in order of index.
+
+    Raises ValueError if one is farther than FAR from all of them.
+    """
+    values = np.atleast_1d(there.values)
+    places = []
+    for value in np.atleast_1d(wanted):
+        place = int(np.abs(values - value).argmin())
+        if abs(values[place] - value) > FAR * abs(value):
+            unit = there.attrs.get("units", "1").replace("1", "")
+            span = f"{values.min():.4g} to {values.max():.4g} {unit}".rstrip()
+            message = f"no {there.name} near {value:.4g}; the dataset has {values.size} from {span}"
+            raise ValueError(message)
+        places.append(place)
+    return np.unique(places)
 
 
 def spread(indices: Sequence[int] | np.ndarray, count: int) -> np.ndarray:

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "peak-to-peak"
@@ -25,6 +25,7 @@ def _draw_amplitude(ax: Axes, ds: xr.Dataset) -> bool:
         height = ds["peak_to_peak"].sel(friction_law=law).values * style.MM
         frequency = ds["frequency"].values
         ax.plot(frequency, height, linewidth=1.3, markersize=3, label=law, **look)
+        validity.mark(ax, frequency, height, ds.sel(friction_law=law), look["color"])
         missing |= style.mark_missing(ax, frequency[np.isnan(height)], look["color"])
     ax.set_title(labels.of(ds).size(ds["amplitude"].item(), 4), fontsize=10)
     ax.set_ylim(bottom=0.0)
@@ -39,9 +40,13 @@ def draw(target: Target, ds: xr.Dataset, amplitudes: ArrayLike | None = None) ->
     axes = made.axes
     missing = [_draw_amplitude(ax, ds.isel(amplitude=at)) for ax, at in zip(axes, places, strict=True)]
     style.label(axes, "frequency [Hz]", f"peak-to-peak of ${words.motion}$ [mm]")
-    made.legend(*axes[0].get_legend_handles_labels(), columns=4)
+    shown = ds.isel(amplitude=places)
+    handles = [*axes[0].get_legend_handles_labels()[0], *validity.handles(shown)]
+    made.legend(handles, [str(each.get_label()) for each in handles], columns=4)
     made.title(
         f"Peak-to-peak of ${words.motion}$ ({words.whose}) at fixed input amplitude",
-        "$\\times$ no result (failed or not run)" if any(missing) else "",
+        "; ".join(
+            filter(None, (any(missing) * "$\\times$ no result (failed or not run)", validity.shares(shown)))
+        ),
     )
     return made

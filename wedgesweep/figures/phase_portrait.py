@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "phase-portrait"
@@ -18,28 +18,25 @@ MOST_PANELS = 12
 STILL = 1e-6  # peak-to-peak over input amplitude, below which nothing moves
 
 
-def _from_grid(
-    ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None, law: str | None
-) -> list[xr.Dataset]:
+def _from_grid(ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None) -> list[xr.Dataset]:
     """Take cases row by row: an amplitude per row, a law per column."""
-    ds = ds.isel(beta=cases.nearest(ds["beta"], 0.4 if beta is None else beta)[0])
+    here = ds["beta"].values
+    ds = ds.isel(beta=np.abs(here - 0.4).argmin() if beta is None else cases.nearest(ds["beta"], beta)[0])
     ds = ds.isel(amplitude=cases.pick_amplitudes(ds, amplitudes, AMPLITUDES))
     return [
         ds.isel(amplitude=place).sel(friction_law=name)
         for place in range(ds.sizes["amplitude"])
-        for name in cases.laws(ds, law)
+        for name in cases.laws(ds)
     ]
 
 
-def _from_list(
-    ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None, law: str | None
-) -> list[xr.Dataset]:
+def _from_list(ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None) -> list[xr.Dataset]:
     """Keep the cases of a list that have the nearest values of what is asked for."""
-    keep = np.isin(ds["friction_law"].values, cases.laws(ds, law))
+    keep = np.ones(ds.sizes["case"], bool)
     for name, wanted in (("beta", beta), ("amplitude", amplitudes)):
         values = ds[name].values
         if wanted is not None:
-            keep &= np.isin(values, values[cases.nearest(values, wanted)])
+            keep &= np.isin(values, values[cases.nearest(ds[name], wanted)])
     return [ds.isel(case=place) for place in np.flatnonzero(keep)]
 
 
@@ -68,7 +65,9 @@ def _draw_case(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
         _draw_still(ax, case, omega_n)
     ax.locator_params(nbins=5)
     frequency = style.frequency(case["beta"].item(), omega_n)
-    ax.set_title(f"{law}, {labels.of(case).size(amplitude, 3)}\n{frequency}", fontsize=9)
+    ax.set_title(
+        f"{law}, {labels.of(case).size(amplitude, 3)}\n{frequency}{validity.remark(case)}", fontsize=9
+    )
 
 
 def draw(
@@ -76,16 +75,15 @@ def draw(
     ds: xr.Dataset,
     beta: float | None = None,
     amplitudes: ArrayLike | None = None,
-    law: str | None = None,
 ) -> Panels:
     """Draw the nearest beta (default 0.4 on a grid) and amplitudes (m), or a list of cases."""
     choose = _from_list if "case" in ds.dims else _from_grid
-    found = choose(ds, beta, amplitudes, law)
+    found = choose(ds, beta, amplitudes)
     if not found:
-        message = "no case of the dataset has this law, beta and amplitude together"
+        message = "no case of the dataset has this beta and amplitude together"
         raise ValueError(message)
     shown = found[:MOST_PANELS]
-    columns = 3 if "case" in ds.dims else len(cases.laws(ds, law))
+    columns = 3 if "case" in ds.dims else len(cases.laws(ds))
     made = panels(target, len(shown), columns=columns, size=(2.9, 2.5), share=False)
     for ax, case in zip(made.axes, shown, strict=True):
         _draw_case(ax, case, ds.attrs["omega_n"])

@@ -7,12 +7,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "response"
 DESCRIPTION = "relative displacement over time and input amplitude at one beta (Figs. 5-7)"
-NEEDS = ("displacement", "stuck", "omega_n")
+NEEDS = ("displacement", "stuck", "stick_fraction", "omega_n")
 
 ROWS = 12  # waveforms per panel by default: more would overlap
 PERIODS = 3
@@ -62,9 +62,17 @@ def _draw_scale(ax: Axes, per_ratio: float, largest: float, words: labels.Labels
     )
 
 
-def draw(target: Target, ds: xr.Dataset, beta: float = 0.3, amplitudes: ArrayLike | None = None) -> Panels:
-    """Draw a row per amplitude (m), each divided by it; a panel per law; the nearest beta."""
-    place = cases.nearest(ds["beta"], beta)[0]
+def _lowest_that_moves(ds: xr.Dataset) -> int:
+    """Index of the lowest beta at which cases of half of the amplitudes slip (else of most of them)."""
+    moving = (ds["stick_fraction"] < cases.SLIPS).mean(("friction_law", "amplitude")).values
+    return int(np.argmax(moving >= min(0.5, moving.max())))
+
+
+def draw(
+    target: Target, ds: xr.Dataset, beta: float | None = None, amplitudes: ArrayLike | None = None
+) -> Panels:
+    """Draw a row per amplitude (m), each divided by it, at the nearest beta or the lowest that moves."""
+    place = _lowest_that_moves(ds) if beta is None else cases.nearest(ds["beta"], beta)[0]
     if amplitudes is None:
         rows = _even_rows(ds.sizes["amplitude"])
     else:
@@ -83,6 +91,8 @@ def draw(target: Target, ds: xr.Dataset, beta: float = 0.3, amplitudes: ArrayLik
             case = {"friction_law": law, "amplitude": ds["amplitude"].values[row]}
             wave, stuck = waves.sel(case).values * per_ratio, ds["stuck"].sel(case).values
             _draw_row(ax, time, wave, stuck, row, style.law_style(law)["color"])
+            if remark := validity.remark(ds.sel(case)):
+                ax.text(time[-1], row + 0.3, remark.strip(), fontsize=6.5, color=style.GREY, ha="right")
         ax.set_title(law, fontsize=10)
     axes[0].set_yticks(range(len(rows)), [f"{a * words.factor:.3g}" for a in ds["amplitude"].values])
     axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))

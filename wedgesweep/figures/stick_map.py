@@ -9,24 +9,17 @@ from matplotlib.collections import QuadMesh
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "stick-map"
 DESCRIPTION = "stick fraction over frequency and amplitude, with lift-off and breakaway"
 NEEDS = ("stick_fraction", "omega_n", "breakaway_acceleration")
 
-LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
 FEW_FAILURES = 50
+FEWEST_AMPLITUDES = 4
+MOST_POINTS = 1500  # sampled points that are marked
 COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
-
-
-def is_logarithmic(values: np.ndarray) -> bool:
-    """Tell whether the steps of a grid are more even in ratio than in difference."""
-    if len(values) < 3 or values[0] <= 0.0:
-        return False
-    ratios, differences = np.diff(np.log(values)), np.diff(values)
-    return ratios.std() / ratios.mean() < differences.std() / differences.mean()
 
 
 def cell_edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
@@ -37,14 +30,16 @@ def cell_edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
     return np.exp(edges) if logarithmic else np.maximum(edges, 0.0)
 
 
-def _hatch(ax: Axes, beta_edges: np.ndarray, amplitude_edges: np.ndarray, marked: np.ndarray) -> None:
+def _hatch(
+    ax: Axes, beta_edges: np.ndarray, amplitude_edges: np.ndarray, marked: np.ndarray, pattern: str
+) -> None:
     """Hatch the marked cells as whole regions, along their edges."""
     if not marked.any():
         return
     # Each cell as four corner points of one value, so that a contour runs along the cell edges.
     x, y = np.repeat(beta_edges, 2)[1:-1], np.repeat(amplitude_edges, 2)[1:-1]
     corners = np.repeat(np.repeat(marked, 2, axis=0), 2, axis=1).astype(float)
-    region = ax.contourf(x, y, corners, levels=[0.5, 1.5], colors="none", hatches=["///"])
+    region = ax.contourf(x, y, corners, levels=[0.5, 1.5], colors="none", hatches=[pattern])
     region.set(edgecolor="white", linewidth=0.0, hatch_linewidth=0.5)
     ax.contour(x, y, corners, levels=[0.5], colors="white", linewidths=0.9)
 
@@ -53,8 +48,11 @@ def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -
     law = law.transpose("amplitude", "beta", ...)
     fraction = np.ma.masked_invalid(law["stick_fraction"].values)
     mesh = ax.pcolormesh(*edges, fraction, cmap=COLOURS, vmin=0.0, vmax=1.0, rasterized=True)
-    if LIFT_OFF in law:
-        _hatch(ax, *edges, law[LIFT_OFF].values > 0.0)
+    _hatch(ax, *edges, validity.lifted(law).values, "///")
+    _hatch(ax, *edges, validity.unsettled(law).values, "....")
+    if law["status"].size <= MOST_POINTS:
+        beta, amplitude = np.meshgrid(law["beta"], law["amplitude"] * labels.of(law).factor)
+        ax.plot(beta.ravel(), amplitude.ravel(), ".", color="white", markersize=1.5, alpha=0.6)
     rows, columns = np.nonzero(np.isnan(law["stick_fraction"].values))
     if 0 < len(rows) <= FEW_FAILURES:
         # On a fine grid the colour of a single cell would be overlooked.
@@ -74,12 +72,17 @@ def _draw_breakaway(ax: Axes, ds: xr.Dataset) -> None:
 def _legend(made: Panels, ds: xr.Dataset) -> None:
     """Explain the marks that are there, in one column if there is a single panel."""
     line = {"color": style.VERMILLION, "linewidth": 2}
-    hatched = {"facecolor": COLOURS(0.3), "edgecolor": "white", "hatch": "////"}
+    hatched = {"facecolor": COLOURS(0.3), "edgecolor": "white"}
     handles: list[Artist] = []
     if np.isfinite(ds.attrs["breakaway_acceleration"]):
         handles.append(Line2D([], [], label="breakaway from rest, $a = A/ω^2$", **line))
-    if LIFT_OFF in ds and (ds[LIFT_OFF] > 0.0).any():
-        handles.append(Patch(label="lift-off at some time", **hatched))
+    for marked, pattern, text in (
+        (validity.lifted(ds), "////", "lift-off: outside of validity"),
+        (validity.unsettled(ds), "....", "not settled"),
+    ):
+        if marked.any():
+            share = f" ({100.0 * float(marked.mean()):.2g} % of cases)"
+            handles.append(Patch(label=text + share, hatch=pattern, **hatched))
     if ds["stick_fraction"].isnull().any():
         handles.append(Patch(facecolor=style.PURPLE, label="no result (failed or not run)"))
     labels = [str(handle.get_label()) for handle in handles]
@@ -90,7 +93,10 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, lift-off hatched, and the line above which coulomb slip begins."""
     words = labels.of(ds)
     amplitudes = ds["amplitude"].values * words.factor
-    logarithmic = is_logarithmic(amplitudes)
+    if amplitudes.size < FEWEST_AMPLITUDES:
+        message = f"needs {FEWEST_AMPLITUDES} amplitudes or more for a map; there are {amplitudes.size}"
+        raise ValueError(message)
+    logarithmic = bool(amplitudes[0] > 0.0)
     edges = cell_edges(ds["beta"].values, False), cell_edges(amplitudes, logarithmic)
     names = cases.laws(ds)
     made = panels(target, len(names), size=(3.3, 3.6))

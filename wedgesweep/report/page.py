@@ -16,6 +16,7 @@ from wedgesweep.report import (
     next_test,
     rivals,
     sampled,
+    summary,
 )
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
@@ -78,6 +79,8 @@ def _answer(result: DiagnosisResult) -> Markup:
     )
     return html.element(
         "div",
+        html.paragraph(summary.lead(result), class_="lead"),
+        summary.table(result),
         html.paragraph(sentence(result), class_="sentence"),
         html.paragraph(verdict, class_="verdict"),
         class_="answer",

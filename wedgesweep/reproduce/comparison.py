@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from wedgesweep.outcome import SETTLED
 from wedgesweep.reproduce.runs import LAWS, Run, Runs
 from wedgesweep.sweep import outcomes
 from wedgesweep.sweep.dataset import STATUSES
@@ -36,7 +37,7 @@ def zone(run: Run, name: str) -> xr.DataArray:
 
 def settled(run: Run) -> xr.DataArray:
     """Whether a case has settled under every law, over beta and amplitude."""
-    return (run.ds["periodicity"] <= outcomes.SETTLED).all("friction_law")
+    return (run.ds["periodicity"] <= SETTLED).all("friction_law")
 
 
 def _summary(values: xr.DataArray) -> dict[str, float]:
@@ -93,7 +94,7 @@ def _caveat(name: str, run: Run, law: str) -> dict[str, Any]:
             for number, word in enumerate(STATUSES)
             if number and (status == number).any()
         },
-        "not_settled": int((ds["periodicity"] > outcomes.SETTLED).sum()),
+        "not_settled": int((ds["periodicity"] > SETTLED).sum()),
         "far_from_settled": int((ds["periodicity"] > FAR_FROM_SETTLED).sum()),
         "lift_off": int((lifted > 0.0).sum()),
         "largest_lift_off_fraction": float(lifted.max()),

@@ -8,19 +8,18 @@ from typing import NamedTuple
 import xarray as xr
 
 from wedgesweep import config
-from wedgesweep.outcome import Outcome
+from wedgesweep.outcome import Outcome, settled
 from wedgesweep.sweep import journal
 from wedgesweep.sweep.cases import describe
 from wedgesweep.sweep.run import Sweep
 
-# A case has settled if its last two periods differ by less than this share of the input amplitude.
-SETTLED = 1e-3
+LIFT_OFF = "lift_off_fraction"
 
 
 class CaseResult(NamedTuple):
     """How one case ended; amplitude in ``unit``, m or N.
 
-    ``period`` and ``periodicity`` are the dataset's variables of these names.
+    ``period``, ``periodicity`` and ``lift_off_fraction`` are the dataset's variables of these names.
     """
 
     law: str
@@ -30,12 +29,18 @@ class CaseResult(NamedTuple):
     message: str
     period: int
     periodicity: float
+    lift_off_fraction: float
     unit: str = "m"
 
     @property
     def settled(self) -> bool:
-        """Whether the response repeats; if no period was looked for, whether its last two periods agree."""
-        return self.period > 0 if self.period >= 0 else self.periodicity <= SETTLED
+        """Whether the case has reached a steady response."""
+        return bool(settled(self.period, self.periodicity))
+
+    @property
+    def lifted(self) -> bool:
+        """Whether a joint that should lift off was held: the model is outside of its validity."""
+        return self.lift_off_fraction > 0.0
 
     def __str__(self) -> str:
         where = describe(self.law, self.beta, self.amplitude, self.unit)
@@ -44,7 +49,9 @@ class CaseResult(NamedTuple):
 
 def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
     """How each case of a dataset ended."""
-    frame = ds[["status", "message", "period", "periodicity"]].to_dataframe().reset_index()
+    if LIFT_OFF not in ds:  # of an oscillator, whose normal force is given
+        ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
+    frame = ds[["status", "message", "period", "periodicity", LIFT_OFF]].to_dataframe().reset_index()
     frame = frame.rename(columns={"friction_law": "law"})
     frame["unit"] = ds["amplitude"].attrs.get("units", "m")
     columns = {name: frame[name].tolist() for name in CaseResult._fields}
@@ -63,6 +70,7 @@ def of_journal(path: Path) -> list[CaseResult]:
             message=record["message"].decode(),
             period=int(record["period"]),
             periodicity=float(record["periodicity"]),
+            lift_off_fraction=float(record[LIFT_OFF]),
             unit="N" if settings.forced else "m",
         )
         for record in journal.read(path, Sweep(settings, path).dtype)
@@ -82,3 +90,8 @@ def failures(results: Sequence[CaseResult]) -> list[CaseResult]:
 def unsettled(results: Sequence[CaseResult]) -> list[CaseResult]:
     """Cases that were solved, but did not reach a steady response."""
     return [result for result in results if result.status == Outcome.OK and not result.settled]
+
+
+def lifted(results: Sequence[CaseResult]) -> list[CaseResult]:
+    """Cases that were solved, but lie outside of the model's validity."""
+    return [result for result in results if result.status == Outcome.OK and result.lifted]

@@ -17,7 +17,7 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep.config import Case, Config
+from wedgesweep.config import Case, Config, parse
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
@@ -285,6 +285,21 @@ def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
     size = min(CHUNK, -(-rows.size // CHUNKS)) if method == "event-driven" else 1
     count = -(-len(rows) // max(size // rows.shape[1], 1))
     return (rows[first::count].ravel() for first in range(count))
+
+
+def unfinished(out: Path) -> xr.Dataset | None:
+    """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
+
+    None if there is no such run; raises SweepError if its journal is damaged.
+    """
+    path = out.with_name(out.name + ".partial")
+    if not path.exists():
+        return None
+    sweep = Sweep(parse(journal.header(path)["config"], str(path)), out)
+    records = dataset.blank(sweep.dtype, np.arange(len(sweep.parameters)))
+    done = journal.read(path, sweep.dtype)
+    records[done["index"]] = done
+    return sweep.assembled(records, datetime.now(UTC))
 
 
 def _read_sweep(path: Path) -> xr.Dataset:

@@ -1,0 +1,69 @@
+"""Cases whose numbers are to be read with care, and their marks: hollow or grey."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from wedgesweep.outcome import settled
+
+LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
+HOLLOW = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "markersize": 4.5, "zorder": 4}
+PALE = {"linestyle": "", "marker": "o", "color": "0.6", "markersize": 4.5, "zorder": 4}
+FEW_POINTS = 60
+
+
+def lifted(ds: xr.Dataset) -> xr.DataArray:
+    """Whether a normal force turned negative in each case: the model does not hold there."""
+    if LIFT_OFF not in ds:
+        return xr.zeros_like(ds["status"], bool)
+    return ds[LIFT_OFF] > 0.0
+
+
+def unsettled(ds: xr.Dataset) -> xr.DataArray:
+    """Whether each solved case was still changing when it ended."""
+    if not {"period", "periodicity"} <= set(ds.variables):
+        return xr.zeros_like(ds["status"], bool)
+    return (ds["status"] == 0) & ~settled(ds["period"], ds["periodicity"])
+
+
+def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -> None:
+    """Mark the points of a line of cases: hollow where a joint lifts off, grey where unsettled."""
+    size = {} if len(x) <= FEW_POINTS else {"markersize": 2.5}
+    for marked, look in ((lifted(case), {"color": color, **HOLLOW}), (unsettled(case), PALE)):
+        at = marked.values
+        if at.any():
+            ax.plot(x[at], y[at], **{**look, **size})
+
+
+def shares(ds: xr.Dataset) -> str:
+    """How many of the cases lift off and are unsettled, in words; empty if none does."""
+    told = [
+        f"{int(marked.sum())} of {marked.size} cases {words}"
+        for marked, words in (
+            (lifted(ds), "lift off: outside of the model's validity"),
+            (unsettled(ds), "did not settle"),
+        )
+        if marked.any()
+    ]
+    return "; ".join(told)
+
+
+def handles(ds: xr.Dataset) -> list[Line2D]:
+    """Entries of a legend for the marks that are there."""
+    found = []
+    if lifted(ds).any():
+        found.append(Line2D([], [], **{**HOLLOW, "color": "0.2"}, label="lift-off: outside of validity"))
+    if unsettled(ds).any():
+        found.append(Line2D([], [], **PALE, label="not settled"))
+    return found
+
+
+def remark(case: xr.Dataset) -> str:
+    """What is to be known of a single case, in brackets; empty if nothing is."""
+    told = [
+        words
+        for marked, words in ((lifted(case), "lifts off"), (unsettled(case), "not settled"))
+        if marked.item()
+    ]
+    return f" ({', '.join(told)})" if told else ""
