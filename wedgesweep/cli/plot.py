@@ -100,7 +100,7 @@ def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     from wedgesweep import diagnosis_result
     from wedgesweep.sweep import dataset
 
-    return diagnosis_result.read(path) if path.is_dir() else dataset.read(path)
+    return diagnosis_result.read(path) if path.is_dir() else dataset.read_sweep(path)
 
 
 def _require_kind(kind: str, path: Path) -> None:

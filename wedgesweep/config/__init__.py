@@ -1,6 +1,5 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,6 +13,7 @@ import numpy as np
 from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
+from wedgesweep.files import read_text
 from wedgesweep.natural_units import natural_units
 
 # With this effect a suspension may have no equilibrium.
@@ -309,7 +309,7 @@ class Config:
 def load(path: str | Path) -> Config:
     """Read a config file; raises ConfigError."""
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = read_text(Path(path))
     except UnicodeDecodeError as error:
         problem = f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8"
         raise ConfigError([problem]) from error
@@ -322,7 +322,7 @@ def load(path: str | Path) -> Config:
 def parse(text: str, source: str = "<config>") -> Config:
     """Read a config from TOML text; raises ConfigError with everything that is wrong with it."""
     try:
-        given = tomllib.loads(text)
+        given = toml.loads(text)
     except ValueError as error:
         raise ConfigError([f"{source}: not valid TOML: {error}"]) from error
     return from_document(given, source)

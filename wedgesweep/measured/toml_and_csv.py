@@ -1,11 +1,11 @@
 """measured.toml and its CSV files."""
 
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
-from wedgesweep.config import Config
+from wedgesweep.config import Config, toml
+from wedgesweep.files import read_text
 from wedgesweep.measured import channels, csv_columns, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import ROOT
@@ -67,7 +67,7 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
 def has_measurement(path: Path) -> bool:
     """Whether a file has a [measurement] table, even if it is not valid TOML."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
     except (OSError, UnicodeDecodeError):
         return False
     return HEADER.search(text) is not None
@@ -76,7 +76,7 @@ def has_measurement(path: Path) -> bool:
 def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     """The checked document; its faults go to ``problems``."""
     try:
-        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        given = toml.loads(read_text(path))
     except UnicodeDecodeError as error:
         problems.append(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8")
     except OSError as error:

@@ -1,10 +1,10 @@
 """A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
-import json
 import signal
 import threading
 import warnings
 from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import BrokenExecutor
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -19,6 +19,7 @@ import xarray as xr
 
 from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, journal, labels, provenance
@@ -35,6 +36,10 @@ Progress = Callable[[np.ndarray, int], None]
 # The event-driven solver takes CHUNK cases at a time, which also go into the journal together; a small
 # sweep is divided into CHUNKS smaller chunks.
 CHUNK, CHUNKS = 200, 64
+# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
+OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
+# Jobs may die so many times in a row without finishing a case before the sweep gives up.
+MOST_LOSSES = 3
 
 
 class CaseFailedError(SweepError):
@@ -110,7 +115,7 @@ class Sweep:
         if self.journal_path.exists() or not self.out.exists():
             return None
         found = _read_sweep(self.out)
-        there = {**json.loads(found.attrs["fingerprint"]), "config": found.attrs["config"]}
+        there = {**json_object(found.attrs["fingerprint"]), "config": found.attrs["config"]}
         differing = differences(there, self.journal_header)
         if differing:
             message = f"{self.out}: holds another sweep ({'; '.join(differing)})"
@@ -205,10 +210,33 @@ class Sweep:
         if todo.size:
             compile_once(self.settings.method, self.extended, self.config.system)
         yield whole[~np.isin(whole["index"], todo)]
-        with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
+        with closing(self._solve_all(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:
                 kept.append(records)
                 yield records
+
+    def _solve_all(
+        self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
+    ) -> Generator[np.ndarray, None, None]:
+        """Solve rows of cases; jobs that die are replaced, and their cases solved again."""
+        losses = 0
+        finished = np.zeros(len(self.parameters), bool)
+        while losses < MOST_LOSSES:
+            try:
+                left = rows[~finished[rows].all(axis=1)]
+                with closing(self._solve_parallel(left, pool, case_timeout)) as parts:
+                    for records in parts:
+                        finished[records["index"]] = True
+                        losses = 0
+                        yield records
+                return
+            except BrokenExecutor:
+                losses += 1
+        message = (
+            f"jobs died {MOST_LOSSES} times in a row, killed or out of memory; free memory or use fewer jobs "
+            "(--n-jobs), then rerun the same command to resume"
+        )
+        raise SweepError(message)
 
     def _solve_parallel(
         self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
@@ -288,21 +316,24 @@ def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
 
 
 def _read_sweep(path: Path) -> xr.Dataset:
-    found = dataset.read(path)
-    if "fingerprint" not in found.attrs:
-        message = f"{path}: not the dataset of a sweep; it is not overwritten"
-        raise SweepError(message)
+    found = dataset.read_sweep(path)
+    try:
+        json_object(found.attrs["fingerprint"]), found.attrs["config"]
+    except (KeyError, TypeError, ValueError) as error:
+        message = f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
+        raise SweepError(message) from error
     return found
 
 
 @contextmanager
 def _interrupts_ignored() -> Iterator[None]:
-    """Let jobs that start meanwhile ignore ctrl-C; this process ends them."""
+    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,141 @@
+"""Files that are no files, signals, dying workers, full disks: one line says what is wrong, and nothing is lost."""
+
+import os
+import resource
+import signal
+import subprocess
+import time
+
+import pytest
+import xarray as xr
+
+from tests import fixture_dataset, fixture_measured, small_sweep
+from tests.command import invoke
+from tests.small_sweep import CONFIG, assert_same_numbers
+from wedgesweep import files
+
+LONG = CONFIG.replace("settle_periods = 3", "settle_periods = 40")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "small.toml").write_text(CONFIG)
+    fixture_measured.write(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("command", "file"),
+    [
+        (["check", "pipe"], "pipe"),
+        (["run", "pipe"], "pipe"),
+        (["check", "/dev/zero"], "/dev/zero"),
+        (["check", "measured.toml"], "one.csv"),
+        (["check", "measured.toml"], "model.toml"),
+        (["check", "pipe.nc"], "pipe.nc"),
+        (["status", "pipe.nc"], "pipe.nc"),
+        (["plot", "all", "pipe.nc"], "pipe.nc"),
+        (["run", "small.toml"], "small.nc.partial"),
+        (["run", "small.toml", "--fresh"], "small.nc.partial"),
+        (["run", "small.toml"], "small.nc"),
+        (["status", "small.nc"], "small.nc.partial"),
+        (["diagnose", "pipe"], "pipe"),
+        (["synthesize", "small.toml", "--tests", "pipe"], "pipe"),
+    ],
+)
+def test_a_pipe_or_device_is_refused_at_once(here, command, file):
+    if not file.startswith("/"):
+        (here / file).unlink(missing_ok=True)
+        os.mkfifo(here / file)
+    assert f"{file}: not a regular file" in invoke(*command, code=2)
+
+
+def test_a_null_character_in_a_path(here):
+    text = fixture_measured.MEASURED.replace("one.csv", "one\\u0000.csv").replace("model.t", "model\\u0000.t")
+    (here / "measured.toml").write_text(text)
+    told = invoke("check", "measured.toml", code=2)
+    assert "measurement.model: " in told
+    assert told.count("holds a null character") == 2
+    with pytest.raises(OSError, match="null character"):
+        files.regular(here / "x\0.csv")
+
+
+@pytest.mark.parametrize("fresh", [(), ("--fresh",)])
+@pytest.mark.parametrize("content", ["mine", "mine\n", "{}\n", '{"config": 1}\n'])
+def test_a_foreign_file_in_place_of_the_journal_stays(here, content, fresh):
+    (here / "small.nc.partial").write_text(content)
+    assert "small.nc.partial: not the journal of a sweep" in invoke("run", "small.toml", *fresh, code=2)
+    assert (here / "small.nc.partial").read_text() == content
+
+
+def test_what_a_killed_process_left_is_removed_and_nothing_else(here):
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    orphan, others = f".x.txt.{ended.pid}", [f".x.txt.{os.getppid()}", ".x.txt.bak", f".y.txt.{ended.pid}"]
+    for name in (orphan, *others):
+        (here / name).write_text("half")
+    files.write_text(here / "x.txt", "whole")
+    assert not (here / orphan).exists()
+    assert all((here / name).exists() for name in others)
+    assert (here / "x.txt").read_text() == "whole"
+
+
+@pytest.mark.parametrize(("limit", "file"), [(4_000, "small.nc.partial"), (300_000, "small.nc")])
+def test_a_full_disk_is_told_with_the_file_and_loses_nothing(here, limit, file):
+    """A limit on the size of a file fails as a full disk does."""
+    (here / "big.toml").write_text(CONFIG + "keep_waveforms = true\n")
+    limited = subprocess.run(
+        small_sweep.command("run", "small.toml", "--n-jobs", 1),
+        env=small_sweep.environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )
+    assert limited.returncode == 2, limited.stderr
+    assert f"Error: {file}: " in limited.stderr
+    assert "Traceback" not in limited.stderr
+    assert not (here / "small.nc").exists()
+    assert "24 ok" in invoke("run", "small.toml", "--n-jobs", 1)
+    assert not list(here.glob(".small*"))
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_other_signals_end_a_run_as_ctrl_c_does(here, number):
+    (here / "long.toml").write_text(LONG)
+    process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=here)
+    journal = here / "long.nc.partial"
+    while process.poll() is None and not (journal.exists() and journal.stat().st_size > 5000):
+        time.sleep(0.01)
+    # A terminal that closes tells all processes of the group, kill just one.
+    (os.killpg if number == signal.SIGHUP else os.kill)(process.pid, number)
+    told = process.communicate()[0]
+    assert process.returncode == 128 + number, told
+    assert "finished cases are stored in long.nc.partial; rerun the same command" in told
+    assert "Traceback" not in told
+
+
+def test_a_killed_job_is_replaced_and_the_sweep_goes_on(tmp_path):
+    expected = small_sweep.sweep(tmp_path / "here", LONG) if (tmp_path / "here").mkdir() else None
+    sweep = small_sweep.sweep(tmp_path, LONG)
+    done = []
+
+    def kill_jobs(records, total):
+        done.extend(records["index"].tolist())
+        if len(done) in (4, 9):
+            for job in _children():
+                os.kill(job, signal.SIGKILL)
+
+    found = sweep.run(n_jobs=2, progress=kill_jobs)
+    assert sorted(done) == list(range(24))
+    assert_same_numbers(found, small_sweep.sweep(tmp_path / "x.nc", LONG).run_here())
+    assert expected is None
+
+
+def _children():
+    """Processes that this one started."""
+    listed = subprocess.run(
+        ["pgrep", "-P", str(os.getpid()), "-f", "loky"], capture_output=True, text=True, check=False
+    )
+    return [int(each) for each in listed.stdout.split()]
