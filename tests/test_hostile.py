@@ -1,4 +1,4 @@
-"""Files that are no files, signals, dying workers, full disks: one line says what is wrong, and nothing is lost."""
+"""Pipes, signals, full disks: one line says what is wrong, and nothing is lost."""
 
 import os
 import resource
@@ -7,12 +7,13 @@ import subprocess
 import time
 
 import pytest
-import xarray as xr
 
-from tests import fixture_dataset, fixture_measured, small_sweep
+from tests import fixture_measured, small_sweep
 from tests.command import invoke
-from tests.small_sweep import CONFIG, assert_same_numbers
-from wedgesweep import files
+from tests.small_sweep import CONFIG
+from wedgesweep import config, files
+from wedgesweep.cli.diagnose import _move
+from wedgesweep.sweep import cases
 
 LONG = CONFIG.replace("settle_periods = 3", "settle_periods = 40")
 
@@ -84,7 +85,7 @@ def test_what_a_killed_process_left_is_removed_and_nothing_else(here):
 @pytest.mark.parametrize(("limit", "file"), [(4_000, "small.nc.partial"), (300_000, "small.nc")])
 def test_a_full_disk_is_told_with_the_file_and_loses_nothing(here, limit, file):
     """A limit on the size of a file fails as a full disk does."""
-    (here / "big.toml").write_text(CONFIG + "keep_waveforms = true\n")
+    cases.compile_once("radau")
     limited = subprocess.run(
         small_sweep.command("run", "small.toml", "--n-jobs", 1),
         env=small_sweep.environment(),
@@ -116,26 +117,54 @@ def test_other_signals_end_a_run_as_ctrl_c_does(here, number):
     assert "Traceback" not in told
 
 
-def test_a_killed_job_is_replaced_and_the_sweep_goes_on(tmp_path):
-    expected = small_sweep.sweep(tmp_path / "here", LONG) if (tmp_path / "here").mkdir() else None
-    sweep = small_sweep.sweep(tmp_path, LONG)
-    done = []
-
-    def kill_jobs(records, total):
-        done.extend(records["index"].tolist())
-        if len(done) in (4, 9):
-            for job in _children():
-                os.kill(job, signal.SIGKILL)
-
-    found = sweep.run(n_jobs=2, progress=kill_jobs)
-    assert sorted(done) == list(range(24))
-    assert_same_numbers(found, small_sweep.sweep(tmp_path / "x.nc", LONG).run_here())
-    assert expected is None
+def test_a_dataset_in_place_of_a_config_says_so(here):
+    (here / "small.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
+    assert "small.nc: a dataset, where a config (TOML) is wanted" in invoke("run", "small.nc", code=2)
 
 
-def _children():
-    """Processes that this one started."""
-    listed = subprocess.run(
-        ["pgrep", "-P", str(os.getpid()), "-f", "loky"], capture_output=True, text=True, check=False
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (f"title = 0x{'f' * 5000}\n", "title: 0xfff"),
+        (f"title = {'[' * 3000}{']' * 3000}\n", "not valid TOML: nested more than 20 deep"),
+        (f"a{'.a' * 3000} = 1\n", "not valid TOML: nested more than 20 deep"),
+    ],
+)
+def test_absurd_toml_is_refused_in_a_line(here, text, words):
+    (here / "x.toml").write_text(text + CONFIG.replace('title = "small"', ""))
+    for command in ("check", "run"):
+        assert f"x.toml: {words}" in invoke(command, "x.toml", code=2)
+
+
+def test_many_listed_cases_are_read_in_a_moment(here):
+    """The time is that of reading the TOML; comparing each case with all others took minutes."""
+    cases = "".join(
+        f'[[sweep.case]]\nfriction_law = "coulomb"\nbeta = {0.1 + 1e-4 * i:.4f}\namplitude_mm = 1.0\n'
+        for i in range(20_000)
     )
-    return [int(each) for each in listed.stdout.split()]
+    (here / "many.toml").write_text(cases)
+    began = time.process_time()
+    assert config.load(here / "many.toml").records().size == 20_000
+    assert time.process_time() - began < 4.0
+    (here / "many.toml").write_text(cases + cases[: cases.index("[[", 2)])
+    assert "sweep.case[20000]: repeats sweep.case[0]; keep one" in invoke("check", "many.toml", code=2)
+
+
+def test_a_foreign_report_in_the_place_of_a_diagnosis_stays(here):
+    (here / "result").mkdir()
+    (here / "result" / "report.html").write_text("mine")
+    told = invoke("diagnose", "measured.toml", "-o", "result", code=2)
+    assert "result/report.html: not the result of a diagnosis; choose another -o" in told
+    assert (here / "result" / "report.html").read_text() == "mine"
+
+
+def test_an_earlier_diagnosis_gives_way_to_a_complete_one_only(here):
+    for name in ("made", "result"):
+        (here / name).mkdir()
+    for name in ("diagnosis.json", "report.html", "gain.png", "mine.txt"):
+        (here / "result" / name).write_text("old")
+    for name in ("diagnosis.json", "diagnosis.nc"):
+        (here / "made" / name).write_text("new")
+    _move(here / "made", here / "result")
+    left = {path.name: path.read_text() for path in (here / "result").iterdir()}
+    assert left == {"diagnosis.json": "new", "diagnosis.nc": "new", "mine.txt": "old"}

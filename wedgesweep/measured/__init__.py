@@ -39,6 +39,6 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 
     reader = netcdf if path.suffix in netcdf.SUFFIXES else toml_and_csv
     measurement = reader.read(path, model)
-    if faults := amplitude_faults(measurement.tests):
+    if faults := amplitude_faults(measurement):
         raise MeasuredError([f"{path}: {fault}" for fault in faults])
     return measurement

@@ -1,29 +1,43 @@
 """Builds the record of a test in SI units from the numbers in a file; faults name their place."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured import sampling
-from wedgesweep.measured.declarations import INPUT, UNITS, units
+from wedgesweep.measured import decimation, sampling
+from wedgesweep.measured.declarations import (
+    AMPLITUDE,
+    FORCE_AMPLITUDE,
+    INPUT,
+    LOOP,
+    STEADY,
+    UNITS,
+    units,
+)
+from wedgesweep.measured.frequency import estimate_frequency
+from wedgesweep.measured.loops import loop_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
-from wedgesweep.measured.steadiness import frequency_faults
+from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
+
+# Bounds of a channel in SI units, and the variation that is rounding, over its size.
+LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
 
 
 @dataclass(frozen=True)
 class Channels:
     """Columns of a test as in its file, shape (n,) each, with their units.
 
-    ``file`` names the file and ``where`` the place of a sample in it.
+    ``file`` names the file and ``where`` the place of a sample in it; ``told`` is a remark on its form.
     """
 
     columns: Mapping[str, np.ndarray]
     units: Mapping[str, str]
     file: str
     where: Callable[[int], str]
+    told: str = ""
 
     def si(self, channel: str) -> np.ndarray | None:
         """Samples of a channel in SI units, or None."""
@@ -37,18 +51,19 @@ def build_record(
 ) -> TestRecord | None:
     """Build the record of a test from its checked keys ``given``, found at ``at``; None after a fault."""
     before = len(problems)
-    grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
-    for channel in set(channels.columns) - {"time"}:
-        if np.ptp(channels.columns[channel]) == 0.0:
-            problems.append(f"{channels.file}: {channel} is constant; there is no vibration in it")
+    problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
     if len(problems) > before:
         return None
-    amplitude = given.get("amplitude_mm")
+    grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
+    if len(problems) > before:
+        return None
+    channels, grid, thinned = _shortened(given, channels, grid)
+    amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
         file=given.get("file", channels.file),
         frequency=given.get("frequency_hz"),
-        amplitude=None if amplitude is None else amplitude * 1e-3,
+        amplitude=amplitudes[0] if amplitudes else None,
         amplitude_std=given.get("amplitude_std", 0.0),
         time=grid * UNITS["time"][channels.units["time"]],
         displacement=channels.si("displacement"),
@@ -56,6 +71,41 @@ def build_record(
         acceleration=channels.si("acceleration"),
         input=channels.si(INPUT),
         model=given.get("model", {}),
+        kind=given.get("kind", STEADY),
+        force=channels.si("force"),
+        cutoff=given.get("lowpass_hz"),
+        remarks=tuple(filter(None, (channels.told, thinned))),
     )
-    problems.extend(frequency_faults(test, channels.file, at) or channel_faults(test, channels.file))
+    problems.extend(
+        loop_faults(test, channels.file, at)
+        if test.kind == LOOP
+        else frequency_faults(test, channels.file, at) or channel_faults(test, channels.file)
+    )
     return None if len(problems) > before else test
+
+
+def _size_faults(channels: Channels) -> Iterator[str]:
+    """Channels of sizes that no vibration has, whose squares might not even be numbers."""
+    for channel, column in channels.columns.items():
+        samples = column * units(channel)[channels.units[channel]]
+        largest = float(np.abs(samples).max(initial=0.0))
+        if largest > LARGEST:
+            yield f"{channel}: {largest:.3g} in SI units is too large; correct the unit or the file"
+        elif samples.size and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
+            yield f"{channel} is constant; there is no vibration in it"
+
+
+def _shortened(
+    given: Mapping[str, Any], channels: Channels, grid: np.ndarray
+) -> tuple[Channels, np.ndarray, str]:
+    """A steady record of at most MOST_SAMPLES, the times, and a remark if samples were left out."""
+    if grid.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
+        return channels, grid, ""
+    names = [name for name in channels.columns if name != "time"]
+    leading = channels.columns[INPUT if INPUT in names else names[0]][:MOST_SAMPLES]
+    seconds = UNITS["time"][channels.units["time"]]
+    frequency = given.get("frequency_hz") or estimate_frequency(grid[:MOST_SAMPLES] * seconds, leading)
+    columns, grid, told = decimation.shortened(
+        {name: channels.columns[name] for name in names}, grid, frequency * seconds, MOST_SAMPLES
+    )
+    return replace(channels, columns={"time": grid, **columns}), grid, told

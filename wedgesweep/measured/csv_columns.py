@@ -1,7 +1,7 @@
 """Numbers of the columns of a CSV file; faults name their line."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,14 +18,22 @@ LISTED = 3
 
 
 class Content(NamedTuple):
-    """Columns by channel, each of shape (n,); the line (from 1) of each row; how the file is written."""
+    """Columns by channel, each of shape (n,), and the line (from 1) of each row.
+
+    ``units``: those that the file itself names, by channel; ``told``: what of its form is worth telling.
+    """
 
     columns: dict[str, np.ndarray]
     lines: np.ndarray
-    dialect: Dialect | None
+    units: Mapping[str, str] = {}
+    told: str = ""
+
+    def where(self, file: Path) -> Callable[[int], str]:
+        """The place of a sample in a file of lines, by its index."""
+        return lambda sample: f"{file}:{self.lines[sample]}"
 
 
-NOTHING = Content({}, np.array([], int), None)
+NOTHING = Content({}, np.array([], int))
 
 
 def read(
@@ -58,7 +66,8 @@ def read(
         problems.append(f"{path}: no data below the header; write one line per sample")
         return NOTHING
     columns = _numbers(path, [lines[place] for place in rows], rows + 1, dialect, wanted, problems)
-    return Content(columns, rows + 1, dialect) if columns else NOTHING
+    units = dict(zip(wanted, dialect.units, strict=True)) if dialect.units else {}
+    return Content(columns, rows + 1, units, dialect.told()) if columns else NOTHING
 
 
 def _header_faults(

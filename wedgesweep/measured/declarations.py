@@ -26,10 +26,22 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
+# Kinds of test: a periodic response, or a force under an imposed motion.
+STEADY, LOOP = KINDS = ("steady", "loop")
+
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
+FORCE_AMPLITUDE = Quantity(
+    "amplitude_N", nan, "amplitude of the force on the mass; omit it if unknown", above=0.0
+)
 AMPLITUDE_STD = Quantity("amplitude_std", 0.0, "relative std of the amplitude", minimum=0.0, below=1.0)
 
+LOWPASS = Quantity(
+    "lowpass_hz",
+    nan,
+    "loop: cut-off frequency; by default as high as the noise of the displacement allows",
+    above=0.0,
+)
 MODEL_ERROR = Quantity(
     "model_error",
     0.0,
@@ -85,9 +97,10 @@ class RecordTable(Table):
     """Keys of a test."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
-        if isinstance(value, dict) and "amplitude_std" in value and "amplitude_mm" not in value:
+        stated = (AMPLITUDE.key, FORCE_AMPLITUDE.key)
+        if isinstance(value, dict) and "amplitude_std" in value and not value.keys() & set(stated):
             at = f"{path}." if path else ""
-            problems.append(f"{at}amplitude_std: given without amplitude_mm; omit it")
+            problems.append(f"{at}amplitude_std: given without {' or '.join(stated)}; omit it")
         return super().read(value, path, problems)
 
 
@@ -151,7 +164,7 @@ COLUMNS = table(
     _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, OF, optional=True),
     _channel("acceleration", "relative acceleration, x'' - y''", "a", "m/s^2", OF, optional=True),
     _channel("force", "force on the mass", "f", "N", optional=True),
-    _channel(INPUT, "motion of the side frame as recorded", "u", "mm", QUANTITY, optional=True),
+    _channel(INPUT, "input as recorded", "u", "mm", QUANTITY, optional=True),
     example="measurement.columns",
 )
 
@@ -159,11 +172,21 @@ UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain
 
 TEST = RecordTable(
     key="test",
-    meaning="one record of steady vibration",
+    meaning="one record",
     groups=(
         (Text(key="file", meaning="CSV file, relative to this one", example="20hz.csv"),),
+        (
+            Choice(
+                key="kind",
+                meaning="steady: a periodic response; loop: the force under an imposed motion",
+                choices=KINDS,
+                default=STEADY,
+            ),
+        ),
+        (Number.of(LOWPASS, optional=True),),
         (Number.of(FREQUENCY, optional=True),),
         (Number.of(AMPLITUDE, optional=True),),
+        (Number.of(FORCE_AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),

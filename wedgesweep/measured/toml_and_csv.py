@@ -1,14 +1,17 @@
 """measured.toml and its CSV files."""
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from wedgesweep.config import Config, toml
+from wedgesweep.config.keys import show
 from wedgesweep.files import read_text
-from wedgesweep.measured import channels, csv_columns, overrides
+from wedgesweep.measured import arrays, channels, csv_columns, loops, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import ROOT
+from wedgesweep.measured.declarations import ROOT, STEADY
+from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
 
@@ -24,14 +27,20 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     if model is None and "model" in measurement:
         model = path.parent / measurement["model"]
     columns = measurement.get("columns", {})
+    kinds = [each.get("kind", STEADY) for each in measurement.get("test", ())]
+    kind = (kinds or [STEADY])[0]
+    problems += [f"{path}: measurement.{fault}" for fault in loops.kind_faults(kinds)]
     if not problems:
-        told = channels.channel_faults(columns, measurement["input_gain_std"])
+        told = channels.channel_faults(columns, measurement["input_gain_std"], kind)
         problems += [f"{path}: {_at(fault)}" for fault in told]
     config, law = load_model(model, problems) if model else (None, "")
     if config is not None:
+        if not problems:
+            told = channels.excitation_faults(columns, config, kind)
+            problems += [f"{path}: {_at(fault)}" for fault in told]
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config.effects, columns)]
         problems += _override_faults(path, measurement, config)
-    tests = _tests(path, measurement, problems)
+    tests = _tests(path, measurement, config, problems)
     if problems or config is None:
         raise MeasuredError(problems)
     return Measurement(
@@ -91,7 +100,9 @@ def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     raise MeasuredError(problems)
 
 
-def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[TestRecord]:
+def _tests(
+    path: Path, measurement: dict[str, Any], model: Config | None, problems: list[str]
+) -> list[TestRecord]:
     """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
     complete = columns.keys() > {"time"} and all(
@@ -108,20 +119,37 @@ def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns))
+        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns, model))
         if complete:
-            tests += _test(path.parent / file, at, given, columns, problems)
+            tests += _test(path.parent / file, at, given, measurement, problems)
     return tests
 
 
 def _test(
-    file: Path, at: str, given: dict[str, Any], columns: dict[str, Any], problems: list[str]
+    file: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
 ) -> list[TestRecord]:
+    columns = measurement["columns"]
     wanted = {channel: each["column"] for channel, each in columns.items()}
-    numbers, lines = csv_columns.read(file, wanted, problems)
-    if not numbers:
-        return []
     units = {channel: each["unit"] for channel, each in columns.items()}
-    content = Channels(numbers, units, str(file), lambda sample: f"{file}:{lines[sample]}")
-    test = build_record(file.stem, given, content, at, problems)
+    stated = measurement.get("csv", {})
+    reader = arrays.reader(file)
+    content = reader(file, wanted, problems) if reader else csv_columns.read(file, wanted, problems, stated)
+    if not content.columns:
+        return []
+    faults = _unit_faults(content.units, units, file)
+    problems.extend(faults)
+    if faults:
+        return []
+    found = Channels(content.columns, units, str(file), content.where(file), content.told)
+    test = build_record(file.stem, given, found, at, problems)
     return [test] if test else []
+
+
+def _unit_faults(written: Mapping[str, str], stated: Mapping[str, str], file: Path) -> list[str]:
+    """Units in the file that are not the stated ones."""
+    return [
+        f"{file}: {channel}: the file says {show(written[channel])}, its unit is stated as {show(unit)}; "
+        "correct one of them"
+        for channel, unit in stated.items()
+        if written.get(channel, unit) in units_of(channel) and written.get(channel, unit) != unit
+    ]

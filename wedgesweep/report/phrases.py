@@ -138,4 +138,11 @@ def distinguishes(document: Mapping[str, Any]) -> bool:
 
 def next_test(test: Mapping[str, Any]) -> str:
     """Frequency and amplitude of the recommended test."""
-    return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {short(test['amplitude_mm'], 3)}{NO_BREAK}mm"
+    unit = amplitude_unit(test)
+    amplitude = f"{short(test[f'amplitude_{unit}'], 3)}{NO_BREAK}{unit}"
+    return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {amplitude}"
+
+
+def amplitude_unit(test: Mapping[str, Any]) -> str:
+    """Unit of the input amplitude of a test: mm, or N of a force."""
+    return "N" if "amplitude_N" in test else "mm"

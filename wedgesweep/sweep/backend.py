@@ -4,10 +4,13 @@ Each backend provides a joblib.Parallel.
 """
 
 from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, Protocol
 
 import joblib
+
+from wedgesweep.errors import SweepError
 
 
 class Backend(Protocol):
@@ -33,7 +36,11 @@ def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[
 @contextmanager
 def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
     """Processes of this machine."""
-    yield parallel(n_jobs=n_jobs)
+    try:
+        yield parallel(n_jobs=n_jobs)
+    except BrokenExecutor as error:
+        message = "a job died, killed or out of memory; rerun the same command to resume"
+        raise SweepError(message) from error
 
 
 def count_jobs(n_jobs: int | None) -> int:

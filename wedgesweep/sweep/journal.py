@@ -135,7 +135,7 @@ def _header(path: Path, content: bytes) -> dict[str, str]:
         found = json_object(content[: content.index(b"\n")])
     except ValueError as error:
         raise _no_journal(path) from error
-    if not _REQUIRED <= found.keys() or not all(isinstance(each, str) for each in found.values()):
+    if not found.keys() >= _REQUIRED or not all(isinstance(each, str) for each in found.values()):
         raise _no_journal(path)
     return found
 

@@ -4,7 +4,6 @@ import signal
 import threading
 import warnings
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import BrokenExecutor
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -38,8 +37,6 @@ Progress = Callable[[np.ndarray, int], None]
 CHUNK, CHUNKS = 200, 64
 # Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
 OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
-# Jobs may die so many times in a row without finishing a case before the sweep gives up.
-MOST_LOSSES = 3
 
 
 class CaseFailedError(SweepError):
@@ -210,33 +207,10 @@ class Sweep:
         if todo.size:
             compile_once(self.settings.method, self.extended, self.config.system)
         yield whole[~np.isin(whole["index"], todo)]
-        with closing(self._solve_all(todo, pool, self._limit(case_timeout))) as parts:
+        with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:
                 kept.append(records)
                 yield records
-
-    def _solve_all(
-        self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
-    ) -> Generator[np.ndarray, None, None]:
-        """Solve rows of cases; jobs that die are replaced, and their cases solved again."""
-        losses = 0
-        finished = np.zeros(len(self.parameters), bool)
-        while losses < MOST_LOSSES:
-            try:
-                left = rows[~finished[rows].all(axis=1)]
-                with closing(self._solve_parallel(left, pool, case_timeout)) as parts:
-                    for records in parts:
-                        finished[records["index"]] = True
-                        losses = 0
-                        yield records
-                return
-            except BrokenExecutor:
-                losses += 1
-        message = (
-            f"jobs died {MOST_LOSSES} times in a row, killed or out of memory; free memory or use fewer jobs "
-            "(--n-jobs), then rerun the same command to resume"
-        )
-        raise SweepError(message)
 
     def _solve_parallel(
         self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
