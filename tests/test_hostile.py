@@ -8,11 +8,12 @@ import time
 
 import pytest
 
-from tests import fixture_measured, small_sweep
+from tests import fixture_diagnosis, fixture_measured, small_sweep
 from tests.command import invoke
 from tests.small_sweep import CONFIG
-from wedgesweep import config, files
+from wedgesweep import api, config, files
 from wedgesweep.cli.diagnose import _move
+from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.sweep import cases
 
 LONG = CONFIG.replace("settle_periods = 3", "settle_periods = 40")
@@ -168,3 +169,16 @@ def test_an_earlier_diagnosis_gives_way_to_a_complete_one_only(here):
     _move(here / "made", here / "result")
     left = {path.name: path.read_text() for path in (here / "result").iterdir()}
     assert left == {"diagnosis.json": "new", "diagnosis.nc": "new", "mine.txt": "old"}
+
+
+def test_a_diagnosis_leaves_its_result_and_nothing_else(here, monkeypatch):
+    found = DiagnosisResult(*fixture_diagnosis.build(), "extended")
+    monkeypatch.setattr(api, "diagnose_measurement", lambda *given, **more: found)
+    (here / "cache").mkdir()
+    monkeypatch.setattr(cases, "CACHE_DIR", here / "cache")
+    before = set(here.iterdir())
+    told = invoke("diagnose", "measured.toml", "--no-report", "-o", "results/first")
+    assert "wrote results/first" in told
+    assert set(here.iterdir()) - before == {here / "results"}
+    assert [path.name for path in (here / "results").iterdir()] == ["first"]
+    assert len(list((here / "results" / "first").iterdir())) == 3
