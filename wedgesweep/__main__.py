@@ -1,6 +1,7 @@
 """Entry point: ``wedgesweep`` and ``python -m wedgesweep``."""
 
 import os
+import sys
 
 # One thread per process, whatever the machine's settings: the jobs share out the processors, and no
 # number may depend on how a library splits its sums. numpy's libraries read this when they are
@@ -11,8 +12,13 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 def main() -> None:
     """Run the command line."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
+    for stream in (sys.stdout, sys.stderr):
+        # A terminal that cannot show a character, as in the locale C, gets its code.
+        stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     from wedgesweep.cli import cli
+    from wedgesweep.cli.failure import end_on_signals
 
+    end_on_signals()
     cli(prog_name="wedgesweep")
 
 

@@ -1,7 +1,6 @@
 """The result of a diagnosis, and its files: diagnosis.json, diagnosis.nc and extended.toml."""
 
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from wedgesweep.errors import InputError
+from wedgesweep.files import json_object, read_bytes, read_text, write_text
 from wedgesweep.sweep import dataset
 
 JSON, DATASET, EXTENDED = "diagnosis.json", "diagnosis.nc", "extended.toml"
@@ -68,11 +68,9 @@ class DiagnosisResult:
         directory.mkdir(parents=True, exist_ok=True)
         # First of all, so that an interrupted write leaves no old verdict beside new data.
         (directory / JSON).unlink(missing_ok=True)
-        partial = directory / f".{DATASET}.partial"
-        self.data.to_netcdf(partial)
-        partial.replace(directory / DATASET)
-        _write_text(directory / EXTENDED, self.extended_toml)
-        _write_text(directory / JSON, text)
+        dataset.write(self.data, directory / DATASET)
+        write_text(directory / EXTENDED, self.extended_toml)
+        write_text(directory / JSON, text)
 
     @property
     def added(self) -> tuple[str, ...]:
@@ -132,22 +130,14 @@ def read(directory: Path) -> DiagnosisResult:
     if missing:
         raise InputError([f"{directory / DATASET}: has no {', '.join(missing)}"])
     extended = directory / EXTENDED
-    return DiagnosisResult(document, data, extended.read_text(encoding="utf-8") if extended.exists() else "")
-
-
-def _write_text(file: Path, text: str) -> None:
-    partial = file.with_name(f".{file.name}.partial")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, file)
+    return DiagnosisResult(document, data, read_text(extended) if extended.exists() else "")
 
 
 def _document(file: Path) -> dict[str, Any]:
     try:
-        document = json.loads(file.read_text(encoding="utf-8"))
+        document = json_object(read_bytes(file))
     except ValueError as error:
-        raise InputError([f"{file}: not JSON ({error})"]) from error
-    if not isinstance(document, dict):
-        raise InputError([f"{file}: must hold an object with the keys {', '.join(KEYS)}"])
+        raise InputError([f"{file}: not the JSON of a diagnosis ({error})"]) from error
     problems = [f"{file}: {key}: missing" for key in KEYS if key not in document]
     if not problems and document["verdict"] not in VERDICTS:
         valid = ", ".join(VERDICTS)

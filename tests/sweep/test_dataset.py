@@ -106,7 +106,7 @@ def test_a_failed_write_leaves_the_old_dataset(tmp_path, ds, monkeypatch):
         raise OSError
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", breaks)
-    with pytest.raises(OSError):  # noqa: PT011 - raised above
+    with pytest.raises(SweepError, match=r"x\.nc: cannot be written"):
         dataset.write(ds, path)
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
@@ -115,7 +115,7 @@ def test_a_failed_write_leaves_the_old_dataset(tmp_path, ds, monkeypatch):
 def test_read_says_what_it_cannot_read(tmp_path, sweep):
     with pytest.raises(SweepError, match=r"absent\.nc: no such file"):
         dataset.read(tmp_path / "absent.nc")
-    with pytest.raises(SweepError, match="no such file"):
+    with pytest.raises(SweepError, match="is a directory"):
         dataset.read(tmp_path)
     content = sweep.out.read_bytes()
     for broken in (b"", b"text", content[: len(content) // 2]):

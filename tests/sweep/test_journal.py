@@ -8,7 +8,7 @@ from wedgesweep.sweep import journal
 from wedgesweep.sweep.journal import Journal
 
 DTYPE = np.dtype([("index", "i8"), ("value", "f8", (3,)), ("message", "S5")])
-HEADER = {"config_sha256": "abc", "wedgesweep": "1.0", "numpy": "2.0"}
+HEADER = {"config": "", "config_sha256": "abc", "wedgesweep": "1.0", "numpy": "2.0"}
 STRIDE = DTYPE.itemsize + 4
 
 
@@ -113,10 +113,12 @@ def test_names_the_keys_of_the_config_that_changed(path):
 
 
 def test_refuses_what_is_no_journal(path):
-    for content in ("some text\nof mine\n", "[1, 2]\n"):
+    for content in ("some text\nof mine\n", "[1, 2]\n", "mine", "{}\n", '{"config": 1}\n', "[" * 5000 + "\n"):
         path.write_text(content)
         with pytest.raises(SweepError, match="not the journal of a sweep"):
             Journal(path, DTYPE, HEADER)
+        with pytest.raises(SweepError, match="not the journal of a sweep"):
+            journal.discard(path)
         assert path.read_text() == content
 
 

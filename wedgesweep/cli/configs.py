@@ -11,6 +11,7 @@ from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, OutputPath
 from wedgesweep.cli.run import print_remark
+from wedgesweep.files import write_text
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
@@ -95,5 +96,5 @@ def _put(text: str, path: Path) -> None:
     if path == STANDARD_OUTPUT:
         click.echo(text, nl=False)
         return
-    path.write_text(text, encoding="utf-8")
+    write_text(path, text)
     click.echo(f"wrote {path}")

@@ -2,10 +2,12 @@
 
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.options import N_JOBS, require_place_for
 
@@ -61,6 +63,7 @@ def diagnose(
     print_warnings(measurement)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
+    _require_own(directory)
     processors = count_jobs(n_jobs)
     diagnosed_before = compiled_mark("diagnose")
     if not diagnosed_before.exists():
@@ -69,14 +72,16 @@ def diagnose(
         measurement, effects=_names(effects), n_jobs=processors, progress=_print_step, calibrate=calibrate
     )
     diagnosed_before.touch()
-    _clear(directory)
-    found.write(directory)
-    written = directory
-    if reported:
-        _draw(found, directory, processors)
-        written = report.write(directory, processors)
+    # Beside the result, to be moved there when all is written: an earlier one stays until then.
+    with TemporaryDirectory(prefix=f".{directory.name}.", dir=_existing(directory.parent)) as place:
+        made = Path(place)
+        found.write(made)
+        if reported:
+            _draw(found, made, processors)
+            report.write(made, processors)
+        _move(made, directory)
     click.echo(report.sentence(directory))
-    click.echo(f"wrote {written}")
+    click.echo(f"wrote {directory / report.PAGE if reported else directory}")
 
 
 def _names(listed: str | None) -> list[str] | None:
@@ -87,12 +92,37 @@ def _name(measured: Path) -> str:
     return measured.resolve().parent.name if measured.name == "measured.toml" else measured.stem
 
 
-def _clear(directory: Path) -> None:
-    """Remove the report and figures of an earlier diagnosis."""
-    from wedgesweep import report
+def _require_own(directory: Path) -> None:
+    """Refuse to replace files of the names of a result that no diagnosis has left there."""
+    mark, *others = _result_files()
+    foreign = [name for name in others if (directory / name).exists()]
+    if foreign and not (directory / mark).is_file():
+        message = f"{directory / foreign[0]}: not the result of a diagnosis; choose another -o to keep it"
+        raise Failure(message)
 
-    for name in (report.PAGE, *FIGURE_FILES.values()):
-        (directory / name).unlink(missing_ok=True)
+
+def _result_files() -> tuple[str, ...]:
+    """Names of the files of a result; the first marks it as complete."""
+    from wedgesweep import diagnosis_result, report
+
+    data = (diagnosis_result.JSON, diagnosis_result.DATASET, diagnosis_result.EXTENDED)
+    return (*data, report.PAGE, *FIGURE_FILES.values())
+
+
+def _existing(directory: Path) -> Path:
+    directory.mkdir(parents=True, exist_ok=True)
+    return directory
+
+
+def _move(made: Path, directory: Path) -> None:
+    """Replace an earlier result by a complete one; between the two there is no verdict."""
+    first, *others = _result_files()
+    (_existing(directory) / first).unlink(missing_ok=True)
+    for name in (*others, first):
+        if (made / name).exists():
+            (made / name).replace(directory / name)
+        else:
+            (directory / name).unlink(missing_ok=True)
 
 
 def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:

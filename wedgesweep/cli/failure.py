@@ -1,5 +1,7 @@
 """Expected errors print one message on stderr and exit with code 2; no traceback."""
 
+import signal
+from types import FrameType
 from typing import Any
 
 import click
@@ -7,6 +9,32 @@ import click
 from wedgesweep.errors import InputError, SweepError
 
 SOME_FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+# Signals that end a command as ctrl-C does; Windows has no SIGHUP.
+ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was told to end by a signal of this number."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+
+
+def end_on_signals() -> None:
+    """Let SIGTERM and SIGHUP end this process as ctrl-C does, unless they are ignored (nohup)."""
+    for number in ENDING:
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, _terminate)
+
+
+def _terminate(number: int, frame: FrameType | None) -> None:
+    raise Terminated(number)
+
+
+def exit_code(interrupt: KeyboardInterrupt) -> int:
+    """Exit code after an interrupt: 128 and the number of the signal."""
+    return 128 + interrupt.number if isinstance(interrupt, Terminated) else INTERRUPTED
 
 
 class Failure(click.ClickException):
@@ -26,9 +54,9 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interrupt:
             click.echo("interrupted", err=True)
-            ctx.exit(INTERRUPTED)
+            ctx.exit(exit_code(interrupt))
         except Exception as error:
             raise _failure(error) from error
 

@@ -21,6 +21,9 @@ def print_measurement(measurement: "Measurement") -> None:
     click.echo(f"model: {measurement.model.title}, {measurement.law}")
     for name, std in measurement.uncertain.items():
         click.echo(f"uncertain: {name}, {100.0 * std:.3g} %")
+    for test in measurement.tests:
+        if test.remarks:
+            click.echo(f"{test.file}: {'; '.join(test.remarks)}")
     derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
     if measurement.kind == "loop":

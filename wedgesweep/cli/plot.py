@@ -109,7 +109,7 @@ def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
         return diagnosis_result.read(path)
     unfinished = run.unfinished(path)
     if unfinished is None:
-        return dataset.read(path)
+        return dataset.read_sweep(path)
     done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
     click.echo(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn", err=True)
     return unfinished

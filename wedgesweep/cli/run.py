@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from wedgesweep.cli.failure import INTERRUPTED, SOME_FAILED, Failure
+from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.options import CONFIG, N_JOBS, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
@@ -82,9 +82,9 @@ def run(
     try:
         options |= {"n_jobs": count_jobs(options["n_jobs"]), "backend": _backend(backend, scheduler)}
         ctx.exit(_run(sweep, progress, options))
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         _stopped(progress, sweep, "interrupted", "rerun the same command to resume")
-        ctx.exit(INTERRUPTED)
+        ctx.exit(exit_code(interrupt))
     except CaseFailedError as error:
         _stopped(
             progress, sweep, f"stopped at {error}", "rerun without --fail-fast to solve the remaining cases"

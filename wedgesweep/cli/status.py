@@ -1,13 +1,17 @@
 """status: progress of a sweep, whether complete, interrupted or running."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from wedgesweep.cli.options import DATASET
 from wedgesweep.cli.summary import print_outcomes, print_summary
+from wedgesweep.files import json_object
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
 
@@ -24,11 +28,11 @@ def status(ctx: click.Context, path: Path) -> None:
 def _finished(path: Path) -> int:
     from wedgesweep.sweep import dataset
 
-    ds = dataset.read(path)
+    ds = dataset.read_sweep(path)
     click.echo(f"{path}: complete\ntitle: {ds.attrs.get('title', 'none')}")
     if "start_time" in ds.attrs:
         click.echo(f"started: {ds.attrs['start_time']}")
-    _print_versions(json.loads(ds.attrs.get("fingerprint", "{}")))
+    _print_versions(_fingerprint(ds))
     return print_summary(ds)
 
 
@@ -44,6 +48,13 @@ def _unfinished(partial: Path) -> int:
     for difference in differences(header, fingerprint(settings)):
         click.echo(f"cannot be resumed: {difference}")
     return print_outcomes(outcomes.of_journal(partial), total=len(settings.case_list()))
+
+
+def _fingerprint(ds: "xr.Dataset") -> dict[str, str]:
+    try:
+        return json_object(ds.attrs.get("fingerprint", "{}"))
+    except (TypeError, ValueError):
+        return {}
 
 
 def _print_versions(found: Mapping[str, str]) -> None:

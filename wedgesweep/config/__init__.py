@@ -1,6 +1,5 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,9 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from wedgesweep import __version__
 from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
+from wedgesweep.files import read_text
 from wedgesweep.natural_units import natural_units
 
 # With this effect a suspension may have no equilibrium.
@@ -360,8 +361,11 @@ class Config:
 
 def load(path: str | Path) -> Config:
     """Read a config file; raises ConfigError."""
+    if Path(path).suffix in (".nc", ".nc4"):
+        problem = f"{path}: a dataset, where a config (TOML) is wanted; 'wedgesweep status' tells its content"
+        raise ConfigError([problem])
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = read_text(Path(path))
     except UnicodeDecodeError as error:
         problem = f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8"
         raise ConfigError([problem]) from error
@@ -374,7 +378,7 @@ def load(path: str | Path) -> Config:
 def parse(text: str, source: str = "<config>") -> Config:
     """Read a config from TOML text; raises ConfigError with everything that is wrong with it."""
     try:
-        given = tomllib.loads(text)
+        given = toml.loads(text)
     except ValueError as error:
         raise ConfigError([f"{source}: not valid TOML: {error}"]) from error
     return from_document(given, source)
@@ -418,7 +422,12 @@ def schema() -> dict[str, Any]:
     """JSON schema of a config (draft 2020-12), for editors."""
     from wedgesweep.config.declarations import root
 
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **root().schema()}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": f"urn:wedgesweep:config:{__version__}",
+        "version": __version__,
+        **root().schema(),
+    }
 
 
 def template() -> str:

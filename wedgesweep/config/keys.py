@@ -82,9 +82,12 @@ class Text(Key):
     """A string."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> str | None:
-        if isinstance(value, str):
+        if not isinstance(value, str):
+            problems.append(f'{path}: {show(value)} is not a string; write it in "quotes"')
+        elif "\0" in value:
+            problems.append(f"{path}: {show(value)} holds a null character; leave it out")
+        else:
             return value
-        problems.append(f'{path}: {show(value)} is not a string; write it in "quotes"')
         return None
 
     def shape(self) -> dict[str, Any]:

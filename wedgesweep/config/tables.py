@@ -90,9 +90,10 @@ class TableList(Key):
             problems.append(f"{path}: {show(value)} is not a list of tables; write [[{path}]] for each")
             return None
         read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(value)]
+        first: dict[str, int] = {}
         for i, each in enumerate(read):
-            if each and each in read[:i]:
-                problems.append(f"{path}[{i}]: repeats {path}[{read.index(each)}]; keep one")
+            if each and (there := first.setdefault(repr(each), i)) != i:
+                problems.append(f"{path}[{i}]: repeats {path}[{there}]; keep one")
         return read
 
     def shape(self) -> dict[str, Any]:

@@ -1,7 +1,33 @@
-"""TOML writer; the standard library only reads TOML."""
+"""TOML: a reader that refuses what nothing here can hold, and a writer, which the standard library lacks."""
 
 import json
+import tomllib
 from typing import Any
+
+# Tables and lists of a config are nested less deeply.
+DEEPEST = 20
+# A longer whole number is shown in hexadecimal: Python writes decimals of limited length only.
+MOST_BITS = 4096
+
+
+def loads(text: str) -> dict[str, Any]:
+    """Read TOML text; raises ValueError."""
+    message = f"nested more than {DEEPEST} deep"
+    try:
+        document = tomllib.loads(text)
+    except RecursionError as error:
+        raise ValueError(message) from error
+    level: list[Any] = [document]
+    for _ in range(DEEPEST):
+        level = [
+            inner
+            for each in level
+            for inner in (each.values() if isinstance(each, dict) else each)
+            if isinstance(inner, dict | list)
+        ]
+    if level:
+        raise ValueError(message)
+    return document
 
 
 def inline(value: Any) -> str:
@@ -11,6 +37,8 @@ def inline(value: Any) -> str:
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, int) and value.bit_length() > MOST_BITS:
+        return hex(value)
     if isinstance(value, list):
         return f"[{', '.join(inline(item) for item in value)}]"
     if isinstance(value, dict):
@@ -20,14 +48,14 @@ def inline(value: Any) -> str:
 
 def dumps(document: dict[str, Any], path: str = "") -> str:
     """Format a document of nested tables as TOML; its keys must be bare keys."""
-    plain, tables = "", ""
+    plain, tables = [], []
     for key, value in document.items():
         if isinstance(value, dict):
             inside = dumps(value, f"{path}{key}.")
             needs_header = inside and not inside.startswith("\n")
-            tables += f"\n[{path}{key}]\n{inside}" if needs_header else inside
+            tables.append(f"\n[{path}{key}]\n{inside}" if needs_header else inside)
         elif isinstance(value, list) and isinstance(value[0], dict):
-            tables += "".join(f"\n[[{path}{key}]]\n{dumps(item)}" for item in value)
+            tables += (f"\n[[{path}{key}]]\n{dumps(item)}" for item in value)
         else:
-            plain += f"{key} = {inline(value)}\n"
-    return plain + tables
+            plain.append(f"{key} = {inline(value)}\n")
+    return "".join(plain + tables)

@@ -6,12 +6,12 @@ keywords of ``draw`` are the figure's options, in SI units as the dataset is; mm
 """
 
 import io
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wedgesweep.figures import catalogue, diagnosis
+from wedgesweep.files import written
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -122,12 +122,8 @@ def save(figure: "Figure", path: str | Path) -> None:
         valid = ", ".join(FORMATS)
         message = f"{path}: cannot write '{path.suffix}'; the suffix must be one of {valid}"
         raise ValueError(message)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        figure.savefig(partial, format=path.suffix.lower()[1:], dpi=DOTS_PER_INCH)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with written(path) as temporary:
+        figure.savefig(temporary, format=path.suffix.lower()[1:], dpi=DOTS_PER_INCH)
 
 
 def svg(figure: "Figure") -> bytes:

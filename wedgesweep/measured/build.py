@@ -1,13 +1,13 @@
 """Builds the record of a test in SI units from the numbers in a file; faults name their place."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured import sampling
+from wedgesweep.measured import decimation, sampling
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
     FORCE_AMPLITUDE,
@@ -18,24 +18,29 @@ from wedgesweep.measured.declarations import (
     UNITS,
     units,
 )
+from wedgesweep.measured.frequency import estimate_frequency
 from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.stationarity import stationarity_faults, without_trend
-from wedgesweep.measured.steadiness import frequency_faults
+from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
+
+# Bounds of a channel in SI units, and the variation that is rounding, over its size.
+LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
 
 
 @dataclass(frozen=True)
 class Channels:
     """Columns of a test as in its file, shape (n,) each, with their units.
 
-    ``file`` names the file and ``where`` the place of a sample in it.
+    ``file`` names the file and ``where`` the place of a sample in it; ``told`` is a remark on its form.
     """
 
     columns: Mapping[str, np.ndarray]
     units: Mapping[str, str]
     file: str
     where: Callable[[int], str]
+    told: str = ""
 
     def si(self, channel: str) -> np.ndarray | None:
         """Samples of a channel in SI units, or None."""
@@ -65,16 +70,17 @@ def build_record(
 ) -> TestRecord | None:
     """Build the record of a test from its checked keys ``given``, found at ``at``; None after a fault."""
     before = len(problems)
+    problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
     recorded, channels = channels, _selected(given, channels, at, problems)
-    if len(problems) == before:
-        grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
-        for channel in set(channels.columns) - {"time"}:
-            if np.ptp(channels.columns[channel]) == 0.0:
-                problems.append(f"{channels.file}: {channel} is constant; there is no vibration in it")
+    if len(problems) > before:
+        return None
+    grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
     if len(problems) > before:
         return None
     if given.get("detrend", False):
         channels = channels.without_trend()
+    cut = channels.seconds.size != recorded.seconds.size
+    channels, grid, thinned = _shortened(given, channels, grid)
     amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
@@ -91,9 +97,8 @@ def build_record(
         kind=given.get("kind", STEADY),
         force=channels.si("force"),
         cutoff=given.get("lowpass_hz"),
-        recorded_s=None
-        if channels.seconds.size == recorded.seconds.size
-        else float(np.ptp(recorded.seconds)),
+        recorded_s=float(np.ptp(recorded.seconds)) if cut else None,
+        remarks=tuple(filter(None, (channels.told, thinned))),
     )
     problems.extend(FAULTS[test.kind](test, channels.file, at))
     return None if len(problems) > before else test
@@ -119,3 +124,30 @@ def _selected(given: Mapping[str, Any], channels: Channels, at: str, problems: l
         problems.append(f"{at}.{key}: {value:g}, but {told}")
         return channels
     return channels.between(start, end)
+
+
+def _size_faults(channels: Channels) -> Iterator[str]:
+    """Channels of sizes that no vibration has, whose squares might not even be numbers."""
+    for channel, column in channels.columns.items():
+        samples = column * units(channel)[channels.units[channel]]
+        largest = float(np.abs(samples).max(initial=0.0))
+        if largest > LARGEST:
+            yield f"{channel}: {largest:.3g} in SI units is too large; correct the unit or the file"
+        elif samples.size and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
+            yield f"{channel} is constant; there is no vibration in it"
+
+
+def _shortened(
+    given: Mapping[str, Any], channels: Channels, grid: np.ndarray
+) -> tuple[Channels, np.ndarray, str]:
+    """A steady record of at most MOST_SAMPLES, the times, and a remark if samples were left out."""
+    if grid.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
+        return channels, grid, ""
+    names = [name for name in channels.columns if name != "time"]
+    leading = channels.columns[INPUT if INPUT in names else names[0]][:MOST_SAMPLES]
+    seconds = UNITS["time"][channels.units["time"]]
+    frequency = given.get("frequency_hz") or estimate_frequency(grid[:MOST_SAMPLES] * seconds, leading)
+    columns, grid, told = decimation.shortened(
+        {name: channels.columns[name] for name in names}, grid, frequency * seconds, MOST_SAMPLES
+    )
+    return replace(channels, columns={"time": grid, **columns}), grid, told

@@ -1,114 +1,147 @@
 """Numbers of the columns of a CSV file; faults name their line."""
 
-import csv
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import isfinite
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from wedgesweep.config.keys import hint, show
+from wedgesweep.files import read_bytes
+from wedgesweep.measured import csv_dialect
+from wedgesweep.measured.csv_dialect import Dialect
 
 # Number of faulty lines that are listed per file; the others are counted.
 LISTED = 3
 
 
-Columns = tuple[dict[str, np.ndarray], np.ndarray]
+class Content(NamedTuple):
+    """Columns by channel, each of shape (n,), and the line (from 1) of each row.
 
-
-def read(path: Path, wanted: Mapping[str, str], problems: list[str]) -> Columns:
-    """Read the wanted columns, each of shape (n,), and the line number (from 1) of each row.
-
-    ``wanted`` maps each channel to its header name. Faults are appended to ``problems``; then both
-    results are empty.
+    ``units``: those that the file itself names, by channel; ``told``: what of its form is worth telling.
     """
+
+    columns: dict[str, np.ndarray]
+    lines: np.ndarray
+    units: Mapping[str, str] = {}
+    told: str = ""
+
+    def where(self, file: Path) -> Callable[[int], str]:
+        """The place of a sample in a file of lines, by its index."""
+        return lambda sample: f"{file}:{self.lines[sample]}"
+
+
+NOTHING = Content({}, np.array([], int))
+
+
+def read(
+    path: Path, wanted: Mapping[str, str], problems: list[str], stated: Mapping[str, Any] | None = None
+) -> Content:
+    """Read the wanted columns.
+
+    ``wanted`` maps each channel to its header name, ``stated`` is the table measurement.csv. Faults are
+    appended to ``problems``; then the result is empty.
+    """
+    stated = stated or {}
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError as error:
-        problems.append(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8")
-        return _NOTHING
+        text, encoding = csv_dialect.decode(read_bytes(path), stated.get("encoding"))
+        lines = csv_dialect.LINE_END.split(text)
+        dialect = csv_dialect.detect(lines, encoding, wanted, stated)
     except OSError as error:
         problems.append(f"{path}: {error.strerror}; give the path of a CSV file")
-        return _NOTHING
-    header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
-    before = len(problems)
-    problems.extend(f"{path}:1: {fault}" for fault in _header_faults(header, wanted))
-    filled = np.array([place for place, line in enumerate(lines, 1) if line.strip()][1:], int)
-    if len(problems) == before and not filled.size:
+        return NOTHING
+    except ValueError as error:
+        problems.append(f"{path}: {error}")
+        return NOTHING
+    faults = _header_faults(lines, dialect, wanted, stated)
+    if dialect is None or faults:
+        problems.extend(f"{path}:{fault}" for fault in faults)
+        return NOTHING
+    first = dialect.header + 1
+    filled = [place for place in range(first, len(lines)) if not csv_dialect.is_skipped(lines[place])]
+    rows = np.array(filled[bool(dialect.units) :], int)
+    if not rows.size:
         problems.append(f"{path}: no data below the header; write one line per sample")
-    if len(problems) > before:
-        return _NOTHING
-    places = {channel: header.index(name) for channel, name in wanted.items()}
-    columns = _numbers(lines[1:], len(header), places)
-    if columns is None:
-        columns = _numbers_one_by_one(path, lines, filled, header, places, problems)
-    return (columns, filled) if columns else _NOTHING
+        return NOTHING
+    columns = _numbers(path, [lines[place] for place in rows], rows + 1, dialect, wanted, problems)
+    units = dict(zip(wanted, dialect.units, strict=True)) if dialect.units else {}
+    return Content(columns, rows + 1, units, dialect.told()) if columns else NOTHING
 
 
-_NOTHING: Columns = ({}, np.array([], int))
-
-
-def _header_faults(header: Sequence[str], wanted: Mapping[str, str]) -> list[str]:
+def _header_faults(
+    lines: Sequence[str], dialect: Dialect | None, wanted: Mapping[str, str], stated: Mapping[str, Any]
+) -> list[str]:
+    """Faults of the header as "line: fault"."""
+    place, header = csv_dialect.header(lines, stated)
+    if dialect is not None:
+        place, header = dialect.header, list(dialect.names)
     if not any(header):
-        return ["empty; the first line must hold the names of the columns"]
-    faults = [
-        f"column {show(name)} occurs {times} times; names must be unique"
-        for name, times in Counter(header).items()
-        if times > 1 and name in wanted.values()
-    ]
+        return [f"{place + 1}: empty; the first line must hold the names of the columns"]
+    repeated = [name for name, times in Counter(header).items() if times > 1 and name in wanted.values()]
+    if repeated:
+        name = repeated[0]
+        return [f"{place + 1}: column {show(name)} occurs {header.count(name)} times; names must be unique"]
     if len(header) == 1 and len(wanted) > 1:
-        faults.append(f"only one column, {show(header[0])}; separate columns by commas")
-        return faults
-    return faults + [
-        f"no column {show(name)} ({channel}); {hint(name, [each for each in header if each])}"
+        told = "separate columns by commas, semicolons or tabs"
+        return [f"{place + 1}: only one column, {show(header[0])}; {told}"]
+    return [
+        f"{place + 1}: no column {show(name)} ({channel}); {hint(name, [each for each in header if each])}"
         for channel, name in wanted.items()
         if name not in header
     ]
 
 
-def _numbers(lines: Sequence[str], width: int, places: Mapping[str, int]) -> dict[str, np.ndarray] | None:
-    """Parse all lines at once; None if a line does not hold ``width`` finite numbers."""
-    try:
-        rows = np.loadtxt(lines, delimiter=",", comments=None, ndmin=2)
-    except ValueError:
-        return None
-    if rows.shape[1] != width or not np.isfinite(rows[:, list(places.values())]).all():
-        return None
-    return {channel: rows[:, place].copy() for channel, place in places.items()}
-
-
-def _numbers_one_by_one(
+def _numbers(
     path: Path,
     lines: Sequence[str],
-    filled: np.ndarray,
-    header: Sequence[str],
-    places: Mapping[str, int],
+    numbers: np.ndarray,
+    dialect: Dialect,
+    wanted: Mapping[str, str],
     problems: list[str],
-) -> dict[str, np.ndarray] | None:
-    """Parse cell by cell: other columns may hold text, and each fault names its line."""
+) -> dict[str, np.ndarray]:
+    places = {channel: dialect.names.index(name) for channel, name in wanted.items()}
+    at_once = _all_at_once(lines, dialect)
+    if at_once is not None and np.isfinite(at_once[:, list(places.values())]).all():
+        return {channel: at_once[:, place].copy() for channel, place in places.items()}
     faults, rows = [], []
-    for place, cells in zip(filled.tolist(), csv.reader(lines[i - 1] for i in filled), strict=True):
-        if len(cells) != len(header):
-            faults.append(f"{path}:{place}: {len(cells)} cells; the header has {len(header)}")
+    for number, line in zip(numbers.tolist(), lines, strict=True):
+        cells = csv_dialect.split(line, dialect.delimiter)
+        if len(cells) != len(dialect.names):
+            faults.append(f"{path}:{number}: {len(cells)} cells; the header has {len(dialect.names)}")
             continue
-        row = [_number(cells[column]) for column in places.values()]
-        for column, value in zip(places.values(), row, strict=True):
+        row = [_number(cells[place], dialect.decimal) for place in places.values()]
+        for place, value in zip(places.values(), row, strict=True):
             if value is None:
-                wrong = show(cells[column]) if cells[column].strip() else "an empty cell"
-                faults.append(f"{path}:{place}: {header[column]}: {wrong} is not a finite number")
+                wrong = show(cells[place]) if cells[place] else "an empty cell"
+                faults.append(f"{path}:{number}: {dialect.names[place]}: {wrong} is not a finite number")
         rows.append(row)
     problems.extend(faults[:LISTED])
     if len(faults) > LISTED:
         problems.append(f"{path}: {len(faults) - LISTED} more such faults")
     if faults:
-        return None
+        return {}
     return dict(zip(places, np.array(rows, float).T.copy(), strict=True))
 
 
-def _number(cell: str) -> float | None:
+def _all_at_once(lines: Sequence[str], dialect: Dialect) -> np.ndarray | None:
+    """All numbers of plain lines, shape (n, columns); None if some line does not hold just these."""
+    if dialect.decimal == ",":
+        if dialect.delimiter == ",":
+            return None
+        lines = [line.replace(",", ".") for line in lines]
+    delimiter = None if dialect.delimiter == " " else dialect.delimiter
     try:
-        value = float(cell)
+        rows = np.loadtxt(lines, delimiter=delimiter, comments=None, ndmin=2)
+    except ValueError:
+        return None
+    return rows if rows.shape[1] == len(dialect.names) else None
+
+
+def _number(cell: str, decimal: str) -> float | None:
+    try:
+        value = float(cell.replace(",", ".") if decimal == "," else cell)
     except ValueError:
         return None
     return value if isfinite(value) else None

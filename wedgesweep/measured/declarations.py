@@ -8,6 +8,7 @@ from wedgesweep.config import toml
 from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, show
 from wedgesweep.config.tables import Table, TableList, table
 from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
+from wedgesweep.measured.csv_dialect import DIALECT
 from wedgesweep.quantity import Quantity
 
 UNITS = {
@@ -210,6 +211,7 @@ MEASUREMENT = table(
     Text(key="model", meaning="the base model: a config, relative to this file", example="model.toml"),
     Number.of(MODEL_ERROR),
     COLUMNS,
+    DIALECT,
     Number.of(INPUT_GAIN_STD),
     UNCERTAIN,
     TableList(key="test", meaning="the tests", item=TEST, example="measurement.test"),

@@ -47,6 +47,7 @@ class TestRecord:
     force: np.ndarray | None = None
     cutoff: float | None = None
     recorded_s: float | None = None
+    remarks: tuple[str, ...] = ()
 
     @cached_property
     def refined_frequency(self) -> float:

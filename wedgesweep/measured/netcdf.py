@@ -12,7 +12,6 @@ of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is
 """
 
 import json
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
+from wedgesweep.files import json_object, regular, written
 from wedgesweep.measured import kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
@@ -56,20 +56,15 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
     """Write a measurement as one netCDF file, in SI units; a failed write leaves no file."""
     import netCDF4
 
-    partial = path.with_name(path.name + ".partial")
-    try:
-        with netCDF4.Dataset(partial, "w") as root:
-            root.setncatts({"title": measurement.title, "model": measurement.model.to_toml()})
-            root.setncattr("model_error", measurement.model_error)
-            if measurement.input_gain_std:
-                root.setncattr("input_gain_std", measurement.input_gain_std)
-            root.createGroup("uncertain").setncatts(dict(measurement.uncertain))
-            tests = root.createGroup("tests")
-            for i, test in enumerate(measurement.tests):
-                _write_test(tests.createGroup(f"{i:04d}"), test, measurement)
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with written(path) as temporary, netCDF4.Dataset(temporary, "w") as root:
+        root.setncatts({"title": measurement.title, "model": measurement.model.to_toml()})
+        root.setncattr("model_error", measurement.model_error)
+        if measurement.input_gain_std:
+            root.setncattr("input_gain_std", measurement.input_gain_std)
+        root.createGroup("uncertain").setncatts(dict(measurement.uncertain))
+        tests = root.createGroup("tests")
+        for i, test in enumerate(measurement.tests):
+            _write_test(tests.createGroup(f"{i:04d}"), test, measurement)
 
 
 def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
@@ -102,9 +97,9 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     import netCDF4
 
     try:
-        root = netCDF4.Dataset(path)
-    except OSError as error:
-        problem = f"{path}: {error.strerror}; give the path of a netCDF file"
+        root = netCDF4.Dataset(regular(path))
+    except (OSError, RuntimeError, ValueError) as error:  # netCDF4 raises any of them
+        problem = f"{path}: {getattr(error, 'strerror', error)}; give the path of a netCDF file"
         raise MeasuredError([problem]) from error
     with root:
         return _read(root, path, model)
@@ -203,7 +198,8 @@ def _uncertain(root: Any, path: Path, problems: list[str]) -> dict[str, float]:
 def _attributes(group: Any) -> dict[str, Any]:
     """Attributes as plain numbers and strings."""
     found = {name: group.getncattr(name) for name in group.ncattrs()}
-    return {name: each.item() if isinstance(each, np.generic) else each for name, each in found.items()}
+    numpy_types = np.generic | np.ndarray
+    return {name: each.tolist() if isinstance(each, numpy_types) else each for name, each in found.items()}
 
 
 def _checked(table: Table, given: Mapping[str, Any], at: str, problems: list[str]) -> dict[str, Any]:
@@ -238,8 +234,8 @@ def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:
-        return attributes | {"model": json.loads(attributes["model"])}
-    except json.JSONDecodeError:
+        return attributes | {"model": json_object(attributes["model"])}
+    except ValueError:
         return attributes
 
 

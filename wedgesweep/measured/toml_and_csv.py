@@ -1,14 +1,17 @@
 """measured.toml and its CSV files."""
 
 import re
-import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from wedgesweep.config import Config
-from wedgesweep.measured import channels, csv_columns, kinds, overrides
+from wedgesweep.config import Config, toml
+from wedgesweep.config.keys import show
+from wedgesweep.files import read_text
+from wedgesweep.measured import arrays, channels, csv_columns, kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import ROOT, STEADY
+from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
 
@@ -73,7 +76,7 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
 def has_measurement(path: Path) -> bool:
     """Whether a file has a [measurement] table, even if it is not valid TOML."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
     except (OSError, UnicodeDecodeError):
         return False
     return HEADER.search(text) is not None
@@ -82,7 +85,7 @@ def has_measurement(path: Path) -> bool:
 def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     """The checked document; its faults go to ``problems``."""
     try:
-        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        given = toml.loads(read_text(path))
     except UnicodeDecodeError as error:
         problems.append(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8")
     except OSError as error:
@@ -118,18 +121,35 @@ def _tests(
         seen[file] = i
         problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns, model))
         if complete:
-            tests += _test(path.parent / file, at, given, columns, problems)
+            tests += _test(path.parent / file, at, given, measurement, problems)
     return tests
 
 
 def _test(
-    file: Path, at: str, given: dict[str, Any], columns: dict[str, Any], problems: list[str]
+    file: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
 ) -> list[TestRecord]:
+    columns = measurement["columns"]
     wanted = {channel: each["column"] for channel, each in columns.items()}
-    numbers, lines = csv_columns.read(file, wanted, problems)
-    if not numbers:
-        return []
     units = {channel: each["unit"] for channel, each in columns.items()}
-    content = Channels(numbers, units, str(file), lambda sample: f"{file}:{lines[sample]}")
-    test = build_record(file.stem, given, content, at, problems)
+    stated = measurement.get("csv", {})
+    reader = arrays.reader(file)
+    content = reader(file, wanted, problems) if reader else csv_columns.read(file, wanted, problems, stated)
+    if not content.columns:
+        return []
+    faults = _unit_faults(content.units, units, file)
+    problems.extend(faults)
+    if faults:
+        return []
+    found = Channels(content.columns, units, str(file), content.where(file), content.told)
+    test = build_record(file.stem, given, found, at, problems)
     return [test] if test else []
+
+
+def _unit_faults(written: Mapping[str, str], stated: Mapping[str, str], file: Path) -> list[str]:
+    """Units in the file that are not the stated ones."""
+    return [
+        f"{file}: {channel}: the file says {show(written[channel])}, its unit is stated as {show(unit)}; "
+        "correct one of them"
+        for channel, unit in stated.items()
+        if written.get(channel, unit) in units_of(channel) and written.get(channel, unit) != unit
+    ]

@@ -1,9 +1,9 @@
 """The report of a diagnosis: a page that a person reads, and the answer in one sentence."""
 
-import os
 from pathlib import Path
 
 from wedgesweep import diagnosis_result
+from wedgesweep.files import write_text
 from wedgesweep.report import sentence as sentences
 
 PAGE = "report.html"
@@ -32,12 +32,7 @@ def write(directory: Path, n_jobs: int = 1) -> Path:
     from wedgesweep.report import page
 
     file = directory / PAGE
-    partial = directory / f".{PAGE}.partial"
-    try:
-        partial.write_text(page.render(diagnosis_result.read(directory), n_jobs), encoding="utf-8")
-        os.replace(partial, file)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_text(file, page.render(diagnosis_result.read(directory), n_jobs))
     return file
 
 

@@ -12,7 +12,9 @@ HEAD = ("", "in units of the noise", "of the response")
 
 def lead(result: DiagnosisResult) -> str:
     """What is missing, in plain words."""
-    causes = phrases.listing([phrases.meaning(each["effect"]) for each in result.document["causes"]])
+    causes = phrases.listing(
+        [phrases.meaning(each["effect"], result.document) for each in result.document["causes"]]
+    )
     match result.verdict:
         case "nothing-missing":
             return "The model misses nothing that these tests show."
@@ -22,7 +24,7 @@ def lead(result: DiagnosisResult) -> str:
             return f"The model probably misses {causes}; the evidence is weak."
         case "tied":
             rivals = [
-                phrases.listing([phrases.meaning(effect) for effect in each["effects"]])
+                phrases.listing([phrases.meaning(effect, result.document) for effect in each["effects"]])
                 for each in result.document["rivals"]
             ]
             return (

@@ -1,13 +1,13 @@
 """The result of a reproduction as data (reproduction.json) and as a report (reproduction.md)."""
 
 import json
-import os
 from collections import Counter
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from wedgesweep.files import write_text
 from wedgesweep.reproduce import comparison, page
 from wedgesweep.reproduce.claims import CheckedClaim
 from wedgesweep.reproduce.findings import VERDICTS
@@ -24,16 +24,6 @@ def write(directory: Path, runs: Runs, claims: Sequence[CheckedClaim], experimen
 def json_text(content: dict[str, Any]) -> str:
     """Plain data as JSON."""
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file completely or not at all."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def document(runs: Runs, claims: Sequence[CheckedClaim]) -> dict[str, Any]:

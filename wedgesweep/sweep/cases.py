@@ -120,6 +120,8 @@ def solve_cases(
             outcome, message = Outcome.OK, ""
         except CaseError as error:
             outcome, message = Outcome[error.status.upper()], str(error)
+        except OSError:  # the fault of the machine, such as a full disk, and not of the case
+            raise
         except Exception as error:  # one bad case must not take the sweep with it
             outcome, message = Outcome.SOLVER_FAILURE, f"{type(error).__name__}: {error}"
         if outcome != Outcome.OK:

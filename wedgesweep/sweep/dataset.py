@@ -1,7 +1,6 @@
 """The labelled dataset of a sweep: one table of every variable, and its netCDF encoding."""
 
-import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -11,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep.errors import SweepError
+from wedgesweep.files import regular, written
 from wedgesweep.outcome import Outcome
 
 STATUSES = tuple(map(str, Outcome))
@@ -100,6 +100,7 @@ CONTINUED = (
 FLAGS = {"status": (0, STATUSES), "coexisting": (-1, ("not_told", "no", "yes"))}
 
 GRID = ("friction_law", "beta", "amplitude")
+REQUIRED = ("status", "message", "period", "periodicity")
 MESSAGE_BYTES = 200
 
 
@@ -192,21 +193,70 @@ def write(dataset: xr.Dataset, path: Path) -> None:
         # Compressing doubles saves a fifth of their size, and takes longer than solving the cases.
         if variable.dtype.kind in "fi" and variable.dtype != np.float64:
             encoding[str(name)] = compressed
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with written(path) as temporary:
+        try:
+            dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        except (
+            OSError,
+            RuntimeError,
+            ValueError,
+        ) as error:  # netCDF4 raises any of them, without a file name
+            message = f"{path}: cannot be written ({_reason(error)}); is the disk full?"
+            raise SweepError(message) from error
 
 
 def read(path: Path) -> xr.Dataset:
     """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
-    if not path.is_file():
-        message = f"{path}: no such file"
-        raise SweepError(message)
+    try:
+        regular(path)
+    except OSError as error:
+        message = f"{path}: {str(error.strerror).lower()}"
+        raise SweepError(message) from error
     try:
         return xr.load_dataset(path, engine="netcdf4")
-    except (OSError, RuntimeError, ValueError) as error:  # netCDF4 raises any of them
-        message = f"{path}: not a netCDF dataset, or damaged ({error})"
+    except Exception as error:  # netCDF4 and the decoding of damaged content raise nearly anything
+        message = f"{path}: not a netCDF dataset, or damaged ({_reason(error)})"
         raise SweepError(message) from error
+
+
+def read_sweep(path: Path) -> xr.Dataset:
+    """Load the dataset of a sweep; raises SweepError, also if it lacks what every sweep has."""
+    found = read(path)
+    if faults := list(_faults(found)):
+        message = f"{path}: not the dataset of a sweep: {'; '.join(faults)}"
+        raise SweepError(message)
+    return found
+
+
+def _faults(ds: xr.Dataset) -> Iterator[str]:
+    """What tells a dataset from that of a sweep: coordinates, dimensions, and the kinds of its variables."""
+    yield from (f"no coordinate {name}" for name in (*GRID, "frequency") if name not in ds.coords)
+    yield from (f"no variable {name}" for name in REQUIRED if name not in ds)
+    if "beta" not in ds.coords:
+        return
+    case_dims = ("case",) if ds["beta"].dims == ("case",) else GRID
+    known = {variable.name: variable for variable in VARIABLES + CONTINUED}
+    for name in [each for each in ds.variables if each in known or each in (*GRID, "frequency")]:
+        found = ds[name]
+        dims, kinds = _expected(str(name), known.get(str(name)), case_dims)
+        if found.dims != dims:
+            yield f"{name} has the dimensions {', '.join(map(str, found.dims))}, not {', '.join(dims)}"
+        elif found.dtype.kind not in kinds:
+            yield f"{name} holds {found.dtype}"
+        elif not found.size:
+            yield f"{name} is empty"
+
+
+def _expected(
+    name: str, variable: Variable | None, case_dims: tuple[str, ...]
+) -> tuple[tuple[str, ...], str]:
+    """Dimensions of a variable or coordinate, and the kinds of numpy types that it may have."""
+    if variable is None:
+        own = {"frequency": "beta"}.get(name, name)
+        return (own if len(case_dims) == 3 else "case",), "OUT" if name == "friction_law" else "bfiu"
+    return case_dims + variable.dims, "OUT" if variable.dtype == "str" else "bfiu"
+
+
+def _reason(error: Exception) -> str:
+    """First line of an error's message."""
+    return (str(error) or type(error).__name__).splitlines()[0]

@@ -1,7 +1,6 @@
 """Fingerprint of a sweep: what its results depend on. Runs with different fingerprints are never mixed."""
 
 import platform
-import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cache
 from hashlib import sha256
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep import __version__
-from wedgesweep.config import Config
+from wedgesweep.config import Config, toml
 from wedgesweep.config.keys import show
 
 PACKAGE = Path(__file__).parents[1]
@@ -49,7 +48,10 @@ def _in_words(key: str, found: Mapping[str, str], expected: Mapping[str, str]) -
 
 
 def _changed_keys(there: str, now: str) -> list[str]:
-    there_flat, now_flat = dict(_flat(tomllib.loads(there))), dict(_flat(tomllib.loads(now)))
+    try:
+        there_flat, now_flat = dict(_flat(toml.loads(there))), dict(_flat(toml.loads(now)))
+    except ValueError:
+        return []
     return [
         f"{key}: {_shown(there_flat, key)} there, {_shown(now_flat, key)} now"
         for key in there_flat | now_flat

@@ -13,12 +13,18 @@ from zlib import crc32
 import numpy as np
 
 from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.files import json_object, naming, read_bytes, regular
 from wedgesweep.sweep.fingerprint import differences
 
 try:
     import fcntl
 except ImportError:  # Windows: two runs at once are not detected
     fcntl = None  # type: ignore[assignment]
+
+
+# A header holds at least these; with the first one every journal begins.
+_REQUIRED = {"config", "config_sha256"}
+_BEGINNING = b'{"config": "'
 
 
 class Journal:
@@ -29,7 +35,7 @@ class Journal:
     """
 
     def __init__(self, path: Path, dtype: np.dtype, header: dict[str, str]) -> None:
-        self._file = _locked(path)
+        self._path, self._file = path, _locked(path)
         try:
             whole, self.records = _kept(path, dtype, header)
             os.ftruncate(self._file, whole)
@@ -48,8 +54,9 @@ class Journal:
         self._write(framed.tobytes())
 
     def _write(self, content: bytes) -> None:
-        while content:
-            content = content[os.write(self._file, content) :]
+        with naming(self._path):
+            while content:
+                content = content[os.write(self._file, content) :]
 
     def close(self) -> None:
         os.close(self._file)
@@ -67,40 +74,52 @@ class Journal:
 
 
 def discard(path: Path) -> None:
-    """Delete a journal, if there is one and no run has it open."""
-    if path.exists():
-        file = _locked(path)
+    """Delete a journal, if there is one and no run has it open; raises SweepError for any other file."""
+    if not path.exists():
+        return
+    file = _locked(path)
+    try:
+        _require_journal(path, path.read_bytes())
         path.unlink()
+    finally:
         os.close(file)
 
 
 def header(path: Path) -> dict[str, str]:
     """Read the header of a journal, which may be in use."""
-    return _header(path, path.read_bytes())
+    return _header(path, _content(path))
 
 
 def read(path: Path, dtype: np.dtype) -> np.ndarray:
     """Read the complete records of a journal, which may be in use; of each case the last one."""
-    content = path.read_bytes()
+    content = _content(path)
     return _latest(_whole_records(content, content.index(b"\n") + 1, dtype)[1])
 
 
 def _locked(path: Path) -> int:
     """Open a file and lock it, until it is closed or the process ends."""
+    if path.exists():
+        regular(path)
     file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     try:
         if fcntl:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        # The run that had the lock until now may have finished, and deleted the file.
+        replaced = not (path.exists() and os.path.samestat(os.fstat(file), path.stat()))
     except BlockingIOError as error:
         os.close(file)
         message = f"{path}: another run is writing it; wait until it ends, or stop it"
         raise SweepError(message) from error
+    if replaced:
+        os.close(file)
+        return _locked(path)
     return file
 
 
 def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:
     """Length of the complete part of the file, and its records; 0 if even the header is cut off."""
     content = path.read_bytes()
+    _require_journal(path, content)
     if b"\n" not in content:
         return 0, np.zeros(0, dtype)
     differing = differences(_header(path, content), expected)
@@ -113,9 +132,31 @@ def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, n
 
 def _header(path: Path, content: bytes) -> dict[str, str]:
     try:
-        return dict(json.loads(content[: content.index(b"\n")]))
-    except (ValueError, TypeError) as error:
-        message = f"{path}: not the journal of a sweep, or damaged in its first line"
+        found = json_object(content[: content.index(b"\n")])
+    except ValueError as error:
+        raise _no_journal(path) from error
+    if not found.keys() >= _REQUIRED or not all(isinstance(each, str) for each in found.values()):
+        raise _no_journal(path)
+    return found
+
+
+def _require_journal(path: Path, content: bytes) -> None:
+    """Raise SweepError unless the content is that of a journal, or of its torn first line."""
+    if b"\n" in content:
+        _header(path, content)
+    elif not _BEGINNING.startswith(content[: len(_BEGINNING)]):
+        raise _no_journal(path)
+
+
+def _no_journal(path: Path) -> SweepError:
+    return SweepError(f"{path}: not the journal of a sweep, or damaged in its first line; it is left alone")
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return read_bytes(path)
+    except OSError as error:
+        message = f"{path}: {error.strerror}"
         raise SweepError(message) from error
 
 

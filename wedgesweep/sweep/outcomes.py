@@ -8,6 +8,7 @@ from typing import NamedTuple
 import xarray as xr
 
 from wedgesweep import config
+from wedgesweep.errors import SweepError
 from wedgesweep.outcome import Outcome, settled
 from wedgesweep.sweep import journal
 from wedgesweep.sweep.cases import describe
@@ -61,7 +62,11 @@ def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
 
 def of_journal(path: Path) -> list[CaseResult]:
     """How the finished cases of an unfinished sweep ended."""
-    settings = config.parse(journal.header(path)["config"], str(path))
+    header = journal.header(path)
+    settings = config.parse(header["config"], str(path))
+    if settings.sha256 != header["config_sha256"]:
+        message = f"{path}: damaged in its first line, whose config is not that of the records"
+        raise SweepError(message)
     cases = settings.case_list()
     return [
         CaseResult(

@@ -1,6 +1,5 @@
 """A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
-import json
 import signal
 import threading
 import warnings
@@ -19,6 +18,7 @@ import xarray as xr
 
 from wedgesweep.config import Case, Config, parse
 from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, journal, labels, provenance
@@ -35,6 +35,8 @@ Progress = Callable[[np.ndarray, int], None]
 # The event-driven solver takes CHUNK cases at a time, which also go into the journal together; a small
 # sweep is divided into CHUNKS smaller chunks.
 CHUNK, CHUNKS = 200, 64
+# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
+OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
 
 
 class CaseFailedError(SweepError):
@@ -110,7 +112,7 @@ class Sweep:
         if self.journal_path.exists() or not self.out.exists():
             return None
         found = _read_sweep(self.out)
-        there = {**json.loads(found.attrs["fingerprint"]), "config": found.attrs["config"]}
+        there = {**json_object(found.attrs["fingerprint"]), "config": found.attrs["config"]}
         differing = differences(there, self.journal_header)
         if differing:
             message = f"{self.out}: holds another sweep ({'; '.join(differing)})"
@@ -303,21 +305,24 @@ def unfinished(out: Path) -> xr.Dataset | None:
 
 
 def _read_sweep(path: Path) -> xr.Dataset:
-    found = dataset.read(path)
-    if "fingerprint" not in found.attrs:
-        message = f"{path}: not the dataset of a sweep; it is not overwritten"
-        raise SweepError(message)
+    found = dataset.read_sweep(path)
+    try:
+        json_object(found.attrs["fingerprint"]), found.attrs["config"]
+    except (KeyError, TypeError, ValueError) as error:
+        message = f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
+        raise SweepError(message) from error
     return found
 
 
 @contextmanager
 def _interrupts_ignored() -> Iterator[None]:
-    """Let jobs that start meanwhile ignore ctrl-C; this process ends them."""
+    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

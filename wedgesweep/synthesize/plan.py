@@ -1,14 +1,15 @@
 """tests.toml: the tests to make, and the uncertain numbers of their measured.toml."""
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wedgesweep.config import toml
 from wedgesweep.config.keys import Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError
+from wedgesweep.files import read_text
 from wedgesweep.measured.declarations import AMPLITUDE, AMPLITUDE_STD, FORCE_AMPLITUDE, FREQUENCY, UNCERTAIN
 
 KNOWN = Flag(key="known", meaning="whether measured.toml states the amplitude", default=True)
@@ -54,7 +55,7 @@ class Plan:
 def load(path: Path) -> Plan:
     """Read a tests.toml; raises InputError with everything that is wrong."""
     try:
-        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        given = toml.loads(read_text(path))
     except OSError as error:
         problem = f"{path}: {error.strerror}; give the path of a tests.toml"
         raise InputError([problem]) from error

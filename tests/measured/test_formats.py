@@ -1,0 +1,164 @@
+"""The same vibration in every form that people have it in is the same record, and its form is told."""
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from tests import fixture_measured
+from tests.command import invoke
+from tests.fixture_measured import MEASURED, lines, vibration
+from wedgesweep import measured
+from wedgesweep.measured.decimation import shortened
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    return measured.read(fixture_measured.write(tmp_path_factory.mktemp("plain"))).tests[0]
+
+
+def units_row(rows):
+    return [rows[0], "[s],[mm],(mm/s)", *rows[1:]]
+
+
+def decimal_commas(rows):
+    return [row.replace(",", ";").replace(".", ",") for row in rows]
+
+
+FORMS = {
+    "semicolons": (lambda rows: [row.replace(",", ";") for row in rows], "utf-8", "semicolon-separated"),
+    "tabs": (lambda rows: [row.replace(",", "\t") for row in rows], "utf-8", "tab-separated"),
+    "spaces": (lambda rows: [row.replace(",", "  ") for row in rows], "utf-8", "space-separated"),
+    "decimal commas": (decimal_commas, "utf-8", "semicolon-separated, decimal commas"),
+    "quoted": (lambda rows: [f'"{row.replace(",", chr(34) + "," + chr(34))}"' for row in rows], "utf-8", ""),
+    "byte order mark": (list, "utf-8-sig", ""),
+    "UTF-16": (list, "utf-16", "utf-16"),
+    "Latin-1": (lambda rows: ["# Prüfstand", *rows], "latin-1", "latin-1, header in line 2"),
+    "comments": (
+        lambda rows: ["# bench", "% 12", *rows[:9], "# pause", *rows[9:]],
+        "utf-8",
+        "header in line 3",
+    ),
+    "header is a comment": (lambda rows: [f"# {rows[0]}", *rows[1:]], "utf-8", ""),
+    "head of a logger": (lambda rows: ["Date;1.1.", "", "Rate,1000", *rows], "utf-8", "header in line 4"),
+    "units": (units_row, "utf-8", "a row of units"),
+    "carriage returns": (lambda rows: [f"{row}\r" for row in rows], "utf-8", ""),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_text_is_read_as_it_was_meant(tmp_path, plain, form):
+    edit, encoding, told = FORMS[form]
+    path = fixture_measured.write(tmp_path)
+    (tmp_path / "one.csv").write_bytes("\n".join(edit(lines())).encode(encoding))
+    found = measured.read(path).tests[0]
+    for name in ("time", "displacement", "velocity"):
+        assert np.array_equal(getattr(found, name), getattr(plain, name))
+    assert found.remarks == ((told,) if told else ())
+    assert (f"one.csv: {told}\n" in invoke("check", path)) == bool(told)
+
+
+def stated(keys):
+    return MEASURED.replace("[[measurement.test]]", f"[measurement.csv]\n{keys}\n[[measurement.test]]")
+
+
+def test_what_is_stated_is_not_guessed(tmp_path, plain):
+    rows = ["t,d,v", *(f'{i};"{1000 + i},5";"{i},25"' for i in range(3)), *decimal_commas(lines())]
+    keys = 'skip_rows = 4\ndelimiter = "semicolon"\ndecimal = "comma"\nencoding = "cp1252"'
+    found = measured.read(fixture_measured.write(tmp_path, stated(keys), csv=rows)).tests[0]
+    assert np.array_equal(found.displacement, plain.displacement)
+
+
+FAULTS = {
+    "thousands": (
+        ["t;d;v", *(f"{i};1,234;2,345" for i in range(600))],
+        "",
+        '"1,234" may be a decimal or thou',
+    ),
+    "unit": (units_row(lines()), None, 'the file says "mm", its unit is stated as "um"'),
+    "encoding": (lines(), 'encoding = "klingon"', 'no encoding "klingon"'),
+    "not that encoding": ([*lines(), "ü"], 'encoding = "ascii"', "not ascii text (byte"),
+    "binary": (["t,d,v", "\0\0\0"], 'encoding = "utf-8"', "null characters"),
+    "stray quote": (
+        [*lines()[:5], '"' + lines()[5], *lines()[6:]],
+        "",
+        "one.csv:6: 1 cells; the header has 3",
+    ),
+    "huge": ([lines()[0], "0.0000,1e200,1", *lines()[2:]], "", "displacement: 1e+197 in SI"),
+    "tiny": (["t,d,v", *(f"{i / 1000:.3f},{i % 7}e-200,{i % 5}" for i in range(600))], "", "is constant"),
+    "huge times": (["t,d,v", *(f"{i}e200,{i % 7},{i % 5}" for i in range(600))], "", "time: 5.99e+202 in SI"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_doubts_and_faults_are_named(tmp_path, fault):
+    rows, keys, words = FAULTS[fault]
+    text = stated(keys) if keys else MEASURED
+    if keys is None:
+        text = MEASURED.replace('unit = "mm" ', 'unit = "um" ')
+    with pytest.raises(measured.MeasuredError) as caught:
+        measured.read(fixture_measured.write(tmp_path, text, csv=rows))
+    assert len(caught.value.problems) == 1, caught.value
+    assert words in str(caught.value)
+
+
+def write_hdf5(path, columns):
+    with pytest.importorskip("h5py").File(path, "w") as file:
+        for name, values in columns.items():
+            file["bench/" + name if path.suffix == ".h5" else name] = values[None]
+
+
+def write_parquet(path, columns):
+    arrow = pytest.importorskip("pyarrow")
+    pytest.importorskip("pyarrow.parquet").write_table(arrow.table(columns), path)
+
+
+@pytest.mark.parametrize(
+    ("name", "write"),
+    [
+        ("one.mat", savemat),
+        ("new.mat", write_hdf5),
+        ("one.h5", write_hdf5),
+        ("one.parquet", write_parquet),
+    ],
+)
+def test_binary_files_hold_variables(tmp_path, plain, name, write):
+    t, d, v = vibration()
+    write(tmp_path / name, {"t": np.round(t, 4), "d": d, "v": v})
+    text = MEASURED.replace("one.csv", name)
+    if name.endswith(".h5"):
+        for column in "tdv":
+            text = text.replace(f'column = "{column}"', f'column = "bench/{column}"')
+    path = fixture_measured.write(tmp_path, text)
+    np.testing.assert_allclose(measured.read(path).tests[0].displacement, plain.displacement, rtol=1e-5)
+    path.write_text(text.replace('d"', 'dd"', 1))
+    with pytest.raises(measured.MeasuredError, match=r"no variable .*dd"):
+        measured.read(path)
+    (tmp_path / name).write_bytes((tmp_path / name).read_bytes()[:100])
+    with pytest.raises(measured.MeasuredError, match=r"cannot be read|give the path"):
+        measured.read(path)
+
+
+def test_long_records_are_decimated_and_their_harmonics_stay():
+    """Amplitudes and phases of harmonics below a fifth of the new rate stay; noise above it goes."""
+    frequency, most = 16.0, 4000
+    t = np.arange(50_000) / 50_000.0
+    signal = 3.0 + sum(np.cos(2.0 * np.pi * k * frequency * t + k) / k for k in (1, 3, 12))
+    tone = np.cos(2.0 * np.pi * 3333.0 * t)  # would fold to another frequency
+    found, times, told = shortened({"d": signal + tone}, t, frequency, most)
+    assert told == "low-passed and decimated from 50000 samples to one in 13"
+    assert times.size <= most
+    expected = 3.0 + sum(np.cos(2.0 * np.pi * k * frequency * times + k) / k for k in (1, 3, 12))
+    np.testing.assert_allclose(found["d"], expected, atol=2e-5)
+    cut, times, told = shortened({"d": signal}, t, 400.0, most)
+    assert told == "cut to the first 4000 of 50000 samples"
+    assert np.array_equal(cut["d"], signal[:most])
+
+
+def test_more_rows_than_are_used(tmp_path):
+    t = np.arange(310_000) / 50_000.0
+    rows = np.column_stack([t, np.cos(2.0 * np.pi * 20.0 * t), -np.sin(2.0 * np.pi * 20.0 * t) * 125.66])
+    path = fixture_measured.write(tmp_path)
+    np.savetxt(tmp_path / "one.csv", rows, "%.7g", ",", header="t,d,v", comments="")
+    (test,) = measured.read(path).tests
+    assert test.remarks == ("low-passed and decimated from 310000 samples to one in 2",)
+    assert abs(test.displacement[5000:9000].std() * np.sqrt(2.0) - 1e-3) < 1e-6

@@ -1,0 +1,105 @@
+"""Files that a user names: only regular ones are read, and one that is written is complete or not there."""
+
+import errno
+import json
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+
+def regular(path: Path) -> Path:
+    """Return the path of a regular file; raises OSError for anything else.
+
+    Reading a pipe or a device may never end.
+    """
+    if "\0" in str(path):
+        raise OSError(errno.EINVAL, "a path cannot hold a null character", str(path).replace("\0", "\\0"))
+    mode = path.stat().st_mode
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not stat.S_ISREG(mode):
+        raise OSError(errno.EINVAL, "not a regular file, but a pipe, socket or device", str(path))
+    return path
+
+
+def read_bytes(path: Path) -> bytes:
+    """Read a regular file."""
+    return regular(path).read_bytes()
+
+
+def read_text(path: Path) -> str:
+    """Read a regular file of UTF-8 text."""
+    return read_bytes(path).decode("utf-8-sig")
+
+
+def json_object(text: str | bytes) -> dict[str, Any]:
+    """Read a JSON object; raises ValueError for everything else."""
+    try:
+        found = json.loads(text)
+    except RecursionError as error:
+        message = "nested too deeply"
+        raise ValueError(message) from error
+    if not isinstance(found, dict):
+        message = "not a JSON object"
+        raise ValueError(message)
+    return found
+
+
+@contextmanager
+def written(path: Path) -> Iterator[Path]:
+    """A temporary file beside ``path`` to write, which takes its place when it is complete.
+
+    What a killed process left behind is removed. Errors name ``path``.
+    """
+    _sweep(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with naming(path):
+            yield temporary
+            os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write UTF-8 text, all of it or nothing."""
+    with written(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Name the file in errors of the operating system; a full disk does not say which it was."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is not None:
+            error.filename, error.filename2 = str(path), None
+        raise
+
+
+def _sweep(path: Path) -> None:
+    """Remove temporary files of ``path`` whose processes have ended."""
+    for orphan in path.parent.glob(f".{_literal(path.name)}.*"):
+        process = orphan.name.rpartition(".")[2]
+        if process.isascii() and process.isdigit() and not _runs(int(process)):
+            with suppress(OSError):
+                orphan.unlink()
+
+
+def _literal(name: str) -> str:
+    """A pattern that matches just this name."""
+    return "".join(f"[{each}]" if each in "*?[" else each for each in name)
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True
