@@ -6,7 +6,7 @@ ratio is below 1, relative above. The reference is the event-driven solver at rt
 at 1e-9 on some cases. Where Coulomb is smoothed to tanh(v / 0.02 mm/s) it is that law's own limit, and
 what smoothing changes is printed beside. Compile time is not in the figures.
 
-Optional: pip install '.[bench]', and numbalsoda, which needs a Fortran compiler where it has no wheel.
+Optional: pip install '.[bench]'; numbalsoda in it is compiled by gfortran and cmake.
 """
 
 import os

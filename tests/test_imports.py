@@ -13,7 +13,7 @@ FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.r
 
 NUMERICS = (
     *("compiled.py", "inner_code.py", "outcome.py", "natural_units.py", "quantity.py"),
-    *("excitation.py", "sensor.py"),
+    *("excitation.py", "sensor.py", "trigonometry.py"),
     *("friction/", "effects/", "hybrid/", "systems/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (

@@ -53,6 +53,7 @@ OPTIONS: dict[str, Any] = {
 }
 # Any: stubs of numba know other options of ``overload``.
 INNER: Any = {**OPTIONS, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
+CONTRACTED: Any = INNER | {"forceinline": True, "fastmath": {"contract"}}
 
 
 def compiled(function: Function) -> Function:
@@ -68,6 +69,11 @@ def inner(function: Function) -> Function:
 def inlined(function: Function) -> Function:
     """As ``inner``, and copied into its callers: for short functions in the innermost loops."""
     return cast(Function, numba.njit(**INNER | {"forceinline": True})(function))
+
+
+def contracted(function: Function) -> Function:
+    """As ``inlined``; a product and its sum may be rounded once, which shortens chains of operations."""
+    return cast(Function, numba.njit(**CONTRACTED)(function))
 
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:

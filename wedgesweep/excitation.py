@@ -8,12 +8,11 @@ with the phase of omega t so that its fundamental is the sine (cosine_1 = 0, sin
 part ``series`` do not contain its code.
 """
 
-from math import cos, sin
-
 import numpy as np
 
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.effects import hooks
+from wedgesweep.trigonometry import cosine, sine
 
 # Harmonics of a Fourier series that a record has room for.
 HARMONICS = 16
@@ -59,7 +58,7 @@ def has_series(rows: np.ndarray) -> np.ndarray:
 @inner
 def _series(t, power, p):
     """Sums of h**power times the cosine and sine parts, and times the quadrature, over all harmonics."""
-    turn_cos, turn_sin = cos(p.input.omega * t), sin(p.input.omega * t)
+    turn_cos, turn_sin = cosine(p.input.omega * t), sine(p.input.omega * t)
     c, s, in_phase, quadrature = turn_cos, turn_sin, 0.0, 0.0
     for i in range(p.series.count):
         weight = float(i + 1) ** power
@@ -69,19 +68,19 @@ def _series(t, power, p):
     return in_phase, quadrature
 
 
-@term("series", off="sin(p.input.omega * t)", sin=sin)
+@term("series", off="sine(p.input.omega * t)", sine=sine)
 def _shape(t, p):
     """Displacement over amplitude."""
     return _series(t, 0, p)[0]
 
 
-@term("series", off="cos(p.input.omega * t)", cos=cos)
+@term("series", off="cosine(p.input.omega * t)", cosine=cosine)
 def _slope(t, p):
     """Velocity over amplitude and angular frequency."""
     return _series(t, 1, p)[1]
 
 
-@term("series", off="sin(p.input.omega * t)", sin=sin)
+@term("series", off="sine(p.input.omega * t)", sine=sine)
 def _bend(t, p):
     """Negative acceleration over amplitude and squared angular frequency."""
     return _series(t, 2, p)[0]

@@ -142,6 +142,18 @@ def test_agrees_with_radau():
         assert ours == pytest.approx(radaus.numbers["amplitude_ratio"], abs=1e-5)
 
 
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_events_are_located_as_accurately_as_steps_are_made(law):
+    """Located on steps that reach far beyond them, they made errors 5 to 15 times as large as allowed."""
+    for beta in (2.19, 2.46, 2.73):
+        record = parameters.record(law, 0.1e-3, beta * OMEGA_N)
+        ratio, exact = (
+            respond(record, settle_periods=30, periods=3, rtol=rtol).numbers["amplitude_ratio"]
+            for rtol in (1e-4, 1e-9)
+        )
+        assert ratio == pytest.approx(exact, rel=1e-4)
+
+
 def test_a_locked_wedge_is_told_as_by_radau():
     record = parameters.record(
         "coulomb",

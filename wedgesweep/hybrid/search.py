@@ -15,6 +15,8 @@ from wedgesweep.compiled import INNER, forward, inner
 
 GOLDEN = 0.6180339887498949
 MOST_ITERATIONS = 100
+# Share of a bracket: after a smaller change by Newton's or the secant method only rounding errors are left.
+LAST_CHANGE = 1e-10
 
 Function = TypeVar("Function", bound=Callable)
 _FUNCTIONS: dict[type, Callable] = {}
@@ -61,6 +63,7 @@ def zero(context, bracket, close):
     that leaves the bracket.
     """
     low, at_low, high, at_high = bracket
+    negligible = max(close, LAST_CHANGE * (high - low))
     place = high - at_high * (high - low) / (at_high - at_low)
     before, at_before = (low, at_low) if at_low < -at_high else (high, at_high)
     for _ in range(MOST_ITERATIONS):
@@ -84,7 +87,7 @@ def zero(context, bracket, close):
             high, at_high = place, value
             at_low *= 0.5
         if low <= newton <= high:
-            if abs(newton - place) < close:
+            if abs(newton - place) < negligible:
                 return newton
             place = newton
         else:

@@ -9,11 +9,9 @@ from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import overload
 
-from wedgesweep.compiled import INNER, function_of, inlined
+from wedgesweep.compiled import CONTRACTED, function_of, inlined
 
 _set_item: Any = tuple_setitem
-# A product and its sum may be rounded once: each stage of a Runge-Kutta step waits for them.
-INLINE: Any = INNER | {"forceinline": True, "fastmath": {"contract"}}
 
 
 def weighted(start, scale, weights, vectors):
@@ -21,7 +19,7 @@ def weighted(start, scale, weights, vectors):
     raise NotImplementedError
 
 
-@overload(weighted, jit_options=INLINE)
+@overload(weighted, jit_options=CONTRACTED)
 def _weighted(start, scale, weights, vectors):
     size, count = len(start), len(vectors)
     parts = ", ".join(
@@ -38,7 +36,7 @@ def combination(scale, weights, vectors):
     raise NotImplementedError
 
 
-@overload(combination, jit_options=INLINE)
+@overload(combination, jit_options=CONTRACTED)
 def _combination(scale, weights, vectors):
     size, count = len(vectors[0]), len(vectors)
     parts = ", ".join(" + ".join(f"w{j} * vectors[{j}][{i}]" for j in range(count)) for i in range(size))
@@ -53,7 +51,7 @@ def vector(array, like):
     raise NotImplementedError
 
 
-@overload(vector, jit_options=INLINE)
+@overload(vector, jit_options=CONTRACTED)
 def _vector(array, like):
     if not isinstance(like, types.BaseTuple):
         return None

@@ -1,11 +1,13 @@
 """A run from one event to the next: closed form where the system has one, Runge-Kutta steps elsewhere.
 
 After each step the event functions are known at its start, middle and end. Where one may have been zero in
-between, its minimum is sought. Each event is located on the step's dense output.
+between, its minimum is sought. An event is located on the step's dense output, roughly at first. The step is
+then repeated with a length that ends just past the event, and the event located there: dense output is most
+accurate near its ends, and stages far beyond an event would see friction that the mode does not have.
 """
 
 from collections.abc import Callable, Mapping
-from math import inf, nan, pi
+from math import inf, nan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,6 +44,8 @@ FIRST_STEP = 1e-3
 # contacts hold the mass nothing else limits its length.
 LEAST_STEPS, LEAST_STEPS_HELD = 12, 64
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+# At an error below this share of the tolerance, which is less than SAFETY**5, a step can only grow.
+NOT_GROWING = 0.5
 SHORTEST = 1e-13
 # A mode that needs more steps than this per period of the fastest input will not end.
 MOST_STEPS = 100_000
@@ -50,6 +54,8 @@ SUSPECT = 0.3
 # Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; and the phase (rad) after
 # an event in which no other one is sought.
 CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
+# Error of a place at which a step is only to be cut, and how far beyond it the step then goes.
+ROUGHLY, PAST_EVENT = 1e-3, 2e-2
 
 
 class Workspace(NamedTuple):
@@ -98,9 +104,16 @@ def _may_graze(before, now, following):
     return now - (following - before) ** 2 / (8.0 * curvature) < SUSPECT * now
 
 
+@inlined
+def _parabola_zero(start, middle, end):
+    """First zero on [0, 1] of a parabola that begins above zero, from its values at three even points."""
+    bend, rise = 2.0 * (start - 2.0 * middle + end), 4.0 * middle - 3.0 * start - end
+    return 2.0 * start / (sqrt(max(rise * rise - 4.0 * bend * start, 0.0)) - rise)
+
+
 @inner
-def _first_zero(place, start, end, from_zero):
-    """Share of a step at which an event function is first zero; 2 if nowhere.
+def _first_zero(place, start, end, from_zero, close):
+    """Share of a step at which an event function is first zero, to within ``close``; 2 if nowhere.
 
     ``start``, ``end``: its values at the ends of the step.
     """
@@ -109,19 +122,21 @@ def _first_zero(place, start, end, from_zero):
     if at_high > 0.0 and start > 0.0 and _may_graze(start, at_high, end):
         high = minimum(place, 0.0, 1.0, CLOSE_TO_MINIMUM)
         at_high = _value(high, place)[0]
+    elif close == ROUGHLY and start > 0.0 and not from_zero and min(at_high, end) <= 0.0:
+        return _parabola_zero(start, at_high, end)
     if at_high <= 0.0:
         bracket = Bracket(0.0, start, high, at_high)
         if start > 0.0 and not from_zero:
-            return zero(place, bracket, CLOSE)
-        return zero_after_start(place, bracket, nearest, CLOSE)
+            return zero(place, bracket, close)
+        return zero_after_start(place, bracket, nearest, close)
     if end <= 0.0:
-        return zero(place, Bracket(high, at_high, 1.0, end), CLOSE)
+        return zero(place, Bracket(high, at_high, 1.0, end), close)
     return 2.0
 
 
 @inlined
-def first_event(step, mode, last_event, forces, p, work):
-    """Share and place of the first event of a step; (1, NO_EVENT) if there is none.
+def first_event(step, mode, last_event, forces, close, p, work):
+    """Share of a step, to within ``close``, and place of its first event; (1, NO_EVENT) if there is none.
 
     ``forces``: near the middle of the step and at its end. The event functions there show which of them are
     worth a closer look. Where the system may lock, they are evaluated in the middle itself: a missed event
@@ -138,7 +153,7 @@ def first_event(step, mode, last_event, forces, p, work):
         if end == inf or (min(middle, end) > 0.0 and not _may_graze(start, middle, end)):
             continue
         from_zero = last_event >= 0 and number // 2 == last_event // 2
-        share = _first_zero(_Place(number, step, mode, p, work.at_point), start, end, from_zero)
+        share = _first_zero(_Place(number, step, mode, p, work.at_point), start, end, from_zero, close)
         if share <= 1.0 and (first < 0 or share < earliest):
             earliest, first = share, number
     return earliest, first
@@ -259,8 +274,9 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     In place of an event NO_EVENT, LOCKED or FAILED.
     """
     t, y, mode, last_event, h = state
-    per_period = LEAST_STEPS_HELD if holds(mode, p) else LEAST_STEPS
     period = 2.0 * pi / fastest(p)
+    longest = period / (LEAST_STEPS_HELD if holds(mode, p) else LEAST_STEPS)
+    to_event = inf
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
     most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
@@ -268,8 +284,8 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     if implicitly and last_event >= 0:
         h = _after_event(h, p)
     while t < stop:
-        h = min(h, period / per_period)
-        taken = min(h, stop - t)
+        h = min(h, longest)
+        taken = min(h, stop - t, to_event)
         if implicitly:
             step, within, forces, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / implicit.ORDER, implicit.STAGES
@@ -282,10 +298,15 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             if h < SHORTEST * period:
                 return State(t, y, mode, last_event, h), FAILED
             continue
+        close = ROUGHLY if to_event == inf else CLOSE
+        share, number = first_event(step, mode, last_event, (within, forces), close, p, work)
+        if number >= 0 and to_event == inf:
+            to_event = (share + PAST_EVENT) * taken
+            continue
+        to_event = inf
         work.counts[1] += 1
         if work.counts[1] > most:
             return State(t, y, mode, last_event, h), FAILED
-        share, number = first_event(step, mode, last_event, (within, forces), p, work)
         if keeping:
             keep(step, share, mode, recorder, p)
         if number >= 0:
@@ -298,8 +319,9 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         for i in range(event_count(p)):
             work.at_start[i] = work.at_end[i]
         implicitly = implicitly or _becomes_stiff(taken, y, p)
-        grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
-        h = max(h, grown) if taken < h else grown
+        if taken < longest or error > NOT_GROWING:
+            grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
+            h = max(h, grown) if taken < h else grown
     return State(stop, y, mode, last_event, h), NO_EVENT
 
 

@@ -9,7 +9,7 @@ A scan with rotation matrices (no trigonometry) finds the interval of the first 
 iteration the event itself, to rounding error. The release from rest is in ``release.py``.
 """
 
-from math import cos, inf, pi, sin, sqrt
+from math import inf, pi, sqrt
 from typing import Any, NamedTuple
 
 from wedgesweep import friction
@@ -24,6 +24,7 @@ from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE, stuck
 from wedgesweep.systems.suspension.newton import Coefficients, Loads, loads, reactions
 from wedgesweep.systems.suspension.release import release
+from wedgesweep.trigonometry import cosine, sine
 
 # Scanned intervals per period of input or free vibration, whichever is shorter.
 SCAN = 16
@@ -125,7 +126,7 @@ class Phase(NamedTuple):
 @inlined
 def _phase(t, x, velocity, free_motion, p):
     """Phase of a state at time t."""
-    c, s = cos(p.input.omega * t), sin(p.input.omega * t)
+    c, s = cosine(p.input.omega * t), sine(p.input.omega * t)
     free = x - free_motion.centre - free_motion.forced * s
     quadrature = (velocity - free_motion.forced * p.input.omega * c) / free_motion.frequency
     return Phase(c, s, free, quadrature)
@@ -146,7 +147,7 @@ def _rotated(phase, input_cos, input_sin, free_cos, free_sin):
 def _angles(time, o, p):
     """Cosine and sine of the angles by which input and free vibration turn in some time (s)."""
     a, b = p.input.omega * time, o.frequency * time
-    return cos(a), sin(a), cos(b), sin(b)
+    return cosine(a), sine(a), cosine(b), sine(b)
 
 
 @inner

@@ -5,7 +5,7 @@ time of breakaway has a closed form while both normal forces stay positive. Else
 are sampled, and their minimum is sought between samples where it may be negative.
 """
 
-from math import asin, ceil, inf, nan, pi, sin
+from math import asin, ceil, inf, nan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import COLUMN, slipping
 from wedgesweep.systems.suspension.newton import UNDETERMINED, Coefficients, Loads, loads, reactions
 from wedgesweep.systems.suspension.transitions import well_posed
+from wedgesweep.trigonometry import sine
 
 SAMPLES_PER_PERIOD = 64
 # Error of a time, as a share of the interval between samples.
@@ -71,9 +72,9 @@ def release(state, stop, p):
     most = p.input.amplitude * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
     phase = omega * state.t
-    if sin(phase) > upper:
+    if sine(phase) > upper:
         return state.t, UP
-    if sin(phase) < lower:
+    if sine(phase) < lower:
         return state.t, DOWN
     turn = 2.0 * pi
     rising = falling = inf
