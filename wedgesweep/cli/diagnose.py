@@ -12,9 +12,9 @@ from wedgesweep.cli.options import N_JOBS, require_place_for
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "candidates", "ladder", "gain")}
+FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
 # Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop"}
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
 
 
 @click.command()

@@ -14,10 +14,11 @@ from wedgesweep.measured.declarations import (
     INPUT,
     LOOP,
     STEADY,
+    TRANSIENT,
     UNITS,
     units,
 )
-from wedgesweep.measured.loops import loop_faults
+from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.stationarity import stationarity_faults, without_trend
@@ -94,14 +95,16 @@ def build_record(
         if channels.seconds.size == recorded.seconds.size
         else float(np.ptp(recorded.seconds)),
     )
-    problems.extend(
-        loop_faults(test, channels.file, at)
-        if test.kind == LOOP
-        else stationarity_faults(test, channels.file)
-        or frequency_faults(test, channels.file, at)
-        or channel_faults(test, channels.file)
-    )
+    problems.extend(FAULTS[test.kind](test, channels.file, at))
     return None if len(problems) > before else test
+
+
+def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    return stationarity_faults(test, file) or frequency_faults(test, file, at) or channel_faults(test, file)
+
+
+# Faults of a record (test, file, place of its keys) by its kind.
+FAULTS = {STEADY: _steady_faults, TRANSIENT: transient_faults, LOOP: loop_faults}
 
 
 def _selected(given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]) -> Channels:

@@ -25,8 +25,8 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
-# Kinds of test: a periodic response, or a force under an imposed motion.
-STEADY, LOOP = KINDS = ("steady", "loop")
+# Kinds of test: a periodic response, a free motion, or a force under an imposed motion.
+STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
@@ -186,7 +186,7 @@ TEST = RecordTable(
         (
             Choice(
                 key="kind",
-                meaning="steady: a periodic response; loop: the force under an imposed motion",
+                meaning="steady: periodic response; transient: free motion; loop: force under a motion",
                 choices=KINDS,
                 default=STEADY,
             ),

@@ -19,7 +19,7 @@ class MeasuredError(InputError):
 
 @dataclass(frozen=True, eq=False)
 class TestRecord:
-    """One record: of steady vibration under an input that repeats, or of the force under an imposed motion.
+    """One record: of steady vibration, of a free motion, or of the force under an imposed motion.
 
     ``frequency`` (Hz) and ``amplitude`` (m of the base, N of a force) are None where they are not known;
     ``amplitude_std`` is relative. ``time`` (s) is the even grid that the file's stamps round, shape (n,);

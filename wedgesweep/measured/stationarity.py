@@ -44,7 +44,9 @@ def stationarity_faults(test: TestRecord, file: str) -> list[str]:
         if found.level_ratio > MOST_LEVEL_RATIO:
             levels = ", ".join(f"{100.0 * each / found.levels.max():.3g}" for each in found.levels)
             told = f"the rms of {name} is {levels} % of its largest in the four quarters"
-            return [f"{file}: not steady: {told}; {MEND}"]
+            decays = bool((np.diff(found.levels) < 0.0).all())
+            other = ', or write kind = "transient" if it is a ring-down' if decays else ""
+            return [f"{file}: not steady: {told}; {MEND}{other}"]
     return []
 
 
