@@ -138,7 +138,7 @@ def test_absurd_toml_is_refused_in_a_line(here, text, words):
 
 
 def test_many_listed_cases_are_read_in_a_moment(here):
-    """The time is that of reading the TOML; comparing each case with all others took minutes."""
+    """Processor time (s) of an idle machine: 0.6."""
     cases = "".join(
         f'[[sweep.case]]\nfriction_law = "coulomb"\nbeta = {0.1 + 1e-4 * i:.4f}\namplitude_mm = 1.0\n'
         for i in range(20_000)
@@ -146,7 +146,7 @@ def test_many_listed_cases_are_read_in_a_moment(here):
     (here / "many.toml").write_text(cases)
     began = time.process_time()
     assert config.load(here / "many.toml").records().size == 20_000
-    assert time.process_time() - began < 4.0
+    assert time.process_time() - began < 2.0
     (here / "many.toml").write_text(cases + cases[: cases.index("[[", 2)])
     assert "sweep.case[20000]: repeats sweep.case[0]; keep one" in invoke("check", "many.toml", code=2)
 
