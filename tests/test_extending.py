@@ -144,7 +144,7 @@ def test_figure(package, monkeypatch):
     figure.draw_without_rendering()
     assert len(figure.axes) == 3
     assert figure.axes[0].get_ylabel() == "smallest normal force [N]"
-    assert kind.picks == ("law",)
+    assert kind.picks == ("count",)
     figures.draw(fixture_dataset.build(), kind.name, law="coulomb")
     with pytest.raises(ValueError, match="minimum_normal_force"):
         figures.draw(fixture_dataset.build().drop_vars("minimum_normal_force"), kind.name)

@@ -36,10 +36,10 @@ def draw(
             bar = [[level * (1.0 - 1.0 / factor)], [level * (factor - 1.0)]]
             ax.errorbar([frequency], [level], bar, color="black", capsize=3, linewidth=1.3)
         swept = _shown(hypothesis["peak_to_peak_mm"])
-        ax.plot(hertz, swept, "-o", color=style.BLUE, markersize=2.5, linewidth=1.3)
         if (swept <= LEAST).any():
             ax.axhline(LEAST, color=style.GREY, linestyle=":", linewidth=1)
             ax.text(hertz[0], 1.15 * LEAST, f"drawn here: {LEAST:g} mm or less", fontsize=7, color=style.GREY)
+        ax.plot(hertz, swept, "-o", color=style.BLUE, markersize=2.5, linewidth=1.3)
         recorded = [hypothesis[name]["peak_to_peak"] for name in ("slow", "fast")]
         ax.plot(list(levels), _shown(recorded), "D", color=style.VERMILLION, markersize=5)
         count = f"{hypothesis['satisfied']} of {len(hypothesis['distances'])}"
