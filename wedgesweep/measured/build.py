@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,15 @@ from wedgesweep.measured.declarations import (
     INPUT,
     LOOP,
     STEADY,
+    TRANSIENT,
     UNITS,
     units,
 )
 from wedgesweep.measured.frequency import estimate_frequency
-from wedgesweep.measured.loops import loop_faults
+from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
+from wedgesweep.measured.stationarity import stationarity_faults, without_trend
 from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
 
 # Bounds of a channel in SI units, and the variation that is rounding, over its size.
@@ -45,18 +48,37 @@ class Channels:
             return None
         return self.columns[channel] * units(channel)[self.units[channel]]
 
+    def between(self, start: float, end: float) -> "Channels":
+        """The samples of a span of time (s)."""
+        kept = np.flatnonzero((self.seconds >= start) & (self.seconds <= end))
+        columns = {name: samples[kept] for name, samples in self.columns.items()}
+        return replace(self, columns=columns, where=lambda sample: self.where(int(kept[sample])))
+
+    def without_trend(self) -> "Channels":
+        """The same with the straight line through each channel removed."""
+        straight = {name: without_trend(samples) for name, samples in self.columns.items() if name != "time"}
+        return replace(self, columns={**self.columns, **straight})
+
+    @property
+    def seconds(self) -> np.ndarray:
+        """The time stamps (n,) in s."""
+        return self.columns["time"] * UNITS["time"][self.units["time"]]
+
 
 def build_record(
     name: str, given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]
 ) -> TestRecord | None:
     """Build the record of a test from its checked keys ``given``, found at ``at``; None after a fault."""
     before = len(problems)
-    problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
+    recorded, channels = channels, _selected(given, channels, at, problems)
+    if len(problems) == before:
+        problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
+    if len(problems) == before:
+        grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
     if len(problems) > before:
         return None
-    grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
-    if len(problems) > before:
-        return None
+    if given.get("detrend", False):
+        channels = channels.without_trend()
     channels, grid, thinned = _shortened(given, channels, grid)
     amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
@@ -75,12 +97,11 @@ def build_record(
         force=channels.si("force"),
         cutoff=given.get("lowpass_hz"),
         remarks=tuple(filter(None, (channels.told, thinned))),
+        recorded_s=None
+        if channels.seconds.size == recorded.seconds.size
+        else float(np.ptp(recorded.seconds)),
     )
-    problems.extend(
-        loop_faults(test, channels.file, at)
-        if test.kind == LOOP
-        else frequency_faults(test, channels.file, at) or channel_faults(test, channels.file)
-    )
+    problems.extend(FAULTS[test.kind](test, channels.file, at))
     return None if len(problems) > before else test
 
 
@@ -109,3 +130,25 @@ def _shortened(
         {name: channels.columns[name] for name in names}, grid, frequency * seconds, MOST_SAMPLES
     )
     return replace(channels, columns={"time": grid, **columns}), grid, told
+
+
+def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    return stationarity_faults(test, file) or frequency_faults(test, file, at) or channel_faults(test, file)
+
+
+# Faults of a record (test, file, place of its keys) by its kind.
+FAULTS = {STEADY: _steady_faults, TRANSIENT: transient_faults, LOOP: loop_faults}
+
+
+def _selected(given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]) -> Channels:
+    """The part of the record that the keys of a test select."""
+    start, end = given.get("from_s", -inf), given.get("to_s", inf)
+    if (start, end) == (-inf, inf) or not start < end:  # the latter is a fault of the keys
+        return channels
+    first, last = channels.seconds.min(), channels.seconds.max()
+    if not (start < last and end > first):
+        key, value = ("to_s", end) if end <= first else ("from_s", start)
+        told = f"{channels.file} goes from {first:.6g} to {last:.6g} s; choose a time within"
+        problems.append(f"{at}.{key}: {value:g}, but {told}")
+        return channels
+    return channels.between(start, end)
