@@ -70,8 +70,8 @@ def build_record(
 ) -> TestRecord | None:
     """Build the record of a test from its checked keys ``given``, found at ``at``; None after a fault."""
     before = len(problems)
-    problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
     recorded, channels = channels, _selected(given, channels, at, problems)
+    problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
     if len(problems) > before:
         return None
     grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
