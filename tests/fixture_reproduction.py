@@ -48,12 +48,13 @@ SCHEMA = {
         "agrees": {"type": "boolean"},
         "verdicts": {"type": "object", "propertyNames": {"enum": list(VERDICTS)}},
         "claims": {"type": "array", "items": CLAIM, "minItems": 17, "maxItems": 17},
+        "published": {"type": "array", "items": CHECK, "minItems": 1},
         "laws": {"type": "array", "minItems": 12},
         "cases": {"type": "array", "minItems": 9},
         "failed": {"type": "array", "items": {"type": "string"}},
         "runs": {"type": "object", "required": ["paper", "paper-y0", "breakaway"]},
     },
-    "required": ["agrees", "verdicts", "claims", "laws", "cases", "failed", "runs"],
+    "required": ["agrees", "verdicts", "claims", "published", "laws", "cases", "failed", "runs"],
     "additionalProperties": False,
 }
 

@@ -11,7 +11,7 @@ from wedgesweep import reproduce as reproduction
 from wedgesweep.config import ConfigError
 from wedgesweep.reproduce import claims, page
 from wedgesweep.reproduce import runs as running
-from wedgesweep.reproduce.findings import HOLDS
+from wedgesweep.reproduce.findings import HOLDS, below
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +24,7 @@ def patch():
 def runs(patch):
     made = fixture_reproduction.build(patch)
     patch.setattr(reproduction, "obtain", lambda *arguments: made)
+    patch.setattr(reproduction.published, "check", lambda configs: (below("an oscillator", 1.0, 2.0),))
     return made
 
 

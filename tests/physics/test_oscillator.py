@@ -5,8 +5,8 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from tests.physics import stick_slip
 from wedgesweep import excitation, response
+from wedgesweep.reproduce.stick_slip_cycle import measured
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.oscillator import parameters
@@ -103,7 +103,7 @@ HYPERBOLIC = {"static": 1.0, "threshold_velocity": 1.0 / 3.0}
 def test_block_on_a_belt(solver):
     case = parameters.record("hyperbolic", 0.0, 2.0 * pi / 12.0, BLOCK, HYPERBOLIC, input_kind="force")
     run = SOLVERS[solver].solve(case, Window(2.0 * pi / 12.0, 5, 3, 16384), 1e-10, 120.0)
-    cycle = stick_slip.measured(run.samples.t, -run.samples.x, -run.samples.velocity, run.samples.sticks, 0.2)
+    cycle = measured(run.samples.t, -run.samples.x, -run.samples.velocity, run.samples.sticks, 0.2)
     assert cycle.period == pytest.approx(12.00103, abs=1e-5)
     assert cycle.slip == pytest.approx(4.29600, abs=1e-5)
     assert cycle.stick == pytest.approx(7.70503, abs=1e-5)

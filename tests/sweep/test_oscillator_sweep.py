@@ -1,14 +1,13 @@
 """Sweeps of the oscillator: from its config to a dataset and figures."""
 
-from math import cos, pi, sin, sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.physics import stick_slip
 from wedgesweep import config, figures
 from wedgesweep.config import ConfigError
+from wedgesweep.reproduce import published
 from wedgesweep.sweep.run import Sweep
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -43,36 +42,17 @@ def run(settings):
     return Sweep(settings, Path("unused.nc")).run_here()
 
 
-def den_hartog(r, force_ratio):
-    v = 1.0 / (1.0 - r**2)
-    u = sin(pi / r) / (r * (1.0 + cos(pi / r)))
-    return sqrt(v**2 - (force_ratio * u) ** 2)
+def test_published_numbers():
+    checks = published.check(CONFIGS)
+    assert len(checks) == 8
+    assert [each for each in checks if not each.holds] == []
 
 
-def test_den_hartog_config():
-    ds = run(config.load(CONFIGS / "den-hartog.toml")).sel(friction_law="coulomb")
-    assert (ds["status"] == 0).all()
-    without_stops = 0
-    for r in ds["beta"].values:
-        for force in ds["amplitude"].values:
-            case = ds.sel(beta=r, amplitude=force)
-            if case["stick_fraction"] == 0.0:
-                expected = den_hartog(r, 1.0 / force)
-                assert case["amplitude_ratio"].item() == pytest.approx(expected, rel=1e-8)
-                without_stops += 1
-    assert without_stops > 20
-
-
-def test_belt_config():
-    ds = run(config.load(CONFIGS / "belt.toml")).squeeze()
-    t = ds["phase"].values / (2.0 * pi * ds["frequency"].item())
-    motion = (ds[name].values.astype(float) for name in ("displacement", "velocity", "stuck"))
-    cycle = stick_slip.measured(t, *motion, belt=0.2)
-    assert cycle.period == pytest.approx(12.00103, abs=1e-5)
-    assert cycle.slip == pytest.approx(4.29600, abs=1e-5)
-    assert cycle.stick == pytest.approx(7.70503, abs=1e-5)
-    assert cycle.sticks_from == pytest.approx(-0.5410064, abs=1e-6)
-    assert (cycle.highest, cycle.lowest) == pytest.approx((1.1339447, -0.5554327), abs=1e-6)
+def test_another_friction_is_not_the_published_one():
+    settings = config.load(CONFIGS / "den-hartog.toml").document
+    settings["friction"] |= {"dynamic": 1.001, "static": 1.001}
+    checks = published.den_hartog(run(config.from_document(settings)))
+    assert [each.holds for each in checks] == [True, False]
 
 
 @pytest.mark.parametrize("excitation", INPUTS)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from wedgesweep import figures
 from wedgesweep.figures import hypotheses as figure_of_hypotheses
-from wedgesweep.reproduce import chandiramani, chandiramani_page, observations
+from wedgesweep.reproduce import chandiramani, chandiramani_page, observations, published
 from wedgesweep.reproduce import report as files
 from wedgesweep.reproduce.claims import check
 from wedgesweep.reproduce.page import FIGURES
@@ -74,9 +74,13 @@ def _check_claims(
         report(f"{each.claim.number:2} {each.verdict}{differs}: {each.claim.statement}")
         claims.append(each)
     _draw(runs.paper, directory)
-    files.write(directory, runs, claims, _experiment(directory))
+    oscillators = published.check(configs)
+    for number in oscillators:
+        if not number.holds:
+            report(f"{number.statement}: {number.here} (published: {number.criterion})")
+    files.write(directory, runs, claims, oscillators, _experiment(directory))
     report(f"report: {directory / 'reproduction.md'}")
-    return all(each.agrees for each in claims)
+    return all(each.agrees for each in claims) and all(number.holds for number in oscillators)
 
 
 def _experiment(directory: Path) -> str:

@@ -24,6 +24,8 @@ def render(content: dict[str, Any], experiment: str = "") -> str:
         experiment,
         "## Reasons",
         *(_reason(claim) for claim in content["claims"]),
+        "## Published numbers of other oscillators",
+        "\n".join(map(_check, content["published"])),
         "## The three laws on the same cases",
         _laws(content["laws"]),
         "## Limits of the runs",

@@ -10,13 +10,19 @@ from typing import Any
 from wedgesweep.files import write_text
 from wedgesweep.reproduce import comparison, page
 from wedgesweep.reproduce.claims import CheckedClaim
-from wedgesweep.reproduce.findings import VERDICTS
+from wedgesweep.reproduce.findings import VERDICTS, Check
 from wedgesweep.reproduce.runs import Run, Runs
 
 
-def write(directory: Path, runs: Runs, claims: Sequence[CheckedClaim], experiment: str = "") -> None:
+def write(
+    directory: Path,
+    runs: Runs,
+    claims: Sequence[CheckedClaim],
+    published: Sequence[Check],
+    experiment: str = "",
+) -> None:
     """Write both files; ``experiment`` is the section on the experiment, if it was searched."""
-    content = document(runs, claims)
+    content = document(runs, claims, published)
     write_text(directory / "reproduction.json", json_text(content))
     write_text(directory / "reproduction.md", page.render(content, experiment))
 
@@ -26,14 +32,15 @@ def json_text(content: dict[str, Any]) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def document(runs: Runs, claims: Sequence[CheckedClaim]) -> dict[str, Any]:
+def document(runs: Runs, claims: Sequence[CheckedClaim], published: Sequence[Check]) -> dict[str, Any]:
     """The content of both files."""
     verdicts = Counter(claim.verdict for claim in claims)
     return plain(
         {
-            "agrees": all(claim.agrees for claim in claims),
+            "agrees": all(claim.agrees for claim in claims) and all(check.holds for check in published),
             "verdicts": {verdict: n for verdict in VERDICTS if (n := verdicts[verdict])},
             "claims": [_claim(claim) for claim in claims],
+            "published": [vars(check) for check in published],
             "laws": comparison.laws(runs.paper),
             "cases": comparison.caveats(runs),
             "failed": comparison.failed_cases(runs),

@@ -1,0 +1,72 @@
+"""Published numbers of oscillators with friction, which the same solver must give."""
+
+from itertools import product
+from math import cos, pi, sin, sqrt
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import config
+from wedgesweep.reproduce import stick_slip_cycle
+from wedgesweep.reproduce.findings import Check, above, below
+from wedgesweep.sweep.run import Sweep
+
+# Relative error of Den Hartog's closed form (1930), and the least number of cases without stops.
+CLOSE, FEWEST = 1e-8, 20
+# The block on a belt of Leine et al. (1998): each number (SI) and its allowed error.
+BELT = {
+    "period": (12.00103, 1e-5),
+    "slip": (4.29600, 1e-5),
+    "stick": (7.70503, 1e-5),
+    "sticks_from": (-0.5410064, 1e-6),
+    "highest": (1.1339447, 1e-6),
+    "lowest": (-0.5554327, 1e-6),
+}
+
+
+def check(configs: Path) -> tuple[Check, ...]:
+    """Run the configs of both oscillators in a directory, and compare."""
+    force, belt = (
+        Sweep(config.load(configs / f"{name}.toml"), Path(f"{name}.nc")).run_here()
+        for name in ("den-hartog", "belt")
+    )
+    return *den_hartog(force), *block_on_belt(belt)
+
+
+def den_hartog(ds: xr.Dataset) -> tuple[Check, ...]:
+    """Compare a dataset of Den Hartog's oscillator with his closed form where the motion never stops."""
+    cases = ds.sel(friction_law="coulomb")
+    errors = [
+        abs(case["amplitude_ratio"].item() / _magnification(beta, 1.0 / force) - 1.0)
+        for beta, force in product(cases["beta"].values, cases["amplitude"].values)
+        if (case := cases.sel(beta=beta, amplitude=force))["stick_fraction"] == 0.0
+    ]
+    return (
+        above("Den Hartog: cases that never stop", len(errors), FEWEST),
+        below("Den Hartog: largest relative error of the amplitude", max(errors, default=np.nan), CLOSE),
+    )
+
+
+def _magnification(ratio: float, friction: float) -> float:
+    """Amplitude over the deflection at rest, from the ratios of frequencies and of friction to the force."""
+    response = 1.0 / (1.0 - ratio**2)
+    damping = sin(pi / ratio) / (ratio * (1.0 + cos(pi / ratio)))
+    return sqrt(response**2 - (friction * damping) ** 2)
+
+
+def block_on_belt(ds: xr.Dataset) -> tuple[Check, ...]:
+    """Compare a dataset of the block on a belt with the published cycle."""
+    case = ds.squeeze()
+    belt = config.parse(ds.attrs["config"]).oscillator["belt_velocity"]
+    t = case["phase"].values / (2.0 * pi * case["frequency"].item())
+    motion = (case[name].values.astype(float) for name in ("displacement", "velocity", "stuck"))
+    cycle = stick_slip_cycle.measured(t, *motion, belt=belt)
+    return tuple(
+        _within(f"block on a belt: {name.replace('_', ' ')}", getattr(cycle, name), *expected)
+        for name, expected in BELT.items()
+    )
+
+
+def _within(statement: str, here: float, expected: float, error: float) -> Check:
+    return Check(statement, here, f"{expected:.8g} +- {error:g}", bool(abs(here - expected) <= error))
