@@ -99,6 +99,14 @@ def test_the_leading_cause_is_judged_by_the_ladder():
     assert not led(())
 
 
+def test_an_error_that_is_there_may_be_named_beside_the_cause():
+    alone, both = record("named", ["stribeck"]), record("named", ["input_distortion", "stribeck"])
+    other, error = record("named", ["ageing", "stribeck"]), record("named", ["input_distortion"])
+    assert [judge.names_cause(r) for r in (alone, both, other, error)] == [True, True, False, False]
+    assert [judge.names_another_cause(r) for r in (alone, both, other, error)] == [False, False, True, True]
+    assert not judge.names_another_cause(record("tied", ["ageing"]))
+
+
 def test_coverage_allows_for_full_turns_of_angles():
     found = record("named", ["cross_slip"], truth=("cross_slip",))
     found["numbers"] = {"cross_slip": {"velocity_mm_per_s": 5.0, "phase_deg": 179.0}}

@@ -98,8 +98,8 @@ def goals(sets: Sets) -> list[Goal]:
         _at_least(
             "small errors, one effect: it leads the ladder", share(imperfect, judge.leads_ladder), 0.90
         ),
-        _at_least("  exact, with a model error of 2 %", share(imperfect, judge.exact), 0.80),
-        _at_most("  wrong `named`", share(imperfect, judge.wrongly_named), 0.03),
+        _at_least("  named, alone or with errors that are there", share(imperfect, judge.names_cause), 0.80),
+        _at_most("  wrong `named`", share(imperfect, judge.names_another_cause), 0.03),
         _at_least(
             "small errors only: nothing missing", share(sets.of("errors-only"), judge.nothing_missing), 0.90
         ),

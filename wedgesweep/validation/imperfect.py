@@ -26,6 +26,8 @@ GAIN = 0.005
 AMPLITUDE = 0.005
 # What a user declares of this.
 DECLARED = {"bolster_mass": 0.005, "bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "friction_level": 0.03}
+# Effects that stand for errors which are there in truth.
+EFFECTS = (*DECLARED, "input_distortion", "displacement_gain")
 # The errors of consecutive sets are these multiples.
 SIZES = (0.5, 1.0, 2.0)
 

@@ -3,6 +3,7 @@
 from typing import Any
 
 from wedgesweep.effects import EFFECTS
+from wedgesweep.validation import imperfect
 
 # What a campaign keeps of a data set: its truth, how it was made, and what the diagnosis said.
 Record = dict[str, Any]
@@ -46,6 +47,17 @@ def leads_ladder(record: Record) -> bool:
     return any(
         rung == record["truth"] or (len(rung) == 2 and {*record["truth"]} <= {*rung}) for rung in rungs
     )
+
+
+def names_cause(record: Record) -> bool:
+    """Whether a verdict on an imperfect bench names its cause, alone or with errors that are there too."""
+    further = {*answer(record)} - {*record["truth"]}
+    return {*record["truth"]} <= {*answer(record)} and further <= {*imperfect.EFFECTS}
+
+
+def names_another_cause(record: Record) -> bool:
+    """Whether a verdict on an imperfect bench is certain and wrong."""
+    return record["verdict"] == "named" and not names_cause(record)
 
 
 def nothing_missing(record: Record) -> bool:

@@ -168,6 +168,8 @@ def mistakes(sets: Sets) -> str:
 def _right(record: Record) -> bool:
     if record["kind"] in ("unknown", "poor"):
         return judge.abstains(record)
+    if record["kind"] == "imperfect":
+        return judge.names_cause(record)
     return judge.exact(record) if record["truth"] else not record["causes"]
 
 
