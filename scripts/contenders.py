@@ -23,7 +23,7 @@ PLAIN, BATCH, LOOP = "plain Radau", "event-driven, to records", "event-driven, l
 
 
 class Contender(NamedTuple):
-    """``ratios(records, rtol)``: amplitude ratios of cases; ``copies`` of all cases are run at once."""
+    """``ratios(cases, rtol)``: amplitude ratios of records, shape (n,); ``copies`` of all are run at once."""
 
     ratios: Callable
     cases: slice
@@ -42,9 +42,9 @@ def _settings(method, rtol):
     )
 
 
-def loop_alone(records, rtol):
+def loop_alone(cases, rtol):
     """event_driven.run_batch: the compiled loop, with one harmonic."""
-    cases, settings = np.concatenate(records), _settings("event-driven", rtol)
+    settings = _settings("event-driven", rtol)
     settle = settings.settling(cases["input"]["omega"])
     from_rest = event_driven.BatchSettings(settings.kept_periods, SAMPLES_PER_PERIOD, False, 0.0, 0)
     batch = event_driven.empty_batch(len(cases), 1, 0)
@@ -52,9 +52,8 @@ def loop_alone(records, rtol):
     return batch.numbers["amplitude_ratio"]
 
 
-def to_records(records, rtol):
+def to_records(cases, rtol):
     """batch.solve_batch: all that a sweep stores of a case."""
-    cases = np.concatenate(records)
     sizes = {"phase": 0, "samples_per_period": SAMPLES_PER_PERIOD}
     dtype = dataset.record_dtype({**sizes, "harmonic": dataset.HARMONICS, "part": 2})
     settings = _settings("event-driven", rtol)
@@ -69,8 +68,8 @@ def _our_radau(record, rtol):
 def one_by_one(solve, *arguments):
     """A solver of one case as a solver of many."""
 
-    def ratios(records, rtol):
-        return np.array([solve(record, *arguments, rtol) for record in records])
+    def ratios(cases, rtol):
+        return np.array([solve(cases[i : i + 1], *arguments, rtol) for i in range(len(cases))])
 
     return ratios
 
