@@ -57,6 +57,8 @@ FREQUENCY, EVEN_HARMONICS = 1.0, 16
 # Model error at which the force is fitted, close to what the ladder says: at the noise of the record alone, a
 # few harmonics would decide.
 MODEL_ERROR = 0.1
+# With stiffness and damping fitted as well the frame is better than that.
+MODEL_ERROR_DAMPED = 0.05
 # The recordings as they are, and without even harmonics of the base motion.
 AS_RECORDED, ODD = "frame", "odd"
 # Numbers of the frame that are fitted beside others, with what is known of them (relative std).
@@ -190,7 +192,9 @@ def rubbing(folder: Path, recording: str, grams: int, force: float) -> Rubbing:
     alone = diagnose(folder, start, recording, [grams], ["viscous_damping"], LEVEL)
     level = alone.document["uncertain"]["friction_level"]["scale"]
     none = alone.document["ladder"][0]
-    both = diagnose(folder, start, recording, [grams], ["viscous_damping"], LEVEL_AND_STIFFNESS)
+    both = diagnose(
+        folder, start, recording, [grams], ["viscous_damping"], LEVEL_AND_STIFFNESS, MODEL_ERROR_DAMPED
+    )
     scales = {name: each["scale"] for name, each in both.document["uncertain"].items()}
     damper = _parameters(both, "viscous_damping")["viscous_damping.coefficient_N_s_per_m"]["value"]
     damped = Frame(
