@@ -469,7 +469,7 @@ def test_plot_all_says_what_does_not_suit(here):
     assert "skipped stick-map: needs a grid" in told
     assert (here / "phase-portrait.png").exists()
     xr.Dataset({"mine": 1}).to_netcdf("measured.nc")
-    assert "no figure suits" in invoke("plot", "all", "measured.nc", code=2)
+    assert "not the dataset of a sweep" in invoke("plot", "all", "measured.nc", code=2)
 
 
 def test_a_sweep_without_waveforms(here):

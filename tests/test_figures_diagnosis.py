@@ -11,7 +11,8 @@ from wedgesweep.figures import diagnosis, svg
 from wedgesweep.figures.diagnosis import candidates, marks, misfit, peak_to_peak, plateaus, selection
 from wedgesweep.figures.diagnosis.motion import motion
 
-KINDS = sorted(diagnosis.DESCRIPTIONS)
+# Figures of steady tests; tests/diagnose draws those of other kinds.
+KINDS = sorted(set(diagnosis.DESCRIPTIONS) - {"loops", "decays"})
 BY_TEST = ("harmonics", "leftover-force", "phase-plane", "waveforms")
 
 

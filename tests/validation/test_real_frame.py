@@ -13,9 +13,15 @@ PUBLISHED = {250: 0.700, 450: 1.344}
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the recordings are not here")
 def test_wall_friction_leads_and_predicts_the_other_recording(tmp_path):
-    for grams, (found, (accuracy, _), _) in real_frame.run(DATA, tmp_path).items():
-        assert found.leading == "guide_friction"
-        assert found.force == pytest.approx(PUBLISHED[grams], rel=0.03)
-        assert found.leading_accuracy < found.next_accuracy / 3.0
+    real_frame.copy(DATA, tmp_path)
+    discs = real_frame.DISCS
+    found = {grams: real_frame.linear(tmp_path, real_frame.AS_RECORDED, grams) for grams in discs}
+    for grams, other in (discs, discs[::-1]):
+        here = found[grams]
+        assert here.leading == "guide_friction"
+        assert here.force == pytest.approx(PUBLISHED[grams], rel=0.03)
+        assert here.leading_accuracy < here.next_accuracy / 3.0
         # The other recording, scaled by the weights of the discs, says as much as this one.
-        assert accuracy < 1.15 * found.leading_accuracy
+        foreseen = real_frame.Frame(friction=found[other].force).under(grams / other)
+        accuracy, _ = real_frame.evaluated(tmp_path, foreseen, real_frame.AS_RECORDED, grams)
+        assert accuracy < 1.15 * here.leading_accuracy

@@ -41,6 +41,9 @@ LEADING = {
     "cross_slip": Leading("velocity_mm_per_s", 0.1, 150.0),
     "column_compliance": Leading("stiffness_N_per_mm", 5000.0, 4.0),
     "viscous_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
+    "directional_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
+    "quadratic_drag": Leading("coefficient_N_s2_per_m2", 1e-2, 1800.0),
+    "backlash": Leading("clearance_mm", 1.1e-4, 0.9),
     "cubic_stiffness": Leading("coefficient_N_per_mm3", 1e-4, 15.0),
     "guide_friction": Leading("force_N", 1e-3, 5.0),
     "end_stop": Leading("clearance_mm", 4.0, 0.006),
@@ -58,6 +61,7 @@ OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "stribeck": {"peak": (0.0, 0.4, GROWING)},
     "ageing": {"time_s": (2e-4, 0.3, LOGARITHMIC)},
     "cross_slip": {"phase_deg": (-88.0, 88.0, UNIFORM)},
+    "directional_damping": {"asymmetry": (-0.9, 0.9, UNIFORM)},
     "end_stop": {"stiffness_N_per_mm": (3.0, 800.0, LOGARITHMIC)},
     "input_distortion": {
         "second_phase_deg": (-175.0, 175.0, UNIFORM),
