@@ -16,7 +16,7 @@ where the coefficient does not depend on the load, a tangent where it does.
 from math import nan
 from typing import NamedTuple
 
-from wedgesweep.compiled import contracted, inlined, inner
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import (
     column_compliance,
     fixture_resonance,
@@ -86,7 +86,7 @@ NO_FRICTION = Coefficients(0.0, 0.0, 0.0, 0.0)
 UNDETERMINED = Forces(nan, nan, nan, nan, nan)
 
 
-@contracted
+@inlined
 def _rise(z, y, p):
     """Rise of a wedge (m), which its spring feels."""
     rise = p.geometry.column_ratio * p.geometry.cos_column * z
@@ -95,7 +95,7 @@ def _rise(z, y, p):
     return rise
 
 
-@contracted
+@inlined
 def loads(t, y, mode, p):
     """Loads at a state; see ``Loads``."""
     s, g = p.suspension, p.geometry
@@ -114,7 +114,7 @@ def loads(t, y, mode, p):
     )
 
 
-@contracted
+@inlined
 def reactions(load, mu, p):
     """Forces, and the determinant of their equations, which is negative without friction.
 
