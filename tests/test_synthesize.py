@@ -271,7 +271,7 @@ def test_tests_that_cannot_be_simulated_write_nothing(here):
     (here / "true.toml").write_text(TRUE.replace("static-dynamic", "coulomb"))
     (here / "tests.toml").write_text(TESTS.replace("0.11", "0.001"))
     told = synthesize(code=2)
-    assert "test[0] (20 Hz, 0.001 mm): the bolster sticks all the time" in told
+    assert "test[0] (20 Hz, 0.001 mm): the mass sticks all the time" in told
     assert "test[1]" not in told
     assert sorted(path.name for path in here.iterdir()) == ["tests.toml", "true.toml"]
 

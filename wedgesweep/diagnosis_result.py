@@ -19,12 +19,16 @@ KEYS = (
     *("verdict", "causes", "rivals", "misfit", "gain", "detectable", "not_testable", "next_test"),
     *("title", "model", "version", "created", "method", "candidates"),
 )
-VARIABLES = (
+# Variables of the dataset, by the kind of the tests.
+OF_STEADY = (
     *("measured_harmonics", "noise_std", "simulated_harmonics", "measured_waveform", "simulated_waveform"),
     *("waveform_noise", "frequency", "amplitude", "measured_peak_to_peak", "simulated_peak_to_peak"),
     *("measured_energy", "simulated_energy", "measured_plateau", "simulated_plateau", "leftover_force"),
     *("q", "dof"),
 )
+OF_LOOPS = ("displacement", "velocity", "measured_force", "simulated_force", "force_noise", "q", "dof")
+OF_TRANSIENTS = ("time", "measured", "simulated", "sample_noise", "q", "dof")
+VARIABLES = {"steady": OF_STEADY, "transient": OF_TRANSIENTS, "loop": OF_LOOPS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +128,7 @@ def read(directory: Path) -> DiagnosisResult:
             raise InputError([message])
     document = _document(directory / JSON)
     data = dataset.read(directory / DATASET)
-    missing = [name for name in VARIABLES if name not in data]
+    missing = [name for name in VARIABLES[document.get("kind", "steady")] if name not in data]
     if missing:
         raise InputError([f"{directory / DATASET}: has no {', '.join(missing)}"])
     extended = directory / EXTENDED

@@ -122,6 +122,8 @@ def test_the_true_effect_leads_the_ladder():
     assert (none.best.effects, one.best.effects) == ((), ("velocity_lag",))
     assert (one.best.accuracy, one.distinct) == (0.0, np.inf)
     assert one.rivals[0].accuracy <= none.best.accuracy * 1.001
+    # It also predicts tests that it was not fitted to, to less than the noise of what is compared.
+    assert one.best.held_out < search.data.noise_floor < none.best.held_out
 
 
 def test_a_cause_leads_though_the_model_is_nowhere_right_to_within_the_noise():
@@ -132,3 +134,5 @@ def test_a_cause_leads_though_the_model_is_nowhere_right_to_within_the_noise():
     assert 0.001 < one.best.accuracy < 0.006
     assert none.best.accuracy > 5.0 * one.best.accuracy
     assert one.distinct > 3.0
+    assert one.best.held_out == pytest.approx(one.best.accuracy, rel=0.5)
+    assert none.best.held_out > 5.0 * one.best.held_out

@@ -3,17 +3,19 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, drawn, searched
-from wedgesweep.diagnose import cross_validation
+from tests.diagnose.synthetic import LAG, base_of, drawn, searched
+from wedgesweep.diagnose import accuracy, cross_validation
 from wedgesweep.diagnose.cross_validation import Gain, HeldOut
 from wedgesweep.diagnose.steady import harmonic_data
 
 
+def serial(function, items):
+    return list(map(function, items))
+
+
 def test_gain_on_held_out_tests_reaches_the_noise():
     _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    measured = cross_validation.cross_validate(
-        base.fit, lag.fit, lambda function, items: list(map(function, items))
-    )
+    measured = cross_validation.cross_validate(base.fit, lag.fit, serial)
     assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
     assert measured.interval is None  # six tests are too few for one
@@ -35,12 +37,33 @@ def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
 
 def test_retuning_alone_gains_nothing():
     _, base, (lag,) = searched(drawn(), "velocity_lag")
-    measured = cross_validation.cross_validate(
-        base.fit, lag.fit, lambda function, items: list(map(function, items))
-    )
+    measured = cross_validation.cross_validate(base.fit, lag.fit, serial)
     base_square, extended, noise = measured.mean_squares()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
+
+
+def test_a_model_that_fits_nothing_predicts_as_accurately_as_it_explains():
+    base = base_of(drawn(LAG, std=0.0))
+    data, evaluation = base.model.data, base.evaluation
+    predicted = cross_validation.predictions(base, serial)
+    assert np.bincount(np.concatenate([each.tests for each in predicted])).tolist() == [2] * 6
+    # Each test is left out twice, and both times it is as it was; only start phases are eliminated.
+    both = accuracy.of_responses([(data, evaluation)] * 2, 2 * base.dof)
+    found = cross_validation.held_out_accuracy(base, serial)
+    assert found == pytest.approx(both, rel=1e-2)
+    assert found == pytest.approx(accuracy.of_response(data, evaluation, base.dof), rel=0.05)
+
+
+def test_tests_that_are_all_alike_are_left_out_one_by_one():
+    data = drawn(tests=[2, 2])
+    assert [(name, rows.tolist()) for name, rows in cross_validation.held_out_groups(data)] == [
+        ("test", [0]),
+        ("test", [1]),
+    ]
+    single = drawn(tests=[2])
+    assert cross_validation.held_out_groups(single) == []
+    assert cross_validation.held_out_accuracy(base_of(single), serial) is None
 
 
 POINTS = 32

@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.options import N_JOBS, require_place_for
 
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "candidates", "gain")}
+FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
+# Figures of one kind of test only.
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
 
 
 @click.command()
@@ -55,6 +58,7 @@ def diagnose(
     from wedgesweep.sweep.cases import compiled_mark
 
     measurement = api.read_measurement(measured, model)
+    print_warnings(measurement)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     processors = count_jobs(n_jobs)
@@ -95,7 +99,12 @@ def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
     """Write the figures; skip those that need more than these tests give."""
     from wedgesweep.figures import parallel
 
-    wanted = [(kind, directory / file) for kind, file in FIGURE_FILES.items()]
+    kind_of_tests = found.document["kind"]
+    wanted = [
+        (kind, directory / file)
+        for kind, file in FIGURE_FILES.items()
+        if OF_KIND.get(kind, kind_of_tests) == kind_of_tests
+    ]
     save = partial(_save, found)
     for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
         click.echo(f"skipped {problem}", err=True)

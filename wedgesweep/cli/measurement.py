@@ -9,7 +9,10 @@ if TYPE_CHECKING:
     from wedgesweep.measured import Measurement, TestRecord
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
-UNITS = ("", "Hz", "mm", "", "per period", "of responses", "")
+LOOP_HEADINGS = ("file", "duration", "samples", "low-pass", "noise", "of velocity", "blocks")
+TRANSIENT_HEADINGS = ("file", "duration", "samples", "periods", "largest", "noise")
+TRANSIENT_UNITS = ("", "s", "", "natural", "mm", "mm")
+LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -20,20 +23,72 @@ def print_measurement(measurement: "Measurement") -> None:
         click.echo(f"uncertain: {name}, {100.0 * std:.3g} %")
     derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
-    rows = [HEADINGS, UNITS, *map(_row, measurement.tests)]
+    if measurement.kind == "loop":
+        rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
+    elif measurement.kind == "transient":
+        rows = [TRANSIENT_HEADINGS, TRANSIENT_UNITS, *_transient_rows(measurement)]
+    else:
+        unit = measurement.model.amplitude_unit
+        units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
+        rows = [HEADINGS, units, *(_row(test, unit.factor) for test in measurement.tests)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
+    print_warnings(measurement)
 
 
-def _row(test: "TestRecord") -> tuple[str, ...]:
+def print_warnings(measurement: "Measurement") -> None:
+    """Print what is odd in records that are usable all the same."""
+    from wedgesweep.measured.quality import warnings
+
+    for test in measurement.tests:
+        for warning in warnings(test):
+            click.echo(f"warning: {test.file}: {warning}", err=True)
+
+
+def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
+    """What is compared of each free motion."""
+    from wedgesweep.diagnose.transient.from_measurement import transient_data
+
+    return [
+        (
+            test.file,
+            f"{test.duration:.4g}",
+            f"{test.time.size}",
+            f"{own.periods:.4g}",
+            f"{1e3 * own.length:.4g}",
+            f"{1e3 * own.noise[0]:.3g} ({100.0 * own.noise[0] / own.length:.2g} %)",
+        )
+        for test, own in zip(measurement.tests, transient_data(measurement).releases, strict=True)
+    ]
+
+
+def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
+    """What is compared of each loop."""
+    from wedgesweep.diagnose.loop.from_measurement import loop_data
+
+    return [
+        (
+            test.file,
+            f"{test.duration:.4g}",
+            f"{test.time.size}",
+            f"{own.low_pass.cutoff:.4g}",
+            f"{own.noise:.3g} N ({100.0 * own.noise / float(own.force.std()):.2g} %)",
+            f"{1e3 * own.motion.velocity_noise:.3g} mm/s",
+            f"{len(own.blocks)}",
+        )
+        for test, own in zip(measurement.tests, loop_data(measurement).recordings, strict=True)
+    ]
+
+
+def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     frequency = test.refined_frequency
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
         f"{frequency:.6g}{_told(test.frequency, frequency)}",
-        _amplitude(test),
+        _amplitude(test, size),
         f"{test.duration * frequency:.2f}",
         f"{test.sampling_rate / frequency:.4g}",
         noise,
@@ -48,13 +103,14 @@ def _told(stated: float | None, used: float) -> str:
     return "" if used == stated else f" (stated: {stated:.6g})"
 
 
-def _amplitude(test: "TestRecord") -> str:
+def _amplitude(test: "TestRecord", size: float) -> str:
+    """The input amplitude in a unit of some size."""
     if test.input is not None:
         return "recorded"
     if test.amplitude is None:
         return "unknown"
     std = f" +- {100.0 * test.amplitude_std:.3g} %" if test.amplitude_std else ""
-    return f"{test.amplitude * 1e3:.6g}{std}"
+    return f"{test.amplitude / size:.6g}{std}"
 
 
 def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:

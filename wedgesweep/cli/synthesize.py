@@ -20,8 +20,9 @@ SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
     type=click.Path(path_type=Path),
     required=True,
     metavar="TESTS",
-    help="TOML file with a [[test]] table per test (frequency_hz, amplitude_mm, optionally amplitude_std "
-    "and known = false to withhold the amplitude) and an optional [uncertain] table as in measured.toml.",
+    help="TOML file with a [[test]] table per test (frequency_hz, amplitude_mm or amplitude_N, optionally "
+    "amplitude_std, and known = false to withhold the amplitude) and an optional [uncertain] table as in "
+    "measured.toml.",
 )
 @click.option(
     "--noise", type=click.Choice(NOISES), default=NOISES[0], show_default=True, help="Kind of noise."

@@ -56,6 +56,17 @@ class Cases:
     cases: tuple[Case, ...] | None
 
 
+class AmplitudeUnit(NamedTuple):
+    """How input amplitudes are written: unit, and what turns a number into SI."""
+
+    unit: str
+    factor: float
+
+    @property
+    def key(self) -> str:
+        return f"amplitude_{self.unit}"
+
+
 @dataclass(frozen=True)
 class Config:
     """A checked config. ``document`` holds every key in its own unit; the properties are SI."""
@@ -72,11 +83,11 @@ class Config:
 
         return _si(SUSPENSION, self.document["suspension"])
 
-    def natural_units(self, travel: float | None = None) -> "NaturalUnits":
-        """Natural units of the model, whose measured motion has some travel (m)."""
+    def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
+        """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
         if self.system == OSCILLATOR:
             own = self.oscillator
-            return natural_units(own["mass"], own["spring"], travel=travel)
+            return natural_units(own["mass"], own["spring"], travel=travel, omega=omega)
         from wedgesweep.systems.suspension.parameters import natural_units_of
 
         return natural_units_of(self.suspension, travel)
@@ -101,7 +112,8 @@ class Config:
         """Names of the effects that a model may lack; all of them for a suspension.
 
         An oscillator has no wedge. If it rubs, more friction of its surface is another level of friction; if
-        not, there is nothing that the effects on the law of friction could change.
+        not, there is nothing that the effects on the law of friction could change. Under a force the base is
+        at rest.
         """
         from wedgesweep.effects import EFFECTS
         from wedgesweep.systems.oscillator import parameters
@@ -112,6 +124,8 @@ class Config:
         without = {parameters.LATERAL} if rubs else {*parameters.OF_FRICTION}
         if self.oscillator["spring"] == 0.0:
             without.add("bolster_stiffness")
+        if self.forced:
+            without.add(parameters.OF_BASE)
         return tuple(name for name in parameters.effect_names() if name not in without)
 
     @property
@@ -262,6 +276,29 @@ class Config:
         """Whether there is no natural frequency that frequencies could be compared with."""
         own, omega_n = self.document.get(OSCILLATOR, {}), self.document["sweep"]["omega_n_rad_per_s"]
         return own.get("spring_N_per_mm") == 0.0 and omega_n == UNIT_FREQUENCY
+
+    @property
+    def amplitude_unit(self) -> AmplitudeUnit:
+        """Unit of the input's amplitude in files: N of a force, mm of the base."""
+        return AmplitudeUnit("N", 1.0) if self.forced else AmplitudeUnit("mm", 1e-3)
+
+    @property
+    def simulated_motion(self) -> tuple[str, ...]:
+        """Whether simulated displacements are "relative" to the base, "absolute", or both."""
+        if self.forced:
+            return "relative", "absolute"
+        moves_with_base = self.system != OSCILLATOR or self.oscillator["contact"] == "base"
+        return ("relative",) if moves_with_base else ("absolute",)
+
+    def deflection(self, omega: float | np.ndarray) -> float | np.ndarray:
+        """Length (m) that motions are compared with, over the input amplitude, at omega (rad/s).
+
+        1 on a moving base; under a force the deflection at rest, without a spring the free mass's motion.
+        """
+        if not self.forced:
+            return 1.0
+        own = self.oscillator
+        return 1.0 / (own["spring"] or own["mass"] * omega**2)
 
     def records(self) -> np.ndarray:
         """Parameter records of all cases, shape (n,)."""

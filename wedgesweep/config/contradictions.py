@@ -81,8 +81,10 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
     if not on_belt and 0.0 in forces:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
-    from wedgesweep.systems.oscillator.parameters import effect_names
+    from wedgesweep.systems.oscillator.parameters import OF_BASE, effect_names
 
+    if OF_BASE in document.get("effects", {}) and sweep.get("excitation") == "force":
+        yield f"effects.{OF_BASE}: under a force the base does not move; remove it"
     for name in document.get("effects", {}):
         if name not in effect_names():
             yield f"effects.{name}: an oscillator has no such part; valid here: {', '.join(effect_names())}"

@@ -6,7 +6,7 @@ tau on: that is its accuracy. Where the noise is small it is the rms of what the
 response.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import exp, inf, log
 from typing import NamedTuple
@@ -53,12 +53,17 @@ def smallest_adequate(chi2: Callable[[float], float], dof: float) -> float:
 
 def of_response(data: FitData, evaluation: Evaluation, dof: float) -> float:
     """Accuracy of what was simulated, pulls on priors left out; inf if a response does not exist."""
-    if not evaluation.found:
+    return of_responses([(data, evaluation)], dof)
+
+
+def of_responses(parts: Sequence[tuple[FitData, Evaluation]], dof: float) -> float:
+    """Accuracy of several simulations together."""
+    if not all(evaluation.found for _, evaluation in parts):
         return inf
 
     def chi2(size: float) -> float:
-        again = data.with_model_error(size).compared_again(evaluation)
-        return float((again.residual**2).sum())
+        again = (data.with_model_error(size).compared_again(evaluation) for data, evaluation in parts)
+        return sum(float((each.residual**2).sum()) for each in again)
 
     return smallest_adequate(chi2, dof)
 

@@ -1,4 +1,4 @@
-"""Gain of an extended model on tests that it was not fitted to."""
+"""Predictions of tests that a model was not fitted to: their accuracy, and the gain of an extended model."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtr, stdtrit
 
-from wedgesweep.diagnose.fit_data import Evaluation, Point
+from wedgesweep.diagnose import accuracy
+from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
@@ -20,6 +21,28 @@ LOCAL_STEP = 0.3
 RESAMPLED, FEWEST = 2000, 8
 # Bootstrap samples with less than this share of the excess contain nothing that could be removed.
 SHOWS = 0.1
+
+
+# Maps a function over a list.
+Each = Callable[[Callable, list], list]
+
+
+class Prediction(NamedTuple):
+    """Tests that were left out together, simulated by a model that was fitted to the others.
+
+    ``tests``: indices of the tests in the data of the fit.
+    """
+
+    scheme: str
+    tests: np.ndarray
+    data: FitData
+    evaluation: Evaluation
+
+    @property
+    def misfit(self) -> np.ndarray:
+        """Squared misfit of each test, that of no motion at all where the model has no response."""
+        misfit = (self.evaluation.residual**2).sum(-1)
+        return np.where(self.evaluation.found_tests, misfit, self.data.power)
 
 
 class MeanSquares(NamedTuple):
@@ -104,7 +127,7 @@ class Gain:
         return [float(low), float(high)]
 
 
-def cross_validate(base: Fit, extended: Fit, each: Callable[[Callable, list], list]) -> Gain:
+def cross_validate(base: Fit, extended: Fit, each: Each) -> Gain:
     """Leave out groups of tests, fit the others, and predict those that were left out.
 
     Parameters
@@ -114,11 +137,38 @@ def cross_validate(base: Fit, extended: Fit, each: Callable[[Callable, list], li
     each : callable
         Maps a function over a list.
     """
-    data = base.model.data
+    local, observations = local_numbers(extended), base.model.data.observations
+    both = zip(*(predictions(fit, each) for fit in (base, extended)), strict=True)
+    return Gain(
+        tuple(
+            HeldOut(int(test), before.scheme, float(b), float(e), int(observations[test]), float(local[test]))
+            for before, after in both
+            for test, b, e in zip(before.tests, before.misfit, after.misfit, strict=True)
+        )
+    )
+
+
+def held_out_accuracy(fit: Fit, each: Each) -> float | None:
+    """Accuracy of the predictions of tests that were left out of a fit; None if there are none."""
+    predicted = predictions(fit, each)
+    if not predicted:
+        return None
+    left = fit.model.data.observations - local_numbers(fit)
+    dof = sum(left[one.tests].sum() for one in predicted)
+    return accuracy.of_responses([(one.data, one.evaluation) for one in predicted], dof)
+
+
+def predictions(fit: Fit, each: Each) -> list[Prediction]:
+    """Predictions of all groups of tests that can be left out of a fit."""
+    return each(lambda group: _predicted(fit, *group), held_out_groups(fit.model.data))
+
+
+def held_out_groups(data: FitData) -> list[tuple[str, np.ndarray]]:
+    """Schemes and groups that leave tests to fit; if all tests are alike, each test by itself."""
     groups = [group for group in data.held_out_groups() if len(group[1]) < data.tests]
-    local = local_numbers(extended)
-    found = each(lambda group: _held_out(base, extended, local, *group), groups)
-    return Gain(tuple(one for some in found for one in some))
+    if groups or data.tests == 1:
+        return groups
+    return [("test", np.array([test])) for test in range(data.tests)]
 
 
 def local_numbers(fit: Fit) -> np.ndarray:
@@ -135,22 +185,12 @@ def local_numbers(fit: Fit) -> np.ndarray:
     return equations.eliminated + determined + model.data.extra_nuisances(fit.effects)
 
 
-def _held_out(base: Fit, extended: Fit, local: np.ndarray, scheme: str, rows: np.ndarray) -> list[HeldOut]:
-    data = base.model.data
-    rest = np.setdiff1d(np.arange(data.tests), rows)
-    misfits = [_predicted_misfit(fit, rest, rows) for fit in (base, extended)]
-    return [
-        HeldOut(int(test), scheme, float(b), float(e), int(data.observations[test]), float(local[test]))
-        for test, b, e in zip(rows, *misfits, strict=True)
-    ]
-
-
-def _predicted_misfit(fit: Fit, rest: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Squared misfits of the tests ``rows`` after a fit to the ``rest`` of them.
+def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
+    """Simulation of the tests ``rows`` after a fit to the rest of them.
 
     Each held-out test keeps nuisance parameters of its own, as its kind of record allows.
     """
-    trained = subset_fit(fit, rest)
+    trained = subset_fit(fit, np.setdiff1d(np.arange(fit.model.data.tests), rows))
     if len(fit.x):
         trained = minimise(trained.model, trained.evaluation, ADAPT)
     part = subset_fit(fit, rows)
@@ -159,8 +199,7 @@ def _predicted_misfit(fit: Fit, rest: np.ndarray, rows: np.ndarray) -> np.ndarra
         if not evaluation.found:
             break
         evaluation = part.model.evaluate(_with_own_nuisances(part.model, evaluation))
-    misfit = (evaluation.residual**2).sum(-1)
-    return np.where(evaluation.found_tests, misfit, part.model.data.power)
+    return Prediction(scheme, rows, part.model.data, evaluation)
 
 
 def _with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:

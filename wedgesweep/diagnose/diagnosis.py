@@ -10,6 +10,8 @@ from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.ladder import Rung, ladder
 from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
+from wedgesweep.diagnose.loop.from_measurement import loop_data
+from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
@@ -28,15 +30,24 @@ from wedgesweep.diagnose.search import (
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.next_test import NextTest, recommend
+from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.diagnose.work import Untried
 from wedgesweep.effects import EFFECTS, SCALES, acting
 from wedgesweep.measured import Measurement
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
 # Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
 MUCH = 0.9
+# What a fit sees of the tests of each kind.
+DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]] = {
+    STEADY: harmonic_data,
+    LOOP: loop_data,
+    TRANSIENT: transient_data,
+}
 
 
 @dataclass(frozen=True)
@@ -47,7 +58,7 @@ class Diagnosis:
     """
 
     measurement: Measurement
-    data: HarmonicData
+    data: HarmonicData | LoopData | TransientData
     base: Explanation
     explanations: tuple[Explanation, ...]
     scores: tuple[Score, ...]
@@ -102,7 +113,7 @@ def diagnose(
     Diagnosis
         Verdict, fits, scores, gain on held-out tests and the recommended next test.
     """
-    data = harmonic_data(measurement)
+    data = DATA[measurement.kind](measurement)
     effects = _candidates(effects, measurement, progress)
     search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
     thresholds, calibration = verdict.thresholds_for(data), None
@@ -123,8 +134,10 @@ def diagnose(
         gain = gain if finding.best is not None else None
     progress("accuracy")
     rungs = ladder(search, base, explanations)
-    progress("next test")
-    next_test = recommend(_undecided(finding, explanations, thresholds))
+    next_test = None
+    if data.kind == STEADY:
+        progress("next test")
+        next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement=measurement,
         data=data,

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
+from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.natural_units import BENCH, NaturalUnits
 
@@ -131,15 +132,20 @@ def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:
 
 
 class FitData(Protocol):
-    """T measured tests of one kind of record.
+    """T measured tests of one ``kind`` of record, a name of ``measured.declarations.KINDS``.
 
+    ``model``: the base model with its friction ``law``; ``model_error``: relative error that it may have.
     ``eliminated``: number of nuisance parameters of each test whose best value has a closed form (start
     phase). ``known``: numbers that the records tell directly, "effect.key" to value and standard deviation
     in key units. ``uncertain``: effects that scale parameters of the base model, with their relative
     standard deviations.
     """
 
+    kind: str
+    model: Config
+    law: str
     names: tuple[str, ...]
+    model_error: float
     uncertain: dict[str, float]
     eliminated: int
 

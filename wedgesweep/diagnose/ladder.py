@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
-from wedgesweep.diagnose import accuracy, verdict
+from wedgesweep.diagnose import accuracy, cross_validation, verdict
 from wedgesweep.diagnose.explanation import Explanation
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
 
 # The most accurate explanations of each size are fitted again at their accuracy: so many at most, and only
@@ -17,10 +18,16 @@ COMPARED = 2
 
 @dataclass(frozen=True)
 class Rated:
-    """An explanation with its accuracy; ``inf`` where it is adequate at none."""
+    """An explanation with its accuracy; ``inf`` where it is adequate at none.
+
+    ``fit``: at that accuracy. ``held_out``: accuracy of its predictions of tests that were left out of the
+    fit, None where there are none or it was not asked for.
+    """
 
     explanation: Explanation
     accuracy: float
+    fit: Fit
+    held_out: float | None = None
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -53,16 +60,19 @@ class Rung:
 
 
 def ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Rung, ...]:
-    """Rate the base model and every explanation; a rung for each number of effects that was tried."""
+    """Rate the base model and every explanation; a rung for each number of effects that was tried.
+
+    The best of each size also predict tests that are left out of their fit.
+    """
     allowed = [base, *filter(verdict.eligible, explanations)]
-    rough = search.each(lambda each: Rated(each, _rough(each)), allowed)
+    rough = search.each(_rough, allowed)
     sizes = sorted({len(each.effects) for each in rough})
     return tuple(_rung(search, [each for each in rough if len(each.effects) == size]) for size in sizes)
 
 
-def _rough(each: Explanation) -> float:
+def _rough(each: Explanation) -> Rated:
     fit = each.fit
-    return accuracy.of_response(fit.model.data, fit.evaluation, fit.dof)
+    return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
 
 
 def _rung(search: Search, rough: Sequence[Rated]) -> Rung:
@@ -75,11 +85,18 @@ def _rung(search: Search, rough: Sequence[Rated]) -> Rung:
         waiting = [each for each in order if all(each.explanation is not one.explanation for one in done)]
         order = sorted([*done, *waiting], key=_order)
         chosen = [each for each in order[:COMPARED] if each in waiting]
-    return Rung(tuple(order))
+    return Rung((_tested(search, order[0]), *order[1:]))
+
+
+def _tested(search: Search, best: Rated) -> Rated:
+    if best.accuracy == inf:
+        return best
+    return replace(best, held_out=cross_validation.held_out_accuracy(best.fit, search.each))
 
 
 def _refined(each: Rated) -> Rated:
-    return replace(each, accuracy=accuracy.refined(each.explanation.fit).size)
+    found = accuracy.refined(each.fit)
+    return replace(each, accuracy=found.size, fit=found.fit)
 
 
 def _order(each: Rated) -> tuple[float, float]:

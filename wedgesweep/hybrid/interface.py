@@ -162,6 +162,11 @@ def powers(t, y, mode, p):
 
 
 @declared
+def driving_force(t, acceleration, y, mode, p):
+    """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined."""
+
+
+@declared
 def stiff(mode, p):
     """Whether an explicit step could not follow the mode."""
 

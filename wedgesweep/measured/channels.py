@@ -1,26 +1,36 @@
 """Which channels go together: what a measurement must have, and what a system cannot show."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from wedgesweep.measured.declarations import ABSOLUTE, COLUMNS, INPUT, RELATIVE, RESPONSES
+from wedgesweep.config import Config
+from wedgesweep.measured import kinds
+from wedgesweep.measured.declarations import (
+    ABSOLUTE,
+    AMPLITUDE,
+    COLUMNS,
+    FORCE_AMPLITUDE,
+    INPUT,
+    RELATIVE,
+    RESPONSES,
+    STEADY,
+)
 
 # Responses that are compared at a time.
 MOST_RESPONSES = 2
 STRAY = "stray_vibration"
+FORCE = "force"
 
 
-def channel_faults(columns: Mapping[str, Mapping[str, Any]], gain_std: float) -> list[str]:
+def channel_faults(
+    columns: Mapping[str, Mapping[str, Any]], gain_std: float, kind: str = STEADY
+) -> list[str]:
     """Faults of the declared channels as "key: fault", those of single keys aside."""
-    if "force" in columns:
-        return ["force: a suspension has no measured force; leave the column out"]
-    if columns.get(INPUT, {}).get("quantity") == "force":
-        return [
-            "input.quantity: the base of a suspension moves, no force drives it; give the motion of the base"
-        ]
+    if kind != STEADY:
+        return kinds.column_faults(columns, kind)
     responses = [name for name in RESPONSES if name in columns]
     if INPUT not in columns:
-        return _with_stated_amplitude(columns, responses, gain_std)
+        return _with_stated_amplitude(columns, gain_std)
     if not responses:
         named = ", ".join(name for name in RESPONSES if name != "force")
         return [f"{INPUT}: there is no response; give at least one of {named}"]
@@ -33,14 +43,8 @@ def channel_faults(columns: Mapping[str, Mapping[str, Any]], gain_std: float) ->
     return []
 
 
-def _with_stated_amplitude(
-    columns: Mapping[str, Mapping[str, Any]], responses: Sequence[str], gain_std: float
-) -> list[str]:
-    faults = [
-        f"{name}.of: without a recorded input nothing tells the absolute motion; add the column input"
-        for name in responses
-        if columns[name].get("of", RELATIVE) == ABSOLUTE
-    ]
+def _with_stated_amplitude(columns: Mapping[str, Mapping[str, Any]], gain_std: float) -> list[str]:
+    faults = []
     if "displacement" not in columns:
         faults.append(f"displacement: missing; write {COLUMNS.keys['displacement'].written}")
     if "acceleration" in columns:
@@ -50,13 +54,52 @@ def _with_stated_amplitude(
     return faults
 
 
-def keys_faults(given: Mapping[str, Any], columns: Mapping[str, Any]) -> list[str]:
-    """Faults of the keys of a test beside the channels, as "key: fault"."""
+def excitation_faults(
+    columns: Mapping[str, Mapping[str, Any]], model: Config, kind: str = STEADY
+) -> list[str]:
+    """Faults of the channels of a model with this excitation, as "key: fault"."""
+    if kind != STEADY:
+        return []
+    faults = []
+    if FORCE in columns:
+        told = "no force acts on a mass whose base moves; leave the column out"
+        if model.forced:
+            told = f'the force that drives the mass is the column {INPUT}, with quantity = "{FORCE}"'
+        faults.append(f"{FORCE}: {told}")
+    if INPUT not in columns:
+        return faults + _unknown_motion(columns, model)
+    recorded = columns[INPUT]["quantity"]
+    if (recorded == FORCE) != model.forced:
+        moves = "a force drives the mass" if model.forced else "the base moves, and no force drives the mass"
+        told = f'in the model {moves} (sweep.excitation = "{model.excitation}"); record that'
+        faults.append(f"{INPUT}.quantity: {recorded}, but {told}")
+    return faults
+
+
+def _unknown_motion(columns: Mapping[str, Mapping[str, Any]], model: Config) -> list[str]:
+    """Responses that cannot be compared without a recorded input."""
+    known = model.simulated_motion
     return [
-        f"{key}: the input is recorded, which tells more; omit it, or the column input"
-        for key in ("amplitude_mm",)
-        if INPUT in columns and key in given
+        f"{name}.of: without a recorded input nothing tells the {of} motion; "
+        f'add the column input, or measure and write of = "{known[0]}"'
+        for name, of in ((name, columns[name].get("of", RELATIVE)) for name in RESPONSES if name in columns)
+        if of not in known
     ]
+
+
+def keys_faults(given: Mapping[str, Any], columns: Mapping[str, Any], model: Config | None) -> list[str]:
+    """Faults of the keys of a test beside the channels, as "key: fault"."""
+    if wrong := kinds.key_faults(given):
+        return wrong
+    stated = [key for key in (AMPLITUDE.key, FORCE_AMPLITUDE.key) if key in given]
+    if INPUT in columns:
+        told = "the input is recorded, which tells more; omit it, or the column input"
+        return [f"{key}: {told}" for key in stated]
+    if model is None:
+        return []
+    right = model.amplitude_unit.key
+    told = f'sweep.excitation of the model is "{model.excitation}"; write {right}'
+    return [f"{key}: {told}" for key in stated if key != right]
 
 
 def model_faults(effects: Mapping[str, Any], columns: Mapping[str, Mapping[str, Any]]) -> list[str]:

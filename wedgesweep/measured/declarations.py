@@ -1,7 +1,7 @@
 """Declaration of every key of measured.toml."""
 
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import inf, isfinite, nan
 from typing import Any
 
 from wedgesweep.config import toml
@@ -25,10 +25,27 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
+# Kinds of test: a periodic response, a free motion, or a force under an imposed motion.
+STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
+
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
+FORCE_AMPLITUDE = Quantity(
+    "amplitude_N", nan, "amplitude of the force on the mass; omit it if unknown", above=0.0
+)
 AMPLITUDE_STD = Quantity("amplitude_std", 0.0, "relative std of the amplitude", minimum=0.0, below=1.0)
 
+LOWPASS = Quantity(
+    "lowpass_hz",
+    nan,
+    "loop: cut-off frequency; by default as high as the noise of the displacement allows",
+    above=0.0,
+)
+FROM = Quantity("from_s", nan, "time in the file from which the record is used; by default all of it")
+TO = Quantity("to_s", nan, "time in the file up to which the record is used; by default all of it")
+DETREND = Flag(
+    key="detrend", meaning="whether to remove the straight line of a sensor that drifts", default=False
+)
 MODEL_ERROR = Quantity(
     "model_error",
     0.0,
@@ -84,10 +101,15 @@ class RecordTable(Table):
     """Keys of a test."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
-        if isinstance(value, dict) and "amplitude_std" in value and "amplitude_mm" not in value:
+        stated = (AMPLITUDE.key, FORCE_AMPLITUDE.key)
+        if isinstance(value, dict) and "amplitude_std" in value and not value.keys() & set(stated):
             at = f"{path}." if path else ""
-            problems.append(f"{at}amplitude_std: given without amplitude_mm; omit it")
-        return super().read(value, path, problems)
+            problems.append(f"{at}amplitude_std: given without {' or '.join(stated)}; omit it")
+        read = super().read(value, path, problems)
+        if read.get("from_s", -inf) >= read.get("to_s", inf):
+            at = f"{path}." if path else ""
+            problems.append(f"{at}to_s: {read['to_s']:g} is not after from_s = {read['from_s']:g}")
+        return read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,7 +172,7 @@ COLUMNS = table(
     _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, OF, optional=True),
     _channel("acceleration", "relative acceleration, x'' - y''", "a", "m/s^2", OF, optional=True),
     _channel("force", "force on the mass", "f", "N", optional=True),
-    _channel(INPUT, "motion of the side frame as recorded", "u", "mm", QUANTITY, optional=True),
+    _channel(INPUT, "input as recorded", "u", "mm", QUANTITY, optional=True),
     example="measurement.columns",
 )
 
@@ -158,12 +180,25 @@ UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain
 
 TEST = RecordTable(
     key="test",
-    meaning="one record of steady vibration",
+    meaning="one record",
     groups=(
         (Text(key="file", meaning="CSV file, relative to this one", example="20hz.csv"),),
+        (
+            Choice(
+                key="kind",
+                meaning="steady: periodic response; transient: free motion; loop: force under a motion",
+                choices=KINDS,
+                default=STEADY,
+            ),
+        ),
+        (Number.of(LOWPASS, optional=True),),
         (Number.of(FREQUENCY, optional=True),),
         (Number.of(AMPLITUDE, optional=True),),
+        (Number.of(FORCE_AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),
+        (Number.of(FROM, optional=True),),
+        (Number.of(TO, optional=True),),
+        (DETREND,),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )

@@ -19,13 +19,15 @@ class MeasuredError(InputError):
 
 @dataclass(frozen=True, eq=False)
 class TestRecord:
-    """One record of steady vibration under a sinusoidal input.
+    """One record: of steady vibration, of a free motion, or of the force under an imposed motion.
 
-    ``frequency`` (Hz) and ``amplitude`` (m, of the side frame) are None where they are not known;
+    ``frequency`` (Hz) and ``amplitude`` (m of the base, N of a force) are None where they are not known;
     ``amplitude_std`` is relative. ``time`` (s) is the even grid that the file's stamps round, shape (n,);
-    ``displacement`` (m, x - y with the sensor's constant part) and ``velocity`` (m/s, x' - y') are
+    ``displacement`` (m, with the sensor's constant part; for a suspension x - y) and ``velocity`` (m/s) are
     samples at these times, and so are ``acceleration`` (m/s^2) and the recorded ``input`` (SI); None where
     not measured. ``model``: numbers of the base model in this test, by "section.key", in its units.
+    ``kind``: of test; ``force`` (N) and ``cutoff`` (Hz, of a low-pass filter; None: chosen) are a loop's.
+    ``recorded_s``: length (s) of the file's record, None if all of it is used.
     """
 
     __test__ = False  # not a test of pytest
@@ -41,6 +43,10 @@ class TestRecord:
     acceleration: np.ndarray | None = None
     input: np.ndarray | None = None
     model: Mapping[str, float] = field(default_factory=dict)
+    kind: str = "steady"
+    force: np.ndarray | None = None
+    cutoff: float | None = None
+    recorded_s: float | None = None
 
     @cached_property
     def refined_frequency(self) -> float:
@@ -50,8 +56,18 @@ class TestRecord:
     @property
     def leading(self) -> np.ndarray:
         """The channel (n,) that tells the frequency: the recorded input, or the first response."""
-        channels = (self.input, self.displacement, self.velocity, self.acceleration)
-        return next(each for each in channels if each is not None)
+        return next(iter(self.channels.values()))
+
+    @property
+    def responses(self) -> dict[str, np.ndarray]:
+        """The measured responses (n,) by name."""
+        named = {name: getattr(self, name) for name in ("displacement", "velocity", "acceleration")}
+        return {name: samples for name, samples in named.items() if samples is not None}
+
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        """The measured channels (n,) by name: a recorded input, then the responses."""
+        return ({} if self.input is None else {"input": self.input}) | self.responses
 
     @property
     def sampling_rate(self) -> float:
@@ -66,7 +82,7 @@ class TestRecord:
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """Tests of one suspension, and the base model.
+    """Tests of one rig, and the base model.
 
     ``law`` is the model's friction law; ``uncertain`` holds the relative std of numbers of the model by
     the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel, with
@@ -84,6 +100,11 @@ class Measurement:
     columns: Mapping[str, Mapping[str, str]]
     input_gain_std: float = 0.0
     model_error: float = 0.0
+
+    @property
+    def kind(self) -> str:
+        """Kind of all tests."""
+        return self.tests[0].kind
 
     @property
     def recorded_input(self) -> str | None:

@@ -3,12 +3,12 @@
 Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
 config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
 The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm``
-and ``amplitude_std`` as in measured.toml, and variables ``time``, ``displacement`` and, optionally,
-``velocity`` over the dimension ``sample``, with ``units`` as in measured.toml. A velocity that is computed
-from displacement has the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the
-attribute ``quantity``; ``acceleration`` is a further response, and responses may have the attribute ``of``.
-The attribute ``model`` of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is an
-attribute of the file.
+(or ``amplitude_N``), ``amplitude_std``, ``kind`` and ``lowpass_hz`` as in measured.toml, and variables
+``time``, ``displacement`` and, optionally, ``velocity`` over the dimension ``sample``, with ``units`` as in
+measured.toml; a loop has ``force`` instead of the latter. A velocity that is computed from displacement has
+the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute ``quantity``;
+``acceleration`` is a further response, and responses may have the attribute ``of``. The attribute ``model``
+of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is an attribute of the file.
 """
 
 import json
@@ -22,10 +22,19 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
-from wedgesweep.measured import overrides
+from wedgesweep.measured import kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.channels import channel_faults, keys_faults, model_faults
-from wedgesweep.measured.declarations import INPUT, MODEL_ERROR, QUANTITIES, TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
+from wedgesweep.measured.declarations import (
+    DETREND,
+    INPUT,
+    MODEL_ERROR,
+    QUANTITIES,
+    STEADY,
+    TEST,
+    UNCERTAIN,
+    UNITS,
+)
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
@@ -38,6 +47,7 @@ LONG_NAMES = {
     "displacement": "side frame minus bolster",
     "velocity": "rate of displacement",
     "acceleration": "rate of velocity",
+    "force": "force on the mass",
     "input": "recorded input",
 }
 
@@ -63,13 +73,15 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
 
 
 def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
-    millimetres = None if test.amplitude is None else float(f"{test.amplitude * 1e3:.15g}")
+    key, factor = measurement.model.amplitude_unit.key, measurement.model.amplitude_unit.factor
     given = {
         "file": test.file,
         "frequency_hz": test.frequency,
-        "amplitude_mm": millimetres,
+        key: None if test.amplitude is None else float(f"{test.amplitude / factor:.15g}"),
         "amplitude_std": None if test.amplitude is None else test.amplitude_std,
         "model": json.dumps(dict(test.model)) if test.model else None,
+        "kind": test.kind,
+        "lowpass_hz": test.cutoff,
     }
     group.setncatts({name: value for name, value in given.items() if value is not None})
     group.createDimension("sample", test.time.size)
@@ -110,7 +122,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     config, law = _model(attributes, path, model, problems)
     uncertain = _uncertain(root, path, problems)
     model_error = _model_error(attributes, path, problems)
-    tests = [_test(group, path, problems) for group in groups]
+    tests = [_test(group, path, config, problems) for group in groups]
     complete = tuple(test for test in tests if test)
     velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
     derived = {bool(getattr(variable, "derived", 0)) for variable in velocities}
@@ -127,7 +139,12 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
         problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
         gain_std = 0.0
-    problems += [f"{path}: tests: {fault}" for fault in channel_faults(columns[0], gain_std)]
+    all_kinds = [test.kind for test in complete]
+    kind = (all_kinds or [STEADY])[0]
+    faults = kinds.kind_faults(all_kinds) or channel_faults(columns[0], gain_std, kind)
+    if config is not None and not (problems or faults):
+        faults = excitation_faults(columns[0], config, kind)
+    problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
         problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns[0])]
         for test in complete:
@@ -197,11 +214,11 @@ def _checked(table: Table, given: Mapping[str, Any], at: str, problems: list[str
     return read
 
 
-def _test(group: Any, path: Path, problems: list[str]) -> TestRecord | None:
+def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> TestRecord | None:
     at = f"{path}: {group.path.lstrip('/')}"
     before = len(problems)
     given = _checked(TEST, {"file": group.name, **_read_numbers(_attributes(group))}, at, problems)
-    problems.extend(f"{at}: {fault}" for fault in keys_faults(given, group.variables))
+    problems.extend(f"{at}: {fault}" for fault in keys_faults(given, group.variables, model))
     columns = {
         name: np.ma.filled(variable[:].astype(float), np.nan) for name, variable in group.variables.items()
     }
@@ -215,7 +232,9 @@ def _test(group: Any, path: Path, problems: list[str]) -> TestRecord | None:
 
 
 def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
-    """Attributes of a test with its numbers of the model read from their text."""
+    """Attributes of a test with its numbers of the model read from their text, and 0 or 1 as a flag."""
+    if attributes.get(DETREND.key) in (0, 1):  # an attribute cannot be a truth value
+        attributes = attributes | {DETREND.key: bool(attributes[DETREND.key])}
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:

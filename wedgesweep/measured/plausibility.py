@@ -1,12 +1,11 @@
 """Plausibility of channels and amplitudes: detects wrong units and signs."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from wedgesweep.measured.cycles import cut
+from wedgesweep.measured.declarations import STEADY
 from wedgesweep.measured.frequency import stands_out
-from wedgesweep.measured.measurement import TestRecord
+from wedgesweep.measured.measurement import Measurement, TestRecord
 
 # Tolerated errors of gain and phase between the channels.
 FACTOR, ANGLE = 10.0, np.radians(120.0)
@@ -34,23 +33,43 @@ def channel_faults(test: TestRecord, file: str) -> list[str]:
     return []
 
 
-def amplitude_faults(tests: Sequence[TestRecord]) -> list[str]:
+def amplitude_faults(measurement: Measurement) -> list[str]:
     """Faults of the stated input amplitudes."""
     moved = {
-        test.file: abs(_fundamental(test, test.displacement)) / test.amplitude
-        for test in tests
+        test.file: abs(_fundamental(test, test.displacement)) / _deflection(measurement, test)
+        for test in measurement.tests
         if test.amplitude is not None and test.displacement is not None
     }
+    key = measurement.model.amplitude_unit.key
+    per = f"the deflection at rest under its {key}" if measurement.model.forced else f"its {key}"
     faults = [
-        f"{file} moves {share:.3g} times its amplitude_mm; correct one of them"
+        f"{file} moves {share:.3g} times {per}; correct one of them"
         for file, share in moved.items()
         if share > MOST
     ]
     if len(moved) >= SEVERAL and 0.0 < max(moved.values()) < LEAST:
         most = max(moved, key=lambda file: moved[file])
-        told = f"no test moves more than {moved[most]:.2g} times its amplitude_mm ({most})"
+        told = f"no test moves more than {moved[most]:.2g} times {per} ({most})"
         faults.append(f"{told}; correct them, or omit them if they are unknown")
     return faults
+
+
+def noise_faults(measurement: Measurement) -> list[str]:
+    """Responses without a vibration: one test may stick, but if all do there is nothing to compare."""
+    steady = [test for test in measurement.tests if test.kind == STEADY]
+    if not steady or any(
+        _fundamental(test, samples) for test in steady for samples in test.responses.values()
+    ):
+        return []
+    frequencies = ", ".join(dict.fromkeys(f"{test.refined_frequency:.4g}" for test in steady))
+    told = f"no test has a vibration at its frequency ({frequencies} Hz) that stands out of the noise"
+    return [f"{told}; correct the columns or frequency_hz, or excite more"]
+
+
+def _deflection(measurement: Measurement, test: TestRecord) -> float:
+    """Length (m) that the motion of a test of known amplitude is compared with."""
+    assert test.amplitude is not None
+    return test.amplitude * float(measurement.model_of(test).deflection(2.0 * np.pi * test.refined_frequency))
 
 
 def _fundamental(test: TestRecord, signal: np.ndarray) -> complex:

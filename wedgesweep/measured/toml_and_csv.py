@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep.config import Config
-from wedgesweep.measured import channels, csv_columns, overrides
+from wedgesweep.measured import channels, csv_columns, kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import ROOT
+from wedgesweep.measured.declarations import ROOT, STEADY
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
 
@@ -24,14 +24,20 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     if model is None and "model" in measurement:
         model = path.parent / measurement["model"]
     columns = measurement.get("columns", {})
+    all_kinds = [each.get("kind", STEADY) for each in measurement.get("test", ())]
+    kind = (all_kinds or [STEADY])[0]
+    problems += [f"{path}: measurement.{fault}" for fault in kinds.kind_faults(all_kinds)]
     if not problems:
-        told = channels.channel_faults(columns, measurement["input_gain_std"])
+        told = channels.channel_faults(columns, measurement["input_gain_std"], kind)
         problems += [f"{path}: {_at(fault)}" for fault in told]
     config, law = load_model(model, problems) if model else (None, "")
     if config is not None:
+        if not problems:
+            told = channels.excitation_faults(columns, config, kind)
+            problems += [f"{path}: {_at(fault)}" for fault in told]
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config.effects, columns)]
         problems += _override_faults(path, measurement, config)
-    tests = _tests(path, measurement, problems)
+    tests = _tests(path, measurement, config, problems)
     if problems or config is None:
         raise MeasuredError(problems)
     return Measurement(
@@ -91,7 +97,9 @@ def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     raise MeasuredError(problems)
 
 
-def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list[TestRecord]:
+def _tests(
+    path: Path, measurement: dict[str, Any], model: Config | None, problems: list[str]
+) -> list[TestRecord]:
     """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
     complete = columns.keys() > {"time"} and all(
@@ -108,7 +116,7 @@ def _tests(path: Path, measurement: dict[str, Any], problems: list[str]) -> list
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns))
+        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns, model))
         if complete:
             tests += _test(path.parent / file, at, given, columns, problems)
     return tests

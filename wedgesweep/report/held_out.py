@@ -47,4 +47,5 @@ def _summary(result: DiagnosisResult, gain: dict[str, Any]) -> str:
 def _row(result: DiagnosisResult, each: dict[str, Any]) -> list[str]:
     errors = [formatting.number(each[f"rmse_{kind}"]) for kind in ("base", "extended", "noise")]
     test = result.data["test"].values[result.test_index(each["test"])]
-    return [str(test), f"all at its {each['scheme']}", *errors]
+    left_out = "this test" if each["scheme"] == "test" else f"all at its {each['scheme']}"
+    return [str(test), left_out, *errors]

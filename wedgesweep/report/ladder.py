@@ -9,13 +9,14 @@ from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
-HEAD = ("effects", "explanation", "accuracy", "next best", "its accuracy")
+HEAD = ("effects", "explanation", "accuracy", "on held-out tests", "next best", "its accuracy")
 # A pair is told beside its better component if it is so many times as accurate.
 MUCH_BETTER = 2.0
 READING = (
     "The accuracy is the smallest error of the model, as a share of the rms of the response, with which the "
     "explanation is adequate (p ≥ 0.01): 1 % means that it explains all tests to 1 % of the response. An "
-    "explanation with “noise” needs no such error. What lies below the noise floor is not resolved."
+    "explanation with “noise” needs no such error. On held-out tests it is the accuracy of predictions by "
+    "fits to the other tests. What lies below the noise floor is not resolved."
 )
 
 
@@ -48,6 +49,7 @@ def _row(rung: Mapping[str, Any]) -> list[str]:
         str(len(rung["effects"])),
         phrases.combination(rung["effects"]),
         phrases.accuracy(rung["accuracy"]),
+        phrases.accuracy(rung.get("accuracy_held_out")),
         phrases.combination(rival["effects"]) if rival else formatting.NONE,
         phrases.accuracy(rival["accuracy"]) if rival else formatting.NONE,
     ]
@@ -74,10 +76,18 @@ def told(result: DiagnosisResult) -> list[str]:
     return clauses
 
 
+def held_out(rung: Mapping[str, Any]) -> str:
+    """How well an explanation predicts tests that it was not fitted to; empty if none were left out."""
+    size = rung.get("accuracy_held_out")
+    return "" if size is None else f"held-out tests: {phrases.accuracy(size)}"
+
+
 def _told(rung: Mapping[str, Any], base: Mapping[str, Any]) -> str:
     meanings = phrases.listing([phrases.meaning(effect) for effect in rung["effects"]])
     verb = "explains" if len(rung["effects"]) == 1 else "explain"
     beside = [f"without: {phrases.accuracy(base['accuracy'])}"]
+    if predicted := held_out(rung):
+        beside.insert(0, predicted)
     for rival in rung["rivals"][:1]:
         name = phrases.combination(rival["effects"])
         beside.append(f"next best, {name}: {phrases.accuracy(rival['accuracy'])}")

@@ -30,12 +30,19 @@ def section(result: DiagnosisResult) -> Markup:
     )
 
 
+def _of_harmonics(result: DiagnosisResult) -> list[list[str]]:
+    harmonics = result.document["method"].get("harmonics")
+    if harmonics is None:
+        return []
+    channels = phrases.listing([str(name) for name in result.data["channel"].values])
+    return [["harmonics of each channel", str(harmonics)], ["channels", channels]]
+
+
 def _settings(result: DiagnosisResult) -> list[list[str]]:
     method, misfit = result.document["method"], result.document["misfit"]
     rows = [
         ["degrees of freedom, base model", str(misfit["dof"])],
-        ["harmonics of each channel", str(method["harmonics"])],
-        ["channels", phrases.listing([str(name) for name in result.data["channel"].values])],
+        *_of_harmonics(result),
         ["penalty per fitted parameter", formatting.number(method["penalty_per_parameter"])],
         ["tie width", formatting.number(method.get("gap"))],
         ["excess needed to name a cause", formatting.number(method.get("strong_excess"))],

@@ -82,15 +82,18 @@ def _described(test: dict[str, Any]) -> str:
 
 
 def _table(result: DiagnosisResult) -> Markup:
-    head = ["test", "frequency [Hz]", "amplitude [mm]", "fitted amplitude [mm]", "periods"]
+    unit = phrases.amplitude_unit(result.document["misfit"]["tests"][0])
+    head = ["test", "frequency [Hz]", f"amplitude [{unit}]", f"fitted amplitude [{unit}]", "periods"]
     head += ["noise x − y [mm]", "noise x′ − y′ [mm/s]", *(f"Q/dof {model}" for model in result.models)]
     rows = [_row(test, result.models) for test in result.document["misfit"]["tests"]]
     return html.details("Table of all tests", html.table("All tests and their misfit", head, rows))
 
 
 def _row(test: dict[str, Any], models: Sequence[str]) -> list[str]:
-    keys = ("frequency_hz", "amplitude_mm", "amplitude_fitted_mm", "periods", "noise_displacement_mm")
-    numbers = [formatting.short(test[key]) for key in (*keys, "noise_velocity_mm_per_s")]
+    unit = phrases.amplitude_unit(test)
+    keys = ("frequency_hz", f"amplitude_{unit}", f"amplitude_fitted_{unit}", "periods")
+    noise = ("noise_displacement_mm", "noise_velocity_mm_per_s")
+    numbers = [formatting.short(test[key]) for key in (*keys, *noise)]
     return [test["name"], *numbers, *(formatting.number(_ratio(test, model)) for model in models)]
 
 

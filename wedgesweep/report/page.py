@@ -15,6 +15,7 @@ from wedgesweep.report import (
     misfit,
     next_test,
     rivals,
+    sampled,
 )
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
@@ -47,7 +48,7 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
         [
             _answer(result),
             _contents(result),
-            misfit.section(result, draw),
+            _measured_and_simulated(result, draw),
             candidates.section(result, draw),
             ladder.section(result, draw),
             extension.section(result),
@@ -63,6 +64,12 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
         style=_read("style.css"),
         content=draw.fill(content, n_jobs),
     )
+
+
+def _measured_and_simulated(result: DiagnosisResult, draw: InlineFigures) -> Markup:
+    if result.document.get("kind", "steady") != "steady":
+        return sampled.section(result, draw, misfit.heading(result))
+    return misfit.section(result, draw)
 
 
 def _answer(result: DiagnosisResult) -> Markup:

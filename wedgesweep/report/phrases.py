@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import Any, NamedTuple
 
+from wedgesweep import formatting
 from wedgesweep.effects import EFFECTS
 from wedgesweep.formatting import LARGE, NO_BREAK, NONE, SMALL, decimals, fixed, number, percent, short
 from wedgesweep.quantity import Quantity
@@ -123,7 +124,7 @@ def accuracy(size: float | None) -> str:
     """A relative model error as a share of the response; 0 is noise alone."""
     if size is None:
         return "none"
-    return "noise" if size == 0.0 else f"{short(100.0 * size, 2)}{NO_BREAK}%"
+    return "noise" if size == 0.0 else formatting.error(size)
 
 
 def times_noise(q: float | None, dof: float) -> str:
@@ -138,4 +139,11 @@ def distinguishes(document: Mapping[str, Any]) -> bool:
 
 def next_test(test: Mapping[str, Any]) -> str:
     """Frequency and amplitude of the recommended test."""
-    return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {short(test['amplitude_mm'], 3)}{NO_BREAK}mm"
+    unit = amplitude_unit(test)
+    amplitude = f"{short(test[f'amplitude_{unit}'], 3)}{NO_BREAK}{unit}"
+    return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {amplitude}"
+
+
+def amplitude_unit(test: Mapping[str, Any]) -> str:
+    """Unit of the input amplitude of a test: mm, or N of a force."""
+    return "N" if "amplitude_N" in test else "mm"

@@ -15,13 +15,14 @@ def sentence(result: DiagnosisResult) -> str:
 
 
 def _untried(result: DiagnosisResult) -> str:
-    """What the budget of the search left out; empty for most diagnoses."""
-    left_out = [
-        f"{each['what']} ({each['left_out']} of {each['of']})" for each in result.document.get("untried", [])
-    ]
-    return (
-        f"; the search had spent its budget before it tried {phrases.listing(left_out)}" if left_out else ""
-    )
+    """How much the budget of the search left out, and the most promising of it; empty for most diagnoses."""
+    left_out = result.document.get("untried", [])
+    if not left_out:
+        return ""
+    first = "{what} ({left_out} of {of})".format(**left_out[0])
+    if len(left_out) > 1:
+        first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
+    return f"; the search had spent its budget before it tried {first}"
 
 
 def _nothing_missing(result: DiagnosisResult) -> str:

@@ -16,11 +16,12 @@ from wedgesweep.sweep.cases import compile_once
 from wedgesweep.synthesize import files, noise, recorded_input
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady
+from wedgesweep.synthesize.names import FORCE
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
 from wedgesweep.systems import kits
 
-# A bolster that moves less than this share of the input counts as stuck.
+# A mass that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
 
 
@@ -64,15 +65,14 @@ def synthesize(
     files.require_free(directory)
     problems: list[str] = []
     _, law = with_law(config, source, problems)
-    if config.forced:
-        problems.append(f'{source}: sweep.excitation: tests are of a moving base; write "base"')
+    problems += _unit_faults(config, source, plan, options.record_input)
     if problems:
         raise SynthesisError(problems)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
     motions = _motions(truth, options, n_jobs)
     tables = [_table(truth, *each, options) for each in zip(truth.tests, motions, strict=True)]
     model = Config(config.document | {"effects": {}, "title": "base model"})
-    measured = _measured(directory.name, plan, options)
+    measured = _measured(directory.name, config, plan, options)
     files.write(directory, measured, model, tables, _told(truth, motions, options))
     return [
         f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
@@ -81,8 +81,23 @@ def synthesize(
     ]
 
 
+def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) -> list[str]:
+    """Amplitudes and recorded inputs of another excitation than the config's."""
+    unit = config.amplitude_unit.unit
+    excited = f'{source} has excitation = "{config.excitation}"'
+    faults = [
+        f"test[{i}].amplitude_{test.unit}: {excited}; write amplitude_{unit}"
+        for i, test in enumerate(plan.tests)
+        if test.unit != unit
+    ]
+    if recorded is not None and (recorded == FORCE) != config.forced:
+        valid = FORCE if config.forced else "displacement, velocity or acceleration"
+        faults.append(f"--record-input {recorded}: {excited}; record {valid}")
+    return faults
+
+
 def _name(i: int, test: TrueTest) -> str:
-    return f"test[{i}] ({test.plan.frequency_hz:g} Hz, {test.plan.amplitude_mm:g} mm)"
+    return f"test[{i}] ({test.plan.frequency_hz:g} Hz, {test.plan.amplitude:g} {test.plan.unit})"
 
 
 def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
@@ -100,10 +115,11 @@ def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
         for test in truth.tests
     )
     found = joblib.Parallel(n_jobs=n_jobs)(jobs)
+    faults = [_fault(truth, test, motion) for test, motion in zip(truth.tests, found, strict=True)]
     problems = [
-        f"{_name(i, test)}: {motion}"
-        for i, (test, motion) in enumerate(zip(truth.tests, found, strict=True))
-        if isinstance(motion, str)
+        f"{_name(i, test)}: {fault}"
+        for i, (test, fault) in enumerate(zip(truth.tests, faults, strict=True))
+        if fault
     ]
     if problems:
         raise SynthesisError(problems)
@@ -113,12 +129,19 @@ def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
 def _motion(record: np.ndarray, *arguments: Any) -> Motion | str:
     """Return the motion of a test, or why there is none."""
     try:
-        motion = steady(record, *arguments)
+        return steady(record, *arguments)
     except CaseError as error:
         return str(error)
-    if np.ptp(motion.displacement) < STUCK * record["input"]["amplitude"][0]:
-        return "the bolster sticks all the time and there is nothing to measure; raise the amplitude"
-    return motion
+
+
+def _fault(truth: Truth, test: TrueTest, motion: Motion | str) -> str | None:
+    """Why a test cannot be made, or None."""
+    if isinstance(motion, str):
+        return motion
+    deflection = truth.config.deflection(2.0 * np.pi * test.plan.frequency_hz)
+    if np.ptp(motion.displacement) >= STUCK * deflection * truth.record(test)["input"]["amplitude"][0]:
+        return None
+    return "the mass sticks all the time and there is nothing to measure; raise the amplitude"
 
 
 def _table(truth: Truth, test: TrueTest, motion: Motion, options: Options) -> Table:
@@ -144,19 +167,20 @@ def _input(truth: Truth, test: TrueTest, time: np.ndarray, options: Options) -> 
     return exact + options.input_level * exact.std() * test.random.normal(size=exact.size)
 
 
-def _measured(title: str, plan: Plan, options: Options) -> dict[str, Any]:
+def _measured(title: str, config: Config, plan: Plan, options: Options) -> dict[str, Any]:
     """The document of measured.toml."""
     tests = []
     for i, test in enumerate(plan.tests):
         told: dict[str, Any] = {"file": f"test-{i:02d}.csv", "frequency_hz": test.frequency_hz}
         if test.known and options.record_input is None:
-            told["amplitude_mm"] = test.amplitude_mm
+            told[config.amplitude_unit.key] = test.amplitude
             told["amplitude_std"] = test.amplitude_std or options.amplitude_error
         tests.append(told)
-    velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated"}
+    motion = config.simulated_motion[0]
+    velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated", "of": motion}
     columns: dict[str, dict[str, Any]] = {
         "time": {"column": "t", "unit": "s"},
-        "displacement": {"column": "d", "unit": "mm"},
+        "displacement": {"column": "d", "unit": "mm", "of": motion},
         "velocity": velocity,
     }
     if options.record_input is not None:
@@ -171,8 +195,8 @@ def _told(truth: Truth, motions: list[Motion], options: Options) -> dict[str, An
     tests = [
         {
             "frequency_hz": test.plan.frequency_hz,
-            "amplitude_mm": test.amplitude_mm,
-            "nominal_amplitude_mm": test.plan.amplitude_mm,
+            f"amplitude_{test.plan.unit}": test.amplitude,
+            f"nominal_amplitude_{test.plan.unit}": test.plan.amplitude,
             "phase_deg": test.phase_deg,
             "stray_vibration_phase_deg": test.stray_phase_deg,
             "sampling_hz": test.sampling_hz,

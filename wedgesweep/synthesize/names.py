@@ -1,4 +1,5 @@
 """Names of the kinds of noise and of recorded inputs: apart from their code, for a fast start."""
 
 NOISES = ("white", "ar1", "adc", "differentiated")
-QUANTITIES = ("displacement", "velocity", "acceleration")
+FORCE = "force"
+QUANTITIES = ("displacement", "velocity", "acceleration", FORCE)

@@ -1,13 +1,15 @@
 """tests.toml: the tests to make, and the uncertain numbers of their measured.toml."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from wedgesweep.config.keys import Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError
-from wedgesweep.measured.declarations import AMPLITUDE, AMPLITUDE_STD, FREQUENCY, UNCERTAIN
+from wedgesweep.measured.declarations import AMPLITUDE, AMPLITUDE_STD, FORCE_AMPLITUDE, FREQUENCY, UNCERTAIN
 
 KNOWN = Flag(key="known", meaning="whether measured.toml states the amplitude", default=True)
 
@@ -22,7 +24,7 @@ ROOT = table(
             "test",
             "one test",
             Number.of(FREQUENCY, example=20.0),
-            Number.of(AMPLITUDE, example=0.1),
+            (Number.of(AMPLITUDE, example=0.1), Number.of(FORCE_AMPLITUDE, example=1.0)),
             Number.of(AMPLITUDE_STD),
             KNOWN,
         ),
@@ -32,10 +34,11 @@ ROOT = table(
 
 @dataclass(frozen=True)
 class PlannedTest:
-    """One test with its nominal amplitude; ``amplitude_std`` is relative, 0 if not given."""
+    """One test with its nominal amplitude in ``unit``; ``amplitude_std`` is relative, 0 if not given."""
 
     frequency_hz: float
-    amplitude_mm: float
+    amplitude: float
+    unit: str
     amplitude_std: float
     known: bool
 
@@ -61,4 +64,10 @@ def load(path: Path) -> Plan:
     document = ROOT.read(given, "", problems)
     if problems:
         raise InputError([f"{path}: {problem}" for problem in problems])
-    return Plan(tuple(PlannedTest(**each) for each in document["test"]), document["uncertain"])
+    return Plan(tuple(map(_planned, document["test"])), document["uncertain"])
+
+
+def _planned(given: Mapping[str, Any]) -> PlannedTest:
+    unit = "N" if FORCE_AMPLITUDE.key in given else "mm"
+    amplitude = given[f"amplitude_{unit}"]
+    return PlannedTest(given["frequency_hz"], amplitude, unit, given["amplitude_std"], given["known"])

@@ -22,11 +22,12 @@ STRAY = "stray_vibration"
 class TrueTest:
     """One test: true amplitude, phase of the input at the first sample, offset over the rms.
 
-    ``stray_phase_deg`` is the phase of a spurious tone, None without one; ``random`` makes the noise.
+    ``amplitude`` is in the unit of the plan. ``stray_phase_deg`` is the phase of a spurious tone, None
+    without one; ``random`` makes the noise.
     """
 
     plan: PlannedTest
-    amplitude_mm: float
+    amplitude: float
     phase_deg: float
     sampling_hz: float
     offset: float
@@ -57,8 +58,8 @@ class Truth:
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""
-        amplitude, omega = test.amplitude_mm * 1e-3, 2.0 * pi * test.plan.frequency_hz
-        record = self.config.record_with(self.effects, self.law, amplitude, omega)
+        amplitude = test.amplitude * self.config.amplitude_unit.factor
+        record = self.config.record_with(self.effects, self.law, amplitude, 2.0 * pi * test.plan.frequency_hz)
         if test.stray_phase_deg is not None:
             record[STRAY]["phase"] = np.radians(test.stray_phase_deg)
         return record
@@ -100,7 +101,7 @@ def _drawn(
     phase, stray_phase, spread = random.random(3).tolist()
     return TrueTest(
         plan=test,
-        amplitude_mm=test.amplitude_mm * exp((test.amplitude_std or amplitude_error) * error),
+        amplitude=test.amplitude * exp((test.amplitude_std or amplitude_error) * error),
         phase_deg=360.0 * phase,
         sampling_hz=rate(spread),
         offset=offset,

@@ -8,6 +8,8 @@ import xarray as xr
 from wedgesweep import __version__
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.result import sampled
+from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.steady import waveforms
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
@@ -35,7 +37,9 @@ class Arrays(NamedTuple):
 def dataset(found: Diagnosis) -> xr.Dataset:
     """Everything that a figure or a notebook draws of a diagnosis."""
     data = found.data
-    arrays = _arrays(found)
+    if isinstance(data, SampledData):
+        return sampled.dataset(found, data)
+    arrays = _arrays(found, data)
     variables = {
         **_spectra(arrays),
         **_waveforms(arrays),
@@ -65,8 +69,8 @@ def dataset(found: Diagnosis) -> xr.Dataset:
     return xr.Dataset(data_variables, coordinates, attributes)
 
 
-def _arrays(found: Diagnosis) -> Arrays:
-    data, fits = found.data, (found.base.fit, found.extended)
+def _arrays(found: Diagnosis, data: HarmonicData) -> Arrays:
+    fits = (found.base.fit, found.extended)
     sampled = np.full((data.tests, data.shape[0]), np.nan)
     for row, spectrum in zip(sampled, data.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise
@@ -121,10 +125,11 @@ def _waveforms(arrays: Arrays) -> Variables:
 
 def _inputs(arrays: Arrays) -> Variables:
     data, fitted = arrays.data, np.array([arrays.data.amplitudes(fit.point) for fit in arrays.fits])
+    unit = "N" if data.model.forced else "m"
     return {
         "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),
-        "amplitude": (BY_TEST, data.amplitude, "m", "input amplitude as stated"),
-        "amplitude_fitted": (BY_MODEL, fitted, "m", "input amplitude as fitted"),
+        "amplitude": (BY_TEST, data.amplitude, unit, "input amplitude as stated"),
+        "amplitude_fitted": (BY_MODEL, fitted, unit, "input amplitude as fitted"),
     }
 
 
@@ -139,7 +144,7 @@ def _energies(arrays: Arrays) -> Variables:
             for fit in arrays.fits
         ]
     )
-    meaning = "energy that the base puts in per period"
+    meaning = "energy that the input puts in per period"
     return {
         "measured_energy": (BY_TEST, measured, "J", f"{meaning}, measured"),
         "simulated_energy": (BY_MODEL, simulated, "J", f"{meaning}, simulated"),

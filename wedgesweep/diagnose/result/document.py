@@ -8,11 +8,14 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import __version__
+from wedgesweep.config import AmplitudeUnit
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
+from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
+from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.verdict import p_where_it_shows
@@ -41,11 +44,12 @@ def document(found: Diagnosis) -> dict[str, Any]:
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
         "not_testable": hidden,
-        "next_test": _following(found.next_test),
+        "next_test": _following(found.next_test, data.model.amplitude_unit),
         "ladder": [_rung(each) for each in found.ladder],
         "extended": list(best.effects),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
+        "kind": data.kind,
         "model": {"law": data.law, "title": data.model.title},
         "uncertain": uncertain(best.fit),
         "version": __version__,
@@ -107,6 +111,9 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
+    if isinstance(data, SampledData):
+        return sampled.tests(found, data)
+    unit, size = data.model.amplitude_unit
     amplitude = data.amplitudes(best.point)
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
@@ -115,8 +122,8 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
             {
                 "name": name,
                 "frequency_hz": spectrum.frequency,
-                "amplitude_mm": finite(1e3 * data.amplitude[t]),
-                "amplitude_fitted_mm": finite(1e3 * amplitude[t]),
+                f"amplitude_{unit}": finite(data.amplitude[t] / size),
+                f"amplitude_fitted_{unit}": finite(amplitude[t] / size),
                 "periods": spectrum.periods,
                 "noise_displacement_mm": 1e3 * noise[0],
                 "noise_velocity_mm_per_s": 1e3 * noise[1] if noise.size > 1 else None,
@@ -156,12 +163,12 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
     }
 
 
-def _following(following: NextTest | None) -> dict[str, Any] | None:
+def _following(following: NextTest | None, unit: AmplitudeUnit) -> dict[str, Any] | None:
     if following is None:
         return None
     return {
         "frequency_hz": following.frequency,
-        "amplitude_mm": 1e3 * following.amplitude,
+        unit.key: following.amplitude / unit.factor,
         "separates": list(following.separates),
         "distance": following.distance,
     }
@@ -171,6 +178,7 @@ def _rung(rung: Rung) -> dict[str, Any]:
     """The most accurate explanation of a number of effects, with its rivals; 0.01 is 1 % of the response."""
     return {
         **_rated(rung.best),
+        "accuracy_held_out": finite(rung.best.held_out),
         "distinct": finite(rung.distinct),
         "rivals": [_rated(each) for each in rung.rivals[:RIVALS]],
     }
@@ -191,7 +199,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        "harmonics": found.data.shape[1],
+        **({} if isinstance(found.data, SampledData) else {"harmonics": found.data.shape[1]}),
         "calibrated": found.calibration,
     }
 

@@ -4,6 +4,7 @@ from wedgesweep import effects
 from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.result.estimates import uncertain
+from wedgesweep.diagnose.sampled_data import SampledData
 
 
 def extended(found: Diagnosis) -> str:
@@ -12,16 +13,20 @@ def extended(found: Diagnosis) -> str:
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
+    if isinstance(data, SampledData):
+        return _heading(found) + toml.dumps(document)
     # Repeated tests are one case, and single cases do not continue one another.
+    unit = data.model.amplitude_unit
     cases = dict.fromkeys(
-        (spectrum.frequency, float(f"{1e3 * amplitude:.7g}"))
+        (spectrum.frequency, float(f"{amplitude / unit.factor:.7g}"))
         for spectrum, amplitude in zip(data.spectra, data.amplitudes(best.point), strict=True)
     )
     document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {
         "omega_n_rad_per_s": data.model.sweep.omega_n,
+        "excitation": data.model.excitation,
         "case": [
-            {"friction_law": data.law, "frequency_hz": frequency, "amplitude_mm": amplitude}
+            {"friction_law": data.law, "frequency_hz": frequency, unit.key: amplitude}
             for frequency, amplitude in cases
         ],
     }

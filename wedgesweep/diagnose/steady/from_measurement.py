@@ -20,7 +20,7 @@ from wedgesweep.effects import acting
 from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.natural_units import FREQUENCY
 
-# Effects that only a sensor of this channel, relative to the base, can show.
+# Effects that only a sensor of this channel can show, of the motion that is simulated.
 OF_SENSORS = {"displacement_gain": "displacement", "velocity_lag": "velocity"}
 
 
@@ -81,7 +81,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
             for parts in zip(*(each[1] for each in read), strict=True)
         )
     )
-    told = {name for name, _, of in named if of == "relative"}
+    as_measured = {name for (name, *_), (_, share) in zip(named, motions, strict=True) if share == 0.0}
     data = RecordedInputData(
         model=measurement.model,
         law=measurement.law,
@@ -94,15 +94,15 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         input_phase=inputs.phase,
         inputs=inputs,
         model_error=measurement.model_error,
-        untold=_untold(told, any(of == "absolute" for *_, of in named)),
+        untold=_untold(as_measured, len(as_measured) < len(named)),
     )
     return data.with_covariance(stated(data))
 
 
-def _untold(relative: set[str], absolute: bool) -> tuple[str, ...]:
-    """Effects that the channels cannot show."""
-    found = [effect for effect, channel in OF_SENSORS.items() if channel not in relative]
-    return (*found, "fixture_resonance") if absolute else tuple(found)
+def _untold(as_measured: set[str], converted: bool) -> tuple[str, ...]:
+    """Effects that the channels cannot show: those compared as measured, and whether others are converted."""
+    found = [effect for effect, channel in OF_SENSORS.items() if channel not in as_measured]
+    return (*found, "fixture_resonance") if converted else tuple(found)
 
 
 Channel = tuple[str, str, str]
@@ -126,14 +126,13 @@ def _motion_of_channel(model: Config, of: str) -> tuple[float, float]:
     """Factors of a channel and of the input in what the solvers record as displacement.
 
     That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
-    where its contact does not move with the base.
+    where its contact or a force does not move with the base.
     """
     if model.system == "suspension":
         return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
-    absolute = model.oscillator["contact"] != "base"
-    if of == "relative":
-        return 1.0, 1.0 if absolute else 0.0
-    return 1.0, 0.0 if absolute else -1.0
+    if of in model.simulated_motion:
+        return 1.0, 0.0
+    return 1.0, 1.0 if of == "relative" else -1.0
 
 
 def _read_test(

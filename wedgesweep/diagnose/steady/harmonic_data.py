@@ -68,16 +68,17 @@ class _Simulated(NamedTuple):
 class HarmonicData(WhitenedHarmonics, FitData):
     """Harmonics of steady tests; see WhitenedHarmonics for the attributes."""
 
+    kind = "steady"
     eliminated = 1
 
     @cached_property
     def reference(self) -> np.ndarray:
-        """Input amplitudes (T,) in m about which a fit looks: stated, or the fundamental's where unknown."""
-        fundamental = np.abs(self.measured[:, 0, 0])
+        """Input amplitudes (T,) about which a fit looks: stated, or as large as the fundamental."""
+        fundamental = np.abs(self.measured[:, 0, 0]) / self.model.deflection(self.omega)
         return np.where(np.isinf(self.amplitude_std), fundamental, self.amplitude)
 
     def amplitudes(self, point: Point) -> np.ndarray:
-        """Input amplitudes (T,) in m at a point."""
+        """Input amplitudes (T,) in m, or N of a force, at a point."""
         return self.reference * np.exp(point.nuisance[:, 0])
 
     @property

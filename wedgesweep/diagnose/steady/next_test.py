@@ -25,7 +25,8 @@ from wedgesweep.solvers.periodic import Warm, at_rest
 
 # Frequencies (Hz) of the tests to choose from, for a rig like the bench; see natural_units.
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
-# Their input amplitudes as peak accelerations (m/s^2): what a test costs, and what the bench can take.
+# Their input amplitudes as peak accelerations (m/s^2), of the mass under a force: what a test costs, and what
+# the bench can take.
 ACCELERATIONS = np.geomspace(0.3, 4.0, 8)
 # Least share of these tests that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
@@ -43,7 +44,7 @@ FREE_PHASE = 1e3
 
 @dataclass(frozen=True)
 class NextTest:
-    """A test to make: frequency (Hz), amplitude (m), the closest two explanations that it separates."""
+    """A test to make: frequency (Hz), amplitude (m or N), the closest two explanations that it separates."""
 
     frequency: float
     amplitude: float
@@ -52,7 +53,7 @@ class NextTest:
 
 
 class Conditions(NamedTuple):
-    """Angular frequencies (rad/s) and input amplitudes (m) of n tests."""
+    """Angular frequencies (rad/s) and input amplitudes (m or N) of n tests."""
 
     omega: np.ndarray
     amplitude: np.ndarray
@@ -79,7 +80,8 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     frequency, acceleration = (each.ravel() for each in np.meshgrid(FREQUENCIES, ACCELERATIONS))
     frequency, acceleration = units.ratio(FREQUENCY) * frequency, units.ratio(ACCELERATION) * acceleration
     omega = 2.0 * np.pi * frequency
-    tests = Conditions(omega, acceleration / omega**2)
+    forced = _data(fits[0]).model.forced
+    tests = Conditions(omega, units.mass * acceleration if forced else acceleration / omega**2)
     predicted = [(fit, _predict(fit, tests)) for fit in fits]
     predicted = [each for each in predicted if each[1].found.mean() >= PREDICTED]
     if len(predicted) < 2:
@@ -131,7 +133,8 @@ def _predict(fit: Fit, tests: Conditions) -> _Prediction:
     by_x, by_amplitude = change.values[..., :-1], change.values[..., -1:]
     spread = np.concatenate([by_x @ _covariance_root(fit), by_amplitude * AMPLITUDE_STD], axis=-1)
     known = found[0] & change.found.all(axis=0)
-    moves = known & (np.abs(here[0, :, 0, 0]) > MOVES * tests.amplitude)
+    deflection = _data(fit).model.deflection(tests.omega) * tests.amplitude
+    moves = known & (np.abs(here[0, :, 0, 0]) > MOVES * deflection)
     return _Prediction(here[0], spread, known, moves)
 
 

@@ -36,8 +36,8 @@ class InputHarmonics(NamedTuple):
     """Recorded inputs of T tests.
 
     ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, from the first sample, what may
-    be noise left out. ``variance`` (T, N): of such a number that remains unknown (m^2). ``absolute`` (T, C,
-    N): share of each of them in a channel's data, which are relative to the base.
+    be noise left out; or likewise a force in N. ``variance`` (T, N): of such a number that remains unknown.
+    ``absolute`` (T, C, N): share of each of them in a channel's data, which are as simulated.
     ``shared`` (T, C, H), complex: covariance of the noise of channels and input, over both standard
     deviations.
     """
@@ -49,7 +49,7 @@ class InputHarmonics(NamedTuple):
 
     @property
     def amplitude(self) -> np.ndarray:
-        """Of the fundamental, (T,), in m."""
+        """Of the fundamental, (T,), in m or N."""
         return np.abs(self.displacement[:, 0])
 
     @property
@@ -278,8 +278,8 @@ def input_harmonics(spectrum: Spectrum, quantity: str) -> tuple[np.ndarray, np.n
 
 
 def motion_factor(spectrum: Spectrum, quantity: str) -> np.ndarray:
-    """What turns the harmonics (N,) of a quantity into those of the displacement."""
-    order = ("displacement", "velocity", "acceleration").index(quantity)
+    """What turns the harmonics (N,) of a quantity into those of the displacement; a force stays one."""
+    order = 0 if quantity == "force" else ("displacement", "velocity", "acceleration").index(quantity)
     return (2j * np.pi * spectrum.frequency * np.arange(1, spectrum.mean.shape[1] + 1)) ** -order
 
 

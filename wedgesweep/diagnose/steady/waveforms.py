@@ -58,11 +58,11 @@ def dwell(rate: np.ndarray) -> np.ndarray:
 
 
 def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.ndarray:
-    """Energy (J) that the base puts in per period, shape (T,).
+    """Energy (J) that the input puts in per period, shape (T,).
 
-    It is the work of the inertia forces that friction dissipates, pi m a omega^2 Re D_1, with the amplitudes
-    and the moving mass of the fit. NaN where the data are not relative to the base, or where
-    its motion is not a sine.
+    On a moving base it is the work of the inertia forces that friction dissipates, pi m a omega^2 Re D_1,
+    with the amplitudes and the moving mass of the fit; NaN where the data are not relative to the base. A
+    force takes the place of m a omega^2. NaN where the input is not a sine.
 
     Parameters
     ----------
@@ -77,12 +77,15 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
     fundamental = fundamental / rows["displacement_gain"]["scale"]
     if "fixture_resonance" in (rows.dtype.names or ()):
         fundamental = np.where(rows["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
+    given = rows["input"]
+    force = driven_mass(rows) * given["amplitude"] * given["omega"] ** 2
     if is_oscillator(rows):
         # Its displacement is that of the mass, and what rubs on the ground is not driven by inertia.
-        fundamental = np.where(rows["oscillator"]["absolute"], np.nan, -fundamental)
-    fundamental = np.where(has_series(rows), np.nan, fundamental)
-    given = rows["input"]
-    return pi * driven_mass(rows) * given["amplitude"] * given["omega"] ** 2 * fundamental.real
+        forced = rows["oscillator"]["forced"] != 0
+        driven = forced | (rows["oscillator"]["absolute"] == 0)
+        fundamental = np.where(driven, -fundamental, np.nan)
+        force = np.where(forced, given["amplitude"], force)
+    return np.where(has_series(rows), np.nan, pi * force * fundamental.real)
 
 
 def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.ndarray:

@@ -15,7 +15,13 @@ from wedgesweep.figures.panels import Panels, Target, panels
 NAME = "gain"
 DESCRIPTION = "error on held-out tests before and after, a row per test"
 
-TITLES = {"frequency": "its frequency left out", "amplitude": "its amplitude left out"}
+TITLES = {
+    "frequency": "its frequency left out",
+    "amplitude": "its amplitude left out",
+    "test": "left out by itself",
+    "block": "its block left out",
+    "record": "its record left out",
+}
 NOISE = {"marker": "|", "linestyle": "none", "color": "black", "markersize": 11, "markeredgewidth": 1.6}
 
 
@@ -34,7 +40,7 @@ def _draw(ax: Axes, result: DiagnosisResult, held: list[dict[str, Any]], order: 
     ax.set_xlim(min(low, 0.5), max(high, 2.2))
     style.log_ticks(ax.xaxis)
     ax.set_title(TITLES[held[0]["scheme"]], fontsize=10)
-    ax.set_xlabel("error over noise, rms over harmonics [1]", fontsize=9)
+    ax.set_xlabel("error over noise, rms [1]", fontsize=9)
 
 
 def draw(target: Target, result: DiagnosisResult) -> Panels:

@@ -19,17 +19,19 @@ COLORS = (style.VERMILLION, style.BLUE, style.GREEN)
 SIZES = ("no effect", "one effect", "two effects")
 UNRESOLVED = "0.9"  # grey of what is below the noise floor
 LABEL = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
+HELD_OUT = {"marker": "|", "linestyle": "none", "color": "black", "markersize": 11, "markeredgewidth": 1.6}
 # Room between the rows of one size and the next, in rows.
 BETWEEN = 0.6
 
 
 class Row(NamedTuple):
-    """An explanation at its height; ``accuracy`` in per cent, 0 for noise alone."""
+    """An explanation at its height; accuracies in per cent, 0 for noise alone, None for none."""
 
     place: float
     effects: Sequence[str]
     accuracy: float
     best: bool
+    held_out: float | None
 
     @property
     def color(self) -> str:
@@ -43,7 +45,11 @@ def rows_of(result: DiagnosisResult) -> list[Row]:
         rated = [each for each in (rung, *rung["rivals"]) if each["accuracy"] is not None]
         for i, each in enumerate(rated):
             place = len(rows) + BETWEEN * number
-            rows.append(Row(place, each["effects"], 100.0 * each["accuracy"], each is rung and i == 0))
+            predicted = each.get("accuracy_held_out")
+            held_out = None if predicted is None else 100.0 * predicted
+            rows.append(
+                Row(place, each["effects"], 100.0 * each["accuracy"], each is rung and i == 0, held_out)
+            )
     return rows
 
 
@@ -64,6 +70,10 @@ def _draw_rows(ax: Axes, rows: Sequence[Row], left: float) -> None:
         look: dict[str, Any] = {"marker": "<" if noise else "o", "markersize": 7 if row.best else 5}
         face = row.color if row.best else "white"
         ax.plot(x, row.place, color=row.color, markerfacecolor=face, clip_on=False, zorder=3, **look)
+        if row.held_out is not None:
+            held_out = max(row.held_out, left)
+            ax.plot(held_out, row.place, zorder=2, **HELD_OUT)
+            x = max(x, held_out)
         text = "only noise" if noise else f"{formatting.short(row.accuracy, 2)} %"
         weight = "bold" if row.best else "normal"
         place = {"xytext": (8, 0), "textcoords": "offset points", "va": "center", "zorder": 4}
@@ -79,14 +89,16 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     """Draw the smallest relative model error with which each explanation is adequate.
 
     To see: how far each effect more takes the model, and whether the best explanation (filled) stands clear
-    of its rivals (open). In the grey range, below the noise floor, differences are not resolved.
+    of its rivals (open). A bar at the mark: tests that the fit has not seen are predicted as accurately. In
+    the grey range, below the noise floor, differences are not resolved.
     """
     rows = rows_of(result)
     if not rows:
         message = "no explanation has an accuracy; 'wedgesweep diagnose' of this version finds it"
         raise ValueError(message)
     lines = _lines(result)
-    shown = [row.accuracy for row in rows if row.accuracy] + [value for value, _ in lines.values()]
+    shown = [size for row in rows for size in (row.accuracy, row.held_out) if size]
+    shown += [value for value, _ in lines.values()]
     left, right = 0.5 * min(shown, default=1.0), 3.0 * max(shown, default=1.0)
     made = panels(target, 1, size=(6.2, 1.1 + 0.25 * (rows[-1].place + 1.0)), margin=(0.8, 0.8))
     ax = made.axes[0]
@@ -112,6 +124,9 @@ def _legend(made: Panels, rows: Sequence[Row], lines: dict[str, tuple[float, str
     if not all(row.best for row in rows):
         handles.append(Line2D([], [], color="0.4", markerfacecolor="white", **mark))
         labels.append("rival")
+    if any(row.held_out is not None for row in rows):
+        handles.append(Line2D([], [], **HELD_OUT))
+        labels.append("on held-out tests")
     handles += [Line2D([], [], color="0.3", linestyle=dashes) for _, dashes in lines.values()]
     labels += list(lines)
     made.legend(handles, labels)

@@ -4,7 +4,7 @@ import numpy as np
 
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
-from wedgesweep.figures.diagnosis import marks
+from wedgesweep.figures.diagnosis import marks, selection
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "swing"
@@ -14,7 +14,7 @@ ALIKE = 0.1  # amplitudes this close, relatively, are joined by a line
 
 
 def groups(amplitude: np.ndarray) -> list[np.ndarray]:
-    """Indices of tests grouped by amplitude (m), each group by increasing amplitude."""
+    """Indices of tests grouped by amplitude, each group by increasing amplitude."""
     order = np.argsort(amplitude)
     jumps = np.flatnonzero(np.diff(np.log(amplitude[order])) > ALIKE) + 1
     return np.split(order, jumps)
@@ -37,7 +37,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         ax.plot(frequency[rows], measured, color="black", linewidth=0.8)
         ax.plot(frequency[rows], measured, **marks.MEASURED_DOT)
         place = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "color": style.GREY}
-        text = f"$a$ = {amplitude[rows].mean() * style.MM:.2g} mm"
+        text = f"$a$ = {selection.amplitude(data, amplitude[rows].mean(), 2)}"
         ax.annotate(text, (frequency[rows[-1]], measured[-1]), (8, 0), **place)
         for model in result.models:
             values = data["simulated_peak_to_peak"].sel(model=model).values[rows] * style.MM

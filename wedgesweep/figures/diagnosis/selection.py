@@ -25,16 +25,27 @@ def choose(result: DiagnosisResult, tests: Sequence[int] | None) -> np.ndarray:
 
 def by_frequency(data: xr.Dataset) -> np.ndarray:
     """Return indices of the tests by amplitude and then frequency, as a bench would run them."""
+    if "frequency" not in data:
+        return np.arange(data.sizes["test"])
     amplitude = data["amplitude_fitted"].sel(model="extended").values
     return np.lexsort((data["frequency"].values, np.round(np.log(amplitude), 1)))
 
 
 def label(data: xr.Dataset, test: int) -> str:
     """Name, frequency and input amplitude of a test; ~ marks an amplitude that was only fitted."""
+    if "frequency" not in data:
+        return str(data["test"].values[test])
     stated = data["amplitude"].values[test]
     fitted = data["amplitude_fitted"].sel(model="extended").values[test]
-    size = f"{stated * style.MM:.3g} mm" if np.isfinite(stated) else f"~{fitted * style.MM:.2g} mm"
+    size = amplitude(data, stated, 3) if np.isfinite(stated) else f"~{amplitude(data, fitted, 2)}"
     return f"{data['test'].values[test]}: {data['frequency'].values[test]:.4g} Hz, {size}"
+
+
+def amplitude(data: xr.Dataset, value: float, digits: int) -> str:
+    """Write an input amplitude (m or N) with its unit."""
+    if data["amplitude"].attrs.get("units") == "N":
+        return f"{value:.{digits}g} N"
+    return f"{value * style.MM:.{digits}g} mm"
 
 
 def misfit_label(result: DiagnosisResult, test: int) -> str:

@@ -142,6 +142,15 @@ def both_powers(t, y, mode, p):
     return taken, supplied, nan, nan
 
 
+@implement(interface.driving_force, OSCILLATOR)
+@inlined
+def driving_force(t, acceleration, y, mode, p):
+    """Inertia, springs, dampers and friction; not determined while friction holds the mass."""
+    if stuck(mode, p):
+        return nan
+    return p.oscillator.mass * acceleration - load(t, y, mode, p) + friction_force(y, mode, p)
+
+
 @implement(interface.rate, OSCILLATOR)
 @inlined
 def rate(t, y, mode, p):

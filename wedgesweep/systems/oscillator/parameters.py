@@ -37,6 +37,8 @@ EFFECTS = (
     *("viscous_damping", "cubic_stiffness", "guide_friction", "end_stop"),
     *("input_distortion", "stray_vibration", "velocity_lag", "displacement_gain"),
 )
+# A motion of the base beside the input.
+OF_BASE = "stray_vibration"
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
 OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")

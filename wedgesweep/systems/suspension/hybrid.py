@@ -13,7 +13,7 @@ from wedgesweep.systems.suspension.energy import damping_power, friction_power, 
 from wedgesweep.systems.suspension.faces import column_slip
 from wedgesweep.systems.suspension.filippov import contact_forces, filippov_forces
 from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
-from wedgesweep.systems.suspension.newton import forces
+from wedgesweep.systems.suspension.newton import driving_force, forces
 
 SUSPENSION = "suspension"
 
@@ -95,6 +95,13 @@ def sticks(y, mode, p):
     if abs(mode.column) == 1 and presliding.acts(p) and not p.friction.set_valued:
         return abs(column_slip(y, p)) <= p.friction.v_t
     return abs(mode.column) != 1
+
+
+@implement(interface.driving_force, SUSPENSION)
+@inlined
+def force_of_motion(t, acceleration, y, mode, p):
+    """The force on the bolster; not determined while set-valued friction holds it."""
+    return nan if stuck(mode, p) else driving_force(t, acceleration, y, mode, p)
 
 
 @inlined

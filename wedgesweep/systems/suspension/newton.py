@@ -256,3 +256,28 @@ def at_rest(t, y, mode, p):
         s, load = p.suspension, loads(t, y, mode, p)
         frame = load.frame / (s.side_frame_mass + s.bolster_mass + 2.0 * s.wedge_mass) - load.base
     return Forces(0.0, 0.0, frame, nan, nan)
+
+
+@inlined
+def _pushed(load, force):
+    """Loads with a further force on the bolster (N)."""
+    return Loads(load.tangential, load.normal, load.vertical + force, load.lateral, load.frame, load.base)
+
+
+@inner
+def driving_force(t, acceleration, y, mode, p):
+    """Force on the bolster (N) that gives it an acceleration; NaN where that would lift a face off.
+
+    The acceleration is linear in the force unless friction depends on the load: then this iterates.
+    """
+    column_mu, bolster_mu = coefficients(t, y, mode, p)
+    load, closed = loads(t, y, mode, p), with_signs(mode, 1, 1)
+    force, unit = 0.0, p.suspension.bolster_mass
+    for _ in range(LOAD_ITERATIONS):
+        now = _reactions_for_signs(_pushed(load, force), column_mu, bolster_mu, closed, p)[0]
+        beside = _reactions_for_signs(_pushed(load, force + unit), column_mu, bolster_mu, closed, p)[0]
+        change = unit * (acceleration - now.acceleration) / (beside.acceleration - now.acceleration)
+        if abs(change) <= LAST_CHANGE * abs(force):
+            break
+        force += change
+    return force if min(now.column, now.bolster) >= 0.0 else nan

@@ -1,0 +1,249 @@
+"""Loops: the force under an imposed motion, from files to a verdict."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.command import invoke
+from wedgesweep import api
+from wedgesweep.config import parse
+from wedgesweep.diagnose.loop.from_measurement import loop_data
+from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.smoothing import LowPass, highest_cutoff, motion, white_noise
+from wedgesweep.effects import merge
+from wedgesweep.measured import MeasuredError, read
+from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.solvers import imposed_motion
+
+OSCILLATOR = """
+[oscillator]
+mass_kg = 2.0
+spring_N_per_mm = 0.5
+damping_N_s_per_m = 3.0
+normal_force_N = 10.0
+[friction]
+static = 0.3
+dynamic = 0.3
+[sweep]
+friction_law = "coulomb"
+frequency_hz = 1.0
+amplitude_mm = 1.0
+"""
+MEASURED = """
+[measurement]
+model = "model.toml"
+[measurement.columns]
+time = { column = "t", unit = "s" }
+displacement = { column = "x", unit = "mm" }
+force = { column = "F", unit = "N" }
+"""
+TEST = '[[measurement.test]]\nfile = "{}.csv"\nkind = "loop"\n'
+RATE, CELLS = 500.0, 10
+# Zero of the force, in N: the tool does not know it.
+ZERO = 0.5
+
+
+def motion_of(amplitude, frequency, duration):
+    """A motion of two tones, whose loops have reversals of many sizes; (3, n CELLS): within each sample."""
+    t = (np.arange(round(duration * RATE) * CELLS) + 0.5) / RATE / CELLS
+    parts = [(amplitude, 2.0 * np.pi * frequency, 0.0), (0.3 * amplitude, 0.74 * np.pi * frequency, 1.0)]
+    return np.array(
+        [
+            sum(a * w**order * np.sin(w * t + p + 0.5 * np.pi * order) for a, w, p in parts)
+            for order in range(3)
+        ]
+    )
+
+
+def write(
+    folder,
+    model=OSCILLATOR,
+    effects=None,
+    motions=((0.01, 1.1, 12.0),),
+    noise=(1e-6, 0.02),
+    seed=0,
+    more="",
+):
+    """Files of a bench that imposes motions and has some effects; returns the path of measured.toml."""
+    rng = np.random.default_rng(seed)
+    config = parse(model, "model")
+    values = merge(config.effects, effects or {})
+    record = config.record_with(values, config.case_list()[0].law, 0.0)
+    sign = 1.0 if config.system == "oscillator" else -1.0
+    text = MEASURED + more
+    (folder / "model.toml").write_text(model)
+    for i, each in enumerate(motions):
+        fine = motion_of(*each)
+        force = imposed_motion.forces(record, *(sign * fine), 1.0 / RATE / CELLS)[0]
+        n = force.size // CELLS
+        table = np.column_stack(
+            [
+                np.arange(n) / RATE,
+                1e3 * (fine[0].reshape(n, CELLS).mean(1) + noise[0] * rng.standard_normal(n)),
+                force.reshape(n, CELLS).mean(1) + noise[1] * rng.standard_normal(n) + ZERO,
+            ]
+        )
+        np.savetxt(folder / f"loop{i}.csv", table, "%.10g", ",", header="t,x,F", comments="")
+        text += TEST.format(f"loop{i}")
+    (folder / "measured.toml").write_text(text)
+    return folder / "measured.toml"
+
+
+def diagnosed(path, effects=None):
+    return api.diagnose_measurement(read(path), effects=effects, n_jobs=2)
+
+
+def test_noise_of_a_filter_and_of_derivatives():
+    rng = np.random.default_rng(0)
+    rate, std = 1000.0, 1e-6
+    low_pass = LowPass(40.0, rate)
+    noise = std * rng.standard_normal(200_000)
+    found = low_pass(motion(noise, std, low_pass).acceleration)[100:-100].std()
+    assert motion(noise, std, low_pass).acceleration_noise == pytest.approx(found, rel=0.05)
+    assert motion(noise, std, low_pass).velocity_noise == pytest.approx(
+        motion(noise, std, low_pass).velocity[100:-100].std(), rel=0.05
+    )
+    assert low_pass.noise(std) == pytest.approx(low_pass(noise)[100:-100].std(), rel=0.05)
+    # Dry friction jumps twice a cycle: that is no noise.
+    square = 5.0 * np.sign(np.sin(2.0 * np.pi * 1.1 * np.arange(200_000) / rate))
+    assert white_noise(square + noise, rate) == pytest.approx(std, rel=0.3)
+
+
+def test_the_cutoff_is_where_the_noise_of_the_inertia_is_small():
+    cutoff = highest_cutoff(1e-6, 3.0, 2.0, 1000.0)
+    assert 2.0 * LowPass(cutoff, 1000.0).noise(1e-6, 2) == pytest.approx(0.002 * 3.0, rel=1e-2)
+    assert highest_cutoff(1e-12, 3.0, 2.0, 1000.0) == 200.0
+
+
+def test_misfit_of_the_true_model_is_noise(tmp_path):
+    ratios = []
+    for seed in range(8):
+        (tmp_path / str(seed)).mkdir()
+        data = loop_data(read(write(tmp_path / str(seed), seed=seed)))
+        fit = base_fit(Search.of(data, [])).base.fit
+        ratios.append(fit.chi2 / fit.dof)
+    # The noise that is assumed is the upper end of its interval.
+    assert 0.8 < np.mean(ratios) < 1.0
+    assert max(ratios) < 1.1
+
+
+def test_blocks_are_whole_cycles(tmp_path):
+    data = loop_data(read(write(tmp_path)))
+    assert data.tests == len(data.names) > 3
+    for (number, block), weight in zip(data.chosen, data.weight, strict=True):
+        own = data.recordings[number]
+        velocity = own.motion.velocity[own.places][own.blocks[block]]
+        assert (velocity > 0.0).any()
+        assert (velocity < 0.0).any()
+        assert 0.5 < weight.mean() <= 1.0
+    covered = sorted((own.start, own.stop) for own in data.recordings[0].blocks)
+    assert covered[0][0] == 0
+    assert all(first[1] == second[0] for first, second in pairwise(covered))
+    assert covered[-1][1] == data.recordings[0].places.size
+
+
+def test_nothing_is_missing_where_nothing_is(tmp_path):
+    found = diagnosed(write(tmp_path))
+    assert found.verdict == "nothing-missing"
+    assert found.document["kind"] == "loop"
+    assert found.document["next_test"] is None
+
+
+HIDDEN = {
+    "stribeck": {"peak": 0.3, "velocity": 0.02},
+    "presliding": {"length": 2e-3},
+    "viscous_damping": {"coefficient": 6.0},
+    "cubic_stiffness": {"coefficient": 4e5},
+}
+
+
+@pytest.mark.parametrize("effect", HIDDEN)
+def test_a_hidden_effect_is_found(tmp_path, effect):
+    found = diagnosed(write(tmp_path, effects={effect: HIDDEN[effect]}))
+    assert found.verdict in ("named", "tied")
+    assert [cause["effect"] for cause in found.causes] == [effect]
+    assert found.gain["scheme"] == "leave-one-block-out"
+    assert found.gain["excess_removed"] > 0.95
+    numbers = found.causes[0]["parameters"]
+    for (key, estimate), true in zip(numbers.items(), HIDDEN[effect].values(), strict=True):
+        factor = {"_mm": 1e-3, "_mm_per_s": 1e-3, "_N_per_mm3": 1e9}
+        unit = next((size for end, size in factor.items() if key.endswith(end)), 1.0)
+        assert estimate["value"] * unit == pytest.approx(true, rel=0.1), key
+
+
+def test_a_wedge_under_an_imposed_motion(tmp_path):
+    model = '[sweep]\nfriction_law = "coulomb"\nbeta = [1.0]\namplitude_mm = [0.1]\n'
+    hidden = {"friction_level": {"scale": 1.2}}
+    path = write(tmp_path, model, hidden, motions=((2e-4, 1.1, 12.0),), noise=(1e-8, 0.002))
+    found = diagnosed(path, ["friction_level", "viscous_damping", "preload"])
+    assert [cause["effect"] for cause in found.causes] == ["friction_level"]
+    assert found.causes[0]["parameters"]["scale"]["value"] == pytest.approx(1.2, rel=0.02)
+
+
+def test_one_record_is_left_out_where_there_are_several(tmp_path):
+    path = write(
+        tmp_path,
+        effects={"viscous_damping": {"coefficient": 6.0}},
+        motions=((0.01, 1.1, 8.0), (0.02, 0.7, 8.0)),
+    )
+    found = diagnosed(path, ["viscous_damping", "cubic_stiffness"])
+    assert found.gain["scheme"] == "leave-one-record-out"
+    assert found.verdict == "named"
+
+
+def test_the_same_from_one_netcdf_file(tmp_path):
+    path = write(tmp_path, effects={"viscous_damping": {"coefficient": 6.0}}, more="")
+    measurement = read(path)
+    write_netcdf(measurement, tmp_path / "all.nc")
+    again = read(tmp_path / "all.nc")
+    assert again.kind == "loop"
+    assert again.tests[0].force == pytest.approx(measurement.tests[0].force)
+    assert again.tests[0].cutoff == measurement.tests[0].cutoff
+
+
+def test_files_figures_and_report(tmp_path):
+    path = write(tmp_path, effects={"viscous_damping": {"coefficient": 6.0}})
+    out = tmp_path / "out"
+    assert "low-pass" in invoke("check", path)
+    invoke("diagnose", path, "-o", out, "--effects", "viscous_damping")
+    assert {"loops.png", "report.html", "gain.png", "diagnosis.json"} <= {each.name for each in out.iterdir()}
+    assert not (out / "misfit.png").exists()
+    page = (out / "report.html").read_text()
+    assert "No figure" not in page
+    assert "viscous_damping" in page
+
+
+FAULTS = {
+    "one way": ('kind = "loop"', "goes one way only"),
+    "amplitude": ('kind = "loop"\namplitude_mm = 1.0', "not for kind = .loop."),
+    "cut-off": ('kind = "loop"\nlowpass_hz = 300.0', "times the sampling rate"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_what_is_wrong_is_told(tmp_path, fault):
+    path = write(tmp_path)
+    written, told = FAULTS[fault]
+    path.write_text(path.read_text().replace('kind = "loop"', written))
+    if fault == "one way":
+        lines = (tmp_path / "loop0.csv").read_text().splitlines()
+        (tmp_path / "loop0.csv").write_text(
+            "\n".join([lines[0], *(f"{i / RATE},{i},{i % 7}" for i in range(200))])
+        )
+    with pytest.raises(MeasuredError, match=told):
+        read(path)
+
+
+def test_kinds_are_not_mixed(tmp_path):
+    path = write(tmp_path, motions=((0.01, 1.1, 8.0), (0.02, 0.7, 8.0)))
+    path.write_text(path.read_text().replace('kind = "loop"\n', "", 1))
+    with pytest.raises(MeasuredError, match="loop and steady are mixed"):
+        read(path)
+
+
+def test_a_loop_needs_displacement_and_force(tmp_path):
+    path = write(tmp_path)
+    path.write_text(path.read_text().replace('force = { column = "F", unit = "N" }\n', ""))
+    with pytest.raises(MeasuredError, match="force: missing"):
+        read(path)

@@ -1,0 +1,1 @@
+"""Hysteresis loops, one kind of record: the motion is imposed and recorded, and the force is compared."""

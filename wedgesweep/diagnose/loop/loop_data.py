@@ -1,0 +1,131 @@
+"""Hysteresis loops as data of a fit.
+
+A test is a block of whole cycles of a record, so that blocks can be left out of a fit. What is compared are
+forces; each block has an unknown zero of the force.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.diagnose import work
+from wedgesweep.diagnose.fit_data import NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.loop.recording import Recording
+from wedgesweep.diagnose.sampled_data import NoStart, SampledData
+from wedgesweep.natural_units import NaturalUnits
+
+# Effects that act by how a motion comes about, or on sensors of it.
+OF_MOTION = (
+    *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
+    *("displacement_gain", "velocity_lag"),
+)
+# Samples whose forces are as much work as a simulated period; see work.py.
+SAMPLES_PER_PERIOD = 400.0
+
+
+@dataclass(frozen=True, eq=False)
+class LoopData(SampledData):
+    """T blocks of recordings.
+
+    ``chosen``: number of the recording and of its block for each test. Arrays (T, m) are as long as the
+    longest block.
+    """
+
+    recordings: tuple[Recording, ...]
+    chosen: tuple[tuple[int, int], ...]
+    uncertain: dict[str, float]
+    model_error: float = 0.0
+    resampled: np.ndarray | None = None
+
+    kind = "loop"
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:  # type: ignore[override]
+        return tuple(self._name(*each) for each in self.chosen)
+
+    def _name(self, number: int, block: int) -> str:
+        own = self.recordings[number]
+        return own.name if len(own.blocks) == 1 else f"{own.name} {block + 1}"
+
+    @property
+    def model(self) -> Config:  # type: ignore[override]
+        """The base model, with the numbers of the first test."""
+        return self.recordings[0].model
+
+    @property
+    def law(self) -> str:  # type: ignore[override]
+        return self.recordings[0].law
+
+    def padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
+        """Values (..., k) of each recording as blocks (..., T, m), zeros after the end of a block."""
+        parts = [values[number][..., self.recordings[number].blocks[block]] for number, block in self.chosen]
+        found = np.zeros((*parts[0].shape[:-1], len(parts), max(part.shape[-1] for part in parts)))
+        for t, part in enumerate(parts):
+            found[..., t, : part.shape[-1]] = part
+        return found
+
+    @cached_property
+    def recorded(self) -> np.ndarray:
+        return self.padded([own.force for own in self.recordings])
+
+    @cached_property
+    def noise(self) -> np.ndarray:
+        return self.padded([own.noise * own.known for own in self.recordings])
+
+    @cached_property
+    def size(self) -> np.ndarray:
+        """Rms (T, m) of the measured force of a block about its mean, in N."""
+        force = np.where(self.noise > 0.0, self.recorded, np.nan)
+        return np.broadcast_to(np.nanstd(force, axis=-1, keepdims=True), force.shape)
+
+    @cached_property
+    def shifted(self) -> np.ndarray:
+        return np.ones_like(self.recorded)
+
+    @property
+    def nuisance_std(self) -> np.ndarray:
+        return np.zeros((self.tests, 0))
+
+    @cached_property
+    def units(self) -> NaturalUnits:
+        """Natural units of the model under the largest motion."""
+        motions = [own.motion for own in self.recordings]
+        travel = max(0.5 * float(np.ptp(each.displacement)) for each in motions)
+        speed = max(float(np.abs(each.velocity).max()) for each in motions)
+        return self.model.natural_units(travel, speed / travel)
+
+    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+        return ()
+
+    def start(self) -> tuple[np.ndarray, NoStart]:
+        return np.zeros((self.tests, 0)), NoStart()
+
+    def subset(self, rows: np.ndarray) -> Self:
+        chosen = tuple(self.chosen[row] for row in np.arange(self.tests)[rows])
+        part = replace(self, chosen=chosen, resampled=None)
+        if self.resampled is None:
+            return part
+        return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
+
+    def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
+        return tuple(name for name in effects if name not in OF_MOTION)
+
+    def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
+        values = self.known_values(scenarios, OF_MOTION)
+        needed = {number for number, _ in self.chosen}
+        samples = sum(self.recordings[number].motion.velocity.size for number in needed)
+        work.add(len(values) * samples / SAMPLES_PER_PERIOD)
+        nothing = np.zeros((len(values), 0))
+        forces = [own.simulated(values) if i in needed else nothing for i, own in enumerate(self.recordings)]
+        return self.padded(forces)
+
+    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
+        """Each recording, or each block where there is only one."""
+        numbers = np.array([number for number, _ in self.chosen])
+        if np.ptp(numbers) == 0:
+            return [("block", np.array([t])) for t in range(self.tests)]
+        return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]

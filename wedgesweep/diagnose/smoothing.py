@@ -1,0 +1,147 @@
+"""Velocity and acceleration from a recorded displacement, and the noise that this leaves.
+
+Displacement and force pass the same zero-phase filter (Butterworth, forward and backward), as do simulated
+forces, so that the filter shifts nothing against anything. The acceleration's noise rises with the fifth
+power of the cut-off frequency, which decides how high it may be.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi, sqrt
+
+import numpy as np
+from scipy import signal
+from scipy.optimize import brentq
+
+from wedgesweep.measured.kinds import HIGHEST
+
+ORDER = 4
+# The cut-off is the highest one at which noise of the displacement makes up this share of the force, and at
+# most and at least these shares of the sampling rate.
+NOISE_SHARE, LOWEST = 0.002, 1e-3
+# The motion passes a filter of its own first, with a cut-off this much higher, so that its derivatives are
+# right wherever forces are compared.
+WIDER = 2.0
+# Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
+SETTLING = 2.5
+# Median of the absolute value of a normal variable over its standard deviation.
+MEDIAN = 0.6745
+# Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
+OUTLIER, CLIPPINGS = 4.0, 4
+# Ends of a 95 % interval in standard deviations.
+TWO_SIDED = 1.96
+# Frequencies at which a filter's gain is known.
+GRID = 4096
+
+
+@dataclass(frozen=True)
+class LowPass:
+    """A zero-phase low-pass filter: ``cutoff`` (Hz) and ``rate`` (Hz) of sampling."""
+
+    cutoff: float
+    rate: float
+
+    @cached_property
+    def _sections(self) -> np.ndarray:
+        return signal.butter(ORDER, self.cutoff, fs=self.rate, output="sos")
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """Values (..., n), filtered along the last axis."""
+        return signal.sosfiltfilt(self._sections, values, axis=-1)
+
+    @property
+    def settling(self) -> int:
+        """Samples at either end of a record in which the filter has not settled."""
+        return round(SETTLING * self.rate / self.cutoff)
+
+    @property
+    def stride(self) -> int:
+        """Every so many samples are independent of each other after the filter."""
+        return max(int(0.5 * self.rate / self.cutoff), 1)
+
+    def noise(self, std: float, order: int = 0) -> float:
+        """Standard deviation of white noise after the filter, or of its derivative of an order."""
+        frequency, gain = self._response
+        # As numpy.gradient differentiates.
+        rate = self.rate * np.sin(2.0 * pi * frequency / self.rate)
+        return std * float(np.sqrt(np.mean((rate**order * gain) ** 2)))
+
+    def noise_above(self, std: float) -> float:
+        """Standard deviation of what the filter takes of white noise."""
+        return std * float(np.sqrt(np.mean((1.0 - self._response[1]) ** 2)))
+
+    @cached_property
+    def _response(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies (Hz) up to half the sampling rate, and the gain there."""
+        frequency, once = signal.sosfreqz(self._sections, GRID, fs=self.rate)
+        return frequency, np.abs(once) ** 2
+
+
+def white_noise(values: np.ndarray, rate: float) -> float:
+    """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.
+
+    It is the upper end of its 95 % interval: in a short record an estimate that is too low would look like a
+    misfit. The jumps of dry friction are outliers, which do not count as noise.
+    """
+    low_pass = LowPass(HIGHEST * rate, rate)
+    above = np.abs(values - low_pass(values))
+    share = low_pass.noise_above(1.0)
+    size = float(np.median(above)) / MEDIAN
+    for _ in range(CLIPPINGS):
+        size = float(np.sqrt(np.mean(above[above <= OUTLIER * size] ** 2)))
+    return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * values.size * share**2))
+
+
+def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
+    """Cut-off (Hz) at which the noise of the inertia is NOISE_SHARE of the force, or HIGHEST of the rate.
+
+    Parameters
+    ----------
+    std : float
+        Noise of the displacement (m).
+    force : float
+        Rms of the force (N).
+    mass : float
+        Mass that the motion accelerates (kg).
+    rate : float
+        Sampling rate (Hz).
+    """
+    allowed, limit = NOISE_SHARE * force / mass, HIGHEST * rate
+
+    def excess(cutoff: float) -> float:
+        return LowPass(cutoff, rate).noise(std, 2) - allowed
+
+    if excess(limit) <= 0.0:
+        return limit
+    return (
+        float(brentq(excess, LOWEST * rate, limit, rtol=1e-4))
+        if excess(LOWEST * rate) < 0.0
+        else LOWEST * rate
+    )
+
+
+@dataclass(frozen=True)
+class Motion:
+    """An imposed motion on an even grid (m, m/s, m/s^2, shape (n,) each).
+
+    ``velocity_noise`` (m/s): std of a velocity; ``acceleration_noise`` (m/s^2): of what of an acceleration
+    passes the filter in which forces are compared.
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    velocity_noise: float
+    acceleration_noise: float
+
+
+def motion(displacement: np.ndarray, std: float, low_pass: LowPass) -> Motion:
+    """The motion that a recorded displacement (n,) shows, whose noise has this ``std`` (m).
+
+    ``low_pass`` is the filter in which forces are compared.
+    """
+    wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
+    smooth = wide(displacement)
+    velocity = np.gradient(smooth) * low_pass.rate
+    acceleration = np.gradient(velocity) * low_pass.rate
+    return Motion(smooth, velocity, acceleration, wide.noise(std, 1), low_pass.noise(std, 2))

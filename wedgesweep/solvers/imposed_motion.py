@@ -1,0 +1,93 @@
+"""The force that a motion takes which is imposed on the mass: no equation of motion is left to solve.
+
+States of effects (bristles, time at rest) follow the motion. Each is integrated by the exponential Euler
+method, which is exact for a rate that is linear in its state, however stiff (Hochbruck and Ostermann, 2010,
+"Exponential integrators").
+"""
+
+from math import expm1
+
+import numpy as np
+
+from wedgesweep.compiled import compiled, inner
+from wedgesweep.hybrid.interface import driving_force, initial_mode, rate, scales
+from wedgesweep.hybrid.vectors import replaced, vector
+from wedgesweep.systems import grouped
+
+# States of the mass itself, which the motion gives, and the step of the others for their derivatives.
+GIVEN, DIFFERENCE = 2, 1e-6
+
+
+def forces(
+    parameters: np.ndarray,
+    displacement: np.ndarray,
+    velocity: np.ndarray,
+    acceleration: np.ndarray,
+    step: float,
+) -> np.ndarray:
+    """Force on the mass along a motion.
+
+    Parameters
+    ----------
+    parameters : structured array, shape (n,)
+        Cases; see systems.suspension.parameters.record.
+    displacement, velocity, acceleration : ndarray, shape (k,)
+        The state of the mass as the system holds it (m, m/s, m/s^2), at even times.
+    step : float
+        Time (s) between them.
+
+    Returns
+    -------
+    ndarray, shape (n, k)
+        Forces (N); NaN where they are not determined: at rest under set-valued friction, or beyond lift-off.
+    """
+    found = np.empty((len(parameters), displacement.size))
+    motion = np.stack([displacement, velocity, acceleration])
+    for rows, cases in grouped(parameters):
+        part = np.empty((rows.size, displacement.size))
+        _follow_all(cases, motion, step, part)
+        found[rows] = part
+    return _with_jumps(found, velocity)
+
+
+def _with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Forces (n, k) in which a jump at a reversal between two samples counts for its share of the interval.
+
+    Otherwise the time of each reversal would be rounded to the grid.
+    """
+    before = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)
+    late = velocity[before] / (velocity[before] - velocity[before + 1]) - 0.5
+    jump = forces[:, before + 1] - forces[:, before]
+    forces[:, before] += np.maximum(-late, 0.0) * jump
+    forces[:, before + 1] -= np.maximum(late, 0.0) * jump
+    return forces
+
+
+@compiled
+def _follow_all(cases, motion, step, out):
+    for k in range(cases.size):
+        p = cases[k]
+        y = vector(np.zeros(len(scales(p))), scales(p))
+        for i in range(motion.shape[1]):
+            y = replaced(replaced(y, 0, motion[0, i]), 1, motion[1, i])
+            out[k, i] = driving_force(0.0, motion[2, i], y, initial_mode(0.0, y, p)[0], p)
+            following = min(i + 1, motion.shape[1] - 1)
+            # States of effects see the mean motion between two samples.
+            y = replaced(y, 0, 0.5 * (motion[0, i] + motion[0, following]))
+            y = replaced(y, 1, 0.5 * (motion[1, i] + motion[1, following]))
+            y = _advanced(y, step, p)
+
+
+@inner
+def _advanced(y, step, p):
+    """The state vector with the effects' own states after a step."""
+    mode = initial_mode(0.0, y, p)[0]
+    now, size = rate(0.0, y, mode, p)[0], scales(p)
+    following = y
+    for place in range(GIVEN, len(y)):
+        moved = DIFFERENCE * size[place]
+        beside = rate(0.0, replaced(y, place, y[place] + moved), mode, p)[0]
+        growth = step * (beside[place] - now[place]) / moved
+        share = expm1(growth) / growth if growth != 0.0 else 1.0
+        following = replaced(following, place, y[place] + step * share * now[place])
+    return following
