@@ -14,7 +14,9 @@ from typing import Any, TypeVar, cast
 import numba
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic, overload
+from numba.core.dispatcher import Dispatcher
+from numba.core.typing.templates import AbstractTemplate, infer_global
+from numba.extending import intrinsic
 
 from wedgesweep.inner_code import InnerCompiler
 
@@ -129,21 +131,37 @@ def function_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
     return cast(Callable, scope["function"])
 
 
+_MADE_BY_RECORD: dict[Callable, types.Function] = {}
+
+
 def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
     """A function for compiled code, made anew for every type of its parameter record ``p``.
 
-    ``choose`` gets the fields of the record's type and returns the plain function to compile, so that
+    ``choose`` gets the fields of the record's type and returns the function, compiled or plain, so that
     what a record has no fields for costs nothing. Python calls ``function`` itself.
     """
-    arguments = list(inspect.signature(function).parameters)
-    place = arguments.index("p")
+    place = list(inspect.signature(function).parameters).index("p")
+    made: dict[types.Record, Any] = {}
 
-    def chosen(*kinds: Any) -> Callable | None:
-        record = kinds[place]
-        return choose(record.fields) if isinstance(record, types.Record) else None
+    class Chosen(AbstractTemplate):
+        key = function
 
-    listed = function_of(arguments, f"chosen({', '.join(arguments)})", chosen=chosen)
-    overload(function, jit_options=INNER | {"forceinline": True})(listed)
+        def generic(self, arguments: Any, keywords: Any) -> Any:
+            record = arguments[place]
+            if not isinstance(record, types.Record):
+                return None
+            if record not in made:
+                chosen = choose(record.fields)
+                ready = isinstance(chosen, Dispatcher) or chosen in _MADE_BY_RECORD
+                made[record] = chosen if ready else inlined(chosen)
+            self.kind = _MADE_BY_RECORD.get(made[record]) or types.Dispatcher(made[record])
+            return self.kind.get_call_type(self.context, arguments, keywords)
+
+        def get_impl_key(self, signature: Any) -> Any:
+            return self.kind.get_impl_key(signature)
+
+    _MADE_BY_RECORD[function] = types.Function(Chosen)
+    infer_global(function, _MADE_BY_RECORD[function])
     return function
 
 
@@ -161,7 +179,7 @@ def term(owner: str, off: str, **scope: Any) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         arguments = list(inspect.signature(function).parameters)
-        present, absent = forward(arguments, inlined(function)), function_of(arguments, off, **scope)
+        present, absent = inlined(function), function_of(arguments, off, **scope)
         return by_record(function, lambda fields: present if owner in fields else absent)
 
     return decorate

@@ -15,17 +15,26 @@ from numba.core.typed_passes import NativeLowering
 
 
 class _InnerLibrary(JITCodeLibrary):
-    """Code that waits to be linked into its callers."""
+    """Code that is linked, with all that it calls itself, into the functions that Python calls.
+
+    Linked into every caller on the way, too, it would be copied as often as calls are deep.
+    """
 
     def _optimize_functions(self, ll_module: Any) -> None:
         pass
 
-    def _optimize_final_module(self) -> None:
-        pass
-
-    def _finalize_final_module(self) -> None:
+    def finalize(self) -> None:
+        self._raise_if_finalized()
+        for function in self._final_module.functions:
+            if not function.is_declaration:
+                function.linkage = "linkonce_odr"
+        self._shared_module = self._final_module
         self._finalize_dynamic_globals()
         self._finalized = True
+
+    def with_called(self) -> list:
+        """Itself and all the code that it needs."""
+        return list(dict.fromkeys([self, *self._linking_libraries]))
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -46,7 +55,7 @@ class _InnerLowering(NativeLowering):
             # optimise.
             name = state["cr"].fndesc.llvm_func_name
             state.library.get_function(name).add_function_attribute("noinline")
-        state.targetctx.insert_user_function(entry, state["cr"].fndesc, [state.library])
+        state.targetctx.insert_user_function(entry, state["cr"].fndesc, state.library.with_called())
         state["cr"] = state["cr"]._replace(cfunc=entry)
         return True
 

@@ -6,10 +6,9 @@ from math import atan2, cos, inf, nan, pi, sin
 import numpy as np
 
 from wedgesweep import sensor
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inner
 from wedgesweep.effects.states import input_length
 from wedgesweep.solvers.trajectory import Trajectory
-from wedgesweep.systems import compact
 
 # The numbers of a response (see dataset.VARIABLES), a record.
 NUMBERS = np.dtype(
@@ -35,17 +34,17 @@ NUMBERS = np.dtype(
 NO_MOTION = 1e-9
 
 
-@compiled
-def mean_period(signal, out):
-    """Write the mean of the periods of a signal, each as many samples as ``out`` holds."""
-    out[:] = 0.0
-    for start in range(0, signal.size, out.size):
-        for i in range(min(out.size, signal.size - start)):
-            out[i] += signal[start + i]
-    out *= out.size / signal.size
+@inner
+def mean_period(signal, sign, out):
+    """Write the mean of the periods of a signal times a sign, each as many samples as ``out`` holds."""
+    for i in range(out.size):
+        total = 0.0
+        for k in range(i, signal.size, out.size):
+            total += signal[k]
+        out[i] = sign * total * (out.size / signal.size)
 
 
-@compiled
+@inner
 def fourier(first, second, out):
     """Write D_h, h = 1..n, of two signals = Re sum D_h exp(i h omega t); out: (2, n, 2), real, imaginary.
 
@@ -65,7 +64,7 @@ def fourier(first, second, out):
         out[1, h - 1, 0], out[1, h - 1, 1] = 2.0 * other_real / samples, 2.0 * other_imaginary / samples
 
 
-@compiled
+@inner
 def _phase_lag(real, imaginary, amplitude):
     """Lag (rad, -pi to pi) of a fundamental behind u = a sin(omega t) = Re -i a exp(i omega t)."""
     if real * real + imaginary * imaginary < (NO_MOTION * amplitude) ** 2:
@@ -74,7 +73,7 @@ def _phase_lag(real, imaginary, amplitude):
     return atan2(-real, -imaginary)
 
 
-@compiled
+@inner
 def _change(signal, periods):
     """Largest difference between the last period and the one before it."""
     samples = signal.size // periods
@@ -84,7 +83,7 @@ def _change(signal, periods):
     return largest
 
 
-@compiled
+@inner
 def reduce(sums, x, velocity, periods, p, numbers, spectra):
     """Write the numbers, a record of ``NUMBERS``, and the spectra of displacement and velocity.
 
@@ -92,9 +91,9 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     or velocity, harmonic, real or imaginary part. Both are as the sensors show them.
     """
     mean = np.empty((2, x.size // periods))
-    mean_period(x, mean[0])
-    mean_period(velocity, mean[1])
-    fourier(-mean[0], -mean[1], spectra)
+    mean_period(x, -1.0, mean[0])
+    mean_period(velocity, -1.0, mean[1])
+    fourier(mean[0], mean[1], spectra)
     gain, amplitude = p.displacement_gain.scale, input_length(p)
     slipping_time = sums.time - (sums.stuck_time if p.friction.set_valued else 0.0)
     # The window closes on itself: sticking that runs over its end is one phase.
@@ -113,14 +112,26 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     numbers.periodicity = _change(x, periods) / amplitude
     sensor.apply_to_spectra(spectra, p)
     if p.velocity_lag.time > 0.0:
-        numbers.peak_velocity = np.abs(channels(x, velocity, periods, p)[1]).max()
+        numbers.peak_velocity = 0.0
+        for seen in channels(x, velocity, periods, p)[1]:
+            numbers.peak_velocity = max(numbers.peak_velocity, abs(seen))
 
 
-@compiled
+@inner
 def channels(x, velocity, periods, p):
     """Deflection and velocity over whole periods of a kept window as the sensors show them."""
     step = 2.0 * pi / p.input.omega * periods / velocity.size
-    return p.displacement_gain.scale * x, sensor.lagged(velocity, step, True, p)
+    seen = np.empty(x.size)
+    for i in range(x.size):
+        seen[i] = p.displacement_gain.scale * x[i]
+    return seen, sensor.lagged(velocity, step, True, p)
+
+
+@compiled
+def _reduce_and_sense(sums, samples, periods, p, numbers, spectra):
+    """``reduce`` and ``channels``; ``samples``: displacement and velocity."""
+    reduce(sums[0], samples[0], samples[1], periods, p[0], numbers[0], spectra)
+    return channels(samples[0], samples[1], periods, p[0])
 
 
 @dataclass(frozen=True)
@@ -139,9 +150,8 @@ def evaluate(trajectory: Trajectory, parameters: np.ndarray, harmonics: int) -> 
     """Reduce a trajectory to its response."""
     samples = trajectory.samples
     numbers, spectra = np.zeros(1, NUMBERS), np.empty((2, harmonics, 2))
-    p = compact(parameters)[0]
-    reduce(trajectory.sums[0], samples.x, samples.velocity, trajectory.periods, p, numbers[0], spectra)
-    x, velocity = channels(samples.x, samples.velocity, trajectory.periods, p)
+    motion = (samples.x, samples.velocity)
+    x, velocity = _reduce_and_sense(trajectory.sums, motion, trajectory.periods, parameters, numbers, spectra)
     waveforms = {
         "displacement": -x,
         "velocity": -velocity,

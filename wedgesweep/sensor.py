@@ -7,31 +7,32 @@ from math import exp
 
 import numpy as np
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import inner
 
 # Below this step over time constant the weights of ``_weights`` are summed as a series.
 SERIES_BELOW, SERIES_TERMS = 1.0, 20
 
 
-@compiled
-def transfer(harmonic, p):
-    """Complex factors of a harmonic of displacement and of velocity, channel over motion."""
-    lag = 1.0 / (1.0 + 1j * harmonic * p.input.omega * p.velocity_lag.time)
-    return complex(p.displacement_gain.scale), lag
-
-
-@compiled
+@inner
 def apply_to_spectra(spectra, p):
     """Turn spectra (2, n, 2) of a motion into those of its channels, in place."""
-    spectra[0] *= p.displacement_gain.scale
+    for i in range(spectra.shape[1]):
+        spectra[0, i, 0] *= p.displacement_gain.scale
+        spectra[0, i, 1] *= p.displacement_gain.scale
     if p.velocity_lag.time == 0.0:
         return
     for i in range(spectra.shape[1]):
-        seen = complex(spectra[1, i, 0], spectra[1, i, 1]) * transfer(i + 1, p)[1]
-        spectra[1, i, 0], spectra[1, i, 1] = seen.real, seen.imag
+        # Over 1 + i h omega time; complex numbers take numba longer to compile.
+        real, imaginary, lag = (
+            spectra[1, i, 0],
+            spectra[1, i, 1],
+            (i + 1) * p.input.omega * p.velocity_lag.time,
+        )
+        spectra[1, i, 0] = (real + lag * imaginary) / (1.0 + lag * lag)
+        spectra[1, i, 1] = (imaginary - lag * real) / (1.0 + lag * lag)
 
 
-@compiled
+@inner
 def _weights(ratio):
     """Weights of the samples at -1, 0, 1, 2 for one step of the lag, exact for cubics.
 
@@ -59,7 +60,7 @@ def _weights(ratio):
     )
 
 
-@compiled
+@inner
 def lagged(velocity, step, periodic, p):
     """Velocity channel of samples ``step`` (s) apart; without ``periodic`` it begins in balance."""
     if p.velocity_lag.time == 0.0:

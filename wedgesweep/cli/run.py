@@ -133,7 +133,7 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> i
     if stored is not None:
         click.echo(f"{sweep.out}: already complete; use --fresh to run it again")
         return print_summary(stored)
-    announce_compiling(sweep.settings.method, sweep.extended, sweep.config.system)
+    announce_compiling(sweep.settings.method, sweep.kit, sweep.config.system)
     print_remark(sweep.config)
     started = perf_counter()
     result = sweep.run(progress=progress, **options)
@@ -148,12 +148,12 @@ def print_remark(settings: "Config") -> None:
         click.echo(f"note: {settings.remark}", err=True)
 
 
-def announce_compiling(method: str, extended: bool = False, system: str = "suspension") -> None:
+def announce_compiling(method: str, kit: int = 0, system: str = "suspension") -> None:
     """Announce the compilation that delays a first run."""
     from wedgesweep.sweep.cases import is_compiled
 
-    if not is_compiled(method, extended, system):
-        click.echo("compiling the solver (once, up to a minute)", err=True)
+    if not is_compiled(method, kit, system):
+        click.echo("compiling the solver (once, some 20 s)", err=True)
 
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from math import inf, pi
 from typing import Any
 
-from wedgesweep.compiled import by_record, forward, function_of
+from wedgesweep.compiled import by_record, function_of
 from wedgesweep.hybrid.vectors import replaced
 
 # Kinds, and their natural sizes.
@@ -44,7 +44,7 @@ def input_length(p):
 def _choose_length(fields: Mapping[str, Any]) -> Callable:
     for owner, written in _LENGTHS.items():
         if owner in fields:
-            return forward(["p"], written)
+            return written
     return function_of(["p"], "p.input.amplitude")
 
 

@@ -10,11 +10,10 @@ system, which are known by the name of one of their fields. Times in s, all else
 ``scales``.
 """
 
-import inspect
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from wedgesweep.compiled import by_record, forward
+from wedgesweep.compiled import by_record
 
 Function = TypeVar("Function", bound=Callable)
 
@@ -24,13 +23,12 @@ _IMPLEMENTED: dict[Callable, dict[str, Callable]] = {}
 
 def declared(function: Function) -> Function:
     """Declare a function that every system writes for its own records."""
-    arguments = list(inspect.signature(function).parameters)
     _IMPLEMENTED[function] = {}
 
     def choose(fields: Mapping[str, Any]) -> Callable:
         for owner, written in _IMPLEMENTED[function].items():
             if owner in fields:
-                return forward(arguments, written)
+                return written
         message = f"no system with these records has {function.__name__}: {', '.join(fields)}"
         raise NotImplementedError(message)
 

@@ -9,14 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep import response
-from wedgesweep.compiled import borrowed, compiled
+from wedgesweep.compiled import borrowed, compiled, inner
 from wedgesweep.hybrid.accumulators import clear
-from wedgesweep.hybrid.interface import scales
 from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, OK
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
-from wedgesweep.solvers.period_map import memory, period_map, run_periods
-from wedgesweep.solvers.shooting import Shooting, settle
+from wedgesweep.solvers.period_map import memory, prepared, run_periods
+from wedgesweep.solvers.shooting import copy, run_map, settle, shooting
 from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, Window
 from wedgesweep.systems import compact, state_count
 
@@ -43,15 +42,14 @@ def solve(
     if isinstance(window, TimedWindow):
         message = "sample times of one's own are for radau.solve; this solver samples even phases"
         raise TypeError(message)
-    case = compact(parameters)
+    case = prepared(compact(parameters))
     room = memory(rtol, window.samples_per_period, window.periods)
-    y, settle_periods = np.zeros(len(scales_of(case))), window.settle_periods
+    y, settle_periods, outcome = np.zeros(case.scales.shape[1]), window.settle_periods, OK
     y[:2] = start
-    outcome, run = OK, period_map(case.dtype)
     if settle_periods:
-        outcome = run_periods(run, 0, settle_periods, y, case, False, room)
+        outcome = run_periods(case, 0, settle_periods, y, False, room)
     if outcome == OK:
-        outcome = run_periods(run, settle_periods, window.periods, y, case, True, room)
+        outcome = run_periods(case, settle_periods, window.periods, y, True, room)
     if outcome != OK:
         status, message = MESSAGES[outcome]
         message = f"{message} (at t = {room.reached[0]:.6g} s)"
@@ -59,12 +57,6 @@ def solve(
     samples = Samples(window.sample_times, room.x, room.velocity, room.sticks, room.normal)
     counts = dict(zip(STATISTICS, room.work.counts.tolist(), strict=True))
     return Trajectory(samples, room.sums, window.periods, counts)
-
-
-@compiled
-def scales_of(parameters):
-    """Natural sizes of the states of a case, whose record has shape (1,)."""
-    return np.array(scales(parameters[0]))
 
 
 class BatchSettings(NamedTuple):
@@ -125,70 +117,71 @@ def run_batch(
     parameters: np.ndarray, settle_periods: np.ndarray, settings: BatchSettings, rtol: float, batch: Batch
 ) -> None:
     """Run all cases of a batch, from rest or in a continuation, into ``batch``."""
-    cases = compact(parameters)
     room = memory(
         rtol,
         settings.samples_per_period,
         settings.periods + LONGEST_PERIOD,
         forces=bool(batch.waveforms.size),
     )
-    _run_all(cases, settle_periods, settings, room, batch, period_map(cases.dtype))
+    _run_all(prepared(compact(parameters)), parameters, settle_periods, settings, room, batch)
 
 
-@compiled
-def _settled(y, near, settle_periods, case, settings, room, period_map):
-    """Settle a case; y moves along. Returns the outcome, the period of the response and the periods run.
+@inner
+def _settled(y, near, settle_periods, settings, search):
+    """Settle the case of a search; y moves along.
+
+    Returns the outcome, the period of the response and the periods run.
 
     ``near``: period of the response that y lies close to, 0 if unknown.
     """
     if settings.steady:
-        unknown = np.full((y.size, y.size), np.nan)
-        size = np.array(scales(case[0]))
-        # The kept periods are run after the search.
-        shooting = Shooting(case, period_map, settings.tolerance, settings.max_periods, room, size, False)
-        found = settle(y, near, unknown, shooting)
+        unknown = np.empty((y.size, y.size))
+        unknown[:] = np.nan
+        found = settle(y, near, unknown, search)
         return found.outcome, found.period, found.run
     outcome = OK
     if settle_periods > 0:
-        outcome = period_map(0, settle_periods, y, case, False, room)
+        outcome = run_map(0, settle_periods, y, False, search)
     return outcome, -1, settle_periods
 
 
 @compiled
-def _run_all(cases, settle_periods, settings, room, batch, period_map):
+def _run_all(cases, parameters, settle_periods, settings, room, batch):
     room, batch = borrowed(room), borrowed(batch)
-    for i in range(cases.size):
-        case = cases[i : i + 1]
-        y, near = np.zeros(len(scales(case[0]))), 0
+    for i in range(parameters.size):
+        # The kept periods are run after the search.
+        search = shooting(cases, i, (settings.tolerance, settings.max_periods), room, False)
+        y, near = np.zeros(search.size.size), 0
         if settings.continuation and i > 0 and batch.outcome[i - 1] == OK:
-            y[:], near = batch.state[i - 1, : y.size], batch.period[i - 1]
+            copy(batch.state[i - 1], y)
+            near = batch.period[i - 1]
         room.work.counts[:] = 0
         room.reached[0] = 0.0
-        outcome, period, settled = _settled(y, near, settle_periods[i], case, settings, room, period_map)
+        outcome, period, settled = _settled(y, near, settle_periods[i], settings, search)
         batch.period[i], batch.settled[i] = period, settled
         # A response of a longer period is kept for whole periods of its own.
         periods = max(period, 1) * ((settings.periods - 1) // max(period, 1) + 1)
         if outcome == OK:
             clear(room.sums)
-            outcome = period_map(settled, periods, y, case, True, room)
+            outcome = run_map(settled, periods, y, True, search)
         batch.outcome[i], batch.time[i] = outcome, room.reached[0]
-        batch.state[i, : y.size] = y
-        batch.statistics[i] = room.work.counts
+        copy(y, batch.state[i, : y.size])
+        copy(room.work.counts, batch.statistics[i])
         if outcome == OK:
-            _reduce(i, case, periods, room, batch)
+            _reduce(i, parameters[i], periods, room, batch)
 
 
-@compiled
-def _reduce(i, case, periods, room, batch):
+@inner
+def _reduce(i, p, periods, room, batch):
     """Write the results of the kept periods of a case."""
     n = periods * room.samples_per_period
     x, velocity = room.x[:n], room.velocity[:n]
-    response.reduce(room.sums[0], x, velocity, periods, case[0], batch.numbers[i], batch.spectra[i])
+    response.reduce(room.sums[0], x, velocity, periods, p, batch.numbers[i], batch.spectra[i])
     if batch.waveforms.shape[0]:
         out = batch.waveforms[i]
         first = n - out.shape[1]
-        seen = response.channels(x, velocity, periods, case[0])
-        out[0], out[1] = seen[0][first:], seen[1][first:]
-        out[2:4] = room.normal[:, first:n]
+        seen = response.channels(x, velocity, periods, p)
         for k in range(out.shape[1]):
+            out[0, k], out[1, k] = seen[0][first + k], seen[1][first + k]
+            out[2, k], out[3, k] = room.normal[0, first + k], room.normal[1, first + k]
             out[4, k] = 1.0 if room.sticks[first + k] else 0.0

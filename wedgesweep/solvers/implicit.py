@@ -10,6 +10,7 @@ import numpy as np
 from wedgesweep.compiled import inner
 from wedgesweep.hybrid.interface import active, cycle, growth, perturbation, rate, stiff_error
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
+from wedgesweep.solvers.linear_algebra import inverted
 from wedgesweep.solvers.step import connected, inside, over_tolerance
 
 STAGES = 6
@@ -71,33 +72,14 @@ def _derivatives(t, y, k1, mode, p):
 
 @inner
 def _inverse(by_state, places, h):
-    """Inverse of the matrix of all stages, of the active states (Gauss and Jordan, largest pivots first).
-
-    For two to five states a call of LAPACK would take a third of the time of a step.
-    """
+    """Inverse of the matrix of all stages, of the active states."""
     n = places.size
-    matrix, inverse = np.empty((n, n)), np.zeros((n, n))
+    matrix = np.empty((n, n))
     for i in range(n):
         for j in range(n):
             matrix[i, j] = -by_state[places[i], places[j]]
         matrix[i, i] += 1.0 / (GAMMA * h)
-        inverse[i, i] = 1.0
-    for k in range(n):
-        largest = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[largest, k]):
-                largest = i
-        pivot = matrix[largest, k]
-        for j in range(n):
-            matrix[largest, j], matrix[k, j] = matrix[k, j], matrix[largest, j] / pivot
-            inverse[largest, j], inverse[k, j] = inverse[k, j], inverse[largest, j] / pivot
-        for i in range(n):
-            factor = matrix[i, k]
-            if i != k:
-                for j in range(n):
-                    matrix[i, j] -= factor * matrix[k, j]
-                    inverse[i, j] -= factor * inverse[k, j]
-    return inverse
+    return inverted(matrix)[0]
 
 
 @inner

@@ -1,4 +1,8 @@
-"""The Poincare map of a case: whole periods of the input, from phase 0 to phase 0."""
+"""The Poincare map of a case: whole periods of the input, from phase 0 to phase 0.
+
+Drivers of the map (shooting, batches) see records as bytes and the map as an address, so that one compiled
+driver serves the records of all systems and kits.
+"""
 
 from functools import cache
 from typing import Any, NamedTuple
@@ -6,19 +10,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from wedgesweep.compiled import Pointer, borrowed, compiled
+from wedgesweep.compiled import Pointer, borrowed, compiled, inlined
 from wedgesweep.hybrid import accumulators
-from wedgesweep.hybrid.interface import cycle, scales
+from wedgesweep.hybrid.interface import clocks, cycle, free, repeats, scales
 from wedgesweep.hybrid.recorder import Recorder
 from wedgesweep.hybrid.vectors import store, vector
 from wedgesweep.solvers.integrate import Workspace, run, workspace
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 
+# Room for the states of any system.
+MOST_STATES = 32
+
 
 class Memory(NamedTuple):
     """Room for a run and for what it keeps; see ``memory`` and ``Recorder``.
 
-    ``reached`` (1,): time (s) at which the last run ended.
+    ``reached`` (1,): time (s) at which the last run ended; ``free`` (MOST_STATES,): which states may take
+    other values near the one reached.
     """
 
     work: Workspace
@@ -28,6 +36,7 @@ class Memory(NamedTuple):
     normal: Any
     sticks: Any
     reached: Any
+    free: Any
     samples_per_period: int
     energies: bool
 
@@ -52,14 +61,14 @@ def memory(
         np.zeros((2, n if forces else 0)),
         np.zeros(n, np.bool_),
         np.zeros(1),
+        np.zeros(MOST_STATES, np.bool_),
         samples_per_period,
         energies,
     )
 
 
-def _run_periods(first, periods, y, case, keeping, memory):
-    case, memory = borrowed(case), borrowed(memory)
-    p = case[0]
+@inlined
+def _run_periods(first, periods, y, p, keeping, memory):
     start, stop = first * cycle(p), (first + periods) * cycle(p)
     recorder = Recorder(
         start,
@@ -74,18 +83,73 @@ def _run_periods(first, periods, y, case, keeping, memory):
     keep_from = start if keeping else stop
     outcome, state = run(start, vector(y, scales(p)), keep_from, stop, p, recorder, memory.work)
     store(state.y, y)
+    store(free(state.y, p), memory.free)
     memory.reached[0] = state.t
     return outcome
 
 
 @cache
 def period_map(kind: np.dtype) -> Pointer:
-    """Compiled code for records of a type, to be called as ``run_periods`` is."""
-    case = np.zeros(1, kind)
-    return Pointer(_run_periods, types.int64, (0, 1, np.zeros(1), case, False, memory(1e-6, 4)))
+    """Compiled code for records of a type, given as bytes, to be called as ``run_periods`` is."""
+
+    def run_record(first, periods, y, record, keeping, memory):
+        p = borrowed(record).view(kind)[0]
+        return _run_periods(first, periods, y, p, keeping, borrowed(memory))
+
+    record = np.zeros(kind.itemsize, np.uint8)
+    return Pointer(run_record, types.int64, (0, 1, np.zeros(1), record, False, memory(1e-6, 4)))
+
+
+class Cases(NamedTuple):
+    """What drivers know of cases, one row each: how to run them, and what their states are.
+
+    ``records`` (n, bytes) for ``period_map``; natural sizes of the states and whether they only count time
+    (n, S), the input's period (s) and whether all of the input repeats after it (n,).
+    """
+
+    period_map: Any
+    records: Any
+    scales: Any
+    clocks: Any
+    cycle: Any
+    repeats: Any
+
+
+def prepared(records: np.ndarray) -> Cases:
+    """Compact records, shape (n,), for drivers."""
+    n, states = len(records), count_states(records)
+    found = Cases(
+        period_map(records.dtype),
+        records.view(np.uint8).reshape(n, -1),
+        np.zeros((n, states)),
+        np.zeros((n, states), np.bool_),
+        np.zeros(n),
+        np.zeros(n, np.bool_),
+    )
+    describe(records, found.scales, found.clocks, found.cycle, found.repeats)
+    return found
 
 
 @compiled
-def run_periods(period_map, first, periods, y, case, keeping, memory):
-    """Run from phase 0 of period ``first``; the states y (n,) move along. Returns how it ended."""
-    return period_map(first, periods, y, case, keeping, memory)
+def count_states(records):
+    """Number of states of records of a type."""
+    return len(scales(records[0]))
+
+
+@compiled
+def describe(records, of_states, counts, period, repeated):
+    """Write what ``Cases`` says of records."""
+    for i in range(records.size):
+        p = records[i]
+        store(scales(p), of_states[i])
+        store(clocks(p), counts[i])
+        period[i], repeated[i] = cycle(p), repeats(p)
+
+
+@compiled
+def run_periods(cases, first, periods, y, keeping, memory):
+    """Run the first of the cases from phase 0 of period ``first``; the states y (n,) move along.
+
+    Returns how it ended.
+    """
+    return cases.period_map(first, periods, y, cases.records[0], keeping, memory)

@@ -7,13 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep import response, sensor
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import borrowed, compiled, inner
 from wedgesweep.hybrid.accumulators import clear
-from wedgesweep.hybrid.interface import scales
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
-from wedgesweep.solvers.period_map import memory, period_map
-from wedgesweep.solvers.shooting import Shooting, settle
+from wedgesweep.solvers.period_map import memory, prepared
+from wedgesweep.solvers.shooting import copy, known, run_map, settle, shooting
 from wedgesweep.systems import grouped, state_count
 
 __all__ = ["OK", "Accuracy", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
@@ -127,44 +126,45 @@ def respond(
     room = memory(accuracy.rtol, samples_per_period, energies=forces, forces=False)
     motion = np.full((n, 2, samples_per_period), np.nan)
     for rows, cases in grouped(parameters):
-        _respond_all(cases, rows, accuracy, room, found, motion, period_map(cases.dtype))
+        _respond_all(prepared(cases), rows, accuracy, room, found, motion)
     found.spectra[:] = np.fft.rfft(motion)[..., 1 : harmonics + 1] * (2.0 / samples_per_period)
     _sense_all(parameters, found.spectra.view(float).reshape(n, 2, harmonics, 2))
     return found
 
 
 @compiled
-def _respond_all(cases, rows, accuracy, room, found, motion, period_map):
+def _respond_all(cases, rows, accuracy, room, found, motion):
     """Write the steady responses of the cases into these rows of ``found``."""
-    for k in range(cases.size):
-        i, case = rows[k], cases[k : k + 1]
-        n = len(scales(case[0]))
+    room, found = borrowed(room), borrowed(found)
+    for k in range(rows.size):
+        i, search = rows[k], shooting(cases, k, accuracy, room, True)
+        n = search.size.size
         y, before = found.warm.state[i, :n].copy(), found.warm.period[i]
         jacobian = found.warm.map[i, :n, :n].copy()
-        size = np.array(scales(case[0]))
-        shooting = Shooting(case, period_map, accuracy.tolerance, accuracy.most_periods, room, size, True)
-        outcome, period, run, kept = settle(y, before, jacobian, shooting)
+        outcome, period, run, kept = settle(y, before, jacobian, search)
         if outcome == OK and not kept:
             # If the response does not repeat, its mean over as many periods as there is room for.
             kept = period if period else LONGEST_PERIOD
             clear(room.sums)
-            outcome = period_map(run if period == 0 else 0, kept, y, case, True, room)
+            outcome = run_map(run if period == 0 else 0, kept, y, True, search)
             run += kept
         found.outcome[i], found.periods[i] = outcome, run
         found.warm.state[i], found.warm.period[i], found.warm.map[i] = 0.0, period, np.nan
-        found.warm.state[i, :n], found.warm.map[i, :n, :n] = y, jacobian
+        copy(y, found.warm.state[i, :n])
+        for j in range(n):
+            copy(jacobian[j], found.warm.map[i, j, :n])
         if outcome != OK:
             found.warm.state[i] = np.nan
         else:
             _reduce(i, kept, room, found, motion[i])
 
 
-@compiled
+@inner
 def _reduce(i, periods, room, found, motion):
     """Write the results of the kept periods; ``motion`` (2, samples): displacement x - y and its rate."""
     n = periods * room.samples_per_period
-    response.mean_period(-room.x[:n], motion[0])
-    response.mean_period(-room.velocity[:n], motion[1])
+    response.mean_period(room.x[:n], -1.0, motion[0])
+    response.mean_period(room.velocity[:n], -1.0, motion[1])
     one = room.sums[0]
     found.extremes[i, 0], found.extremes[i, 1] = one.lowest, one.highest
     found.stuck[i] = one.stuck_time / one.time
@@ -200,7 +200,7 @@ def samples(
     room = memory(rtol, samples_per_period, before + periods, energies=False, forces=False)
     spans = np.array([settle_periods - before, before + periods])
     for rows, cases in grouped(parameters):
-        _sample_all(cases, rows, spans, room, Sampled(x, velocity, state), period_map(cases.dtype))
+        _sample_all(prepared(cases), parameters[rows], rows, spans, room, Sampled(x, velocity, state))
     return x, velocity, state
 
 
@@ -213,24 +213,26 @@ class Sampled(NamedTuple):
 
 
 @compiled
-def _sample_all(cases, rows, spans, room, out, period_map):
+def _sample_all(cases, parameters, rows, spans, room, out):
     """Run the cases of these rows; ``spans``: periods that are not kept, and periods that are."""
-    for k in range(cases.size):
-        i, case = rows[k], cases[k : k + 1]
-        p = case[0]
-        n = len(scales(p))
-        y = out.state[i, :n].copy() if np.isfinite(out.state[i]).all() else np.zeros(n)
+    room, out = borrowed(room), borrowed(out)
+    for k in range(rows.size):
+        i, p = rows[k], parameters[k]
+        y = np.zeros(cases.scales.shape[1])
+        if known(out.state[i : i + 1]):
+            copy(out.state[i, : y.size], y)
         outcome = OK
         if spans[0] > 0:
-            outcome = period_map(0, spans[0], y, case, False, room)
+            outcome = cases.period_map(0, spans[0], y, cases.records[k], False, room)
         if outcome == OK:
-            outcome = period_map(spans[0], spans[1], y, case, True, room)
+            outcome = cases.period_map(spans[0], spans[1], y, cases.records[k], True, room)
         out.state[i] = 0.0
-        out.state[i, :n] = y
+        copy(y, out.state[i, : y.size])
         if outcome != OK:
             out.state[i] = np.nan
         else:
             step = 2.0 * pi / p.input.omega / room.samples_per_period
-            samples = out.x.shape[1]
-            out.x[i] = p.displacement_gain.scale * room.x[-samples:]
-            out.velocity[i] = sensor.lagged(room.velocity, step, False, p)[-samples:]
+            seen, first = sensor.lagged(room.velocity, step, False, p), room.x.size - out.x.shape[1]
+            for j in range(out.x.shape[1]):
+                out.x[i, j] = p.displacement_gain.scale * room.x[first + j]
+                out.velocity[i, j] = seen[first + j]

@@ -15,7 +15,6 @@ import numpy as np
 from scipy.integrate import Radau, solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
-from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import accumulators
 from wedgesweep.solvers import radau_system as system
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
@@ -41,10 +40,9 @@ COARSER = 100.0
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
-@compiled
-def inverse(matrix):
+def inverse(matrix: np.ndarray) -> np.ndarray:
     """Inverse of a 2 x 2 matrix, real or complex."""
-    (a, b), (c, d) = matrix
+    (a, b), (c, d) = matrix.tolist()
     return np.array([[d, -b], [-c, a]]) / (a * d - b * c)
 
 
@@ -107,8 +105,8 @@ class _Run:
         self.case = compact(parameters)
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
-        self.period = 2.0 * pi / system.fastest(self.case)
-        self.scales = system.scales(self.case)
+        self.scales, fastest = system.scales(self.case)
+        self.period = 2.0 * pi / fastest
         self.atol = ABSOLUTE * rtol * self.scales
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
         self.sums = accumulators.empty()
@@ -154,7 +152,7 @@ class _Run:
     def _follow_mode(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[float, np.ndarray, int]:
         """Follow one mode; the time and state where it ends, and the event (-1 at ``stop``)."""
         moment = LOOK_AHEAD / self.window.omega
-        ahead = system.moment_later(t, y, moment, mode, self.case)
+        ahead = system.events(t, y, mode, self.case, moment)
         for place in np.flatnonzero(ahead < 0.0).tolist():
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the event before
@@ -167,7 +165,7 @@ class _Run:
         if reached and result.t[-1] == t:
             self._shorten_first_step(t)
             return t, y, -1
-        self._require(system.first_locked(result.t, result.y, mode, self.case) < 0, result.t[-1])
+        self._require(not system.locked(result.t, result.y, mode, self.case), result.t[-1])
         if system.missed_event(result.t, result.y, mode, self.case):
             message = f"a switch was missed between t = {t:.6g} s and {result.t[-1]:.6g} s"
             raise CaseError(message, "solver_failure")
@@ -264,13 +262,12 @@ class _Run:
         here = slice(*np.searchsorted(self.samples.t, (result.t[0], result.t[-1])))
         if here.start < here.stop:
             times = self.samples.t[here]
-            motion, sticks, normal = system.sample(times, result.sol(times), mode, self.case)
-            self.samples.x[here], self.samples.velocity[here] = motion
-            self.samples.sticks[here], self.samples.normal[:, here] = sticks, normal
+            seen = system.sample(times, result.sol(times), mode, self.case)
+            self.samples.x[here], self.samples.velocity[here] = seen[:2]
+            self.samples.normal[:, here], self.samples.sticks[here] = seen[2:4], seen[4]
 
     def _add(self, t: np.ndarray, y: np.ndarray, mode: Mode, weight: np.ndarray | None = None) -> None:
-        weight = np.zeros(t.size) if weight is None else weight
-        system.add(self.sums, t, np.ascontiguousarray(y), weight, mode, self.case)
+        system.add(self.sums, t, y, weight, mode, self.case)
 
 
 def _turn(t: float, y: np.ndarray) -> float:

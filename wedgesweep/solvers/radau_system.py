@@ -1,26 +1,31 @@
-"""A hybrid system as scipy sees it: NumPy states, compiled rates and event functions of one mode."""
+"""A hybrid system as scipy sees it: NumPy states, compiled rates and event functions of one mode.
+
+Each compiled function contains a copy of the mechanics, which takes seconds to compile. So there are four:
+at the start, at an event, at one state, and along many; the last two answer several questions.
+"""
+
+from typing import Any
 
 import numpy as np
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inner
 from wedgesweep.hybrid import accumulators, interface
-from wedgesweep.hybrid.vectors import vector
+from wedgesweep.hybrid.vectors import replaced, store, vector, weighted
 from wedgesweep.solvers.integrate import MOST_EVENTS
 
 # Perturbation of a state for a Jacobian by differences, over the state's natural size.
 PERTURBATION = 1e-7
+# Questions.
+RATE, JACOBIAN, EVENTS = range(3)
+ADD, SAMPLE, LOCKED, MISSED = range(4)
 
 
 @compiled
 def scales(case):
-    """Natural sizes of the states, shape (n,)."""
-    return np.array(interface.scales(case[0]))
-
-
-@compiled
-def fastest(case):
-    """Highest angular frequency of the input (rad/s)."""
-    return interface.fastest(case[0])
+    """Natural sizes of the states, shape (n,), and the highest angular frequency of the input (rad/s)."""
+    size = np.empty(len(interface.scales(case[0])))
+    store(interface.scales(case[0]), size)
+    return size, interface.fastest(case[0])
 
 
 @compiled
@@ -36,84 +41,147 @@ def holds(mode, case):
 
 
 @compiled
-def rate(t, y, mode, case):
-    """dy/dt, shape (n,)."""
+def _transition(t, y, mode, place, case):
     p = case[0]
-    return np.array(interface.rate(t, vector(y, interface.scales(p)), mode, p)[0])
+    after, following, unique = interface.transition(t, vector(y, interface.scales(p)), mode, place, p)
+    store(after, y)
+    return following, unique
+
+
+def transition(t: float, y: np.ndarray, mode: Any, place: int, case: np.ndarray) -> tuple:
+    """State, shape (n,), and mode after an event, and whether they are well-posed."""
+    after = y.copy()
+    return after, *_transition(t, after, mode, place, case)
+
+
+@inner
+def _jacobian(t, y, mode, p, out):
+    size, n = interface.scales(p), len(y)
+    for i in range(n):
+        h = PERTURBATION * (size[i] + abs(y[i]))
+        above = interface.rate(t, replaced(y, i, y[i] + h), mode, p)[0]
+        below = interface.rate(t, replaced(y, i, y[i] - h), mode, p)[0]
+        for j in range(n):
+            out[n * j + i] = (above[j] - below[j]) / (2.0 * h)
+
+
+@inner
+def _events(t, y, mode, p, out):
+    """Write all event functions; returns their number."""
+    interface.events(interface.rate(t, y, mode, p)[1], t, y, mode, p, out)
+    return interface.event_count(p)
 
 
 @compiled
-def jacobian(t, y, mode, case):
-    """Derivative of ``rate`` by central differences, shape (n, n)."""
-    size = interface.scales(case[0])
-    out = np.empty((len(size), len(size)))
-    for i in range(len(size)):
-        h = PERTURBATION * (size[i] + abs(y[i]))
-        above, below = y.copy(), y.copy()
-        above[i] += h
-        below[i] -= h
-        out[:, i] = (rate(t, above, mode, case) - rate(t, below, mode, case)) / (2.0 * h)
+def _at(question, t, y, ahead, mode, case, out):
+    """Answer a question about a state into ``out``; how many event functions there are.
+
+    ``ahead``: time (s) after which the event functions are asked for.
+    """
+    p = case[0]
+    now = vector(y, interface.scales(p))
+    if question == JACOBIAN:
+        _jacobian(t, now, mode, p, out)
+        return 0
+    if question == RATE:
+        store(interface.rate(t, now, mode, p)[0], out)
+        return 0
+    if ahead > 0.0:
+        # Half-way: where a run begins the rate itself is rounding.
+        now = weighted(now, ahead, (1.0,), (interface.rate(t + 0.5 * ahead, now, mode, p)[0],))
+    return _events(t + ahead, now, mode, p, out)
+
+
+def rate(t: float, y: np.ndarray, mode: Any, case: np.ndarray) -> np.ndarray:
+    """dy/dt, shape (n,)."""
+    out = np.empty(y.size)
+    _at(RATE, t, y, 0.0, mode, case, out)
     return out
 
 
-@compiled
-def events(t, y, mode, case):
-    """All event functions, shape (k,); inf for those that the mode does not have."""
-    p = case[0]
-    out = np.full(MOST_EVENTS, np.inf)
-    now = vector(y, interface.scales(p))
-    interface.events(interface.rate(t, now, mode, p)[1], t, now, mode, p, out)
-    return out[: interface.event_count(p)]
+def jacobian(t: float, y: np.ndarray, mode: Any, case: np.ndarray) -> np.ndarray:
+    """Derivative of ``rate`` by central differences, shape (n, n)."""
+    out = np.empty(y.size**2)
+    _at(JACOBIAN, t, y, 0.0, mode, case, out)
+    return out.reshape(y.size, y.size)
+
+
+def events(t: float, y: np.ndarray, mode: Any, case: np.ndarray, ahead: float = 0.0) -> np.ndarray:
+    """All event functions, shape (k,), some time (s) ahead; inf for those that the mode does not have.
+
+    A moment ahead an event that passes zero now is beyond rounding errors.
+    """
+    out = np.empty(MOST_EVENTS)
+    return out[: _at(EVENTS, t, y, ahead, mode, case, out)]
+
+
+@inner
+def _sample(i, t, y, mode, p, out):
+    out[0, i], out[1, i] = interface.observed(y, p)
+    out[2, i], out[3, i] = interface.contact_forces(t, y, mode, p)
+    out[4, i] = 1.0 if interface.sticks(y, mode, p) else 0.0
+
+
+@inner
+def _lowest_event(t, y, mode, p, out):
+    lowest = np.inf
+    for k in range(_events(t, y, mode, p, out)):
+        lowest = min(lowest, out[k])
+    return lowest
 
 
 @compiled
-def transition(t, y, mode, place, case):
-    """State, shape (n,), and mode after an event, and whether they are well-posed."""
-    p = case[0]
-    after, following, unique = interface.transition(t, vector(y, interface.scales(p)), mode, place, p)
-    return np.array(after), following, unique
+def _along(question, points, mode, case, sums, out):
+    """Answer a question about many states into ``sums`` or ``out``; the index of the first state of a kind.
 
-
-@compiled
-def first_locked(t, y, mode, case):
-    """Index of the first of the states, shape (n, k), that is not well-posed; -1 if none."""
-    for i in range(t.size):
-        if not interface.well_posed(t[i], vector(y[:, i], interface.scales(case[0])), mode, case[0]):
+    ``points`` (n + 2, k): times, weights, states.
+    """
+    p, width = case[0], interface.scales(case[0])
+    room = np.empty(MOST_EVENTS)
+    for i in range(points.shape[1]):
+        t, y = points[0, i], vector(points[2:, i], width)
+        if question == ADD:
+            accumulators.add(sums[0], t, y, points[1, i], mode, p)
+        elif question == SAMPLE:
+            _sample(i, t, y, mode, p, out)
+        elif question == LOCKED:
+            if not interface.well_posed(t, y, mode, p):
+                return i
+        elif _lowest_event(t, y, mode, p, room) < 0.0:
             return i
     return -1
 
 
-@compiled
-def missed_event(t, y, mode, case):
+def _points(t: np.ndarray, y: np.ndarray, weight: np.ndarray | None = None) -> np.ndarray:
+    return np.ascontiguousarray(np.vstack([t, np.zeros(t.size) if weight is None else weight, y]))
+
+
+_NO_SUMS, _NO_SAMPLES = accumulators.empty(), np.empty((5, 0))
+
+
+def add(
+    sums: np.ndarray, t: np.ndarray, y: np.ndarray, weight: np.ndarray | None, mode: Any, case: np.ndarray
+) -> None:
+    """Add points of one mode to the running sums; states (n, k), weights (s; None: 0)."""
+    _along(ADD, _points(t, y, weight), mode, case, sums, _NO_SAMPLES)
+
+
+def sample(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> np.ndarray:
+    """What is recorded of states (n, k), shape (5, k).
+
+    Displacement, velocity, both normal forces, and whether the observed contact sticks (0 or 1).
+    """
+    out = np.empty((5, t.size))
+    _along(SAMPLE, _points(t, y), mode, case, _NO_SUMS, out)
+    return out
+
+
+def locked(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> bool:
+    """Whether one of the states, shape (n, k), is not well-posed."""
+    return bool(_along(LOCKED, _points(t, y), mode, case, _NO_SUMS, _NO_SAMPLES) >= 0)
+
+
+def missed_event(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> bool:
     """Whether an event function is negative at any of the states, shape (n, k), but the ends."""
-    lowest = np.inf
-    for i in range(1, t.size - 1):
-        lowest = min(lowest, events(t[i], y[:, i], mode, case).min())
-    return lowest < 0.0
-
-
-@compiled
-def add(sums, t, y, weight, mode, case):
-    """Add points of one mode to the running sums; states (n, k)."""
-    for i in range(t.size):
-        accumulators.add(sums[0], t[i], vector(y[:, i], interface.scales(case[0])), weight[i], mode, case[0])
-
-
-@compiled
-def sample(t, y, mode, case):
-    """What is recorded of states (n, k): displacement, velocity, sticks (k,), and normal forces (2, k)."""
-    p = case[0]
-    motion, sticks, normal = np.empty((2, t.size)), np.empty(t.size, np.bool_), np.empty((2, t.size))
-    for i in range(t.size):
-        now = vector(y[:, i], interface.scales(p))
-        motion[0, i], motion[1, i] = interface.observed(now, p)
-        sticks[i] = interface.sticks(now, mode, p)
-        normal[0, i], normal[1, i] = interface.contact_forces(t[i], now, mode, p)
-    return motion, sticks, normal
-
-
-@compiled
-def moment_later(t, y, moment, mode, case):
-    """Event functions a moment (s) later, when one that passes zero now is beyond rounding errors."""
-    # Half-way: where a run begins the rate itself is rounding.
-    return events(t + moment, y + moment * rate(t + 0.5 * moment, y, mode, case), mode, case)
+    points = _points(t, y)[:, 1:-1].copy()
+    return bool(_along(MISSED, points, mode, case, _NO_SUMS, _NO_SAMPLES) >= 0)

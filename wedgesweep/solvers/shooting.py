@@ -8,15 +8,15 @@ where it had stopped. It also finds the responses that Newton's method cannot: t
 unstable, and those whose mean position is not determined.
 """
 
+from math import isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import inner
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.accumulators import clear
-from wedgesweep.hybrid.interface import clocks, cycle, free, repeats, scales
 from wedgesweep.hybrid.state import OK
-from wedgesweep.hybrid.vectors import vector
+from wedgesweep.solvers.linear_algebra import inverted, spectral_radius
 from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
 
 # Perturbation of the scaled state for J, at least NOISE times the tolerance of a step, and the least step
@@ -41,18 +41,34 @@ EXTRAPOLATION_GAIN = 0.5
 
 
 class Shooting(NamedTuple):
-    """A search for a steady state: the case (1,), its map, tolerance, limit of periods, and workspace.
+    """A search for a steady state: its case (period_map.Cases, and which), tolerance and limit of periods.
 
     ``records``: whether the memory keeps the last periods of a state that Newton's method has found.
     """
 
-    case: Any
-    period_map: Any
+    cases: Any
+    number: int
+    size: Any  # natural sizes of the states (n,)
+    clocks: Any  # which states only count time (n,)
+    cycle: float  # period of the input (s)
     tolerance: float
     most_periods: int
     memory: Any
-    size: Any  # natural sizes of the states (n,)
     records: bool
+
+
+@inlined
+def shooting(cases, number, accuracy, memory, records):
+    """A search for the steady state of one of the cases; ``accuracy``: its tolerance and limit of periods."""
+    size, clocks, cycle = cases.scales[number], cases.clocks[number], cases.cycle[number]
+    return Shooting(cases, number, size, clocks, cycle, accuracy[0], accuracy[1], memory, records)
+
+
+@inlined
+def run_map(first, periods, y, keeping, shooting):
+    """Run the case from phase 0 of period ``first``; y (n,) moves along. Returns the outcome."""
+    cases = shooting.cases
+    return cases.period_map(first, periods, y, cases.records[shooting.number], keeping, shooting.memory)
 
 
 class Found(NamedTuple):
@@ -68,6 +84,14 @@ class Found(NamedTuple):
     kept: int
 
 
+@inlined
+def copy(source, target):
+    """Write the first numbers of an array into another."""
+    # numba would compile texts of errors for shapes that differ with ``target[:] = source``: a second.
+    for i in range(target.size):
+        target[i] = source[i]
+
+
 @inner
 def _distance(a, b, size):
     """Largest difference of two states in their units."""
@@ -80,14 +104,12 @@ def _distance(a, b, size):
 
 
 @inner
-def _moving(y, periods, p):
-    """Which states at phase 0 affect those some periods later; a clock does if it was reset in between."""
-    now = vector(y, scales(p))
-    moves = np.array(free(now, p))
-    counts = clocks(p)
+def _moving(y, periods, shooting):
+    """Which states at phase 0 affect those some periods later, y; a clock does if it was reset in between."""
+    moves = shooting.memory.free[: y.size].copy()
     for i in range(moves.size):
-        if counts[i]:
-            moves[i] = 0.0 < y[i] < periods * GROWN * cycle(p)
+        if shooting.clocks[i]:
+            moves[i] = 0.0 < y[i] < periods * GROWN * shooting.cycle
     return moves
 
 
@@ -98,16 +120,13 @@ def _run(y, periods, keeping, shooting):
     A clock that was not reset although all other states came back never will be; nor will one that was not
     reset in as many periods as a response may have.
     """
-    before = y.copy()
-    case = shooting.case
-    outcome = shooting.period_map(0, periods, y, case, keeping, shooting.memory)
-    p = case[0]
-    counts = clocks(p)
-    for i in range(len(counts)):
-        if counts[i] and y[i] >= periods * GROWN * cycle(p):
+    before, cycle = y.copy(), shooting.cycle
+    outcome = run_map(0, periods, y, keeping, shooting)
+    for i in range(y.size):
+        if shooting.clocks[i] and y[i] >= periods * GROWN * cycle:
             before[i] = y[i]
-            if y[i] >= LONGEST_PERIOD * GROWN * cycle(p) or _distance(y, before, shooting.size) <= KEPT_BELOW:
-                y[i] = CONTACT_TIME_LIMIT * cycle(p)
+            if y[i] >= LONGEST_PERIOD * GROWN * cycle or _distance(y, before, shooting.size) <= KEPT_BELOW:
+                y[i] = CONTACT_TIME_LIMIT * cycle
     return outcome
 
 
@@ -127,14 +146,26 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
             if outcome != OK:
                 jacobian[:] = np.nan
                 return outcome, run
-            jacobian[:, k] = (shifted - image) / size / share
+            for i in range(size.size):
+                jacobian[i, k] = (shifted[i] - image[i]) / size[i] / share
     return OK, run
+
+
+@inner
+def _places(moves):
+    """Indices of the states that move."""
+    places, count = np.empty(moves.size, np.int64), 0
+    for i in range(moves.size):
+        if moves[i]:
+            places[count] = i
+            count += 1
+    return places[:count]
 
 
 @inner
 def _part(jacobian, moves):
     """J of the states that move."""
-    places = np.flatnonzero(moves)
+    places = _places(moves)
     part = np.empty((places.size, places.size))
     for i in range(places.size):
         for j in range(places.size):
@@ -143,43 +174,71 @@ def _part(jacobian, moves):
 
 
 @inner
+def known(matrix):
+    """Whether all of a matrix is finite."""
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            if not isfinite(matrix[i, j]):
+                return False
+    return True
+
+
+@inner
+def _newton_matrix(part):
+    """Inverse and determinant of I - J."""
+    matrix = np.empty(part.shape)
+    for i in range(part.shape[0]):
+        for j in range(part.shape[1]):
+            matrix[i, j] = (1.0 if i == j else 0.0) - part[i, j]
+    return inverted(matrix)
+
+
+@inner
 def _stable_and_regular(jacobian, moves):
     """Whether J is known, the response stable by it, and its position determined."""
-    if not np.isfinite(jacobian).all():
+    if not known(jacobian):
         return False
     part = _part(jacobian, moves)
     n = part.shape[0]
-    margin = np.linalg.det(np.eye(n) - part)
+    margin = _newton_matrix(part)[1]
     if n == 1:
         return abs(part[0, 0]) < UNSTABLE and margin >= SINGULAR
     if n == 2:
         determinant = part[0, 0] * part[1, 1] - part[0, 1] * part[1, 0]
         stable = abs(part[0, 0] + part[1, 1]) < 1.0 + determinant and determinant < UNSTABLE
         return stable and margin >= SINGULAR
-    largest = np.max(np.abs(np.linalg.eigvals(part.astype(np.complex128))))
-    return largest < UNSTABLE and margin >= SINGULAR
+    return spectral_radius(part) < UNSTABLE and margin >= SINGULAR
 
 
 @inner
 def _newton_step(y, image, jacobian, moves, size):
     """Newton's next state."""
-    places = np.flatnonzero(moves)
-    miss = ((image - y) / size)[places]
-    step = np.linalg.solve(np.eye(places.size) - _part(jacobian, moves), miss)
+    places = _places(moves)
+    inverse = _newton_matrix(_part(jacobian, moves))[0]
     following = image.copy()
     for i in range(places.size):
-        following[places[i]] = y[places[i]] + step[i] * size[places[i]]
+        step = 0.0
+        for j in range(places.size):
+            step += inverse[i, j] * (image[places[j]] - y[places[j]]) / size[places[j]]
+        following[places[i]] = y[places[i]] + step * size[places[i]]
     return following
 
 
 @inner
 def _update(jacobian, y, image, before, image_before, size):
     """Broyden's update of J from two states and their images, unless they are too close to tell."""
-    step = (y - before) / size
-    square = np.dot(step, step)
-    if square > LEAST_STEP**2:
-        miss = (image - image_before) / size - np.dot(jacobian, step)
-        jacobian += np.outer(miss, step) / square
+    step, square = np.empty(size.size), 0.0
+    for i in range(size.size):
+        step[i] = (y[i] - before[i]) / size[i]
+        square += step[i] * step[i]
+    if square <= LEAST_STEP**2:
+        return
+    for i in range(size.size):
+        miss = (image[i] - image_before[i]) / size[i]
+        for j in range(size.size):
+            miss -= jacobian[i, j] * step[j]
+        for j in range(size.size):
+            jacobian[i, j] += miss * step[j] / square
 
 
 @inner
@@ -189,7 +248,6 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     Returns whether y repeats now, the outcome and the periods run; if y repeats the last of them are kept.
     If the method fails, y is the state closest to its own image so far.
     """
-    p = shooting.case[0]
     size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
     shortest, last, fresh, run = np.inf, np.inf, False, 0
@@ -202,24 +260,25 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         outcome = _run(image, periods, keeping and shooting.records, shooting)
         run += periods
         if outcome != OK:
-            y[:] = best
+            copy(best, y)
             return False, outcome, run
         now = _distance(image, y, size)
         if now <= shooting.tolerance and keeping:
-            y[:] = image
+            copy(image, y)
             return True, OK, run
-        moves = _moving(image, periods, p)
+        moves = _moving(image, periods, shooting)
         if now < shortest:
             shortest = now
-            best[:] = image
+            copy(image, best)
         if run == periods and now <= CLOSER * shooting.tolerance:
             # All but steady: another run costs less than a derivative.
-            y[:], last = image, now
+            copy(image, y)
+            last = now
             continue
         if judged:
             _update(jacobian, y, image, before, image_before, size)
         if now > STALE * last or not (judged or _stable_and_regular(jacobian, moves)):
-            if (fresh and now > GAIN * last) or run + periods * (1 + moves.sum()) > most:
+            if (fresh and now > GAIN * last) or run + periods * (1 + _places(moves).size) > most:
                 break
             outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
             run += more
@@ -229,9 +288,11 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         else:
             fresh = False
         judged = True
-        before[:], image_before[:], last = y, image, now
-        y[:] = _newton_step(y, image, jacobian, moves, size)
-    y[:] = best
+        copy(y, before)
+        copy(image, image_before)
+        last = now
+        copy(_newton_step(y, image, jacobian, moves, size), y)
+    copy(best, y)
     return False, OK, run
 
 
@@ -271,16 +332,18 @@ def _extrapolated(y, last, before, moves):
 
 
 @inner
-def _creep(y, past, count, shooting):
-    """Extrapolate the creep of states that a contact holds at phase 0; returns the periods run."""
-    p = shooting.case[0]
-    size, moves = shooting.size, np.array(free(vector(y, scales(p)), p))
+def _creep(y, moves, past, count, shooting):
+    """Extrapolate the creep of states that a contact holds at phase 0; returns the periods run.
+
+    ``moves``: which states may take other values.
+    """
+    size = shooting.size
     last, before = past[(count - 1) % LONGEST_PERIOD], past[(count - 2) % LONGEST_PERIOD]
     trial = _extrapolated(y, last, before, moves)
     image = trial.copy()
     outcome = _run(image, 1, False, shooting)
     if outcome == OK and _distance(image, trial, size) < EXTRAPOLATION_GAIN * _distance(y, last, size):
-        y[:] = trial
+        copy(trial, y)
     return 1
 
 
@@ -291,14 +354,13 @@ def settle(y, periods, jacobian, shooting):
     ``periods``: period of the response that y should be close to, for which Newton's method is tried first;
     0 if none is known. y and J are updated in place; J is that over one period of the response.
     """
-    p = shooting.case[0]
     size, most, run = shooting.size, shooting.most_periods, 0
-    if not np.isfinite(y).all():
+    if not known(y.reshape(1, y.size)):
         y[:], periods = 0.0, 0
         jacobian[:] = np.nan
-    if not repeats(p):
+    if not shooting.cases.repeats[shooting.number]:
         most = min(most, PERIODS_OF_NO_RESPONSE)
-        outcome = shooting.period_map(0, most, y, shooting.case, False, shooting.memory)
+        outcome = run_map(0, most, y, False, shooting)
         return Found(outcome, 0, most, 0)
     if periods:
         found = _shoot(y, periods, jacobian, most, shooting)
@@ -308,10 +370,11 @@ def settle(y, periods, jacobian, shooting):
         if found.outcome != OK:
             # The neighbour's state may be impossible in this case: rest decides.
             y[:] = 0.0
-    past, back = np.full((LONGEST_PERIOD, size.size), np.inf), np.empty(LONGEST_PERIOD)
+    past, back = np.empty((LONGEST_PERIOD, size.size)), np.empty(LONGEST_PERIOD)
+    past[:] = np.inf
     count = 0
     while run < most:
-        past[count % LONGEST_PERIOD] = y
+        copy(y, past[count % LONGEST_PERIOD])
         outcome = _run(y, 1, False, shooting)
         run, count = run + 1, count + 1
         if outcome != OK:
@@ -325,11 +388,12 @@ def settle(y, periods, jacobian, shooting):
             return Found(OK, period, run, 0)
         if count % NEWTON_INTERVAL == 0:
             trial, periods = y.copy(), guessed_period(back)
+            moves = shooting.memory.free[: y.size].copy()
             jacobian[:] = np.nan
             found = _shoot(trial, periods, jacobian, most - run, shooting)
             run += found.run
             if found.period:
-                y[:] = trial
+                copy(trial, y)
                 return Found(OK, found.period, run, found.kept)
-            run += _creep(y, past, count, shooting)
+            run += _creep(y, moves, past, count, shooting)
     return Found(OK, 0, run, 0)

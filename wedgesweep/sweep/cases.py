@@ -16,7 +16,7 @@ from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import dataset
 from wedgesweep.sweep.batch import solve_batch
 from wedgesweep.sweep.continuation import solve_lines
-from wedgesweep.systems import oscillator, suspension
+from wedgesweep.systems import example
 
 SUSPENSION = "suspension"
 
@@ -27,34 +27,23 @@ def describe(law: str, beta: float, amplitude: float, unit: str = "m") -> str:
     return f"{law}, beta {beta:.6g}, amplitude {size}"
 
 
-def is_compiled(method: str, extended: bool = False, system: str = SUSPENSION) -> bool:
-    """Whether the compiled code of a solver is cached, for the base or the extended mechanics of a system."""
-    return compiled_mark(_code(method, extended, system)).exists()
+def is_compiled(method: str, kit: int = 0, system: str = SUSPENSION) -> bool:
+    """Whether the compiled code of a solver is cached, for records of a system that need a kit of parts."""
+    return compiled_mark(f"{method}-{system}-{kit}").exists()
 
 
-def compile_once(method: str, extended: bool = False, system: str = SUSPENSION) -> None:
+def compile_once(method: str, kit: int = 0, system: str = SUSPENSION) -> None:
     """Fill numba's cache in this process, so that the jobs of a first run need not compile.
 
     Nor does compile time count against the time limit of a case.
     """
-    if is_compiled(method, extended, system):
+    if is_compiled(method, kit, system):
         return
     short = Settings(method=method, settle_periods=1, kept_periods=2, samples_per_period=32)
-    # This case sticks and slips, so that it uses all compiled functions.
-    effects = {"viscous_damping": {"coefficient": 1.0}} if extended else {}
-    if system == SUSPENSION:
-        case = suspension.record("coulomb", 5e-3, 85.0, effects=effects)
-    else:
-        body = {"mass": 1.0, "spring": 7e3, "normal_force": 30.0}
-        case = oscillator.record("coulomb", 5e-3, 85.0, body, effects=effects)
     dtype = dataset.record_dtype({"phase": 64, "harmonic": dataset.HARMONICS, "part": 2})
-    solve_cases(case, np.array([0]), short, inf, dtype)
-    compiled_mark(_code(method, extended, system)).touch()
-
-
-def _code(method: str, extended: bool, system: str) -> str:
-    own = "" if system == SUSPENSION else f"-{system}"
-    return f"{method}{own}{'-extended' * extended}"
+    # It sticks and slips, so that it uses all compiled functions.
+    solve_cases(example(system, kit), np.array([0]), short, inf, dtype)
+    compiled_mark(f"{method}-{system}-{kit}").touch()
 
 
 def compiled_mark(code: str) -> Path:

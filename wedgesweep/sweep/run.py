@@ -26,7 +26,7 @@ from wedgesweep.sweep.backend import Backend, local
 from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
-from wedgesweep.systems import has_own_mechanics, oscillator
+from wedgesweep.systems import has_own_mechanics, kits, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
 
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
@@ -94,6 +94,11 @@ class Sweep:
     def extended(self) -> bool:
         """Whether effects of the config need the extended mechanics."""
         return bool(has_own_mechanics(self.parameters).any())
+
+    @property
+    def kit(self) -> int:
+        """The largest kit of parts that the cases need."""
+        return int(kits(self.parameters).max(initial=0))
 
     @property
     def fingerprint(self) -> dict[str, str]:
@@ -205,7 +210,7 @@ class Sweep:
         rows = self.together
         todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
         if todo.size:
-            compile_once(self.settings.method, self.extended, self.config.system)
+            compile_once(self.settings.method, self.kit, self.config.system)
         yield whole[~np.isin(whole["index"], todo)]
         with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:

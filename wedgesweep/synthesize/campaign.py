@@ -19,7 +19,7 @@ from wedgesweep.synthesize.motion import RTOL, Motion, steady
 from wedgesweep.synthesize.names import FORCE
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
-from wedgesweep.systems import has_own_mechanics
+from wedgesweep.systems import kits
 
 # A mass that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
@@ -102,8 +102,7 @@ def _name(i: int, test: TrueTest) -> str:
 
 def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
     """Simulate the tests; raises SynthesisError with every test that fails."""
-    extended = bool(has_own_mechanics(truth.record(truth.tests[0]))[0])
-    compile_once("radau", extended, truth.config.system)
+    compile_once("radau", int(kits(truth.record(truth.tests[0]))[0]), truth.config.system)
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
         joblib.delayed(_motion)(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from wedgesweep.effects import states
-from wedgesweep.excitation import has_series
+from wedgesweep.excitation import has_series, set_series
 from wedgesweep.systems.oscillator import hybrid as _oscillator_hybrid  # noqa: F401
 from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension import hybrid as _suspension_hybrid  # noqa: F401
@@ -37,6 +37,24 @@ def _kits(parameters: np.ndarray) -> np.ndarray:
     return parameters["oscillator" if is_oscillator(parameters) else "geometry"]["kit"]
 
 
+def kits(parameters: np.ndarray) -> np.ndarray:
+    """Which kit of parts each of some records, shape (n,), needs: an integer, 0 for the smallest."""
+    return 2 * _kits(parameters) + has_series(parameters)
+
+
+def example(system: str, kit: int) -> np.ndarray:
+    """A case, shape (1,), of a kit, which sticks and slips."""
+    if system == "suspension":
+        case = suspension.record("coulomb", 5e-3, 85.0)
+    else:
+        body = {"mass": 1.0, "spring": 7e3, "normal_force": 30.0}
+        case = oscillator.record("coulomb", 5e-3, 85.0, body)
+    _kits(case)[:] = kit // 2
+    if kit % 2:
+        set_series(case, np.array([-1j, 0.01]))
+    return case
+
+
 def has_own_mechanics(parameters: np.ndarray) -> np.ndarray:
     """Whether effects of records, shape (n,), need more than the base model's mechanics."""
     return _kits(parameters) != 0
@@ -58,7 +76,7 @@ def moving_mass(parameters: np.ndarray) -> np.ndarray:
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Records, shape (n,), by the kit that they need: their places, and the compact records."""
-    kits = 2 * _kits(parameters) + has_series(parameters)
-    for kit in np.unique(kits):
-        rows = np.flatnonzero(kits == kit)
+    needed = kits(parameters)
+    for kit in np.unique(needed):
+        rows = np.flatnonzero(needed == kit)
         yield rows, compact(parameters[rows])

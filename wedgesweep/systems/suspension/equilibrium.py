@@ -4,7 +4,7 @@ from math import inf, nan, sqrt
 
 import numpy as np
 
-from wedgesweep.compiled import compiled
+from wedgesweep.compiled import compiled, inner
 from wedgesweep.effects import column_compliance, cubic_stiffness
 from wedgesweep.systems.suspension.newton import NO_FRICTION, Coefficients, Loads, reactions
 
@@ -20,7 +20,7 @@ def determinant(column_mu, bolster_mu, p):
     return -reactions(unloaded, Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[1]
 
 
-@compiled
+@inner
 def _response(wedge, vertical, lateral, mu, p):
     """Accelerations z'' and Q'' under forces on wedge (up), bolster and column (outward).
 

@@ -51,7 +51,8 @@ def both_sides(t, y, mode, first, p, out):
     for i in range(count - 1, 0, -1):
         for low in range(2**i):
             _resolve(order[i], t, y, vertices[low], vertices[low + 2**i], p)
-    out[0], out[1] = vertices[0], vertices[1]
+    for i in range(WIDTH):
+        out[0, i], out[1, i] = vertices[0, i], vertices[1, i]
     return unique
 
 

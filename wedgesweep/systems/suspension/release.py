@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import inner
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero
 from wedgesweep.hybrid.state import LOCKED, NO_EVENT
 from wedgesweep.systems.suspension.events import EVENTS, events
@@ -35,12 +35,22 @@ class _Held(NamedTuple):
     out: Any
 
 
+@inlined
+def _smallest(values):
+    """Index of the smallest value."""
+    place = 0
+    for i in range(1, values.size):
+        if values[i] < values[place]:
+            place = i
+    return place
+
+
 @searched(_Held)
 @inner
 def _lowest(t, held):
     """Smallest event function at time t."""
     events(UNDETERMINED, t, held.y, held.mode, held.p, held.out)
-    return held.out.min(), nan
+    return held.out[_smallest(held.out)], nan
 
 
 @inner
@@ -113,7 +123,7 @@ def scanned_release(state, stop, p):
             if now > 0.0:
                 moment = zero(context, Bracket(held, now, following, after), CLOSE * step)
             _lowest(moment, context)
-            return moment, int(np.argmin(out))
+            return moment, _smallest(out)
         earlier, before = held, now
         held, now = following, after
     return stop, NO_EVENT
