@@ -1,5 +1,6 @@
 """Sweeps of the oscillator: from its config to a dataset and figures."""
 
+from math import pi
 from pathlib import Path
 
 import numpy as np

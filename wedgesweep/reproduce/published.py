@@ -60,8 +60,8 @@ def block_on_belt(ds: xr.Dataset) -> tuple[Check, ...]:
     case = ds.squeeze()
     belt = config.parse(ds.attrs["config"]).oscillator["belt_velocity"]
     t = case["phase"].values / (2.0 * pi * case["frequency"].item())
-    motion = (case[name].values.astype(float) for name in ("displacement", "velocity", "stuck"))
-    cycle = stick_slip_cycle.measured(t, *motion, belt=belt)
+    x, velocity, stuck = (case[name].values for name in ("displacement", "velocity", "stuck"))
+    cycle = stick_slip_cycle.measured(t, x, velocity, stuck, belt)
     return tuple(
         _within(f"block on a belt: {name.replace('_', ' ')}", getattr(cycle, name), *expected)
         for name, expected in BELT.items()
