@@ -27,7 +27,8 @@ OF_STEADY = (
     *("q", "dof"),
 )
 OF_LOOPS = ("displacement", "velocity", "measured_force", "simulated_force", "force_noise", "q", "dof")
-VARIABLES = {"steady": OF_STEADY, "loop": OF_LOOPS}
+OF_TRANSIENTS = ("time", "measured", "simulated", "sample_noise", "q", "dof")
+VARIABLES = {"steady": OF_STEADY, "transient": OF_TRANSIENTS, "loop": OF_LOOPS}
 
 
 @dataclass(frozen=True, eq=False)

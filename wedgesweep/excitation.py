@@ -44,6 +44,13 @@ def set_series(rows: np.ndarray, harmonics: np.ndarray) -> None:
     part["sine"][..., : orders.size] = -harmonics.imag
 
 
+def set_no_motion(rows: np.ndarray, length: float) -> None:
+    """Let no input act in full records, shape (n,), in place; motions are compared with a length (m)."""
+    rows["input"]["amplitude"] = length
+    part = rows["series"]
+    part["count"], part["cosine"], part["sine"] = 2, 0.0, 0.0
+
+
 def has_series(rows: np.ndarray) -> np.ndarray:
     """Whether the base motion of full records, shape (n,), has more harmonics than the first."""
     return rows["series"]["count"] > 1

@@ -9,8 +9,8 @@ from tests.command import invoke
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.loop.from_measurement import loop_data
-from wedgesweep.diagnose.loop.smoothing import LowPass, highest_cutoff, motion, white_noise
 from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.smoothing import LowPass, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
@@ -123,8 +123,9 @@ def test_misfit_of_the_true_model_is_noise(tmp_path):
         data = loop_data(read(write(tmp_path / str(seed), seed=seed)))
         fit = base_fit(Search.of(data, [])).base.fit
         ratios.append(fit.chi2 / fit.dof)
-    assert np.mean(ratios) == pytest.approx(1.0, abs=0.1)
-    assert max(ratios) < 1.2
+    # The noise that is assumed is the upper end of its interval.
+    assert 0.8 < np.mean(ratios) < 1.0
+    assert max(ratios) < 1.1
 
 
 def test_blocks_are_whole_cycles(tmp_path):
@@ -215,7 +216,7 @@ def test_files_figures_and_report(tmp_path):
 
 FAULTS = {
     "one way": ('kind = "loop"', "goes one way only"),
-    "amplitude": ('kind = "loop"\namplitude_mm = 1.0', "the motion of a loop is recorded"),
+    "amplitude": ('kind = "loop"\namplitude_mm = 1.0', "not for kind = .loop."),
     "cut-off": ('kind = "loop"\nlowpass_hz = 300.0', "times the sampling rate"),
 }
 

@@ -89,6 +89,16 @@ def test_verdicts_are_judged():
     assert not judge.right_family(record("data-insufficient", [], truth=()))
 
 
+def test_the_leading_cause_is_judged_by_the_ladder():
+    def led(*rungs):
+        return judge.leads_ladder({"truth": ["stribeck"], "ladder": [{"effects": list(r)} for r in rungs]})
+
+    assert led((), ("stribeck",), ("ageing", "preload"))
+    assert led((), ("ageing",), ("preload", "stribeck"))
+    assert not led((), ("ageing",), ("ageing", "preload"))
+    assert not led(())
+
+
 def test_coverage_allows_for_full_turns_of_angles():
     found = record("named", ["cross_slip"], truth=("cross_slip",))
     found["numbers"] = {"cross_slip": {"velocity_mm_per_s": 5.0, "phase_deg": 179.0}}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.validation import response, simulator
+from wedgesweep.validation import response, rigs, simulator
 
 PHASES, SETTLE = 128, 60
 
@@ -16,7 +16,9 @@ def test_without_its_effects_it_is_the_base_model(law, frequency, amplitude):
     stride = round(1.0 / frequency / 5e-6 / PHASES)
     step = 1.0 / frequency / PHASES / stride
     signal, force = simulator.simulate(system, step, SETTLE * PHASES * stride, stride, PHASES)
-    ds = response.run(response.System(law, 4.0), [response.Test(frequency, 1e3 * amplitude)]).isel(case=0)
+    ds = response.run(
+        response.System(law, rigs.bench(4.0)), [response.Test(frequency, 1e3 * amplitude)]
+    ).isel(case=0)
     ours = ds["displacement_harmonics"].values @ [1.0, 1j]
     theirs = response.harmonics(-signal[0])[: ours.size]
     np.testing.assert_allclose(theirs, ours, atol=1e-3 * abs(ours[0]))

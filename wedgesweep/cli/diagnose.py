@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.options import N_JOBS, require_place_for
 
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "candidates", "ladder", "gain")}
+FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
 # Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop"}
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
 
 
 @click.command()
@@ -57,6 +58,7 @@ def diagnose(
     from wedgesweep.sweep.cases import compiled_mark
 
     measurement = api.read_measurement(measured, model)
+    print_warnings(measurement)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     processors = count_jobs(n_jobs)

@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
 LOOP_HEADINGS = ("file", "duration", "samples", "low-pass", "noise", "of velocity", "blocks")
+TRANSIENT_HEADINGS = ("file", "duration", "samples", "periods", "largest", "noise")
+TRANSIENT_UNITS = ("", "s", "", "natural", "mm", "mm")
 LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
 
 
@@ -23,6 +25,8 @@ def print_measurement(measurement: "Measurement") -> None:
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
     if measurement.kind == "loop":
         rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
+    elif measurement.kind == "transient":
+        rows = [TRANSIENT_HEADINGS, TRANSIENT_UNITS, *_transient_rows(measurement)]
     else:
         unit = measurement.model.amplitude_unit
         units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
@@ -31,6 +35,33 @@ def print_measurement(measurement: "Measurement") -> None:
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
+    print_warnings(measurement)
+
+
+def print_warnings(measurement: "Measurement") -> None:
+    """Print what is odd in records that are usable all the same."""
+    from wedgesweep.measured.quality import warnings
+
+    for test in measurement.tests:
+        for warning in warnings(test):
+            click.echo(f"warning: {test.file}: {warning}", err=True)
+
+
+def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
+    """What is compared of each free motion."""
+    from wedgesweep.diagnose.transient.from_measurement import transient_data
+
+    return [
+        (
+            test.file,
+            f"{test.duration:.4g}",
+            f"{test.time.size}",
+            f"{own.periods:.4g}",
+            f"{1e3 * own.length:.4g}",
+            f"{1e3 * own.noise[0]:.3g} ({100.0 * own.noise[0] / own.length:.2g} %)",
+        )
+        for test, own in zip(measurement.tests, transient_data(measurement).releases, strict=True)
+    ]
 
 
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:

@@ -30,18 +30,24 @@ from wedgesweep.diagnose.search import (
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.next_test import NextTest, recommend
+from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.diagnose.work import Untried
 from wedgesweep.effects import EFFECTS, SCALES, acting
 from wedgesweep.measured import Measurement
-from wedgesweep.measured.declarations import LOOP, STEADY
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
 # Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
 MUCH = 0.9
 # What a fit sees of the tests of each kind.
-DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData]] = {STEADY: harmonic_data, LOOP: loop_data}
+DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]] = {
+    STEADY: harmonic_data,
+    LOOP: loop_data,
+    TRANSIENT: transient_data,
+}
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,7 @@ class Diagnosis:
     """
 
     measurement: Measurement
-    data: HarmonicData | LoopData
+    data: HarmonicData | LoopData | TransientData
     base: Explanation
     explanations: tuple[Explanation, ...]
     scores: tuple[Score, ...]

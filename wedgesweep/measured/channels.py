@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from wedgesweep.config import Config
-from wedgesweep.measured import loops
+from wedgesweep.measured import kinds
 from wedgesweep.measured.declarations import (
     ABSOLUTE,
     AMPLITUDE,
     COLUMNS,
     FORCE_AMPLITUDE,
     INPUT,
-    LOOP,
     RELATIVE,
     RESPONSES,
     STEADY,
@@ -27,8 +26,8 @@ def channel_faults(
     columns: Mapping[str, Mapping[str, Any]], gain_std: float, kind: str = STEADY
 ) -> list[str]:
     """Faults of the declared channels as "key: fault", those of single keys aside."""
-    if kind == LOOP:
-        return loops.column_faults(columns)
+    if kind != STEADY:
+        return kinds.column_faults(columns, kind)
     responses = [name for name in RESPONSES if name in columns]
     if INPUT not in columns:
         return _with_stated_amplitude(columns, gain_std)
@@ -59,7 +58,7 @@ def excitation_faults(
     columns: Mapping[str, Mapping[str, Any]], model: Config, kind: str = STEADY
 ) -> list[str]:
     """Faults of the channels of a model with this excitation, as "key: fault"."""
-    if kind == LOOP:
+    if kind != STEADY:
         return []
     faults = []
     if FORCE in columns:
@@ -90,8 +89,8 @@ def _unknown_motion(columns: Mapping[str, Mapping[str, Any]], model: Config) -> 
 
 def keys_faults(given: Mapping[str, Any], columns: Mapping[str, Any], model: Config | None) -> list[str]:
     """Faults of the keys of a test beside the channels, as "key: fault"."""
-    if given.get("kind") == LOOP:
-        return loops.key_faults(given)
+    if wrong := kinds.key_faults(given):
+        return wrong
     stated = [key for key in (AMPLITUDE.key, FORCE_AMPLITUDE.key) if key in given]
     if INPUT in columns:
         told = "the input is recorded, which tells more; omit it, or the column input"

@@ -1,7 +1,7 @@
 """Declaration of every key of measured.toml."""
 
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import inf, isfinite, nan
 from typing import Any
 
 from wedgesweep.config import toml
@@ -25,8 +25,8 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
-# Kinds of test: a periodic response, or a force under an imposed motion.
-STEADY, LOOP = KINDS = ("steady", "loop")
+# Kinds of test: a periodic response, a free motion, or a force under an imposed motion.
+STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
@@ -40,6 +40,11 @@ LOWPASS = Quantity(
     nan,
     "loop: cut-off frequency; by default as high as the noise of the displacement allows",
     above=0.0,
+)
+FROM = Quantity("from_s", nan, "time in the file from which the record is used; by default all of it")
+TO = Quantity("to_s", nan, "time in the file up to which the record is used; by default all of it")
+DETREND = Flag(
+    key="detrend", meaning="whether to remove the straight line of a sensor that drifts", default=False
 )
 MODEL_ERROR = Quantity(
     "model_error",
@@ -100,7 +105,11 @@ class RecordTable(Table):
         if isinstance(value, dict) and "amplitude_std" in value and not value.keys() & set(stated):
             at = f"{path}." if path else ""
             problems.append(f"{at}amplitude_std: given without {' or '.join(stated)}; omit it")
-        return super().read(value, path, problems)
+        read = super().read(value, path, problems)
+        if read.get("from_s", -inf) >= read.get("to_s", inf):
+            at = f"{path}." if path else ""
+            problems.append(f"{at}to_s: {read['to_s']:g} is not after from_s = {read['from_s']:g}")
+        return read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,7 +186,7 @@ TEST = RecordTable(
         (
             Choice(
                 key="kind",
-                meaning="steady: a periodic response; loop: the force under an imposed motion",
+                meaning="steady: periodic response; transient: free motion; loop: force under a motion",
                 choices=KINDS,
                 default=STEADY,
             ),
@@ -187,6 +196,9 @@ TEST = RecordTable(
         (Number.of(AMPLITUDE, optional=True),),
         (Number.of(FORCE_AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),
+        (Number.of(FROM, optional=True),),
+        (Number.of(TO, optional=True),),
+        (DETREND,),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )

@@ -22,10 +22,19 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
-from wedgesweep.measured import loops, overrides
+from wedgesweep.measured import kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
-from wedgesweep.measured.declarations import INPUT, MODEL_ERROR, QUANTITIES, STEADY, TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.declarations import (
+    DETREND,
+    INPUT,
+    MODEL_ERROR,
+    QUANTITIES,
+    STEADY,
+    TEST,
+    UNCERTAIN,
+    UNITS,
+)
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
@@ -130,9 +139,9 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
         problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
         gain_std = 0.0
-    kinds = [test.kind for test in complete]
-    kind = (kinds or [STEADY])[0]
-    faults = loops.kind_faults(kinds) or channel_faults(columns[0], gain_std, kind)
+    all_kinds = [test.kind for test in complete]
+    kind = (all_kinds or [STEADY])[0]
+    faults = kinds.kind_faults(all_kinds) or channel_faults(columns[0], gain_std, kind)
     if config is not None and not (problems or faults):
         faults = excitation_faults(columns[0], config, kind)
     problems += [f"{path}: tests: {fault}" for fault in faults]
@@ -223,7 +232,9 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
 
 
 def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
-    """Attributes of a test with its numbers of the model read from their text."""
+    """Attributes of a test with its numbers of the model read from their text, and 0 or 1 as a flag."""
+    if attributes.get(DETREND.key) in (0, 1):  # an attribute cannot be a truth value
+        attributes = attributes | {DETREND.key: bool(attributes[DETREND.key])}
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:

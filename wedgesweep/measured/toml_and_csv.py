@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep.config import Config
-from wedgesweep.measured import channels, csv_columns, loops, overrides
+from wedgesweep.measured import channels, csv_columns, kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import ROOT, STEADY
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
@@ -24,9 +24,9 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     if model is None and "model" in measurement:
         model = path.parent / measurement["model"]
     columns = measurement.get("columns", {})
-    kinds = [each.get("kind", STEADY) for each in measurement.get("test", ())]
-    kind = (kinds or [STEADY])[0]
-    problems += [f"{path}: measurement.{fault}" for fault in loops.kind_faults(kinds)]
+    all_kinds = [each.get("kind", STEADY) for each in measurement.get("test", ())]
+    kind = (all_kinds or [STEADY])[0]
+    problems += [f"{path}: measurement.{fault}" for fault in kinds.kind_faults(all_kinds)]
     if not problems:
         told = channels.channel_faults(columns, measurement["input_gain_std"], kind)
         problems += [f"{path}: {_at(fault)}" for fault in told]

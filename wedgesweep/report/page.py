@@ -11,11 +11,11 @@ from wedgesweep.report import (
     html,
     ladder,
     limits,
-    loops,
     method,
     misfit,
     next_test,
     rivals,
+    sampled,
 )
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
@@ -67,8 +67,8 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
 
 
 def _measured_and_simulated(result: DiagnosisResult, draw: InlineFigures) -> Markup:
-    if result.document.get("kind") == "loop":
-        return loops.section(result, draw, misfit.heading(result))
+    if result.document.get("kind", "steady") != "steady":
+        return sampled.section(result, draw, misfit.heading(result))
     return misfit.section(result, draw)
 
 

@@ -1,6 +1,6 @@
 """Draws what a data set hides, as strong as is needed for the excess chi-squared that is wanted."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,10 +8,12 @@ import numpy as np
 from wedgesweep.effects import EFFECTS
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.synthesize.names import NOISES
-from wedgesweep.validation import plan, ranges, strength, unmodelled
+from wedgesweep.validation import imperfect, plan, ranges, rigs, strength, unmodelled
+from wedgesweep.validation.imperfect import Errors
 from wedgesweep.validation.response import Effects, System, Test
+from wedgesweep.validation.rigs import Rig
 from wedgesweep.validation.sets import DataSet
-from wedgesweep.validation.strength import Bench
+from wedgesweep.validation.strength import SAMPLING_HZ, Bench
 
 # Range of the relative std of stated amplitudes, and of that of an uncertain friction level.
 SPREAD, UNCERTAIN = (0.001, 0.02), (0.05, 0.10)
@@ -23,14 +25,22 @@ LEAN_DEG = 4.0
 ATTEMPTS, SAME_NOISE, SAME_EFFECT = 60, 12, 48
 # Excess that each effect of a pair must cause while only the other is in the model.
 LEAST_OF_PAIR = 900.0
+# Model error that is allowed for on an imperfect bench, and how well a recorded input is known.
+MODEL_ERROR, RECORDED_SPREAD = 0.02, 0.001
+# What a recorded input tells by itself, and what only sensors of the relative motion show.
+OF_INPUT, OF_SENSORS = ("input_distortion", "stray_vibration"), ("velocity_lag", "displacement_gain")
 
 
 @dataclass
 class Draft:
-    """Everything that a data set is made from; parameters of effects in the units of their keys."""
+    """Everything that a data set is made from; parameters of effects in the units of their keys.
+
+    ``record_input``: what is recorded of the input, None if its amplitude is stated. ``errors``: how the
+    true rig differs from that of the model; their ``size`` is relative to those of a good laboratory.
+    """
 
     law: str
-    lean: float
+    rig: Rig
     noise: str
     tests: list[Test]
     spread: float | None
@@ -39,6 +49,22 @@ class Draft:
     unmodelled: dict[str, float] = field(default_factory=dict)
     candidates: tuple[str, ...] = tuple(EFFECTS)
     expected: float = 0.0
+    record_input: str | None = None
+    model_error: float = 0.0
+    size: float = 0.0
+    errors: Errors | None = None
+
+    @property
+    def lean(self) -> float | None:
+        """Angle of the column (deg) in the model; None without one."""
+        return self.rig.sections.get("suspension", {}).get("column_angle_deg")
+
+    @property
+    def true_system(self) -> System:
+        """The system behind the data."""
+        if self.errors is None:
+            return self.system(self.hidden)
+        return System(self.law, self.errors.rig, {**self.errors.effects, **self.hidden})
 
     @property
     def truth(self) -> list[str]:
@@ -46,7 +72,7 @@ class Draft:
         return [unmodelled.name_of(self.unmodelled)] if self.unmodelled else sorted(self.hidden)
 
     def system(self, effects: Effects) -> System:
-        return System(self.law, self.lean, effects)
+        return System(self.law, self.rig, effects)
 
     def excess_of(self, hidden: Effects, known: Effects) -> float:
         """Excess of a system with the effects ``hidden`` under a model with the effects ``known``."""
@@ -65,19 +91,22 @@ class Draft:
         """Excess of the system behind the data under each of some models."""
         if self.unmodelled:
             return self._excesses(self._unmodelled(self.unmodelled)[0], 0.0, *models)
-        return self.excesses(self.hidden, *models)
+        true = strength.true_spectra(self.true_system, self.tests)
+        return self._excesses(true, strength.tone_of(self.hidden), *models)
 
     def presses(self) -> bool:
         """Whether the wedges stay pressed, and the bolster moves, in every test."""
         if self.unmodelled:
             return self._unmodelled(self.unmodelled)[1] > unmodelled.LEAST_FORCE
-        return plan.suits(self.system(self.hidden), self.tests)
+        return plan.suits(self.true_system, self.tests)
 
     def _unmodelled(self, effect: Mapping[str, float]) -> tuple[np.ndarray, float]:
+        assert self.lean is not None
         return unmodelled.spectra(self.law, self.lean, self.tests, effect)
 
     def _excesses(self, true: np.ndarray | None, tone_hz: float, *models: Effects) -> list[float]:
-        bench = Bench(self.tests, self.noise, self.spread, self.uncertain)
+        sampling = SAMPLING_HZ * rigs.frequency_ratio(self.rig)
+        bench = Bench(self.tests, self.noise, self.spread, self.uncertain, sampling, self.model_error)
         return [strength.excess(true, tone_hz, self.system(known), bench) for known in models]
 
 
@@ -91,7 +120,7 @@ def draw(one: DataSet) -> Draft:
     """
     for attempt in range(ATTEMPTS):
         random = one.random(attempt)
-        draft = _draw_bench(one, random, attempt)
+        draft = BENCHES.get(one.kind, _draw_bench)(one, random, attempt)
         if draft and HIDE[one.kind](one, draft, random, attempt):
             return draft
     message = f"{one.name}: no system of this kind reaches the excess wanted in {ATTEMPTS} attempts"
@@ -103,15 +132,59 @@ def _draw_bench(one: DataSet, random: np.random.Generator, attempt: int) -> Draf
     law = LAW_NAMES[int(random.integers(len(LAW_NAMES)))]
     lean = -LEAN_DEG if random.random() < OTHER_LEAN_SHARE else LEAN_DEG
     poor = one.kind == "poor"
-    tests = plan.draw(law, lean, plan.PAPER if poor else plan.TWELVE, random)
+    rig = rigs.bench(lean)
+    tests = plan.draw(law, rig, plan.PAPER if poor else plan.TWELVE, random)
     low, high = np.log(SPREAD)
     spread = None if poor else float(f"{np.exp(random.uniform(low, high)):.3g}")
     uncertain = {}
     if random.random() < UNCERTAIN_SHARE:
         uncertain["friction_level"] = round(float(random.uniform(*UNCERTAIN)), 3)
-    # Every effect comes with every kind of noise in which it can show.
-    noise = NOISES[(one.index + one.index // len(EFFECTS) + attempt // SAME_NOISE) % len(NOISES)]
-    return None if tests is None else Draft(law, lean, noise, tests, spread, uncertain)
+    noise = _noise(one, attempt)
+    return None if tests is None else Draft(law, rig, noise, tests, spread, uncertain)
+
+
+def _noise(one: DataSet, attempt: int) -> str:
+    """Every effect comes with every kind of noise in which it can show."""
+    return NOISES[(one.index + one.index // len(EFFECTS) + attempt // SAME_NOISE) % len(NOISES)]
+
+
+def _draw_imperfect(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
+    """Draw the bench with errors: of each size in turn, with the input stated or recorded in turn."""
+    draft = _draw_bench(one, random, attempt)
+    if draft is None or draft.lean is None:
+        return None
+    size = imperfect.SIZES[one.index % len(imperfect.SIZES)]
+    recorded = one.index // len(imperfect.SIZES) % 2 == 1
+    draft.size, draft.model_error = size, MODEL_ERROR
+    draft.errors = imperfect.draw(size, recorded, draft.lean, random)
+    draft.spread, draft.uncertain = draft.errors.spread, dict(draft.errors.uncertain)
+    if recorded:
+        _record_input(draft, random)
+    return draft if draft.presses() else None
+
+
+def _draw_any_rig(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
+    return _draw_new_rig(rigs.any_size(random), one, random, attempt)
+
+
+def _draw_oscillator(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
+    draft = _draw_new_rig(rigs.oscillator(one.index, random), one, random, attempt)
+    if draft is not None:
+        _record_input(draft, random)
+    return draft
+
+
+def _draw_new_rig(rig: Rig, one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:
+    law = LAW_NAMES[int(random.integers(len(LAW_NAMES)))]
+    tests = plan.draw(law, rig, plan.TWELVE, random)
+    spread = float(f"{rigs.logarithmic(SPREAD, random):.3g}")
+    return None if tests is None else Draft(law, rig, _noise(one, attempt), tests, spread, {})
+
+
+def _record_input(draft: Draft, random: np.random.Generator) -> None:
+    quantities = draft.rig.recorded_quantities
+    draft.record_input = quantities[int(random.integers(len(quantities)))]
+    draft.spread = RECORDED_SPREAD
 
 
 def _hide_nothing(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
@@ -120,9 +193,8 @@ def _hide_nothing(one: DataSet, draft: Draft, random: np.random.Generator, attem
 
 def _hide(draft: Draft, effect: str, target: float, random: np.random.Generator) -> bool:
     """Add an effect that, missing from the model, causes the target excess beside the effects there are."""
-    others, path = dict(draft.hidden), ranges.path(effect, random)
-    if effect in draft.uncertain:
-        draft.uncertain = {}
+    others, path = dict(draft.hidden), ranges.path(effect, random, draft.rig.units)
+    draft.uncertain.pop(effect, None)
     found = strength.reach(target, lambda s: draft.excess_of({**others, effect: path(s)}, others))
     if found is None:
         return False
@@ -141,6 +213,22 @@ def _hide_next(one: DataSet, draft: Draft, random: np.random.Generator, attempt:
     """One effect; the sets of a kind take turns through all effects."""
     effect = ranges.EFFECTS[(one.index + attempt // SAME_EFFECT) % len(ranges.EFFECTS)]
     return _hide_single(draft, effect, one.draw_target(random), random)
+
+
+def _hide_possible(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
+    """One effect that the measurement can show; those of a seed take turns in an order of their own."""
+    possible = _possible(draft)
+    order = np.random.default_rng([one.seed, 97]).permutation(len(ranges.EFFECTS))
+    turns = [ranges.EFFECTS[i] for i in order if ranges.EFFECTS[i] in possible]
+    effect = turns[(one.index + one.index // len(turns) + attempt // SAME_NOISE) % len(turns)]
+    return _hide_single(draft, effect, one.draw_target(random), random)
+
+
+def _possible(draft: Draft) -> Sequence[str]:
+    """Effects that the measurement can show."""
+    hidden = OF_INPUT if draft.record_input else ()
+    sensors = () if draft.rig.relative else OF_SENSORS
+    return [name for name in draft.rig.possible_effects if name not in (*hidden, *sensors)]
 
 
 def _hide_any(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
@@ -196,4 +284,15 @@ HIDE: dict[str, Callable[[DataSet, Draft, np.random.Generator, int], bool]] = {
     "pair": _hide_pair,
     "unknown": _hide_unknown,
     "poor": _hide_any,
+    "imperfect": _hide_possible,
+    "errors-only": _hide_nothing,
+    "random-rig": _hide_possible,
+    "oscillator": _hide_possible,
+}
+# How other rigs than the bench are drawn.
+BENCHES: dict[str, Callable[[DataSet, np.random.Generator, int], Draft | None]] = {
+    "imperfect": _draw_imperfect,
+    "errors-only": _draw_imperfect,
+    "random-rig": _draw_any_rig,
+    "oscillator": _draw_oscillator,
 }

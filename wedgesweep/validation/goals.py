@@ -79,6 +79,7 @@ def goals(sets: Sets) -> list[Goal]:
     """All lines of the table."""
     clean = share(sets.of("clean"), lambda record: bool(record["causes"]))
     unknown, two, three = sets.of("unknown"), sets.of("poor"), sets.of("added")
+    imperfect = sets.of("imperfect")
     return [
         Goal("nothing hidden: a cause named", "at most 1", str(clean), clean.hits <= 1 if clean.n else None),
         _at_least("one effect, excess >= 800: right family", share(sets.strong, judge.right_family), 0.95),
@@ -94,6 +95,18 @@ def goals(sets: Sets) -> list[Goal]:
             "the paper's two tests: abstains, recommends a test", share(two, judge.asks_for_test), 0.95
         ),
         _at_least("these and the recommended test: truth named", share(three, judge.exact), 0.80),
+        _at_least(
+            "small errors, one effect: it leads the ladder", share(imperfect, judge.leads_ladder), 0.90
+        ),
+        _at_least("  exact, with a model error of 2 %", share(imperfect, judge.exact), 0.80),
+        _at_most("  wrong `named`", share(imperfect, judge.wrongly_named), 0.03),
+        _at_least(
+            "small errors only: nothing missing", share(sets.of("errors-only"), judge.nothing_missing), 0.90
+        ),
+        _at_least(
+            "rig of any size: exact or in a tie", share(sets.of("random-rig"), judge.exact_or_tied), 0.95
+        ),
+        _at_least("oscillator: exact or in a tie", share(sets.of("oscillator"), judge.exact_or_tied), 0.95),
         _coverage(sets.exact_singles),
         *_gain(sets.exact_singles),
     ]

@@ -40,6 +40,19 @@ def exact_or_tied(record: Record) -> bool:
     return exact(record) or (record["verdict"] == "tied" and reported(record))
 
 
+def leads_ladder(record: Record) -> bool:
+    """Whether the truth is the most accurate single effect, or part of the most accurate pair."""
+    rungs = [rung["effects"] for rung in record["ladder"]]
+    return any(
+        rung == record["truth"] or (len(rung) == 2 and {*record["truth"]} <= {*rung}) for rung in rungs
+    )
+
+
+def nothing_missing(record: Record) -> bool:
+    """Whether the verdict is that the model is right."""
+    return bool(record["verdict"] == "nothing-missing")
+
+
 def abstains(record: Record) -> bool:
     """Whether the verdict names nothing although something is wrong."""
     return record["verdict"] in ABSTAINING

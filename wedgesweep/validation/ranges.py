@@ -5,6 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.effects import EFFECTS as EFFECTS_BY_NAME
+from wedgesweep.natural_units import BENCH, NaturalUnits
+
 Numbers = dict[str, float]
 
 
@@ -67,8 +70,9 @@ OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
 EFFECTS = tuple(LEADING)
 
 
-def path(effect: str, random: np.random.Generator) -> Callable[[float], Numbers]:
-    """Draw how the parameters of an effect depend on its strength, from 0 to 1."""
+def path(effect: str, random: np.random.Generator, units: NaturalUnits = BENCH) -> Callable[[float], Numbers]:
+    """Draw how the parameters of an effect depend on its strength, from 0 to 1, on a rig of some size."""
+    ratios = {each.key: units.ratio(each.dimension) for each in EFFECTS_BY_NAME[effect].quantities}
     leading = LEADING[effect]
     down = random.random() < leading.down
     strong = min(leading.strong, leading.lowest) if down else leading.strong
@@ -79,7 +83,8 @@ def path(effect: str, random: np.random.Generator) -> Callable[[float], Numbers]
         step = leading.weak * (strong / leading.weak) ** strength
         value = float(leading.neutral - step if down else leading.neutral + step)
         grown = {key: others[key] * GROWTH ** (1.0 - strength) for key in growing}
-        return {leading.key: value, **others, **grown}
+        drawn = {leading.key: value, **others, **grown}
+        return {key: ratios[key] * number for key, number in drawn.items()}
 
     return numbers
 

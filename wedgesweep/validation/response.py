@@ -9,6 +9,7 @@ import xarray as xr
 
 from wedgesweep.config import from_document
 from wedgesweep.sweep.run import Sweep
+from wedgesweep.validation.rigs import Rig
 
 Effects = Mapping[str, Mapping[str, float]]
 TONE = "stray_vibration"
@@ -19,34 +20,36 @@ UNDER_TONE = {"settle_periods": 40, "kept_periods": 8}
 
 
 class Test(NamedTuple):
-    """Frequency and input amplitude of one test."""
+    """Frequency and input amplitude (mm, of a force N) of one test."""
 
     frequency_hz: float
-    amplitude_mm: float
+    amplitude: float
 
 
 class System(NamedTuple):
-    """A suspension with effects, whose parameters are in the units of their keys."""
+    """A rig with effects, whose parameters are in the units of their keys."""
 
     law: str
-    lean_deg: float
+    rig: Rig
     effects: Effects = {}  # noqa: RUF012 - never changed
 
     def document(self) -> dict[str, Any]:
         """Its config, but for the tests."""
-        return {
-            "title": "system under test",
-            "suspension": {"column_angle_deg": self.lean_deg},
-            "effects": self.effects,
-            "sweep": {"friction_law": self.law, "beta": 1.0, "amplitude_mm": 0.1},
-        }
+        return self.rig.document(self.law, self.effects)
+
+    def test_keys(self, test: Test) -> dict[str, float]:
+        """A test as a config and a plan of tests write it."""
+        return {"frequency_hz": test.frequency_hz, self.rig.amplitude_key: test.amplitude}
 
 
 def run(system: System, tests: Sequence[Test]) -> xr.Dataset:
     """Dataset of the tests along the dimension ``case``; NaN where there is no steady response."""
     window = UNDER_TONE if TONE in system.effects else STEADY
-    document = system.document() | {
-        "sweep": {"case": [{"friction_law": system.law, **test._asdict()} for test in tests]},
+    given = system.document()
+    cases = [{"friction_law": system.law, **system.test_keys(test)} for test in tests]
+    driven = {key: value for key, value in given["sweep"].items() if key == "excitation"}
+    document = given | {
+        "sweep": {"case": cases, **driven},
         "solver": {"method": "event-driven", "samples_per_period": SAMPLES, **window},
     }
     return Sweep(from_document(document), Path()).run_here()

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from dataclasses import asdict
 from pathlib import Path
 from shutil import rmtree
@@ -23,6 +24,9 @@ from wedgesweep.validation.response import TONE, Test
 from wedgesweep.validation.sets import DataSet
 from wedgesweep.validation.strength import LEVEL
 
+# What is kept of how a set was drawn, and the kinds that simpler methods are tried on.
+KEPT = ("law", "lean", "noise", "spread", "uncertain", "expected", "record_input", "size")
+COMPARED = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
 RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
 DATA, RESULT = "data", "diagnosis"
 # Relative std with which the amplitude of a recommended test is known.
@@ -91,7 +95,8 @@ def _run(one: DataSet, out: Path) -> Record:
         original = record_of(one.original, out)
         if original["next_test"] is None:  # nothing to add: the verdict stands
             return {**original, "name": one.name, "kind": one.kind}
-        draft.tests.append(Test(*(original["next_test"][key] for key in Test._fields)))
+        added = original["next_test"]
+        draft.tests.append(Test(added["frequency_hz"], added[draft.rig.amplitude_key]))
         spreads.append(ADDED_SPREAD)
     write(directory / DRAFT, asdict(draft))
     clock.lap("draw")
@@ -107,7 +112,8 @@ def _run(one: DataSet, out: Path) -> Record:
     files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
     wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *limit)
     clock.lap("diagnose")
-    named_by = {name: method(directory / RESULT) for name, method in BASELINES.items()}
+    simpler = BASELINES if one.kind in COMPARED else {}
+    named_by = {name: method(directory / RESULT) for name, method in simpler.items()}
     clock.lap("baselines")
     found = json.loads((directory / RESULT / "diagnosis.json").read_text())
     return {**_record(one, draft, found), "baselines": named_by, "seconds": clock.seconds}
@@ -122,8 +128,11 @@ def _record(one: DataSet, draft: Draft, found: dict[str, Any]) -> Record:
         "code": git_commit() or __version__,
         "truth": draft.truth,
         "numbers": draft.hidden,
-        **{key: getattr(draft, key) for key in ("law", "lean", "noise", "spread", "uncertain", "expected")},
+        **{key: getattr(draft, key) for key in KEPT},
         **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
+        "ladder": [
+            {key: rung[key] for key in ("effects", "accuracy", "distinct")} for rung in found["ladder"]
+        ],
         "excess": found["misfit"]["excess_base"],
         **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
         "gain_in_truth": gain_in_truth(draft, found["causes"]),
@@ -147,28 +156,43 @@ def gain_in_truth(draft: Draft, causes: list[dict[str, Any]]) -> float | None:
 
 def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory: Path) -> None:
     """Make the data. As on a test bench, a test in which the bolster sticks gets more input."""
-    true = draft.system(draft.hidden).document()
-    (directory / "true.toml").write_text(toml.dumps(true))
+    true = draft.true_system
+    (directory / "true.toml").write_text(toml.dumps(true.document()))
     options = ["--noise", draft.noise, "--level", LEVEL, "--seed", seed, "--n-jobs", 1]
     if TONE not in draft.hidden:  # with a tone nothing is ever steady, and all these periods would be run
         options += ["--settle-periods", SETTLE_PERIODS]
+    if draft.record_input:
+        options += ["--record-input", draft.record_input]
+    # The errors of an imperfect bench are in its rig.
+    uncertain = {} if draft.errors else draft.uncertain
     files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
     for attempt in range(RAISES):
         tests = [
-            {**test._asdict(), **({"known": False} if spread is None else {"amplitude_std": spread})}
+            {**true.test_keys(test), **({"known": False} if spread is None else {"amplitude_std": spread})}
             for test, spread in zip(draft.tests, spreads, strict=True)
         ]
-        (directory / "tests.toml").write_text(toml.dumps({"uncertain": draft.uncertain, "test": tests}))
+        (directory / "tests.toml").write_text(toml.dumps({"uncertain": uncertain, "test": tests}))
         try:
-            return wedgesweep("synthesize", *files, *options)
+            wedgesweep("synthesize", *files, *options)
+            break
         except CommandError as error:
             sticking = [int(number) for number in STICKS.findall(str(error))]
             if not sticking or attempt == RAISES - 1:
                 raise
         for i in sticking:
-            amplitude = round(RAISE * draft.tests[i].amplitude_mm, 6)
-            draft.tests[i] = draft.tests[i]._replace(amplitude_mm=amplitude)
-    return None
+            amplitude = round(RAISE * draft.tests[i].amplitude, 6)
+            draft.tests[i] = draft.tests[i]._replace(amplitude=amplitude)
+    if draft.errors:
+        _declare_errors(draft, directory / DATA)
+
+
+def _declare_errors(draft: Draft, data: Path) -> None:
+    """Put the model on trial in place of the true one, and say what is known of their difference."""
+    (data / "model.toml").write_text(toml.dumps(draft.system({}).document()))
+    file = data / "measured.toml"
+    document = tomllib.loads(file.read_text())
+    document["measurement"] |= {"uncertain": draft.uncertain, "model_error": draft.model_error}
+    file.write_text(toml.dumps(document))
 
 
 def wedgesweep(*arguments: Any) -> None:

@@ -11,7 +11,14 @@ import numpy as np
 #   unknown         an effect that is not among the candidates
 #   poor            one effect, in the paper's two tests of unknown amplitude
 #   added           a poor set with the test that its diagnosis recommends
-SIZES = {"clean": 60, "strong": 84, "weak": 42, "pair": 30, "unknown": 30, "poor": 20, "added": 20}
+#   imperfect       one effect, and small errors of everything; a model error is allowed for
+#   errors-only     small errors of everything, and no effect
+#   random-rig      one effect on a rig of any size
+#   oscillator      one effect on a mass on a spring, whose input is recorded
+SIZES = {
+    **{"clean": 60, "strong": 84, "weak": 42, "pair": 30, "unknown": 30, "poor": 20, "added": 20},
+    **{"imperfect": 60, "errors-only": 20, "random-rig": 40, "oscillator": 40},
+}
 KINDS = tuple(SIZES)
 # Range of the excess chi-squared of the base model that a set is drawn for, log-uniformly. The excess that
 # the diagnosis reports is the one that counts; the margins to its limits, 800 and 100, allow for noise.
@@ -21,6 +28,9 @@ TARGETS = {
     "pair": (1100.0, 30_000.0),
     "unknown": (1000.0, 30_000.0),
     "poor": (150.0, 5000.0),
+    "imperfect": (1000.0, 30_000.0),
+    "random-rig": (1000.0, 30_000.0),
+    "oscillator": (1000.0, 30_000.0),
 }
 
 

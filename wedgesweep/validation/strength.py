@@ -18,7 +18,7 @@ from wedgesweep.validation.response import HARMONICS, TONE, Effects, System, Tes
 
 # Length of a record in periods, its sampling rate, and the noise over the rms of a channel.
 PERIODS, SAMPLING_HZ, LEVEL = 8.4, 2000.0, 0.04
-# A smaller displacement over the input amplitude counts as sticking.
+# A smaller displacement over that by a static input counts as sticking.
 STUCK = 1e-3
 # Steps of log amplitudes and of factors on uncertain parameters in finite differences.
 STEP = 1e-4
@@ -36,13 +36,15 @@ class Bench:
     """How a system is tested: tests, kind of noise, and what is uncertain.
 
     ``spread`` is the relative std of the stated input amplitudes, None where they are unknown;
-    ``uncertain`` that of parameters of the model.
+    ``uncertain`` that of parameters of the model; ``model_error`` what a model may be wrong by.
     """
 
     tests: Sequence[Test]
     noise: str
     spread: float | None
     uncertain: Mapping[str, float]
+    sampling_hz: float = SAMPLING_HZ
+    model_error: float = 0.0
 
     @property
     def frequencies(self) -> np.ndarray:
@@ -54,29 +56,29 @@ class Bench:
         return 1 if self.noise == "differentiated" else 2
 
     def noise_std(self, true: np.ndarray, tone_hz: float) -> np.ndarray:
-        """Std of the real part of each harmonic of a record, of the shape of ``true``."""
+        """Std of the real part of each harmonic, by noise and model error, of the shape of ``true``."""
         rms = np.sqrt(0.5 * (np.abs(true) ** 2).sum(axis=-1, keepdims=True))
         std = LEVEL * rms * (0.5 if self.noise == "adc" else 1.0)
         orders = np.arange(1, HARMONICS + 1)
         at = np.column_stack([self.frequencies[:, None] * orders, np.full(len(self.tests), tone_hz)])
-        samples = PERIODS / self.frequencies * SAMPLING_HZ
-        power = _spectral_shape(at, self.noise) * (2.0 / samples)[:, None]
-        return std * np.sqrt(power)[:, None]
+        samples = PERIODS / self.frequencies * self.sampling_hz
+        power = _spectral_shape(at, self.noise, self.sampling_hz) * (2.0 / samples)[:, None]
+        return np.hypot(std * np.sqrt(power)[:, None], self.model_error * rms / np.sqrt(HARMONICS))
 
 
-def _spectral_shape(frequency: np.ndarray, noise: str) -> np.ndarray:
+def _spectral_shape(frequency: np.ndarray, noise: str, sampling_hz: float) -> np.ndarray:
     """Power of the noise over that of white noise of the same variance."""
     if noise != "ar1":
         return np.ones_like(frequency)
-    r, angle = AR1_CORRELATION, 2.0 * pi * frequency / SAMPLING_HZ
+    r, angle = AR1_CORRELATION, 2.0 * pi * frequency / sampling_hz
     return (1.0 - r * r) / (1.0 - 2.0 * r * np.cos(angle) + r * r)
 
 
 def true_spectra(system: System, tests: Sequence[Test]) -> np.ndarray | None:
     """Spectra of the true system, see ``response.spectra``; None if one does not exist or does not move."""
     found = response.spectra(system, tests)
-    amplitudes = 1e-3 * np.array([test.amplitude_mm for test in tests])
-    moves = np.abs(found[:, 0, 0]) > STUCK * amplitudes  # False for NaN
+    inputs = system.rig.deflection * np.array([test.amplitude for test in tests])
+    moves = np.abs(found[:, 0, 0]) > STUCK * inputs  # False for NaN
     return found if moves.all() else None
 
 
@@ -123,7 +125,7 @@ class _Fit:
         for name, change in zip(self.bench.uncertain, x[count:].tolist(), strict=True):
             effects[name] = {"scale": (1.0 + change) * effects.get(name, {"scale": 1.0})["scale"]}
         tests = [
-            test._replace(amplitude_mm=test.amplitude_mm * float(np.exp(step)))
+            test._replace(amplitude=test.amplitude * float(np.exp(step)))
             for test, step in zip(self.bench.tests, x[:count], strict=True)
         ]
         return response.spectra(self.model._replace(effects=effects), tests)[:, : self.bench.channels]

@@ -48,7 +48,7 @@ def spectra(
 ) -> tuple[np.ndarray, float]:
     """Roughly the spectra of the tests, as ``response.spectra`` has them, and the smallest normal force."""
     found, least = np.zeros((len(tests), 2, HARMONICS + 1), complex), np.inf
-    amplitudes = 1e-3 * np.array([test.amplitude_mm for test in tests])
+    amplitudes = 1e-3 * np.array([test.amplitude for test in tests])
     for row, system in zip(found, _systems((law, lean_deg), tests, amplitudes, effect), strict=True):
         period = 2.0 * pi / system.omega
         stride = ceil(period / COARSE_STEP / SAMPLES)
@@ -61,16 +61,19 @@ def spectra(
 
 def make(draft: "Draft", seed: int, directory: Path) -> None:
     """Write the same files as ``wedgesweep synthesize``."""
+    assert draft.lean is not None
     random = np.random.default_rng(seed)
     factors = {name: 1.0 + std * float(random.normal()) for name, std in draft.uncertain.items()}
     errors = (draft.spread or 0.0) * random.normal(size=len(draft.tests))
-    amplitudes = 1e-3 * np.array([test.amplitude_mm for test in draft.tests]) * (1.0 + errors)
+    amplitudes = 1e-3 * np.array([test.amplitude for test in draft.tests]) * (1.0 + errors)
     tables, stated = [], []
     systems = _systems((draft.law, draft.lean), draft.tests, amplitudes, draft.unmodelled)
     for i, (test, system) in enumerate(zip(draft.tests, systems, strict=True)):
         true = system._replace(friction=system.friction * factors.get("friction_level", 1.0))
         tables.append(_table(true, draft.noise, random))
-        stated.append({"file": f"test-{i:02d}.csv", **test._asdict(), "amplitude_std": draft.spread})
+        stated.append(
+            {"file": f"test-{i:02d}.csv", **draft.system({}).test_keys(test), "amplitude_std": draft.spread}
+        )
     columns = {
         "time": {"column": "t", "unit": "s"},
         "displacement": {"column": "d", "unit": "mm"},

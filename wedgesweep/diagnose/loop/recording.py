@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep import systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.loop.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
+from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.solvers import imposed_motion
 

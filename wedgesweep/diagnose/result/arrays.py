@@ -7,9 +7,9 @@ import xarray as xr
 
 from wedgesweep import __version__
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.result import loops
+from wedgesweep.diagnose.result import sampled
+from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.steady import waveforms
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
@@ -37,8 +37,8 @@ class Arrays(NamedTuple):
 def dataset(found: Diagnosis) -> xr.Dataset:
     """Everything that a figure or a notebook draws of a diagnosis."""
     data = found.data
-    if isinstance(data, LoopData):
-        return loops.dataset(found, data)
+    if isinstance(data, SampledData):
+        return sampled.dataset(found, data)
     arrays = _arrays(found, data)
     variables = {
         **_spectra(arrays),

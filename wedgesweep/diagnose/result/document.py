@@ -13,9 +13,9 @@ from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
-from wedgesweep.diagnose.loop.loop_data import LoopData
-from wedgesweep.diagnose.result import loops
+from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
+from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.verdict import p_where_it_shows
@@ -111,8 +111,8 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
-    if isinstance(data, LoopData):
-        return loops.tests(found, data)
+    if isinstance(data, SampledData):
+        return sampled.tests(found, data)
     unit, size = data.model.amplitude_unit
     amplitude = data.amplitudes(best.point)
     rows = []
@@ -199,7 +199,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        **({} if isinstance(found.data, LoopData) else {"harmonics": found.data.shape[1]}),
+        **({} if isinstance(found.data, SampledData) else {"harmonics": found.data.shape[1]}),
         "calibrated": found.calibration,
     }
 

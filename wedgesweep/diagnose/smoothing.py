@@ -7,13 +7,13 @@ power of the cut-off frequency, which decides how high it may be.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 from scipy import signal
 from scipy.optimize import brentq
 
-from wedgesweep.measured.loops import HIGHEST
+from wedgesweep.measured.kinds import HIGHEST
 
 ORDER = 4
 # The cut-off is the highest one at which noise of the displacement makes up this share of the force, and at
@@ -26,6 +26,10 @@ WIDER = 2.0
 SETTLING = 2.5
 # Median of the absolute value of a normal variable over its standard deviation.
 MEDIAN = 0.6745
+# Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
+OUTLIER, CLIPPINGS = 4.0, 4
+# Ends of a 95 % interval in standard deviations.
+TWO_SIDED = 1.96
 # Frequencies at which a filter's gain is known.
 GRID = 4096
 
@@ -76,11 +80,16 @@ class LowPass:
 def white_noise(values: np.ndarray, rate: float) -> float:
     """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.
 
-    The median keeps the jumps of dry friction from counting as noise.
+    It is the upper end of its 95 % interval: in a short record an estimate that is too low would look like a
+    misfit. The jumps of dry friction are outliers, which do not count as noise.
     """
     low_pass = LowPass(HIGHEST * rate, rate)
-    above = values - low_pass(values)
-    return float(np.median(np.abs(above))) / MEDIAN / low_pass.noise_above(1.0)
+    above = np.abs(values - low_pass(values))
+    share = low_pass.noise_above(1.0)
+    size = float(np.median(above)) / MEDIAN
+    for _ in range(CLIPPINGS):
+        size = float(np.sqrt(np.mean(above[above <= OUTLIER * size] ** 2)))
+    return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * values.size * share**2))
 
 
 def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:

@@ -1,0 +1,163 @@
+"""Transients: free motions in time, from files to a verdict."""
+
+import numpy as np
+import pytest
+
+from tests.command import invoke
+from wedgesweep import api, excitation
+from wedgesweep.config import parse
+from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.effects import merge
+from wedgesweep.measured import MeasuredError, read
+from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.solvers import periodic
+from wedgesweep.systems import state_count
+
+OSCILLATOR = """
+[oscillator]
+mass_kg = 2.0
+spring_N_per_mm = 0.5
+damping_N_s_per_m = 1.0
+normal_force_N = 1.0
+[friction]
+static = 0.3
+dynamic = 0.3
+[sweep]
+friction_law = "coulomb"
+beta = 1.0
+amplitude_mm = 1.0
+"""
+WEDGE = '[sweep]\nfriction_law = "coulomb"\nbeta = [1.0]\namplitude_mm = [0.1]\n'
+MEASURED = """
+[measurement]
+model = "model.toml"
+[measurement.columns]
+time = { column = "t", unit = "s" }
+displacement = { column = "x", unit = "mm" }
+"""
+TEST = '[[measurement.test]]\nfile = "{}.csv"\nkind = "transient"\n'
+OMEGA = 250.0**0.5
+# Starts: displacement (m) and velocity (m/s). The zero of the sensor (m) is unknown.
+STARTS = ((0.01, 0.0), (-0.006, 0.1), (0.02, 0.0))
+ZERO = 1e-3
+
+
+def free_motion(config, effects, start, rate, samples, rtol=1e-10):
+    """Displacement (m) at even times, simulated four times as finely as it is sampled."""
+    step, fine = 1.0 / rate, 4
+    per_period = 16 * fine
+    record = config.record_with(
+        merge(config.effects, effects), config.case_list()[0].law, 1.0, 2.0 * np.pi / (16 * step)
+    )
+    excitation.set_no_motion(record, max(abs(start[0]), 1e-6))
+    state = np.zeros((1, state_count()))
+    state[0, :2] = np.array(start) * (1.0 if config.system == "oscillator" else -1.0)
+    x = periodic.samples(record, state, 0, -(-samples // 16), per_period, rtol)[0][0]
+    return -x[::fine][:samples]
+
+
+def write(folder, model=OSCILLATOR, effects=None, starts=STARTS, noise=2e-5, rate=500.0, samples=600):
+    """Files of releases from some starts; returns the path of measured.toml."""
+    rng = np.random.default_rng(0)
+    text = MEASURED
+    (folder / "model.toml").write_text(model)
+    for i, start in enumerate(starts):
+        x = free_motion(parse(model, "model"), effects or {}, start, rate, samples)
+        x = x + ZERO * start[0] / starts[0][0] + noise * rng.standard_normal(x.size)
+        table = np.column_stack([np.arange(samples) / rate, 1e3 * x])
+        np.savetxt(folder / f"drop{i}.csv", table, "%.12g", ",", header="t,x", comments="")
+        text += TEST.format(f"drop{i}")
+    (folder / "measured.toml").write_text(text)
+    return folder / "measured.toml"
+
+
+def diagnosed(path, effects):
+    return api.diagnose_measurement(read(path), effects=effects, n_jobs=2)
+
+
+def test_dry_friction_takes_the_same_from_every_swing():
+    # Free decay: the amplitude falls by 2 F/k from turn to turn.
+    model = parse(OSCILLATOR.replace("damping_N_s_per_m = 1.0\n", ""), "model")
+    samples, half = 16 * 7, 16
+    x = free_motion(model, {}, (0.01, 0.0), half * OMEGA / np.pi, samples, rtol=1e-11)
+    turns = np.abs(x[::half])
+    assert turns == pytest.approx(0.01 - 2.0 * 0.3 / 500.0 * np.arange(7), abs=1e-10)
+
+
+def test_a_damper_takes_the_same_share_of_every_swing():
+    model = parse(OSCILLATOR.replace("normal_force_N = 1.0\n", ""), "model")
+    rate, samples = 500.0, 400
+    decay = 1.0 / (2.0 * 2.0)
+    omega = (OMEGA**2 - decay**2) ** 0.5
+    t = np.arange(samples) / rate
+    exact = 0.01 * np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(omega * t))
+    assert free_motion(model, {}, (0.01, 0.0), rate, samples) == pytest.approx(exact, abs=1e-9)
+
+
+def test_starts_and_zero_are_found_and_the_misfit_is_noise(tmp_path):
+    data = transient_data(read(write(tmp_path)))
+    fit = base_fit(Search.of(data, [])).base.fit
+    assert 0.75 < fit.chi2 / fit.dof < 1.05
+    assert data.starts(fit.point) == pytest.approx(np.array(STARTS), abs=5e-4)
+    assert data.zero(data.measured - fit.evaluation.response)[0] == pytest.approx(ZERO, abs=1e-5)
+
+
+HIDDEN = {
+    "viscous_damping": {"coefficient": 2.0},
+    "stribeck": {"peak": 0.3, "velocity": 0.02},
+    "cubic_stiffness": {"coefficient": 4e5},
+    "presliding": {"length": 5e-4},
+}
+
+
+@pytest.mark.parametrize("effect", HIDDEN)
+def test_a_hidden_effect_is_found(tmp_path, effect):
+    found = diagnosed(write(tmp_path, effects={effect: HIDDEN[effect]}), [*HIDDEN, "friction_level"])
+    assert [cause["effect"] for cause in found.causes] == [effect]
+    assert found.gain["excess_removed"] > 0.95
+    size = {"_mm": 1e-3, "_mm_per_s": 1e-3, "_N_per_mm3": 1e9}
+    numbers = found.causes[0]["parameters"]
+    for (key, estimate), true in zip(numbers.items(), HIDDEN[effect].values(), strict=True):
+        unit = next((factor for end, factor in size.items() if key.endswith(end)), 1.0)
+        assert estimate["value"] * unit == pytest.approx(true, rel=0.02), key
+
+
+def test_nothing_is_missing_where_nothing_is(tmp_path):
+    assert diagnosed(write(tmp_path), ["viscous_damping", "friction_level"]).verdict == "nothing-missing"
+
+
+def test_a_wedge_that_is_dropped(tmp_path):
+    starts = ((1e-3, 0.0), (-8e-4, 0.05), (6e-4, -0.04))
+    path = write(
+        tmp_path, WEDGE, {"friction_level": {"scale": 1.2}}, starts, noise=1e-6, rate=1500.0, samples=600
+    )
+    found = diagnosed(path, ["friction_level", "bolster_stiffness"])
+    assert [cause["effect"] for cause in found.causes] == ["friction_level"]
+    assert found.causes[0]["parameters"]["scale"]["value"] == pytest.approx(1.2, rel=0.01)
+
+
+def test_files_figures_and_report(tmp_path):
+    path, out = write(tmp_path, effects={"viscous_damping": HIDDEN["viscous_damping"]}), tmp_path / "out"
+    assert "natural" in invoke("check", path)
+    assert "viscous_damping" in invoke("diagnose", path, "-o", out, "--effects", "viscous_damping")
+    assert {"decays.png", "report.html", "gain.png"} <= {each.name for each in out.iterdir()}
+    assert "No figure" not in (out / "report.html").read_text()
+    write_netcdf(read(path), tmp_path / "all.nc")
+    assert read(tmp_path / "all.nc").kind == "transient"
+
+
+def test_a_motion_that_does_not_decay_is_refused(tmp_path):
+    path = write(tmp_path, samples=200)
+    t = np.arange(500) / 500.0
+    rows = (f"{each},{np.sin(40.0 * each)}" for each in t)
+    (tmp_path / "drop1.csv").write_text("\n".join(["t,x", *rows]))
+    with pytest.raises(MeasuredError, match=r"drop1\.csv: the motion does not decay"):
+        read(path)
+
+
+def test_a_ring_down_that_is_taken_for_steady_is_told_what_it_is(tmp_path):
+    path = write(tmp_path)
+    path.write_text(path.read_text().replace('kind = "transient"', "frequency_hz = 2.5"))
+    with pytest.raises(MeasuredError, match='write kind = "transient" if it is a ring-down'):
+        read(path)

@@ -1,0 +1,143 @@
+"""What is stored of tests that are compared sample by sample: loops and transients."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import __version__
+from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.loop.loop_data import LoopData
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.result.estimates import finite
+from wedgesweep.diagnose.transient.transient_data import TransientData
+
+# Dimensions, values, unit and meaning of a variable.
+Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
+BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
+CHANNELS, CHANNEL_UNIT = ("displacement", "velocity"), "m or m/s"
+
+
+def _fits(found: Diagnosis) -> dict[str, Fit]:
+    return {"base": found.base.fit, "extended": found.extended}
+
+
+def tests(found: Diagnosis, data: LoopData | TransientData) -> list[dict[str, Any]]:
+    """Rows of the tests for diagnosis.json; errors are rms over the rms of the response."""
+    fits = _fits(found)
+    errors = {name: data.error(fit.evaluation) for name, fit in fits.items()}
+    own = _of_loops(data) if isinstance(data, LoopData) else _of_transients(data, found.extended)
+    return [
+        {
+            "name": name,
+            **own[t],
+            "samples": int(data.observations[t]),
+            **{f"error_{model}": finite(error[t]) for model, error in errors.items()},
+            **{f"q_{model}": finite(fit.evaluation.chi2_by_test[t]) for model, fit in fits.items()},
+            "dof": int(data.dof[t]),
+        }
+        for t, name in enumerate(data.names)
+    ]
+
+
+def _of_loops(data: LoopData) -> list[dict[str, Any]]:
+    recordings = [data.recordings[number] for number, _ in data.chosen]
+    return [
+        {
+            "lowpass_hz": finite(own.low_pass.cutoff),
+            "noise_force_N": finite(own.noise),
+            "noise_velocity_mm_per_s": finite(1e3 * own.motion.velocity_noise),
+        }
+        for own in recordings
+    ]
+
+
+def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
+    """With the start as the extended model has it."""
+    starts = 1e3 * data.starts(fit.point)
+    return [
+        {
+            "duration_s": finite(own.step * own.channels.shape[1]),
+            "natural_periods": finite(own.periods),
+            "start_mm": finite(start[0]),
+            "start_mm_per_s": finite(start[1]),
+            "noise_displacement_mm": finite(1e3 * own.noise[0]),
+            "noise_velocity_mm_per_s": finite(1e3 * own.noise[1]) if own.noise.size > 1 else None,
+        }
+        for own, start in zip(data.releases, starts, strict=True)
+    ]
+
+
+def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
+    """Measured and simulated samples (SI units), NaN where nothing is compared."""
+    fits = list(_fits(found).values())
+    simulated = np.array([data.with_zero(fit.evaluation) for fit in fits])
+    variables = _loops(data, simulated) if isinstance(data, LoopData) else _transients(data, simulated)
+    q = np.array([fit.evaluation.chi2_by_test for fit in fits])
+    variables["q"] = (("model", "test"), q, "1", "squared misfit over noise")
+    variables["dof"] = (("test",), data.dof, "1", "degrees of freedom")
+    coordinates = {"test": list(data.names), "model": list(_fits(found))}
+    if isinstance(data, TransientData):
+        coordinates["channel"] = list(CHANNELS[: len(data.releases[0].channels)])
+    return xr.Dataset(
+        {
+            name: (dims, values, {"units": unit, "long_name": meaning})
+            for name, (dims, values, unit, meaning) in variables.items()
+        },
+        coordinates,
+        {
+            "title": found.measurement.title,
+            "kind": data.kind,
+            "verdict": found.finding.verdict,
+            "law": data.law,
+            "wedgesweep_version": __version__,
+        },
+    )
+
+
+def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
+    """Forces along the imposed motion."""
+    shown = np.where(data.weight > 0.0, 1.0, np.nan)
+    position, velocity = (
+        data.padded([getattr(own.motion, name)[own.places] for own in data.recordings]) * shown
+        for name in ("displacement", "velocity")
+    )
+    return {
+        "displacement": (BY_SAMPLE, position, "m", "imposed displacement"),
+        "velocity": (BY_SAMPLE, velocity, "m/s", "imposed velocity"),
+        "measured_force": (BY_SAMPLE, data.measured * shown, "N", "measured force"),
+        "simulated_force": (("model", *BY_SAMPLE), simulated * shown, "N", "simulated, with the fitted zero"),
+        "force_noise": (("test",), data.noise.max(axis=-1), "N", "noise of a compared force"),
+    }
+
+
+def _transients(data: TransientData, simulated: np.ndarray) -> Variables:
+    """Free motions in time."""
+    channels = max(len(own.channels) for own in data.releases)
+    longest = max(own.channels.shape[1] for own in data.releases)
+
+    def by_channel(values: np.ndarray) -> np.ndarray:
+        """Values (..., T, m) as (..., T, C, k)."""
+        found = np.full((*values.shape[:-1], channels, longest), np.nan)
+        for t, own in enumerate(data.releases):
+            part = values[..., t, : own.channels.size].reshape(*values.shape[:-2], *own.channels.shape)
+            found[..., t, : len(own.channels), : own.channels.shape[1]] = part
+        return found
+
+    time = np.array([own.step * np.arange(longest) for own in data.releases])
+    return {
+        "time": (BY_SAMPLE, time, "s", "time from the first sample"),
+        "measured": (BY_CHANNEL, by_channel(data.measured), CHANNEL_UNIT, "measured motion"),
+        "simulated": (
+            ("model", *BY_CHANNEL),
+            by_channel(simulated),
+            CHANNEL_UNIT,
+            "simulated motion, with the fitted zero",
+        ),
+        "sample_noise": (
+            ("test", "channel"),
+            np.array([own.noise for own in data.releases]),
+            CHANNEL_UNIT,
+            "noise of a sample",
+        ),
+    }

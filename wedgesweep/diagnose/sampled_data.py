@@ -1,0 +1,168 @@
+"""Tests that are compared sample by sample, in time or along a motion, under independent noise."""
+
+from abc import abstractmethod
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, Scenario
+
+
+class NoStart(NamedTuple):
+    """The start of simulations that do not depend on any that were made before."""
+
+    def of(self, rows: Any) -> "NoStart":
+        return self
+
+    def where(self, chosen: np.ndarray, other: Any) -> "NoStart":
+        return self
+
+
+class SampledData(FitData):
+    """T tests of at most m samples, which may be of several channels.
+
+    Each test has an unknown zero of its sensor, eliminated in closed form. A subclass is a dataclass with the
+    attributes ``model_error`` and ``resampled`` (T, m), measured values of a bootstrap or None.
+    """
+
+    resampled: np.ndarray | None
+    eliminated = 1
+
+    @property
+    @abstractmethod
+    def recorded(self) -> np.ndarray:
+        """Measured values, (T, m)."""
+
+    @property
+    @abstractmethod
+    def noise(self) -> np.ndarray:
+        """Standard deviation of each of them, (T, m); 0 where nothing is compared."""
+
+    @property
+    @abstractmethod
+    def size(self) -> np.ndarray:
+        """Rms of the response in the channel of each of them, (T, m)."""
+
+    @property
+    @abstractmethod
+    def shifted(self) -> np.ndarray:
+        """1 where the zero of the sensor acts, else 0, (T, m)."""
+
+    @abstractmethod
+    def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
+        """Values (n, T, m) of scenarios; NaN where they are not determined."""
+
+    @cached_property
+    def measured(self) -> np.ndarray:
+        """What a fit takes for measured, (T, m)."""
+        return self.recorded if self.resampled is None else self.resampled
+
+    @cached_property
+    def weight(self) -> np.ndarray:
+        """1 where something is compared, else 0, (T, m)."""
+        return (self.noise > 0.0).astype(float)
+
+    @cached_property
+    def std(self) -> np.ndarray:
+        """Standard deviation of noise and allowed model error together, (T, m); 1 elsewhere."""
+        return np.where(self.weight > 0.0, np.hypot(self.noise, self.model_error * self.size), 1.0)
+
+    @property
+    def tests(self) -> int:
+        return len(self.names)
+
+    @property
+    def observations(self) -> np.ndarray:
+        return self.weight.sum(-1).astype(int)
+
+    @property
+    def dof(self) -> np.ndarray:
+        return self.observations - 1
+
+    @property
+    def power(self) -> np.ndarray:
+        return (self._whitened(self.without_zero(self.measured)) ** 2).sum(-1)
+
+    @property
+    def model_misfit(self) -> np.ndarray:
+        return (self.weight * (self.model_error * self.size / self.std) ** 2).sum(-1)
+
+    @property
+    def noise_floor(self) -> float:
+        compared = self.weight > 0.0
+        return float(np.sqrt(np.mean((self.noise[compared] / self.size[compared]) ** 2)))
+
+    def zero(self, values: np.ndarray) -> np.ndarray:
+        """Best zero of the sensor (..., T, 1) for values (..., T, m) that are left."""
+        share = self.weight * self.shifted / self.std**2
+        return (values * share).sum(-1, keepdims=True) / share.sum(-1, keepdims=True)
+
+    def without_zero(self, values: np.ndarray) -> np.ndarray:
+        """Values (..., T, m) less their best zero."""
+        return values - self.zero(values) * self.shifted
+
+    def with_zero(self, here: Evaluation) -> np.ndarray:
+        """Simulated values (T, m) with the zero of the sensor."""
+        return here.response + self.zero(self.measured - here.response) * self.shifted
+
+    def error(self, here: Evaluation) -> np.ndarray:
+        """Rms of what an evaluation leaves over that of the response, (T,)."""
+        left = self.without_zero(self.measured - here.response) / np.where(self.size > 0.0, self.size, 1.0)
+        return np.sqrt((self.weight * left**2).sum(-1) / self.weight.sum(-1))
+
+    def _whitened(self, values: np.ndarray) -> np.ndarray:
+        """Values (..., T, m) over their standard deviation, 0 where nothing is compared."""
+        return values * self.weight / self.std
+
+    def _simulated(self, scenarios: Sequence[Scenario]) -> tuple[np.ndarray, np.ndarray]:
+        """Simulated values (n, T, m), and whether they exist, (n, T)."""
+        if not scenarios:
+            return np.zeros((0, *self.weight.shape)), np.zeros((0, self.tests), bool)
+        values = self.simulated(scenarios)
+        found = np.isfinite(np.where(self.weight > 0.0, values, 0.0)).all(axis=-1)
+        return np.nan_to_num(values), np.asarray(found)
+
+    def compare(self, scenarios: Sequence[Scenario], tolerance: float) -> list[Comparison]:
+        simulated, found = self._simulated(scenarios)
+        residual = self._whitened(self.without_zero(self.measured - simulated))
+        return [
+            Comparison(response, left, there, NoStart())
+            for response, left, there in zip(simulated, residual, found, strict=True)
+        ]
+
+    def compared_again(self, here: Evaluation) -> Evaluation:
+        return replace(here, residual=self._whitened(self.without_zero(self.measured - here.response)))
+
+    def with_model_error(self, size: float) -> Self:
+        return replace(self, model_error=size)  # type: ignore[type-var]
+
+    def changes(
+        self, here: Evaluation, scenarios: Sequence[Scenario], tolerance: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        simulated, found = self._simulated(scenarios)
+        return self._whitened(here.response - simulated), found
+
+    def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
+        """Derivative of the residual by the zero of the sensor, (T, m, 1)."""
+        return -self._whitened(self.shifted)[..., None]
+
+    def response_change(self, here: Evaluation, there: Evaluation) -> np.ndarray:
+        return self._whitened(there.response - here.response)
+
+    def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
+        noise = rng.standard_normal(self.weight.shape) * self.std
+        return replace(self, resampled=truth.response + noise)  # type: ignore[type-var]
+
+    def with_undetected(self, effect: str) -> Self:
+        """What is no candidate changes nothing that is simulated."""
+        return self
+
+    def known_values(self, scenarios: Sequence[Scenario], left_out: Iterable[str]) -> list[dict[str, Any]]:
+        """Values of scenarios without some effects, which this kind of record cannot show."""
+        return [
+            {name: numbers for name, numbers in each.values.items() if name not in left_out}
+            for each in scenarios
+        ]

@@ -1,0 +1,132 @@
+"""Free motions as data of a fit: each test starts from a state of its own, which is fitted.
+
+What is compared are samples in time. Their noise counts as white; the zero of the displacement is unknown.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.diagnose import work
+from wedgesweep.diagnose.fit_data import NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.sampled_data import NoStart, SampledData
+from wedgesweep.diagnose.transient.release import Release
+from wedgesweep.natural_units import NaturalUnits
+
+# Effects of an input, or of a sensor whose state at the first sample is not known.
+OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "velocity_lag")
+# Displacement and velocity of the start, over the largest displacement and that a natural time later.
+START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
+
+
+@dataclass(frozen=True, eq=False)
+class TransientData(SampledData):
+    """T free motions; arrays (T, m) hold displacement and velocity, one after the other."""
+
+    releases: tuple[Release, ...]
+    uncertain: dict[str, float]
+    model_error: float = 0.0
+    resampled: np.ndarray | None = None
+
+    kind = "transient"
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:  # type: ignore[override]
+        return tuple(own.name for own in self.releases)
+
+    @property
+    def model(self) -> Config:  # type: ignore[override]
+        """The base model, with the numbers of the first test."""
+        return self.releases[0].model
+
+    @property
+    def law(self) -> str:  # type: ignore[override]
+        return self.releases[0].law
+
+    def _padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
+        """Values (..., C, k) of each test as (..., T, m), with zeros at the end."""
+        flat = [each.reshape(*each.shape[:-2], -1) for each in values]
+        found = np.zeros((*flat[0].shape[:-1], len(flat), max(each.shape[-1] for each in flat)))
+        for t, each in enumerate(flat):
+            found[..., t, : each.shape[-1]] = each
+        return found
+
+    @cached_property
+    def recorded(self) -> np.ndarray:
+        return self._padded([own.channels for own in self.releases])
+
+    @cached_property
+    def noise(self) -> np.ndarray:
+        return self._padded([self._of_each_sample(own, own.noise) for own in self.releases])
+
+    @cached_property
+    def size(self) -> np.ndarray:
+        """Rms (T, m) of each channel about its mean."""
+        return self._padded([self._of_each_sample(own, own.channels.std(axis=1)) for own in self.releases])
+
+    @staticmethod
+    def _of_each_sample(own: Release, values: np.ndarray) -> np.ndarray:
+        """A number (C,) of each channel for every sample of it, (C, k)."""
+        return np.broadcast_to(values[:, None], own.channels.shape)
+
+    @cached_property
+    def shifted(self) -> np.ndarray:
+        displacement = [np.zeros(own.channels.shape) for own in self.releases]
+        for each in displacement:
+            each[0] = 1.0
+        return self._padded(displacement)
+
+    @property
+    def dof(self) -> np.ndarray:
+        """Observations of each test less the zero of the displacement and its start."""
+        return self.observations - 1 - len(START)
+
+    @property
+    def nuisance_std(self) -> np.ndarray:
+        return np.full((self.tests, len(START)), np.inf)
+
+    @cached_property
+    def units(self) -> NaturalUnits:
+        return self.model.natural_units(max(own.length for own in self.releases))
+
+    @cached_property
+    def _scale(self) -> np.ndarray:
+        """Displacement (m) and velocity (m/s) of the largest displacement of each test, (T, 2)."""
+        length = np.array([own.length for own in self.releases])
+        return np.column_stack([length, length / self.units.time])
+
+    def starts(self, point: Point) -> np.ndarray:
+        """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
+        return point.nuisance * self._scale
+
+    def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
+        return START
+
+    def start(self) -> tuple[np.ndarray, NoStart]:
+        return np.array([own.start() for own in self.releases]) / self._scale, NoStart()
+
+    def subset(self, rows: np.ndarray) -> Self:
+        releases = tuple(self.releases[row] for row in np.arange(self.tests)[rows])
+        part = replace(self, releases=releases, resampled=None)
+        if self.resampled is None:
+            return part
+        return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
+
+    def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
+        return tuple(name for name in effects if name not in OF_INPUT)
+
+    def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
+        values = self.known_values(scenarios, OF_INPUT)
+        starts = np.array([self.starts(each.point) for each in scenarios])
+        work.add(len(values) * sum(own.periods for own in self.releases))
+        return self._padded(
+            [own.simulated(values, starts[:, t], TOLERANCE) for t, own in enumerate(self.releases)]
+        )
+
+    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
+        return [("record", np.array([t])) for t in range(self.tests)]

@@ -1,0 +1,84 @@
+"""Checks of tests by their kind: which channels and keys they have, and what their records must show."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.measured.declarations import LOOP, STEADY
+from wedgesweep.measured.measurement import TestRecord
+
+# The motion of a loop must come back by this share of its range, or friction cannot be told from a spring.
+RETURNS = 0.1
+# Least swing in the first part of a free motion over that in the last one, and both parts (shares).
+DECAYS, FIRST, LAST = 1.2, 0.25, 0.25
+# Highest cut-off over the sampling rate: the motion of a loop is filtered at twice that.
+HIGHEST = 0.2
+# Fewest samples over which a filter settles.
+FEWEST = 64
+# Keys of a test under a sine, and of a loop.
+OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpass_hz",)
+# What is compared, and what else a test may have, by kind.
+NEEDED = {"transient": ("displacement",), "loop": ("displacement", "force")}
+OPTIONAL = {"transient": ("velocity",), "loop": ()}
+MEANING = {
+    "transient": "a transient is a free motion without any input",
+    "loop": "a loop is the force under a recorded displacement",
+}
+
+
+def kind_faults(kinds: Sequence[str]) -> list[str]:
+    """Faults of the kinds of the tests together, as "key: fault"."""
+    if len(set(kinds)) < 2:
+        return []
+    mixed = " and ".join(sorted(set(kinds)))
+    return [f"test.kind: {mixed} are mixed; write a measurement for each kind"]
+
+
+def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
+    """Faults of the channels of tests that are not steady, as "key: fault"."""
+    needed, known = NEEDED[kind], ("time", *NEEDED[kind], *OPTIONAL[kind])
+    missing = [f"{name}: missing; {MEANING[kind]}" for name in needed if name not in columns]
+    extra = [f"{name}: not used; {MEANING[kind]}, omit it" for name in columns if name not in known]
+    return missing + extra
+
+
+def key_faults(given: Mapping[str, Any]) -> list[str]:
+    """Faults of the keys of a test that do not go with its kind, as "key: fault"."""
+    kind = given.get("kind", STEADY)
+    wrong = [] if kind == STEADY else [key for key in OF_A_SINE if key in given]
+    wrong += [] if kind == LOOP else [key for key in OF_A_LOOP if key in given]
+    return [f'{key}: not for kind = "{kind}"; omit it' for key in wrong]
+
+
+def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    """Faults of a loop, in its data or by its keys at ``at``."""
+    assert test.displacement is not None
+    if test.time.size < FEWEST:
+        return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a loop"]
+    if test.cutoff is not None and not test.cutoff <= HIGHEST * test.sampling_rate:
+        told = f"{test.cutoff:g} Hz is more than {HIGHEST:g} times the sampling rate"
+        return [f"{at}.lowpass_hz: {told} of {test.sampling_rate:g} Hz; lower it, or omit it"]
+    steps = np.diff(test.displacement)
+    there, back = steps[steps > 0.0].sum(), -steps[steps < 0.0].sum()
+    if min(there, back) < RETURNS * float(np.ptp(test.displacement)):
+        told = "the displacement goes one way only, which cannot tell friction from a spring"
+        return [f"{file}: {told}; record at least one cycle, or write another kind ({at}.kind)"]
+    return []
+
+
+def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    """Faults of a free motion, which must decay."""
+    assert test.displacement is not None
+    if test.time.size < FEWEST:
+        return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a transient"]
+    signal = test.displacement
+    first, last = (
+        float(np.ptp(part))
+        for part in (signal[: int(FIRST * signal.size)], signal[-int(LAST * signal.size) :])
+    )
+    if first < DECAYS * last:
+        told = f"the motion does not decay (it swings by {1e3 * first:.3g} mm, at last {1e3 * last:.3g} mm)"
+        better = f'a transient has no input; if it is steady write kind = "steady" ({at}.kind)'
+        return [f"{file}: {told}; {better}"]
+    return []
