@@ -60,7 +60,7 @@ def block_on_belt(ds: xr.Dataset) -> tuple[Check, ...]:
     case = ds.squeeze()
     belt = config.parse(ds.attrs["config"]).oscillator["belt_velocity"]
     t = case["phase"].values / (2.0 * pi * case["frequency"].item())
-    x, velocity, stuck = (case[name].values.astype(float) for name in ("displacement", "velocity", "stuck"))
+    x, velocity, stuck = (case[name].values for name in ("displacement", "velocity", "stuck"))
     cycle = stick_slip_cycle.measured(t, x, velocity, stuck, belt)
     return tuple(
         _within(f"block on a belt: {name.replace('_', ' ')}", getattr(cycle, name), *expected)
