@@ -405,7 +405,7 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
     file = tmp_path / diagnosis_result.JSON
     for broken, words in (
         ("{", "not the JSON of a diagnosis"),
-        ("[]", "must hold an object"),
+        ("[]", "not a JSON object"),
         (json.dumps({**document, "verdict": "guilty"}), "'guilty' is none of nothing-missing"),
         (json.dumps({key: each for key, each in document.items() if key != "gain"}), "gain: missing"),
     ):
