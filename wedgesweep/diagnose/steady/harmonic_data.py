@@ -251,7 +251,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
         """Whether (T,) a clock ran for longer than any response takes to repeat."""
-        clocks = [kind == TIME for _, kind in kinds(self.records(scenario).dtype.names)]
+        clocks = [kind == TIME for _, kind in kinds(self.records(scenario).dtype.fields or {})]
         elapsed = scenario.point.warm.state[:, : len(clocks)][:, clocks]
         return (elapsed * self.omega[:, None] / (2.0 * np.pi) > LONGEST_PERIOD).any(axis=1)
 
