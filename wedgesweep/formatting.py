@@ -33,6 +33,12 @@ def percent(share: float | None) -> str:
     return f"{100.0 * share if share >= 1.0 else min(100.0 * share, 99.99):.{places}f}{NO_BREAK}%"
 
 
+def error(share: float | None) -> str:
+    """Write a relative error in per cent, with two digits."""
+    text = NONE if share is None else short(100.0 * share, 2)
+    return text if text == NONE else f"{text}{NO_BREAK}%"
+
+
 def power(exponent: int) -> str:
     """Write a power of ten: 10³."""
     return f"10{str(exponent).translate(SUPERSCRIPT)}"

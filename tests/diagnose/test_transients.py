@@ -154,3 +154,10 @@ def test_a_motion_that_does_not_decay_is_refused(tmp_path):
     (tmp_path / "drop1.csv").write_text("\n".join(["t,x", *rows]))
     with pytest.raises(MeasuredError, match=r"drop1\.csv: the motion does not decay"):
         read(path)
+
+
+def test_a_ring_down_that_is_taken_for_steady_is_told_what_it_is(tmp_path):
+    path = write(tmp_path)
+    path.write_text(path.read_text().replace('kind = "transient"', "frequency_hz = 2.5"))
+    with pytest.raises(MeasuredError, match='write kind = "transient" if it is a ring-down'):
+        read(path)

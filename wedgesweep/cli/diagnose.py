@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.options import N_JOBS, require_place_for
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def diagnose(
     from wedgesweep.sweep.cases import compiled_mark
 
     measurement = api.read_measurement(measured, model)
+    print_warnings(measurement)
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     processors = count_jobs(n_jobs)

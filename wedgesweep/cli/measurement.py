@@ -35,6 +35,16 @@ def print_measurement(measurement: "Measurement") -> None:
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
+    print_warnings(measurement)
+
+
+def print_warnings(measurement: "Measurement") -> None:
+    """Print what is odd in records that are usable all the same."""
+    from wedgesweep.measured.quality import warnings
+
+    for test in measurement.tests:
+        for warning in warnings(test):
+            click.echo(f"warning: {test.file}: {warning}", err=True)
 
 
 def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:

@@ -35,10 +35,10 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         Lists everything that is wrong: in the file, in the data of each test and in the model.
     """
     from wedgesweep.measured import netcdf, toml_and_csv
-    from wedgesweep.measured.plausibility import amplitude_faults
+    from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
 
     reader = netcdf if path.suffix in netcdf.SUFFIXES else toml_and_csv
     measurement = reader.read(path, model)
-    if faults := amplitude_faults(measurement):
+    if faults := noise_faults(measurement) or amplitude_faults(measurement):
         raise MeasuredError([f"{path}: {fault}" for fault in faults])
     return measurement

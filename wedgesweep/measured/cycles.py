@@ -16,7 +16,7 @@ class Cycles:
 
     ``times`` (s), shape (P,), are the middles of the cycles, counted from ``middle`` (s) of the record;
     ``harmonics``, shape (P, K), of the given ``orders``, shape (K,), are fitted to each cycle separately,
-    together with a constant.
+    together with a constant, ``means``, shape (P,).
     """
 
     omega: float
@@ -24,6 +24,7 @@ class Cycles:
     times: np.ndarray
     orders: np.ndarray
     harmonics: np.ndarray
+    means: np.ndarray
 
 
 def cut(
@@ -49,4 +50,5 @@ def cut(
     here = fitted[:, 1 : orders.size + 1] + 1j * fitted[:, orders.size + 1 :]
     times = step * length * (np.arange(count) - 0.5 * (count - 1))
     middle = float(time[0] + step * (first + 0.5 * (count * length - 1)))
-    return Cycles(omega, middle, times, orders, here * np.exp(-1j * omega * np.outer(times, orders)))
+    turned = here * np.exp(-1j * omega * np.outer(times, orders))
+    return Cycles(omega, middle, times, orders, turned, signal.mean() + fitted[:, 0])

@@ -1,7 +1,7 @@
 """Declaration of every key of measured.toml."""
 
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import inf, isfinite, nan
 from typing import Any
 
 from wedgesweep.config import toml
@@ -40,6 +40,11 @@ LOWPASS = Quantity(
     nan,
     "loop: cut-off frequency; by default as high as the noise of the displacement allows",
     above=0.0,
+)
+FROM = Quantity("from_s", nan, "time in the file from which the record is used; by default all of it")
+TO = Quantity("to_s", nan, "time in the file up to which the record is used; by default all of it")
+DETREND = Flag(
+    key="detrend", meaning="whether to remove the straight line of a sensor that drifts", default=False
 )
 MODEL_ERROR = Quantity(
     "model_error",
@@ -100,7 +105,11 @@ class RecordTable(Table):
         if isinstance(value, dict) and "amplitude_std" in value and not value.keys() & set(stated):
             at = f"{path}." if path else ""
             problems.append(f"{at}amplitude_std: given without {' or '.join(stated)}; omit it")
-        return super().read(value, path, problems)
+        read = super().read(value, path, problems)
+        if read.get("from_s", -inf) >= read.get("to_s", inf):
+            at = f"{path}." if path else ""
+            problems.append(f"{at}to_s: {read['to_s']:g} is not after from_s = {read['from_s']:g}")
+        return read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,6 +196,9 @@ TEST = RecordTable(
         (Number.of(AMPLITUDE, optional=True),),
         (Number.of(FORCE_AMPLITUDE, optional=True),),
         (Number.of(AMPLITUDE_STD),),
+        (Number.of(FROM, optional=True),),
+        (Number.of(TO, optional=True),),
+        (DETREND,),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )

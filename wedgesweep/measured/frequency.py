@@ -67,7 +67,8 @@ def estimate_frequency(time: np.ndarray, displacement: np.ndarray) -> float:
         return frequency
     reach = min(RANGE, LOBE / _cycle_count(time, frequency))
     frequency = estimate_near(time, displacement, frequency, reach).frequency
-    if not stands_out(time, displacement, frequency):
+    # The peak is the highest of as many lines as there are samples.
+    if not _repeats(cut(time, displacement, frequency), FIRST_HARMONICS[:1], CHANCE / time.size):
         return float("nan")
     while divisor := _divisor(time, displacement, frequency):
         frequency = estimate_near(time, displacement, frequency / divisor, reach).frequency
@@ -212,7 +213,7 @@ def _weak(cycles: Cycles, orders: np.ndarray) -> bool:
     return bool(size[among].max() < HALF * size.max())
 
 
-def _repeats(cycles: Cycles, orders: np.ndarray) -> bool:
+def _repeats(cycles: Cycles, orders: np.ndarray, chance: float = CHANCE) -> bool:
     """Whether the harmonics of some orders repeat from cycle to cycle beyond chance (F test)."""
     from scipy.special import fdtrc
 
@@ -221,4 +222,4 @@ def _repeats(cycles: Cycles, orders: np.ndarray) -> bool:
     mean = harmonics.mean(axis=0)
     scatter = np.sum(np.abs(harmonics - mean) ** 2) / (lines * (count - 1))
     ratio = count * np.sum(np.abs(mean) ** 2) / lines / max(scatter, np.finfo(float).tiny)
-    return bool(fdtrc(2 * lines, 2 * lines * (count - 1), ratio) < CHANCE)
+    return bool(fdtrc(2 * lines, 2 * lines * (count - 1), ratio) < chance)

@@ -27,6 +27,7 @@ class TestRecord:
     samples at these times, and so are ``acceleration`` (m/s^2) and the recorded ``input`` (SI); None where
     not measured. ``model``: numbers of the base model in this test, by "section.key", in its units.
     ``kind``: of test; ``force`` (N) and ``cutoff`` (Hz, of a low-pass filter; None: chosen) are a loop's.
+    ``recorded_s``: length (s) of the file's record, None if all of it is used.
     """
 
     __test__ = False  # not a test of pytest
@@ -45,6 +46,7 @@ class TestRecord:
     kind: str = "steady"
     force: np.ndarray | None = None
     cutoff: float | None = None
+    recorded_s: float | None = None
 
     @cached_property
     def refined_frequency(self) -> float:
@@ -54,8 +56,18 @@ class TestRecord:
     @property
     def leading(self) -> np.ndarray:
         """The channel (n,) that tells the frequency: the recorded input, or the first response."""
-        channels = (self.input, self.displacement, self.velocity, self.acceleration)
-        return next(each for each in channels if each is not None)
+        return next(iter(self.channels.values()))
+
+    @property
+    def responses(self) -> dict[str, np.ndarray]:
+        """The measured responses (n,) by name."""
+        named = {name: getattr(self, name) for name in ("displacement", "velocity", "acceleration")}
+        return {name: samples for name, samples in named.items() if samples is not None}
+
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        """The measured channels (n,) by name: a recorded input, then the responses."""
+        return ({} if self.input is None else {"input": self.input}) | self.responses
 
     @property
     def sampling_rate(self) -> float:

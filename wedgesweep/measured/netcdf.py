@@ -25,7 +25,16 @@ from wedgesweep.config.tables import Table
 from wedgesweep.measured import kinds, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
-from wedgesweep.measured.declarations import INPUT, MODEL_ERROR, QUANTITIES, STEADY, TEST, UNCERTAIN, UNITS
+from wedgesweep.measured.declarations import (
+    DETREND,
+    INPUT,
+    MODEL_ERROR,
+    QUANTITIES,
+    STEADY,
+    TEST,
+    UNCERTAIN,
+    UNITS,
+)
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
@@ -223,7 +232,9 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
 
 
 def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
-    """Attributes of a test with its numbers of the model read from their text."""
+    """Attributes of a test with its numbers of the model read from their text, and 0 or 1 as a flag."""
+    if attributes.get(DETREND.key) in (0, 1):  # an attribute cannot be a truth value
+        attributes = attributes | {DETREND.key: bool(attributes[DETREND.key])}
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:

@@ -9,17 +9,19 @@ from wedgesweep.measured.cycles import SEEN, cut
 HARMONICS = np.arange(1, 41)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NoiseEstimate:
     """The part of a channel that is not periodic.
 
     ``std`` is in the channel's unit, ``share`` is relative to the rms of the periodic part; ``harmonics`` are
-    the orders that stand out of the noise.
+    the orders that stand out of the noise; ``residual``, shape (n,), is the channel without its periodic part
+    and its mean.
     """
 
     std: float
     share: float
     harmonics: tuple[int, ...]
+    residual: np.ndarray
 
 
 def estimate_noise(time: np.ndarray, signal: np.ndarray, frequency: float) -> NoiseEstimate:
@@ -35,4 +37,4 @@ def estimate_noise(time: np.ndarray, signal: np.ndarray, frequency: float) -> No
     count = cycles.times.size
     variance = np.sum(np.abs(cycles.harmonics - mean) ** 2, axis=0) / (count - 1)
     seen = np.abs(mean) ** 2 * count > SEEN * variance
-    return NoiseEstimate(std, std / float(repeated.std()), tuple(cycles.orders[seen].tolist()))
+    return NoiseEstimate(std, std / float(repeated.std()), tuple(cycles.orders[seen].tolist()), left)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from wedgesweep.measured.cycles import cut
+from wedgesweep.measured.declarations import STEADY
 from wedgesweep.measured.frequency import stands_out
 from wedgesweep.measured.measurement import Measurement, TestRecord
 
@@ -51,6 +52,18 @@ def amplitude_faults(measurement: Measurement) -> list[str]:
         told = f"no test moves more than {moved[most]:.2g} times {per} ({most})"
         faults.append(f"{told}; correct them, or omit them if they are unknown")
     return faults
+
+
+def noise_faults(measurement: Measurement) -> list[str]:
+    """Responses without a vibration: one test may stick, but if all do there is nothing to compare."""
+    steady = [test for test in measurement.tests if test.kind == STEADY]
+    if not steady or any(
+        _fundamental(test, samples) for test in steady for samples in test.responses.values()
+    ):
+        return []
+    frequencies = ", ".join(dict.fromkeys(f"{test.refined_frequency:.4g}" for test in steady))
+    told = f"no test has a vibration at its frequency ({frequencies} Hz) that stands out of the noise"
+    return [f"{told}; correct the columns or frequency_hz, or excite more"]
 
 
 def _deflection(measurement: Measurement, test: TestRecord) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import Any, NamedTuple
 
+from wedgesweep import formatting
 from wedgesweep.effects import EFFECTS
 from wedgesweep.formatting import LARGE, NO_BREAK, NONE, SMALL, decimals, fixed, number, percent, short
 from wedgesweep.quantity import Quantity
@@ -123,7 +124,7 @@ def accuracy(size: float | None) -> str:
     """A relative model error as a share of the response; 0 is noise alone."""
     if size is None:
         return "none"
-    return "noise" if size == 0.0 else f"{short(100.0 * size, 2)}{NO_BREAK}%"
+    return "noise" if size == 0.0 else formatting.error(size)
 
 
 def times_noise(q: float | None, dof: float) -> str:

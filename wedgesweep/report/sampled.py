@@ -53,7 +53,7 @@ def section(result: DiagnosisResult, draw: InlineFigures, heading: str) -> Marku
 
 def _row(test: Mapping[str, Any], kind: str, models: tuple[str, ...]) -> list[str]:
     own = [formatting.short(test[key]) for key in COLUMNS[kind].values()]
-    errors = [formatting.percent(test[f"error_{model}"]) for model in models]
+    errors = [formatting.error(test[f"error_{model}"]) for model in models]
     return [test["name"], str(test["samples"]), *own, *errors]
 
 

@@ -47,7 +47,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
         _draw_motion(motion, result, test)
         _draw_left(left, result, test)
         row = result.document["misfit"]["tests"][test]
-        errors = " → ".join(formatting.percent(row[f"error_{model}"]) for model in result.models)
+        errors = " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
         motion.set_title(f"{selection.label(result.data, test)}\nerror {errors}", fontsize=8.5)
     made.label_sides("displacement [mm]", "left [mm]")
     marks.legend(made, result, dots=False)

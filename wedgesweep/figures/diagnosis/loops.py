@@ -37,7 +37,7 @@ def _draw_left(ax: Axes, result: DiagnosisResult, test: int) -> None:
 def errors(result: DiagnosisResult, test: int) -> str:
     """Error of each model as a share of the measured force."""
     row = result.document["misfit"]["tests"][test]
-    return " → ".join(formatting.percent(row[f"error_{model}"]) for model in result.models)
+    return " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
 
 
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:

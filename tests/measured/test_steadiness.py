@@ -1,0 +1,143 @@
+"""Records that are not steady are refused, and what is odd in usable ones is told, with its number."""
+
+import numpy as np
+import pytest
+
+from tests import fixture_measured
+from tests.command import invoke
+from tests.fixture_measured import FREQUENCY, MEASURED, csv_lines, vibration
+from wedgesweep import measured
+from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.measured.quality import warnings
+from wedgesweep.measured.stationarity import stationarity
+
+BOTH = (1.0, 2.0 * np.pi * FREQUENCY)  # the same disturbance of displacement (mm) and velocity (mm/s)
+
+
+def written(directory, change, keys="", periods=20.3):
+    """A measurement of the made-up vibration after ``change(t, d, v)``, with more keys of its test."""
+    t, d, v = vibration(periods=periods)
+    changed = change(t, d, v)
+    return fixture_measured.write(directory, MEASURED + keys, csv=csv_lines(t, *changed))
+
+
+def only_fault(path):
+    with pytest.raises(measured.MeasuredError) as caught:
+        measured.read(path)
+    (found,) = caught.value.problems
+    return found
+
+
+def told(path):
+    (test,) = measured.read(path).tests
+    return warnings(test)
+
+
+def scaled(factor):
+    return lambda t, d, v: (5.0 + factor(t) * (d - 5.0), factor(t) * v)
+
+
+def swept(t, d, v):
+    phase = 2.0 * np.pi * FREQUENCY * (0.5 * t + 0.5 * t**2 / t[-1])
+    return np.cos(phase) + 1e-3 * d, 2.0 * np.pi * FREQUENCY * (-np.sin(phase) + 1e-3 * v)
+
+
+UNSTEADY = {
+    "ring-down": (scaled(lambda t: np.exp(-3.0 * t)), "% of its largest in the four quarters"),
+    "ramp-up": (scaled(lambda t: t / t[-1]), "% of its largest in the four quarters"),
+    "late start": (scaled(lambda t: (t > 0.3 * t[-1]) + 0.0), "% of its largest in the four quarters"),
+    "swept sine": (swept, "moves to other frequencies (median 1"),
+}
+
+
+@pytest.mark.parametrize("kind", UNSTEADY)
+def test_what_is_not_steady_is_refused(tmp_path, kind):
+    change, words = UNSTEADY[kind]
+    found = only_fault(written(tmp_path, change))
+    assert words in found
+    assert "from_s, to_s" in found
+
+
+def test_noise_alone_is_refused_with_and_without_a_frequency(tmp_path):
+    random = np.random.default_rng(4)
+
+    def noise(t, d, v):
+        return random.normal(size=(2, t.size)) * np.array([BOTH]).T
+
+    assert "no test has a vibration at its frequency (20 Hz)" in only_fault(written(tmp_path, noise))
+    text = MEASURED.replace("frequency_hz = 20.0\n", "")
+    for _ in range(20):
+        csv = csv_lines(t := vibration()[0], *noise(t, t, t))
+        found = only_fault(fixture_measured.write(tmp_path, text, csv=csv))
+        assert "stands out of the noise" in found or "at least 4 are needed" in found
+
+
+def spiked(t, d, v):
+    d[100] += 1.0
+    return d, v
+
+
+ODD = {
+    "trend": (scaled(lambda t: 1.0 + 0.05 * t / t[-1]), "displacement: its amplitude changes by +4"),
+    "drift": (lambda t, d, v: (d + 0.5 * t / t[-1], v), "displacement: its mean drifts by +6"),
+    "spike": (spiked, "displacement: 1 sample is far from the other periods, the worst at 0.1 s by 4"),
+    "clipping": (lambda t, d, v: (np.clip(d, None, 5.8), v), "% of its samples are exactly at its extreme"),
+    "noise": (
+        lambda t, d, v: (d + 0.3 * np.random.default_rng(1).normal(size=t.size), v),
+        "displacement: noise is 41 % of the periodic part",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", ODD)
+def test_what_is_odd_is_told_with_its_number(tmp_path, kind):
+    change, words = ODD[kind]
+    found = told(written(tmp_path, change))
+    assert any(words in each for each in found), found
+    assert told(written(tmp_path, lambda t, d, v: (d, v))) == []
+
+
+def test_keys_of_a_test_mend_its_record(tmp_path):
+    late = UNSTEADY["late start"][0]
+    path = written(tmp_path, late, "from_s = 0.4\nto_s = 0.9\n")
+    (test,) = measured.read(path).tests
+    assert (test.time[0], test.time[-1]) == pytest.approx((0.4, 0.9))
+    assert warnings(test) == ["0.501 s of 1.014 s are used (from_s, to_s)"]
+    write_netcdf(measured.read(path), tmp_path / "cut.nc")
+    np.testing.assert_allclose(measured.read(tmp_path / "cut.nc").tests[0].time, test.time)
+    assert told(written(tmp_path, ODD["drift"][0], "detrend = true\n")) == []
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ("from_s = 0.9\nto_s = 0.4\n", "test[0].to_s: 0.4 is not after from_s = 0.9"),
+        ("from_s = 3.0\n", "test[0].from_s: 3, but"),
+        ("to_s = -3.0\n", "goes from 0 to 1.014 s; choose a time within"),
+        ("from_s = 0.9\n", "one.csv: covers 2.3 periods of 20 Hz; at least 4 are needed"),
+    ],
+)
+def test_faults_of_these_keys(tmp_path, keys, words):
+    assert words in only_fault(written(tmp_path, lambda t, d, v: (d, v), keys))
+
+
+@pytest.mark.parametrize("sweep", [0.1, 0.3, 1.0])
+def test_any_sweep_is_refused_by_its_spectrum_or_by_its_phases(tmp_path, sweep):
+    def chirp(t, d, v):
+        turns = FREQUENCY * (t + 0.5 * sweep * t * (t / t[-1] - 1.0))
+        phase = 2.0 * np.pi * turns
+        return np.cos(phase) + 1e-3 * d, 2.0 * np.pi * FREQUENCY * (-np.sin(phase) + 1e-3 * v)
+
+    assert "frequenc" in only_fault(written(tmp_path, chirp, periods=30.0))
+
+
+def test_two_tones_are_stationary_and_a_beat_shorter_than_the_record_too():
+    t = np.arange(4000) / 1000.0
+    found = stationarity(np.cos(2.0 * np.pi * 10.0 * t) + np.cos(2.0 * np.pi * 13.3 * t), 1000.0)
+    assert found.moved < 0.02
+    assert found.level_ratio < 1.2
+
+
+def test_check_prints_the_warnings(tmp_path):
+    printed = invoke("check", written(tmp_path, spiked))
+    assert "warning: one.csv: displacement: 1 sample is far" in printed

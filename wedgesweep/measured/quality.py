@@ -1,0 +1,110 @@
+"""What a usable record has that a reader should know of: trend, drift, outliers, flat tops, noise."""
+
+import numpy as np
+from scipy.special import stdtrit
+
+from wedgesweep.measured.cycles import Cycles, cut
+from wedgesweep.measured.declarations import STEADY
+from wedgesweep.measured.frequency import IMPROBABLE
+from wedgesweep.measured.measurement import TestRecord
+from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
+
+# Changes over the record that are worth a warning: of the amplitude, relative; of the mean, over the rms.
+TREND, DRIFT = 0.02, 0.1
+# Distance of an outlier from the periodic part, over the robust standard deviation of the noise. What
+# occurs as often as once in two periods is a part of the response.
+FAR, RARE = 10.0, 0.5
+# Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
+CLIPPED, RUN = 0.01, 3
+NOISY = 0.2
+
+
+def warnings(test: TestRecord) -> list[str]:
+    """What is odd in each response of a test, as "channel: what, and what to do"."""
+    told = [
+        f"{name}: {warning}"
+        for name, samples in test.responses.items()
+        if test.kind == STEADY
+        for warning in _of_channel(test, samples)
+    ]
+    if test.recorded_s is not None:
+        told.append(f"{test.duration:.4g} s of {test.recorded_s:.4g} s are used (from_s, to_s)")
+    return told
+
+
+def _of_channel(test: TestRecord, samples: np.ndarray) -> list[str]:
+    noise = estimate_noise(test.time, samples, test.refined_frequency)
+    cycles = cut(test.time, samples, test.refined_frequency)
+    found = (
+        _trend(cycles, test.duration),
+        _drift(cycles, test.duration, float(samples.std())),
+        _outliers(test, noise),
+        _flat_tops(samples),
+    )
+    told = [each for each in found if each]
+    if noise.share > NOISY:
+        told.append(
+            f"noise is {100.0 * noise.share:.0f} % of the periodic part; average it down, or excite more"
+        )
+    return told
+
+
+def _trend(cycles: Cycles, duration: float) -> str | None:
+    """Amplitude of the fundamental that changes from period to period."""
+    fundamental = cycles.harmonics[:, 0]
+    change = _change(cycles.times, (fundamental / fundamental.mean()).real, duration)
+    if abs(change) < TREND:
+        return None
+    return f"its amplitude changes by {100.0 * change:+.2g} % over the record; cut it (from_s, to_s)"
+
+
+def _drift(cycles: Cycles, duration: float, rms: float) -> str | None:
+    """Mean of the periods that drifts."""
+    change = _change(cycles.times, cycles.means, duration) / rms
+    if abs(change) < DRIFT:
+        return None
+    return (
+        f"its mean drifts by {100.0 * change:+.2g} % of its rms over the record; detrend = true removes that"
+    )
+
+
+def _change(times: np.ndarray, values: np.ndarray, duration: float) -> float:
+    """Change of a straight line through values (P,) over a duration, 0 where chance explains it."""
+    about = times - times.mean()
+    slope = about @ values / (about @ about)
+    left = values - values.mean() - slope * about
+    freedom = values.size - 2
+    std = np.sqrt(left @ left / freedom / (about @ about))
+    return float(slope * duration) if abs(slope) > -stdtrit(freedom, IMPROBABLE) * std else 0.0
+
+
+def _outliers(test: TestRecord, noise: NoiseEstimate) -> str | None:
+    """Single samples far from where the other periods have theirs."""
+    left = np.abs(noise.residual - np.median(noise.residual))
+    std = 1.4826 * float(np.median(left))
+    far = np.flatnonzero(left > FAR * std)
+    if not (std and 0 < far.size < RARE * test.duration * test.refined_frequency):
+        return None
+    worst = int(left.argmax())
+    times = "sample is" if far.size == 1 else "samples are"
+    at = f"the worst at {test.time[worst]:.6g} s by {left[worst] / std:.3g} standard deviations of the noise"
+    return (
+        f"{far.size} {times} far from the other periods, {at}; correct them, or cut them off (from_s, to_s)"
+    )
+
+
+def _flat_tops(samples: np.ndarray) -> str | None:
+    """Runs of samples exactly at the largest or smallest value."""
+    share = max(_share_in_runs(samples == end) for end in (samples.max(), samples.min()))
+    if share < CLIPPED:
+        return None
+    told = f"{100.0 * share:.2g} % of its samples are exactly at its extreme"
+    return f"{told}: the sensor or its amplifier clips, unless the motion sticks there"
+
+
+def _share_in_runs(at_extreme: np.ndarray) -> float:
+    """Share of marked samples (n,) in runs of at least RUN."""
+    padded = np.concatenate([[0], at_extreme.astype(int), [0]])
+    starts, ends = (np.flatnonzero(np.diff(padded) == sign) for sign in (1, -1))
+    runs = ends - starts
+    return float(runs[runs >= RUN].sum() / at_extreme.size)

@@ -1,0 +1,72 @@
+"""Whether a record is stationary: its level and its spectrum must be the same from beginning to end."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wedgesweep.measured.measurement import TestRecord
+
+PARTS = 4
+# A steady vibration under noise or a beating tone stays below this ratio of rms between parts of a record.
+MOST_LEVEL_RATIO = 1.5
+# Largest share of the power that may move to other frequencies between the halves of a record.
+MOST_MOVED = 0.5
+MEND = "cut the record to its steady part (from_s, to_s)"
+
+
+@dataclass(frozen=True)
+class Stationarity:
+    """How much a channel changes from beginning to end.
+
+    ``levels``, shape (4,): rms of each quarter about its linear trend, in the channel's unit. ``moved``:
+    share of the power that lies at other frequencies in the second half than in the first, from 0 to 1;
+    ``centres`` (Hz): median frequency of the power in each half.
+    """
+
+    levels: np.ndarray
+    moved: float
+    centres: tuple[float, float]
+
+    @property
+    def level_ratio(self) -> float:
+        """Highest level over the lowest."""
+        return float(self.levels.max() / max(self.levels.min(), np.finfo(float).tiny))
+
+
+def stationarity_faults(test: TestRecord, file: str) -> list[str]:
+    """What is not stationary in a test, with the number that shows it; one fault at most."""
+    for name, samples in test.channels.items():
+        found = stationarity(samples, test.sampling_rate)
+        if found.moved > MOST_MOVED:
+            first, second = found.centres
+            told = f"{100.0 * found.moved:.0f} % of the power of {name} moves to other frequencies"
+            return [f"{file}: {told} (median {first:.4g} Hz, then {second:.4g} Hz): a sweep; {MEND}"]
+        if found.level_ratio > MOST_LEVEL_RATIO:
+            levels = ", ".join(f"{100.0 * each / found.levels.max():.3g}" for each in found.levels)
+            told = f"the rms of {name} is {levels} % of its largest in the four quarters"
+            decays = bool((np.diff(found.levels) < 0.0).all())
+            other = ', or write kind = "transient" if it is a ring-down' if decays else ""
+            return [f"{file}: not steady: {told}; {MEND}{other}"]
+    return []
+
+
+def stationarity(signal: np.ndarray, rate: float) -> Stationarity:
+    """Measure how much a channel, shape (n,), sampled at a rate (Hz), changes."""
+    halves = [_cumulative_power(half) for half in np.array_split(signal[: signal.size // 2 * 2], 2)]
+    moved = float(np.abs(halves[0] - halves[1]).max())
+    step = rate / (signal.size // 2)
+    centres = [float(np.searchsorted(each, 0.5) * step) for each in halves]
+    levels = np.array([without_trend(part).std() for part in np.array_split(signal, PARTS)])
+    return Stationarity(levels, moved, (centres[0], centres[1]))
+
+
+def without_trend(signal: np.ndarray) -> np.ndarray:
+    """The signal, shape (n,), less the straight line through it (least squares)."""
+    place = np.arange(signal.size) - 0.5 * (signal.size - 1)
+    return signal - signal.mean() - place * (place @ signal) / (place @ place)
+
+
+def _cumulative_power(signal: np.ndarray) -> np.ndarray:
+    """Share of the power up to each frequency."""
+    power = np.abs(np.fft.rfft(without_trend(signal) * np.hanning(signal.size))) ** 2
+    return np.cumsum(power) / power.sum()
