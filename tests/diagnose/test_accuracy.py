@@ -142,6 +142,9 @@ def test_explanations_on_copies_of_the_data_are_rated(monkeypatch):
     monkeypatch.setattr(ladder, "REFINED", 1)
     search, base, singles = searched(drawn(LAG), "displacement_gain", "velocity_lag")
     fits = [each.fit for each in singles]
-    copies = [replace(fit, model=replace(fit.model, data=replace(fit.model.data))) for fit in fits]
+    copied = [replace(fit.model.data, amplitude=fit.model.data.amplitude.copy()) for fit in fits]
+    copies = [
+        replace(fit, model=replace(fit.model, data=data)) for fit, data in zip(fits, copied, strict=True)
+    ]
     _, one = ladder.ladder(search, base, [search.explanation(fit) for fit in copies])
     assert [each.effects for each in one.rated] == [("velocity_lag",), ("displacement_gain",)]
