@@ -16,7 +16,7 @@ REFINED, FACTOR = 6, 3.0
 COMPARED = 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rated:
     """An explanation with its accuracy; ``inf`` where it is adequate at none.
 
