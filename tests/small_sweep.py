@@ -62,9 +62,14 @@ def start(*arguments: object, directory: Path) -> subprocess.Popen:
         stderr=subprocess.STDOUT,
         text=True,
         start_new_session=True,
-        # A test run in the background ignores ctrl-C, and would hand that on.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=_default_signals,
     )
+
+
+def _default_signals() -> None:
+    """Tests that run in the background or under nohup ignore these signals, and would hand that on."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def environment(**variables: str) -> dict[str, str]:

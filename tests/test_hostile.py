@@ -12,6 +12,7 @@ from tests import fixture_diagnosis, fixture_measured, small_sweep
 from tests.command import invoke
 from tests.small_sweep import CONFIG
 from wedgesweep import api, config, files
+from wedgesweep.cli import failure
 from wedgesweep.cli.diagnose import _move
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.sweep import cases
@@ -116,6 +117,16 @@ def test_other_signals_end_a_run_as_ctrl_c_does(here, number):
     assert process.returncode == 128 + number, told
     assert "finished cases are stored in long.nc.partial; rerun the same command" in told
     assert "Traceback" not in told
+
+
+def test_a_hangup_that_is_ignored_stays_ignored():
+    """Under nohup a run goes on when the terminal closes."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        failure.end_on_signals()
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 def test_a_dataset_in_place_of_a_config_says_so(here):
