@@ -67,8 +67,7 @@ def _times(sets: Sets) -> list[str]:
     total = sum(sum(record["seconds"].values()) for record in sets.all) / 3600.0
     diagnoses = sorted(record["seconds"]["diagnose"] for record in sets.all)
     median, longest = diagnoses[len(diagnoses) // 2], diagnoses[-1]
-    told = f"{total:.1f} core hours; a diagnosis takes {median:.0f} s (median), at most {longest:.0f} s,"
-    return [f"{told} of CPU time."]
+    return [f"{total:.1f} core hours; a diagnosis takes {median:.0f} s (median), at most {longest:.0f} s."]
 
 
 def confusion(sets: Sets) -> str:
