@@ -50,6 +50,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
+        "never_tried": [list(each) for each in found.never_tried],
         "title": found.measurement.title,
         "kind": data.kind,
         "model": {"system": data.model.system, "law": data.law, "title": data.model.title},

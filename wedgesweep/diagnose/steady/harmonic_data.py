@@ -57,7 +57,7 @@ class SteadyResponse(NamedTuple):
         return (self.aliases != 0.0).any(axis=(-2, -1), keepdims=True)
 
 
-class _Simulated(NamedTuple):
+class Simulated(NamedTuple):
     """Harmonics (n, T, C, K) of n scenarios, whether they exist (n, T), and final states (n T rows)."""
 
     harmonics: np.ndarray
@@ -132,7 +132,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """What ``decorrelated`` turns into some noise (..., T, m)."""
         return noise
 
-    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> _Simulated:
+    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         rows = [self.records(each) for each in scenarios]
         phase = np.concatenate([each.point.nuisance[:, 1] for each in scenarios])
         warm = joined([each.point.warm for each in scenarios])
@@ -140,7 +140,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         done = self._respond(np.concatenate(rows), phase if toned else None, warm, tolerance)
         shape = (len(scenarios), self.tests)
         harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : self.shape[0]]
-        return _Simulated(harmonics, done.found.reshape(shape), done.warm)
+        return Simulated(harmonics, done.found.reshape(shape), done.warm)
 
     def _respond(
         self, rows: np.ndarray, phase: np.ndarray | None, warm: Warm, tolerance: float
