@@ -215,6 +215,8 @@ def test_one_gain_of_the_input_serves_all_tests(of):
     gain, std = fit.x[0], np.sqrt(fit.covariance[0, 0])
     assert gain == pytest.approx(1.03, abs=4.0 * std)
     assert std < 0.01
+    fitted = fit.model.data.inputs_of(fit.model.scenario(fit.point))
+    np.testing.assert_allclose(fitted, AMPLITUDES, rtol=0.02)
 
 
 def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():

@@ -126,7 +126,7 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     if isinstance(data, SampledData):
         return sampled.tests(found, data)
     unit, size = data.model.amplitude_unit
-    amplitude = data.amplitudes(best.point)
+    amplitude = data.inputs_of(best.model.scenario(best.point))
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
         noise = spectrum.sample_noise

@@ -18,10 +18,10 @@ def extended(found: Diagnosis) -> str:
     if isinstance(data, SampledData):
         return _heading(found) + toml.dumps(document)
     # Repeated tests are one case, and single cases do not continue one another.
-    unit = data.model.amplitude_unit
+    unit, inputs = data.model.amplitude_unit, data.inputs_of(best.model.scenario(best.point))
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{amplitude / unit.factor:.7g}"))
-        for spectrum, amplitude in zip(data.spectra, data.amplitudes(best.point), strict=True)
+        for spectrum, amplitude in zip(data.spectra, inputs, strict=True)
     )
     document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {

@@ -82,6 +82,10 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """Input amplitudes (T,) in m, or N of a force, at a point."""
         return self.reference * np.exp(point.nuisance[:, 0])
 
+    def inputs_of(self, scenario: Scenario) -> np.ndarray:
+        """Input amplitudes (T,) in m, or N of a force, that are simulated in a scenario."""
+        return self.amplitudes(scenario.point)
+
     @property
     def dof(self) -> np.ndarray:
         """Observations of each test less its start phase, and its amplitude where that is unknown, (T,)."""
@@ -115,7 +119,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def records(self, scenario: Scenario) -> np.ndarray:
         """Parameter records (T,) of the tests in a scenario."""
-        amplitudes = self.amplitudes(scenario.point)
+        amplitudes = self.inputs_of(scenario)
         if self.models is None:
             return simulation.records(self.model, self.law, scenario.values, self.omega, amplitudes)
         each = [

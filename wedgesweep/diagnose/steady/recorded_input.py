@@ -152,12 +152,15 @@ class RecordedInputData(HarmonicData):
         left_out = (*self.untold, INPUT_GAIN)
         told = {name: each for name, each in scenario.values.items() if name not in left_out}
         rows = super().records(scenario._replace(values=told))
-        rows["input"]["amplitude"] = self._gain(scenario) * self.reference
+        rows["input"]["amplitude"] = self.inputs_of(scenario)
         for sensor, number, neutral in SENSORS:
             if sensor in self.untold:
                 rows[sensor][number] = neutral
         excitation.set_series(rows, self.recorded.shape)
         return rows
+
+    def inputs_of(self, scenario: Scenario) -> np.ndarray:
+        return self.reference * self._gain(scenario)
 
     def _gain(self, scenario: Scenario) -> np.ndarray:
         """True input over the recorded one (T,): the gain of the sensor, and of a test by itself."""
