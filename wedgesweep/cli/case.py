@@ -80,7 +80,7 @@ def _print_remarks(ds: "xr.Dataset") -> None:
     """Tell what makes the numbers of a solved case doubtful."""
     from wedgesweep.sweep import outcomes
 
-    (result,) = outcomes.of_dataset(ds)
+    result = outcomes.of_dataset(ds)[0]
     if result.lifted:
         share = f"{100.0 * result.lift_off_fraction:.2g} % of the slipping time"
         click.echo(
@@ -91,7 +91,7 @@ def _print_remarks(ds: "xr.Dataset") -> None:
 
 
 def _name(config_path: Path, settings: "Config") -> str:
-    law, beta, amplitude = settings.case_list()[0]
+    law, beta, amplitude = settings.sweep.case(0)
     size = f"{amplitude:.6g}N" if settings.forced else f"{amplitude * 1e3:.6g}mm"
     return f"{config_path.stem}-{law}-{beta:.6g}-{size}"
 

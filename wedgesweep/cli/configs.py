@@ -71,7 +71,7 @@ def check(config_path: Path) -> None:
 
 def _grid(settings: "Config") -> str:
     """Describe the number of cases as the product of the grid's axes."""
-    sweep, count = settings.sweep, len(settings.case_list())
+    sweep, count = settings.sweep, settings.sweep.count
     if sweep.cases is not None:
         return f"{count}, listed individually"
     laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size

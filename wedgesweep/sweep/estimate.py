@@ -27,7 +27,7 @@ class Estimate:
 
 def estimate(sweep: Sweep) -> Estimate:
     """Time a few cases spread over the sweep, for some seconds, and extrapolate."""
-    cases = len(sweep.parameters)
+    cases = sweep.count
     compile_once(sweep.settings.method, sweep.kit, sweep.config.system)
     sweep.solve(np.array([0]))  # loads the compiled code
     started = perf_counter()
