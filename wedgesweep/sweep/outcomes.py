@@ -17,6 +17,8 @@ from wedgesweep.sweep.cases import describe
 from wedgesweep.sweep.run import Sweep
 
 LIFT_OFF = "lift_off_fraction"
+# Variables of the dataset that Outcomes holds.
+COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
 
 class CaseResult(NamedTuple):
@@ -118,8 +120,8 @@ def of_dataset(ds: xr.Dataset) -> Outcomes:
         )
         return law, beta, amplitude, unit, message
 
-    columns = (ds[name].values.ravel() for name in ("status", "period", "periodicity", LIFT_OFF))
-    return Outcomes(*columns, described)
+    columns = {name: ds[name].values.ravel() for name in COLUMNS}
+    return Outcomes(**columns, describe_case=described)
 
 
 def of_journal(path: Path) -> Outcomes:
@@ -135,5 +137,4 @@ def of_journal(path: Path) -> Outcomes:
         case = settings.sweep.case(records["index"][place])
         return (*case, "N" if settings.forced else "m", records["message"][place].decode())
 
-    columns = (records[name] for name in ("status", "period", "periodicity", LIFT_OFF))
-    return Outcomes(*columns, described)
+    return Outcomes(**{name: records[name] for name in COLUMNS}, describe_case=described)
