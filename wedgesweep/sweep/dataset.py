@@ -4,14 +4,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from wedgesweep.errors import SweepError
 from wedgesweep.files import regular, written
 from wedgesweep.outcome import Outcome
+
+# xarray takes a third of a second to load, in which the processes that solve cases could already do so.
+if TYPE_CHECKING:
+    import xarray as xr
 
 STATUSES = tuple(map(str, Outcome))
 HARMONICS = 9
@@ -137,12 +140,14 @@ def assemble(
     shape: tuple[int, ...],
     attrs: Mapping[str, Any],
     long_names: Mapping[str, str | None] = MappingProxyType({}),
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Assemble the dataset from the records of all cases, in any order.
 
     ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), one
     for a list (case). ``long_names``: those of another system, by variable; None: it does not have it.
     """
+    import xarray as xr
+
     case_dims = GRID if len(shape) == 3 else ("case",)
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
@@ -185,7 +190,7 @@ def _attributes(variable: Variable, long_name: str) -> dict[str, Any]:
     return attributes
 
 
-def write(dataset: xr.Dataset, path: Path) -> None:
+def write(dataset: "xr.Dataset", path: Path) -> None:
     """Write netCDF to a temporary file beside ``path``, and move it there when it is complete."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
     encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
@@ -205,8 +210,10 @@ def write(dataset: xr.Dataset, path: Path) -> None:
             raise SweepError(message) from error
 
 
-def read(path: Path) -> xr.Dataset:
+def read(path: Path) -> "xr.Dataset":
     """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
+    import xarray as xr
+
     try:
         regular(path)
     except OSError as error:
@@ -219,7 +226,7 @@ def read(path: Path) -> xr.Dataset:
         raise SweepError(message) from error
 
 
-def read_sweep(path: Path) -> xr.Dataset:
+def read_sweep(path: Path) -> "xr.Dataset":
     """Load the dataset of a sweep; raises SweepError, also if it lacks what every sweep has."""
     found = read(path)
     if faults := list(_faults(found)):
@@ -228,7 +235,7 @@ def read_sweep(path: Path) -> xr.Dataset:
     return found
 
 
-def _faults(ds: xr.Dataset) -> Iterator[str]:
+def _faults(ds: "xr.Dataset") -> Iterator[str]:
     """What tells a dataset from that of a sweep: coordinates, dimensions, and the kinds of its variables."""
     yield from (f"no coordinate {name}" for name in (*GRID, "frequency") if name not in ds.coords)
     yield from (f"no variable {name}" for name in REQUIRED if name not in ds)
