@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, OutputPath
-from wedgesweep.cli.run import announce_compiling, print_remark
+from wedgesweep.cli.run import print_remark
 from wedgesweep.files import write_text
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def check(config_path: Path) -> None:
     from wedgesweep.sweep.run import Sweep
 
     sweep = Sweep(settings, Path(f"{config_path.stem}.nc"))
-    announce_compiling(sweep.settings.method, sweep.kit, settings.system)
+    announce_compiling()
     print_cost(sweep, count_jobs(None))
 
 

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.humanize import duration
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
@@ -153,7 +155,7 @@ def _run(sweep: "Sweep", progress: ProgressReport, check: Verify, options: dict[
         click.echo(f"{sweep.out}: already complete; use --fresh to run it again")
         code = print_summary(result)
     else:
-        announce_compiling(sweep.settings.method, sweep.kit, sweep.config.system)
+        announce_compiling()
         print_remark(sweep.config)
         require_confirmed(sweep, options["n_jobs"], confirmed)
         started = perf_counter()
@@ -168,15 +170,7 @@ def _run(sweep: "Sweep", progress: ProgressReport, check: Verify, options: dict[
 def print_remark(settings: "Config") -> None:
     """Print what is to be known of the friction of a config."""
     if settings.remark:
-        click.echo(f"note: {settings.remark}", err=True)
-
-
-def announce_compiling(method: str, kit: int = 0, system: str = "suspension") -> None:
-    """Announce the compilation that delays a first run."""
-    from wedgesweep.sweep.cases import is_compiled
-
-    if not is_compiled(method, kit, system):
-        click.echo("compiling the solver (once, some 20 s)", err=True)
+        log.info(f"note: {settings.remark}")
 
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:

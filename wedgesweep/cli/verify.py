@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import click
 
 from wedgesweep.cli.failure import SOME_FAILED
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.summary import LISTED
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
     """Solve random cases again and print the largest differences; return the exit code."""
     from wedgesweep.sweep import verification
 
-    click.echo(f"verifying: {count} random cases, by Radau", err=True)
+    log.info(f"verifying {count} random cases by Radau")
     found = verification.verify(sweep, ds, count, seed, n_jobs)
     judged = found.judged
     click.echo(

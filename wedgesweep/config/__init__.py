@@ -1,5 +1,6 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
+import logging
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,8 @@ from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
 from wedgesweep.files import read_text
 from wedgesweep.natural_units import natural_units
+
+log = logging.getLogger(__name__)
 
 # With this effect a suspension may have no equilibrium.
 SOFTENING = "cubic_stiffness"
@@ -402,7 +405,9 @@ def load(path: str | Path) -> Config:
     except OSError as error:
         problem = f"{path}: {error.strerror}; give the path of a TOML file"
         raise ConfigError([problem]) from error
-    return parse(text, str(path))
+    found = parse(text, str(path))
+    log.debug("%s: %d cases, %s", path, found.sweep.count, found.document["solver"]["method"])
+    return found
 
 
 def parse(text: str, source: str = "<config>") -> Config:

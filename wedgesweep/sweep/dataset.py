@@ -1,5 +1,6 @@
 """The labelled dataset of a sweep: one table of every variable, and its netCDF encoding."""
 
+import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,8 @@ from wedgesweep.outcome import Outcome
 # xarray takes a third of a second to load, in which the processes that solve cases could already do so.
 if TYPE_CHECKING:
     import xarray as xr
+
+log = logging.getLogger(__name__)
 
 STATUSES = tuple(map(str, Outcome))
 HARMONICS = 9
@@ -208,6 +211,7 @@ def write(dataset: "xr.Dataset", path: Path) -> None:
         ) as error:  # netCDF4 raises any of them, without a file name
             message = f"{path}: cannot be written ({_reason(error)}); is the disk full?"
             raise SweepError(message) from error
+    log.debug("%s: written, %d bytes", path, path.stat().st_size)
 
 
 def read(path: Path) -> "xr.Dataset":

@@ -1,5 +1,6 @@
 """A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
+import logging
 import signal
 import threading
 import warnings
@@ -29,6 +30,8 @@ from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
 from wedgesweep.systems import has_own_mechanics, kits, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
+
+log = logging.getLogger(__name__)
 
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
@@ -203,10 +206,12 @@ class Sweep:
         todo = self.rows.without(complete)
         if len(todo):
             compile_once(self.settings.method, self.kit, self.config.system)
+        log.debug("%s: %d cases of an earlier run", self.journal_path, len(whole))
         yield whole[np.isin(self.rows.of(whole["index"]), complete)]
         with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
             for records in parts:
                 kept.append(records)
+                log.debug("%d cases solved in %.3g s", len(records), records["wall_time"].sum())
                 yield records
 
     def _solve_parallel(
