@@ -24,6 +24,7 @@ class StepReport:
         from wedgesweep.diagnose.progress import Step
 
         if not isinstance(step, Step):
+            self.stop()
             log.info(step)
         else:
             if step.done == 0:
