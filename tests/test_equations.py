@@ -73,8 +73,8 @@ def test_structure():
     assert mathml.symbol("mu_s").count("<msub><mi>μ</mi><mi>s</mi></msub>") == 1
     assert "<mfrac><mi>v</mi><msub><mi>v</mi><mi>t</mi></msub></mfrac>" in mathml.display("v/v_t")
     # Round brackets around all that is above, below or raised are not needed there.
-    assert "fence" not in mathml.display("(a + b)/(c + d)")
-    assert mathml.display("exp(-(a + b)/c)").count("fence") == 2
+    assert "stretchy" not in mathml.display("(a + b)/(c + d)")
+    assert mathml.display("exp(-(a + b)/c)").count('stretchy="true"') == 2
     assert "<msubsup><mi>x</mi><mi>f</mi><mo>″</mo></msubsup>" in mathml.display("x_f''")
     assert "<msqrt>" in mathml.display("sqrt(k m)")
     assert "damping ratio" in mathml.display("2 damping_ratio")

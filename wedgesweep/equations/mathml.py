@@ -13,6 +13,9 @@ SIGNS = {"->": "→", "<=": "≤", ">=": "≥", "!=": "≠", "-": "−", "+-": "
 PRIMES = ("", "′", "″")
 # Invisible, but read aloud: a product, and a function of what follows.
 TIMES, APPLY = "<mo>&#x2062;</mo>", "<mo>&#x2061;</mo>"
+APART = '<mspace width="0.2em"/>'
+# What is higher than a line, so that brackets around it grow.
+HIGH = (Fraction, Power)
 
 
 def display(text: str) -> str:
@@ -48,9 +51,14 @@ def _row(row: Row) -> str:
     found = []
     for before, node in zip((None, *row.nodes), row.nodes, strict=False):
         if before is not None and not isinstance(before, Operator) and not isinstance(node, Operator):
-            found.append(TIMES)
+            found.append(TIMES + APART * (_is_word(before) or _is_word(node)))
         found.append(_node(node))
     return f"<mrow>{''.join(found)}</mrow>"
+
+
+def _is_word(node: Node) -> bool:
+    """Whether a node is written as a word, which a factor beside it must not run into."""
+    return isinstance(node, Call) or (isinstance(node, Name) and len(LETTERS.get(node.stem, node.stem)) > 1)
 
 
 def _node(node: Node) -> str:
@@ -77,7 +85,8 @@ def _node(node: Node) -> str:
 
 def _bracketed(opening: str, content: Row) -> str:
     closing = notation.BRACKETS[opening]
-    fences = (f'<mo fence="true" form="{form}">' for form in ("prefix", "postfix"))
+    high = any(isinstance(node, HIGH) for node in content.nodes)
+    fences = (f'<mo form="{form}" stretchy="{str(high).lower()}">' for form in ("prefix", "postfix"))
     before, after = (
         f"{fence}{bracket}</mo>" for fence, bracket in zip(fences, (opening, closing), strict=True)
     )
