@@ -1,7 +1,7 @@
 """Try hostile inputs of every kind on the command line, and print what becomes of them.
 
-An input is drawn from the seed and its number alone: ``--only NUMBER --keep DIR`` writes it to DIR and runs it
-again. The exit code is 1 if an input gives a traceback, takes more than 20 s of processor time, kills the
+An input is drawn from the seed and its number alone: ``--only NUMBER --keep DIR`` writes it to DIR and runs
+it again. The exit code is 1 if an input gives a traceback, takes more than 20 s of processor time, kills the
 process, makes a library warn, prints a number that is not finite, or is refused without naming anything.
 """
 
@@ -14,19 +14,27 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from random import Random
 
-ROOT = Path(__file__).parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
-
 from torture import specimens
 from torture.inputs import KINDS
-from torture.verdicts import ACCEPTED, FAILED, FAULTS, HANG, LIMIT, REFUSED, TRACEBACK, WARNING, Verdict, judge
+from torture.verdicts import (
+    ACCEPTED,
+    FAILED,
+    FAULTS,
+    HANG,
+    LIMIT,
+    REFUSED,
+    TRACEBACK,
+    WARNING,
+    Verdict,
+    judge,
+)
 
-SHOWN = 3
 OUTCOMES = (ACCEPTED, REFUSED, FAILED, *FAULTS)
 # A process that says nothing for so long (s of wall time) hangs in a library.
 SILENT = 300.0
@@ -51,7 +59,9 @@ def main() -> int:
 
 
 def _options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--inputs", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -65,6 +75,7 @@ def _options() -> argparse.Namespace:
 
 
 def _specimens(base: Path) -> specimens.Specimens:
+    sys.path.insert(0, str(Path(__file__).parents[1]))
     from tests import fixture_diagnosis
 
     (base / "made").mkdir()
@@ -95,12 +106,18 @@ def work(given: specimens.Specimens, options: argparse.Namespace, base: Path) ->
     os.dup2(leaked.fileno(), 2)
     for number in range(options.first, options.inputs, options.step):
         print(repr(number), file=told)
-        kind, command, verdict = one(given, options.seed, number, base / "input", options.kind)
+        try:
+            kind, command, verdict = one(given, options.seed, number, base / "input", options.kind)
+        except Exception:
+            kind, command, verdict = "fuzz.py", [], Verdict(TRACEBACK, traceback.format_exc())
         written = (base / "stderr").read_text(errors="replace")
         if written and not verdict.fault:
             verdict = Verdict(WARNING, f"on the standard error of the process: {written[:2000]}")
         leaked.truncate(0)
-        print(repr((number, kind, command, verdict.outcome, verdict.told[-4000:] if verdict.fault else "")), file=told)
+        print(
+            repr((number, kind, command, verdict.outcome, verdict.told[-4000:] if verdict.fault else "")),
+            file=told,
+        )
 
 
 def campaign(options: argparse.Namespace, base: Path) -> int:
@@ -109,7 +126,8 @@ def campaign(options: argparse.Namespace, base: Path) -> int:
 
     found: list[tuple] = []
     threads = [
-        threading.Thread(target=lambda job=job: found.extend(_shard(options, base, job))) for job in range(options.jobs)
+        threading.Thread(target=lambda job=job: found.extend(_shard(options, base, job)))
+        for job in range(options.jobs)
     ]
     for thread in threads:
         thread.start()
@@ -125,7 +143,7 @@ def _shard(options: argparse.Namespace, base: Path, job: int) -> Iterator[tuple]
         process = subprocess.Popen(_command(options, base, first), stdout=subprocess.PIPE, text=True)
         number = None
         for line in _lines(process):
-            result = eval(line, {"__builtins__": {}})  # noqa: S307 - written by a process of this program
+            result = eval(line, {"__builtins__": {}})
             if isinstance(result, int):
                 number = result
             else:
@@ -134,7 +152,8 @@ def _shard(options: argparse.Namespace, base: Path, job: int) -> Iterator[tuple]
         code = process.wait()
         if number is None:
             if code:
-                raise SystemExit(f"a worker ended with {code}")
+                message = f"a worker of this script ended with {code}"
+                raise SystemExit(message)
             return
         yield number, "unknown", [], HANG if code == -9 else TRACEBACK, f"the process ended with {code}"
         first = number + options.jobs

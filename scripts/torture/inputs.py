@@ -18,12 +18,52 @@ Kind = Callable[[Specimens, Path, Random], Command]
 
 LINES_OF_LOGGERS = ("# bench 7", "% x", "Date;1.1.2024", "", "sep=;", "[s],[mm],[mm/s]", "s;mm;mm/s")
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "latin-1", "utf-32")
-FIGURES = ("amplitude-ratio", "bifurcation", "peak-to-peak", "phase-portrait", "response", "stick-map", "friction-laws")
+FIGURES = (
+    "amplitude-ratio",
+    "bifurcation",
+    "peak-to-peak",
+    "phase-portrait",
+    "response",
+    "stick-map",
+    "friction-laws",
+)
 OF_A_DIAGNOSIS = ("misfit", "candidates", "ladder", "gain")
 PICKS = ("--beta", "--frequency", "--amplitude", "--law", "--format")
 WORDS = (
-    *("0", "-1", "1", "1e200", "1e-200", "1e9", "nan", "inf", "-inf", "99", "0.3", "1.2", "x", "", "\0", "ü", "9" * 400),
-    *("coulomb", "COULOMB", "png", "pdf", "config.toml", "out", "out/x.nc", "/dev/null", "/dev/zero", "/", ".", "-", "--"),
+    *(
+        "0",
+        "-1",
+        "1",
+        "1e200",
+        "1e-200",
+        "1e9",
+        "nan",
+        "inf",
+        "-inf",
+        "99",
+        "0.3",
+        "1.2",
+        "x",
+        "",
+        "\0",
+        "ü",
+        "9" * 400,
+    ),
+    *(
+        "coulomb",
+        "COULOMB",
+        "png",
+        "pdf",
+        "config.toml",
+        "out",
+        "out/x.nc",
+        "/dev/null",
+        "/dev/zero",
+        "/",
+        ".",
+        "-",
+        "--",
+    ),
 )
 
 
@@ -120,8 +160,23 @@ def _array(samples: np.ndarray, draw: Random) -> object:
         return samples
     odd = samples.copy()
     odd[draw.randrange(odd.size)] = draw.choice(mutations.NUMBERS)
-    shapes = (odd, samples[:, None], samples[:-1], samples[::-1], samples.astype("f4"), samples.astype(complex))
-    others = (np.stack([samples, samples]), np.zeros((0, 0)), "text", {"a": 1}, [[1]], samples * 0.0, samples > 0.0)
+    shapes = (
+        odd,
+        samples[:, None],
+        samples[:-1],
+        samples[::-1],
+        samples.astype("f4"),
+        samples.astype(complex),
+    )
+    others = (
+        np.stack([samples, samples]),
+        np.zeros((0, 0)),
+        "text",
+        {"a": 1},
+        [[1]],
+        samples * 0.0,
+        samples > 0.0,
+    )
     return draw.choice((*shapes, *others, np.round(samples), samples * draw.choice((1e-200, 1e200))))
 
 
@@ -178,7 +233,9 @@ def _change_group(group, draw: Random) -> None:
             variable = group.variables[draw.choice(names)]
             values = variable[...]
             if values.dtype.kind in "fiu" and values.size:
-                odd = draw.choice(mutations.NUMBERS) if values.dtype.kind == "f" else draw.choice((-99, 0, 99))
+                odd = (
+                    draw.choice(mutations.NUMBERS) if values.dtype.kind == "f" else draw.choice((-99, 0, 99))
+                )
                 values = values * 0 + odd if draw.random() < 0.3 else values
                 values.flat[draw.randrange(values.size)] = odd
                 variable[...] = values
@@ -186,7 +243,7 @@ def _change_group(group, draw: Random) -> None:
             group.renameVariable(draw.choice(names), draw.choice(("x", "beta", "time", "status")))
         elif group.dimensions:
             group.renameDimension(draw.choice(list(group.dimensions)), draw.choice(("x", "beta", "case")))
-    except (RuntimeError, OverflowError, ValueError, TypeError):
+    except (RuntimeError, OverflowError, ValueError, TypeError, AttributeError):
         return
 
 
@@ -211,7 +268,11 @@ def journal(given: Specimens, place: Path, draw: Random) -> Command:
     config_text = mutations.toml(given.configs[-1])
     (place / "config.toml").write_text(config_text)
     (place / "out.nc.partial").write_bytes(_journal(given.journal, draw))
-    commands = (["status", "out.nc"], ["status", "out.nc"], ["run", "config.toml", "-o", "out.nc", "--n-jobs", "1"])
+    commands = (
+        ["status", "out.nc"],
+        ["status", "out.nc"],
+        ["run", "config.toml", "-o", "out.nc", "--n-jobs", "1"],
+    )
     return list(draw.choice(commands))
 
 

@@ -60,8 +60,17 @@ LOOP = {
         "test": [{"file": "one.csv", "kind": "loop", "lowpass_hz": 150.0}],
     }
 }
-MODEL = {"title": "on trial", "sweep": {"friction_law": "static-dynamic", "beta": 1.0, "amplitude_mm": 0.1}, "solver": SHORT}
-PLAN = {"test": [{"frequency_hz": 20.0, "amplitude_mm": 0.3, "amplitude_std": 0.01}, {"frequency_hz": 12.0, "amplitude_mm": 0.5}]}
+MODEL = {
+    "title": "on trial",
+    "sweep": {"friction_law": "static-dynamic", "beta": 1.0, "amplitude_mm": 0.1},
+    "solver": SHORT,
+}
+PLAN = {
+    "test": [
+        {"frequency_hz": 20.0, "amplitude_mm": 0.3, "amplitude_std": 0.01},
+        {"frequency_hz": 12.0, "amplitude_mm": 0.5},
+    ]
+}
 
 
 @dataclass(frozen=True)

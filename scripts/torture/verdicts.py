@@ -21,8 +21,9 @@ TRACEBACK, HANG, WARNING, NOT_FINITE, NAMELESS, CODE = FAULTS = (
 # Processor time (s) that an input may take.
 LIMIT = 20.0
 NUMBERLESS = re.compile(r"(?<![\w.'\"])[-+]?(?:nan|inf|infinity)(?![\w'\"])", re.IGNORECASE)
+TITLE = re.compile(r"^title: .*$", re.MULTILINE)
 # What a message names: a file of the directory, or an option or argument of the command.
-OPTION = re.compile(r"--?[a-z]|'?[A-Z_]{3,}'?|Usage:|argument")
+OPTION = re.compile(r"--?\w|'?[A-Z_]{3,}'?|Usage:|argument")
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,9 @@ def judge(command: Sequence[str], limit: float = LIMIT) -> Verdict:
     if found is not None and not isinstance(found, SystemExit):
         return Verdict(TRACEBACK, _trace(found))
     if warned:
-        return Verdict(WARNING, f"{warned[0].filename}:{warned[0].lineno}: {warned[0].message}\n{result.output}")
+        return Verdict(
+            WARNING, f"{warned[0].filename}:{warned[0].lineno}: {warned[0].message}\n{result.output}"
+        )
     return Verdict(_outcome(result, command), result.output)
 
 
@@ -63,7 +66,7 @@ def _outcome(result: Any, command: Sequence[str]) -> str:
         return REFUSED if _names_something(result.stderr, command) else NAMELESS
     if result.exit_code not in (0, 1):
         return CODE
-    if NUMBERLESS.search(result.stdout):
+    if NUMBERLESS.search(TITLE.sub("", result.stdout)):
         return NOT_FINITE
     return FAILED if result.exit_code else ACCEPTED
 
@@ -71,7 +74,7 @@ def _outcome(result: Any, command: Sequence[str]) -> str:
 def _names_something(message: str, command: Sequence[str]) -> bool:
     """Whether an error names a file or an option."""
     files = [name for _, directories, names in os.walk(".") for name in (*directories, *names)]
-    words = [word for word in (*files, *command[1:]) if len(word) > 2]
+    words = [word for word in (*files, *command[1:]) if word.strip()]
     told = message.partition("Error: ")[2]
     return any(word in told for word in words) or bool(OPTION.search(told))
 

@@ -136,10 +136,14 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> i
     announce_compiling(sweep.settings.method, sweep.kit, sweep.config.system)
     print_remark(sweep.config)
     started = perf_counter()
-    result = sweep.run(progress=progress, **options)
+    result = sweep.run(progress=progress, tell=_remark, **options)
     code = print_summary(result)
     click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
     return code
+
+
+def _remark(text: str) -> None:
+    click.echo(text, err=True)
 
 
 def print_remark(settings: "Config") -> None:

@@ -6,11 +6,10 @@ from concurrent.futures import CancelledError, Future
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
-import joblib
 from joblib._dask import Batch, DaskDistributedBackend
 
 from wedgesweep.errors import SweepError
-from wedgesweep.sweep.backend import parallel
+from wedgesweep.sweep.backend import Pool, parallel
 from wedgesweep.sweep.fingerprint import differences
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ TIMEOUT = 10.0
 @contextmanager
 def dask(
     n_jobs: int, fingerprint: Callable[[], dict[str, str]], scheduler: str | None = None
-) -> Iterator[joblib.Parallel]:
+) -> Iterator[Pool]:
     """Workers of a running cluster, or of a local one with ``n_jobs`` processes that ends with this run.
 
     Raises SweepError if there is no cluster, or if its workers run another version.
@@ -37,8 +36,9 @@ def dask(
         client = _connected(opened, scheduler) if scheduler else _local(opened, n_jobs)
         _require_same(client, fingerprint)
         try:
-            yield parallel(backend=_Dask(client=client))
-        except (KilledWorker, CancelledError) as error:
+            cores = sum(client.ncores().values())
+            yield Pool(lambda: parallel(backend=_Dask(client=client)), cores, (KilledWorker,))
+        except CancelledError as error:
             message = f"the Dask cluster gave up: {error}; rerun the same command to resume"
             raise SweepError(message) from error
 

@@ -1,10 +1,7 @@
 """A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
-import signal
-import threading
-import warnings
 from collections.abc import Callable, Generator, Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property, partial
@@ -12,7 +9,6 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-import joblib
 import numpy as np
 import xarray as xr
 
@@ -22,10 +18,11 @@ from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, journal, labels, provenance
-from wedgesweep.sweep.backend import Backend, local
-from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
+from wedgesweep.sweep.backend import Backend, Pool, local
+from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
+from wedgesweep.sweep.workers import Workers, interrupts_ignored
 from wedgesweep.systems import has_own_mechanics, kits, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
 
@@ -35,8 +32,8 @@ Progress = Callable[[np.ndarray, int], None]
 # The event-driven solver takes CHUNK cases at a time, which also go into the journal together; a small
 # sweep is divided into CHUNKS smaller chunks.
 CHUNK, CHUNKS = 200, 64
-# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
-OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
+# How a case can end by the load or the state of the machine: such a case is run again.
+PASSING = (Outcome.TIME_LIMIT, Outcome.WORKER_LOST)
 
 
 class CaseFailedError(SweepError):
@@ -139,6 +136,7 @@ class Sweep:
         progress: Progress = lambda records, total: None,
         backend: Backend | None = None,
         fresh: bool = False,
+        tell: Callable[[str], None] = lambda remark: None,
     ) -> xr.Dataset:
         """Run the cases that are not finished yet, or all if ``fresh``, and write the dataset.
 
@@ -156,6 +154,8 @@ class Sweep:
             Where the cases run; by default the backend of this machine that suits the solver.
         fresh : bool
             Whether to discard the results of earlier runs.
+        tell : callable
+            Called with a remark when workers die and are replaced.
 
         Returns
         -------
@@ -175,7 +175,7 @@ class Sweep:
             if fresh:
                 self.discard()
             kept = opened.enter_context(Journal(self.journal_path, self.dtype, self.journal_header))
-            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout)))
+            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout, tell)))
             records = np.empty(len(self.parameters), self.dtype)
             for part in parts:
                 records[part["index"]] = part
@@ -198,46 +198,39 @@ class Sweep:
         limit = self._limit(case_timeout)
         return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
 
-    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> joblib.Parallel:
-        with _interrupts_ignored():
+    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> Pool:
+        with interrupts_ignored():
             return opened.enter_context(backend(n_jobs, partial(fingerprint, self.config)))
 
     def _all_records(
-        self, kept: Journal, pool: joblib.Parallel, case_timeout: float | None
+        self, kept: Journal, pool: Pool, case_timeout: float | None, tell: Callable[[str], None]
     ) -> Generator[np.ndarray, None, None]:
-        # Whether a case exceeds its time limit depends on the load of the machine: such cases are run again.
-        whole = kept.records[kept.records["status"] != Outcome.TIME_LIMIT]
+        whole = kept.records[~np.isin(kept.records["status"], PASSING)]
         rows = self.together
         todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
         if todo.size:
             compile_once(self.settings.method, self.kit, self.config.system)
         yield whole[~np.isin(whole["index"], todo)]
-        with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
+        workers = Workers(pool, self._divided, partial(self._chunk, self._limit(case_timeout)), tell)
+        with closing(workers.solve(todo)) as parts:
             for records in parts:
                 kept.append(records)
                 yield records
 
-    def _solve_parallel(
-        self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
-    ) -> Generator[np.ndarray, None, None]:
-        if not rows.size:
-            return
-        with _interrupts_ignored():
-            results = pool(
-                joblib.delayed(solve_chunk)(
-                    Chunk(self.parameters[chunk], chunk, self.settings, case_timeout, self.dtype)
-                )
-                for chunk in _chunks(rows, self.settings.method)
-            )
-        try:
-            # "yield from" would close the results outside of the filter below.
-            for records in results:  # noqa: UP028
-                yield records
-        finally:
-            with warnings.catch_warnings():
-                # joblib warns when a run is stopped early.
-                warnings.simplefilter("ignore", UserWarning)
-                results.close()
+    def _divided(self, rows: np.ndarray) -> Iterator[np.ndarray]:
+        """Divide the rows of cases into the chunks that jobs solve: one slow case, or many fast ones.
+
+        A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
+        neighbours would leave some jobs idle at the end.
+        """
+        size = min(CHUNK, -(-rows.size // CHUNKS)) if self.settings.method == "event-driven" else 1
+        count = -(-len(rows) // max(size // rows.shape[1], 1))
+        return (rows[first::count] for first in range(count))
+
+    def _chunk(self, case_timeout: float, rows: np.ndarray) -> Chunk:
+        """The task to solve some rows of cases."""
+        cases = rows.ravel()
+        return Chunk(self.parameters[cases], cases, self.settings, case_timeout, self.dtype)
 
     def _limit(self, case_timeout: float | None) -> float:
         return self.settings.case_timeout if case_timeout is None else case_timeout
@@ -283,17 +276,6 @@ class Sweep:
         }
 
 
-def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
-    """Divide the rows of cases into the chunks that jobs solve: one slow case, or many fast ones.
-
-    A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
-    neighbours would leave some jobs idle at the end.
-    """
-    size = min(CHUNK, -(-rows.size // CHUNKS)) if method == "event-driven" else 1
-    count = -(-len(rows) // max(size // rows.shape[1], 1))
-    return (rows[first::count].ravel() for first in range(count))
-
-
 def unfinished(out: Path) -> xr.Dataset | None:
     """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
 
@@ -317,17 +299,3 @@ def _read_sweep(path: Path) -> xr.Dataset:
         message = f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
         raise SweepError(message) from error
     return found
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
