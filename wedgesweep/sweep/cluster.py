@@ -1,6 +1,7 @@
 """The backend of a Dask cluster, imported only when requested."""
 
 import importlib.util
+import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import ExitStack, contextmanager
@@ -46,9 +47,9 @@ def dask(
 def _local(opened: ExitStack, n_jobs: int) -> "Client":
     from distributed import Client, LocalCluster
 
-    cluster = opened.enter_context(
-        LocalCluster(n_workers=n_jobs, threads_per_worker=1, processes=True, dashboard_address=":0")
-    )
+    # Workers that die are told by the sweep; what Dask logs when a run is stopped early reads like faults.
+    options = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.CRITICAL}
+    cluster = opened.enter_context(LocalCluster(n_workers=n_jobs, processes=True, **options))
     return opened.enter_context(Client(cluster, set_as_default=False))
 
 

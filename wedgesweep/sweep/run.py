@@ -122,11 +122,13 @@ class Sweep:
         return found
 
     def discard(self) -> None:
-        """Delete the results of earlier runs; raises SweepError if ``out`` is not the dataset of a sweep."""
+        """Delete the journal of earlier runs; their dataset stays until another one takes its place.
+
+        Raises SweepError if ``out`` is not the dataset of a sweep.
+        """
         if self.out.exists():
             _read_sweep(self.out)
         journal.discard(self.journal_path)
-        self.out.unlink(missing_ok=True)
 
     def run(
         self,
