@@ -72,9 +72,9 @@ def main() -> int:
             moment, ended, found = kills.kill(scenario, expected[scenario.name], base / "run", draw)
             counts[scenario.name, ended] += 1
             counts[scenario.name, "faults"] += bool(found)
-            if found:
-                faults.append(f"kill {number}: {scenario.name}, {moment}, {ended}: {'; '.join(found)}")
-                print(faults[-1], file=sys.stderr, flush=True)
+            told = f"kill {number}: {scenario.name}, {moment}, {ended}: {'; '.join(found) or 'all held'}"
+            faults += [told] if found else []
+            print(told, file=sys.stderr, flush=True)
     return report(options, [each.name for each in chosen], counts, faults)
 
 
