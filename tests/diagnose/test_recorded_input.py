@@ -208,7 +208,7 @@ def test_one_gain_of_the_input_serves_all_tests(of):
     true = measurement(3, CAUSE, columns, noise=0.005)
     tests = tuple(replace(each, input=each.input / 1.03) for each in true.tests)
     wrong, told = (replace(true, tests=tests, input_gain_std=std) for std in (0.0, 0.05))
-    known = with_numbers(true.model, {"effects.viscous_damping.coefficient_N_s_per_m": 3.0})
+    known = config.parse(MODEL + "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n")
     blamed, fit = (base_of(harmonic_data(replace(each, model=known))) for each in (wrong, told))
     assert blamed.p < 1e-6
     assert fit.p > 0.01
