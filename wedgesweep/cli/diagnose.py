@@ -11,8 +11,9 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import N_JOBS, require_place_for
+from wedgesweep.cli.options import N_JOBS, require_kind, require_place_for
 from wedgesweep.cli.steps import StepReport
+from wedgesweep.kinds import MEASURED
 
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
@@ -61,6 +62,7 @@ def diagnose(
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
 
+    require_kind(measured, MEASURED)
     measurement = api.read_measurement(measured, model)
     print_warnings(measurement)
     log.debug(f"{measured}: {len(measurement.tests)} tests, model {measurement.model.title}")

@@ -104,15 +104,19 @@ def _beside(path: Path) -> Path:
 
 def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     from wedgesweep import diagnosis_result
+
+    return diagnosis_result.read(path) if path.is_dir() else read_dataset(path)
+
+
+def read_dataset(path: Path) -> "xr.Dataset":
+    """Read the dataset of a run, also of one that has not finished."""
     from wedgesweep.sweep import dataset, run
 
-    if path.is_dir():
-        return diagnosis_result.read(path)
     unfinished = run.unfinished(path)
     if unfinished is None:
         return dataset.read_sweep(path)
     done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
-    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn")
+    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are there")
     return unfinished
 
 
