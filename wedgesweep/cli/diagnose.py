@@ -17,9 +17,10 @@ from wedgesweep.cli.steps import StepReport
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
+DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain")
+FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
 # Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"}
 
 
 @click.command()
