@@ -91,7 +91,7 @@ def test_rows_of_a_continuation_hold_all_frequencies():
 
 
 def _sizes(rows, left, method, expected):
-    chunks = list(rows.chunks(left, method))
+    chunks = [rows.cases(chunk).ravel() for chunk in rows.chunks(left, method)]
     assert sorted(np.concatenate(chunks).tolist()) == sorted(expected.tolist())
     return [len(chunk) for chunk in chunks]
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
+# What drawing raises where a part of a diagnosis is missing or of another kind.
+DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
 
 
@@ -179,8 +181,17 @@ def _draw_all(
 def _draw(
     kind: str, found: "xr.Dataset | DiagnosisResult", file: Path, options: dict[str, Any], strict: bool = True
 ) -> None:
+    import xarray as xr
+
     picks = _accepted(kind, figures.options(figures.of(found)[kind]), options, strict)
-    figures.save(figures.draw(found, kind, **picks), file)
+    try:
+        figures.save(figures.draw(found, kind, **picks), file)
+    except DAMAGE as error:
+        if isinstance(found, xr.Dataset):  # whose content has been checked
+            raise
+        message = f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it"
+        told = f"{message} ({type(error).__name__}: {error})"
+        raise ValueError(told) from error
     click.echo(f"wrote {file}")
 
 

@@ -159,12 +159,16 @@ def _run(sweep: "Sweep", progress: ProgressReport, check: Verify, options: dict[
         print_remark(sweep.config)
         require_confirmed(sweep, options["n_jobs"], confirmed)
         started = perf_counter()
-        result = sweep.run(progress=progress, **options)
+        result = sweep.run(progress=progress, tell=_remark, **options)
         code = print_summary(result)
         click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
     if check.cases is not None:
         code = max(code, print_verification(sweep, result, check.cases, check.seed, options["n_jobs"]))
     return code
+
+
+def _remark(text: str) -> None:
+    click.echo(text, err=True)
 
 
 def print_remark(settings: "Config") -> None:

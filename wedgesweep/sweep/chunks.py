@@ -61,11 +61,11 @@ class Rows:
         return np.flatnonzero(left)
 
     def chunks(self, rows: Sequence[int] | np.ndarray, method: str) -> Iterator[np.ndarray]:
-        """Divide rows into the chunks of cases that jobs solve: one slow row, or many fast ones.
+        """Divide rows into the chunks that jobs solve: one slow row, or many fast ones.
 
         A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
         neighbours would leave some jobs idle at the end.
         """
         size = min(CHUNK, -(-len(rows) * self.width // CHUNKS)) if method == "event-driven" else 1
         count = -(-len(rows) // max(size // self.width, 1))
-        return (self.cases(np.array(rows[first::count])).ravel() for first in range(count))
+        return (np.array(rows[first::count]) for first in range(count))

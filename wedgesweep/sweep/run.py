@@ -1,11 +1,8 @@
 """A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
 import logging
-import signal
-import threading
-import warnings
-from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Callable, Generator
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
@@ -13,7 +10,6 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-import joblib
 import numpy as np
 import xarray as xr
 
@@ -23,11 +19,12 @@ from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, journal, labels, provenance
-from wedgesweep.sweep.backend import Backend, local
-from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
+from wedgesweep.sweep.backend import Backend, Pool, local
+from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases
 from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
+from wedgesweep.sweep.workers import Workers, interrupts_ignored
 from wedgesweep.systems import has_own_mechanics, kits, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
 
@@ -36,8 +33,8 @@ log = logging.getLogger(__name__)
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
 
-# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
-OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
+# How a case can end by the load or the state of the machine: such a case is run again.
+PASSING = (Outcome.TIME_LIMIT, Outcome.WORKER_LOST)
 
 
 class CaseFailedError(SweepError):
@@ -120,11 +117,13 @@ class Sweep:
         return found
 
     def discard(self) -> None:
-        """Delete the results of earlier runs; raises SweepError if ``out`` is not the dataset of a sweep."""
+        """Delete the journal of earlier runs; their dataset stays until another one takes its place.
+
+        Raises SweepError if ``out`` is not the dataset of a sweep.
+        """
         if self.out.exists():
             _read_sweep(self.out)
         journal.discard(self.journal_path)
-        self.out.unlink(missing_ok=True)
 
     def run(
         self,
@@ -134,6 +133,7 @@ class Sweep:
         progress: Progress = lambda records, total: None,
         backend: Backend | None = None,
         fresh: bool = False,
+        tell: Callable[[str], None] = lambda remark: None,
     ) -> xr.Dataset:
         """Run the cases that are not finished yet, or all if ``fresh``, and write the dataset.
 
@@ -151,6 +151,8 @@ class Sweep:
             Where the cases run; by default the backend of this machine that suits the solver.
         fresh : bool
             Whether to discard the results of earlier runs.
+        tell : callable
+            Called with a remark when workers die and are replaced.
 
         Returns
         -------
@@ -170,7 +172,7 @@ class Sweep:
             if fresh:
                 self.discard()
             kept = opened.enter_context(Journal(self.journal_path, self.dtype, self.journal_header))
-            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout)))
+            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout, tell)))
             records = self._empty()
             for part in parts:
                 records[part["index"]] = part
@@ -193,48 +195,37 @@ class Sweep:
         limit = self._limit(case_timeout)
         return solve_cases(self.config.records(indices), indices, self.settings, limit, self.dtype)
 
-    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> joblib.Parallel:
-        with _interrupts_ignored():
+    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> Pool:
+        with interrupts_ignored():
             return opened.enter_context(backend(n_jobs, partial(fingerprint, self.config)))
 
     def _all_records(
-        self, kept: Journal, pool: joblib.Parallel, case_timeout: float | None
+        self, kept: Journal, pool: Pool, case_timeout: float | None, tell: Callable[[str], None]
     ) -> Generator[np.ndarray, None, None]:
-        # Whether a case exceeds its time limit depends on the load of the machine: such cases are run again.
-        whole = kept.records[kept.records["status"] != Outcome.TIME_LIMIT]
+        whole = kept.records[~np.isin(kept.records["status"], PASSING)]
         complete = self.rows.complete(whole["index"])
         todo = self.rows.without(complete)
         if len(todo):
             compile_once(self.settings.method, self.kit, self.config.system)
         log.debug("%s: %d cases of an earlier run", self.journal_path, len(whole))
         yield whole[np.isin(self.rows.of(whole["index"]), complete)]
-        with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
+        workers = Workers(
+            pool,
+            partial(self.rows.chunks, method=self.settings.method),
+            partial(self._chunk, self._limit(case_timeout)),
+            self.rows.of,
+            tell,
+        )
+        with closing(workers.solve(todo)) as parts:
             for records in parts:
                 kept.append(records)
                 log.debug("%d cases solved in %.3g s", len(records), records["wall_time"].sum())
                 yield records
 
-    def _solve_parallel(
-        self, rows: Sequence[int] | np.ndarray, pool: joblib.Parallel, case_timeout: float
-    ) -> Generator[np.ndarray, None, None]:
-        if not len(rows):
-            return
-        with _interrupts_ignored():
-            results = pool(
-                joblib.delayed(solve_chunk)(
-                    Chunk(self.config.records(chunk), chunk, self.settings, case_timeout, self.dtype)
-                )
-                for chunk in self.rows.chunks(rows, self.settings.method)
-            )
-        try:
-            # "yield from" would close the results outside of the filter below.
-            for records in results:  # noqa: UP028
-                yield records
-        finally:
-            with warnings.catch_warnings():
-                # joblib warns when a run is stopped early.
-                warnings.simplefilter("ignore", UserWarning)
-                results.close()
+    def _chunk(self, case_timeout: float, rows: np.ndarray) -> Chunk:
+        """The task to solve some rows of cases."""
+        cases = self.rows.cases(rows).ravel()
+        return Chunk(self.config.records(cases), cases, self.settings, case_timeout, self.dtype)
 
     def _empty(self) -> np.ndarray:
         """Room for the records of all cases; the system hands it out as they are filled in."""
@@ -312,17 +303,3 @@ def _read_sweep(path: Path) -> xr.Dataset:
         message = f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
         raise SweepError(message) from error
     return found
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
