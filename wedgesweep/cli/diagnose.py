@@ -18,11 +18,12 @@ from wedgesweep.kinds import MEASURED
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
+DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain")
+FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
 # A file that is in the directory of a result while an earlier one gives way to it.
 MOVING = ".unfinished-diagnosis"
 # Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"}
 
 
 @click.command()

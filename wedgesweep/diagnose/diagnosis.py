@@ -203,9 +203,15 @@ def explain(search: Search) -> Explained:
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should separate: a cause and its rivals, or without one what comes closest."""
+    """Fits that a next test should separate: those that are reported as rivals.
+
+    These are a cause and its rivals, or without a cause all that would do; where fewer than two would, those
+    that come closest.
+    """
     if finding.cause is not None:
         return [finding.cause.fit, *(each.fit for each in finding.rivals)]
-    if finding.verdict == verdict.INSUFFICIENT:
-        return [each.fit for each in verdict.ranked(explanations, thresholds.gap)[:COMPARED]]
-    return []
+    if finding.verdict != verdict.INSUFFICIENT:
+        return []
+    adequate = finding.alternatives
+    closest = adequate if len(adequate) > 1 else verdict.ranked(explanations, thresholds.gap)
+    return [each.fit for each in closest[:COMPARED]]

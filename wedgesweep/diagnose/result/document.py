@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import __version__
-from wedgesweep.config import AmplitudeUnit
+from wedgesweep.config import AmplitudeUnit, Config
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
@@ -52,13 +52,25 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "title": found.measurement.title,
         "kind": data.kind,
-        "model": {"system": data.model.system, "law": data.law, "title": data.model.title},
+        "model": {
+            "system": data.model.system,
+            "law": data.law,
+            "title": data.model.title,
+            **_surface(data.model),
+        },
         "uncertain": uncertain(best.fit),
         "version": __version__,
         "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
+
+
+def _surface(model: Config) -> dict[str, Any]:
+    """What an oscillator rubs on, and what drives it."""
+    if model.system != "oscillator":
+        return {}
+    return {"contact": model.oscillator["contact"], "excitation": model.excitation}
 
 
 def _never_steady(fit: Fit) -> list[str]:
@@ -182,6 +194,7 @@ def _following(following: NextTest | None, unit: AmplitudeUnit) -> dict[str, Any
         unit.key: following.amplitude / unit.factor,
         "separates": list(following.separates),
         "distance": following.distance,
+        "pairs": [{"separates": list(each.names), "distance": each.distance} for each in following.pairs],
     }
 
 
