@@ -10,7 +10,7 @@ from click.core import ParameterSource
 
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.options import DATASET
+from wedgesweep.cli.options import DATASET, FiniteRange
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 from wedgesweep.outcome import Outcome
 
@@ -44,7 +44,7 @@ For both
   {ALL:<16} every figure that suits OUT
 """
 
-POSITIVE = click.FloatRange(min=0.0, min_open=True)
+POSITIVE = FiniteRange(min=0.0, min_open=True)
 
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
