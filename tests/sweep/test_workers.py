@@ -20,26 +20,27 @@ from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.workers import Workers
 
 
-def solved(rows, size, task):
-    """Records of rows of cases in chunks of a number of rows, in order, and what was told."""
-    told = []
+def solved(cases, size, task):
+    """Records of cases (n, width), in rows that are solved in chunks of some size, in order."""
+    told, width = [], cases.shape[1]
     with backend.loky(2, dict) as pool:
         pool = Workers(
             pool,
-            lambda left: (left[i : i + size] for i in range(0, len(left), size)),
-            lambda part: Task(part.ravel()),
+            lambda left: (np.array(left[i : i + size]) for i in range(0, len(left), size)),
+            lambda part: Task(cases[part].ravel()),
+            lambda indices: indices // width,
             told.append,
             task,
         )
-        records = np.concatenate(list(pool.solve(rows)))
+        records = np.concatenate(list(pool.solve(range(len(cases)))))
     assert len(told) == 1
     return records[np.argsort(records["index"])]
 
 
 @pytest.mark.parametrize(("width", "size"), [(1, 1), (1, 5), (3, 2)])
 def test_a_deadly_case_fails_and_no_other(width, size):
-    rows = np.arange(18).reshape(-1, width)
-    records = solved(rows, size, partial(deadly, wrong=[7]))
+    cases = np.arange(18).reshape(-1, width)
+    records = solved(cases, size, partial(deadly, wrong=[7]))
     assert records["index"].tolist() == list(range(18))
     lost = {7} if width == 1 else {6, 7, 8}  # cases of a row depend on each other
     assert set(np.flatnonzero(records["status"] == Outcome.WORKER_LOST)) == lost
@@ -83,7 +84,8 @@ def test_a_sweep_goes_on_with_the_same_bits(tmp_path):
 
 def test_what_a_lost_worker_leaves_is_solved_by_the_next_run(tmp_path, monkeypatch):
     sweep = small_sweep.sweep(tmp_path)
-    records = solve_cases(sweep.parameters[:2], np.arange(2), sweep.settings, np.inf, sweep.dtype)
+    few = np.arange(2)
+    records = solve_cases(sweep.config.records(few), few, sweep.settings, np.inf, sweep.dtype)
     records["status"][1] = Outcome.WORKER_LOST
     with Journal(sweep.journal_path, sweep.dtype, sweep.journal_header) as kept:
         kept.append(records)

@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import N_JOBS, require_place_for
+from wedgesweep.cli.steps import StepReport
 from wedgesweep.files import beside
 
 if TYPE_CHECKING:
@@ -59,21 +62,22 @@ def diagnose(
     """
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
-    from wedgesweep.sweep.cases import compiled_mark
 
     measurement = api.read_measurement(measured, model)
     print_warnings(measurement)
+    log.debug(f"{measured}: {len(measurement.tests)} tests, model {measurement.model.title}")
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     _require_own(directory)
     processors = count_jobs(n_jobs)
-    diagnosed_before = compiled_mark("diagnose")
-    if not diagnosed_before.exists():
-        click.echo("compiling the solver (once, a minute or two)", err=True)
-    found = api.diagnose_measurement(
-        measurement, effects=_names(effects), n_jobs=processors, progress=_print_step, calibrate=calibrate
-    )
-    diagnosed_before.touch()
+    announce_compiling()
+    steps = StepReport()
+    try:
+        found = api.diagnose_measurement(
+            measurement, effects=_names(effects), n_jobs=processors, progress=steps, calibrate=calibrate
+        )
+    finally:
+        steps.stop()
     # Beside the result, to be moved there when all is written: an earlier one stays until then.
     target = directory.resolve()
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -139,7 +143,7 @@ def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
     ]
     save = partial(_save, found)
     for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
-        click.echo(f"skipped {problem}", err=True)
+        log.info(f"skipped {problem}")
 
 
 def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
@@ -152,7 +156,3 @@ def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
     except ValueError as error:
         return str(error)
     return None
-
-
-def _print_step(step: str) -> None:
-    click.echo(f"  {step}", err=True)

@@ -10,7 +10,12 @@ from click.core import ParameterSource
 
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
+<<<<<<< HEAD
 from wedgesweep.cli.options import DATASET, FiniteRange
+=======
+from wedgesweep.cli.messages import log
+from wedgesweep.cli.options import DATASET
+>>>>>>> 994ae00df48ea6f36fe44010ad56a1556f5034f8
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 from wedgesweep.outcome import Outcome
 
@@ -113,7 +118,7 @@ def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     if unfinished is None:
         return dataset.read_sweep(path)
     done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
-    click.echo(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn", err=True)
+    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn")
     return unfinished
 
 
@@ -137,7 +142,7 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
             if not isclose(nearest, value, rel_tol=1e-6):
                 unit = found[name].attrs.get("units", "1").replace("1", "")
                 told = f"{name} {value:.6g} {unit}".rstrip()
-                click.echo(f"{told}: the nearest one there is {nearest:.6g}", err=True)
+                log.warning(f"{told}: the nearest one there is {nearest:.6g}")
     return given
 
 
@@ -171,7 +176,7 @@ def _draw_all(
             _draw(kind, found, directory / f"{kind}.{suffix}", options, strict=False)
             drawn += 1
         except ValueError as error:
-            click.echo(f"skipped {error}", err=True)
+            log.info(f"skipped {error}")
     if not drawn:
         message = "no figure suits this dataset"
         raise Failure(message)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
 from wedgesweep.cli.summary import print_outcomes, print_summary
 from wedgesweep.files import json_object
@@ -21,6 +22,9 @@ VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
 @click.pass_context
 def status(ctx: click.Context, path: Path) -> None:
     """Show how far the sweep with dataset OUT is, and which cases failed."""
+    if path.is_dir():
+        message = f"{path}: a directory; give the dataset of a run"
+        raise Failure(message)
     partial = path.with_name(path.name + ".partial")
     ctx.exit(_unfinished(partial) if partial.exists() else _finished(path))
 
@@ -47,7 +51,7 @@ def _unfinished(partial: Path) -> int:
     _print_versions(header)
     for difference in differences(header, fingerprint(settings)):
         click.echo(f"cannot be resumed: {difference}")
-    return print_outcomes(outcomes.of_journal(partial), total=len(settings.case_list()))
+    return print_outcomes(outcomes.of_journal(partial), total=settings.sweep.count)
 
 
 def _fingerprint(ds: "xr.Dataset") -> dict[str, str]:

@@ -8,7 +8,7 @@ A case whose worker dies every time is a failed case.
 import signal
 import threading
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
@@ -30,31 +30,33 @@ MESSAGE = f"its worker died in each of {TRIES} tries, killed or out of memory"
 OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
 
 Records = Generator[np.ndarray, None, None]
+RowNumbers = Sequence[int] | np.ndarray
 
 
 @dataclass
 class Workers:
-    """Solves rows of cases, shape (n, m), where those in a row depend on each other.
+    """Solves numbered rows of cases, where the cases of a row depend on each other.
 
     ``divide`` parts rows into chunks of rows, ``chunk`` makes a task of some rows, and ``task`` solves it;
-    ``tell`` gets a remark when a worker dies for the first time.
+    ``row_of`` tells the rows of some cases. ``tell`` gets a remark when a worker dies for the first time.
     """
 
     pool: Pool
-    divide: Callable[[np.ndarray], Iterable[np.ndarray]]
+    divide: Callable[[RowNumbers], Iterable[np.ndarray]]
     chunk: Callable[[np.ndarray], Chunk]
+    row_of: Callable[[np.ndarray], np.ndarray]
     tell: Callable[[str], None]
     task: Callable[[Chunk], np.ndarray] = solve_chunk
     _losses: int = field(default=0, init=False)
 
-    def solve(self, rows: np.ndarray) -> Records:
+    def solve(self, rows: RowNumbers) -> Records:
         """Records of all cases, by chunks, as they finish; raises SweepError if workers keep dying."""
         while len(rows):
-            done = [rows[:0, 0]]
+            done = [np.zeros(0, int)]
             try:
                 with closing(self._parallel(self.divide(rows))) as parts:
                     for records in parts:
-                        done.append(records["index"])
+                        done.append(self.row_of(records["index"]))
                         yield records
                 return
             except self.pool.lost as error:
@@ -64,10 +66,10 @@ class Workers:
             for part in list(sent):
                 for records in self._alone(part):
                     failed |= bool((records["status"] == Outcome.WORKER_LOST).any())
-                    done.append(records["index"])
+                    done.append(self.row_of(records["index"]))
                     yield records
             self._losses -= failed
-            rows = np.concatenate([rows[:0], *_without(done, [rows])])
+            rows = np.concatenate([np.zeros(0, int), *_without(done, [np.array(rows)])])
 
     def _count(self, error: BaseException) -> None:
         if not self._losses:
@@ -91,7 +93,8 @@ class Workers:
             for half in np.array_split(rows, 2):
                 yield from self._alone(half)
             return
-        records = dataset.blank(self.chunk(rows).dtype, rows.ravel())
+        task = self.chunk(rows)
+        records = dataset.blank(task.dtype, task.indices)
         records["status"], records["message"] = Outcome.WORKER_LOST, MESSAGE.encode()
         yield records
 
@@ -110,9 +113,9 @@ class Workers:
 
 
 def _without(done: list[np.ndarray], parts: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
-    """What is left of parts, without the rows whose cases are done."""
-    cases = np.concatenate(done)
-    left = (part[~np.isin(part[:, 0], cases)] for part in parts)
+    """What is left of parts, without the rows that are done."""
+    rows = np.concatenate(done)
+    left = (part[~np.isin(part, rows)] for part in parts)
     return (part for part in left if len(part))
 
 
