@@ -10,8 +10,12 @@ from click.core import ParameterSource
 
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
+<<<<<<< HEAD
+from wedgesweep.cli.options import DATASET, FiniteRange
+=======
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import DATASET
+>>>>>>> 994ae00df48ea6f36fe44010ad56a1556f5034f8
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 from wedgesweep.outcome import Outcome
 
@@ -45,7 +49,7 @@ For both
   {ALL:<16} every figure that suits OUT
 """
 
-POSITIVE = click.FloatRange(min=0.0, min_open=True)
+POSITIVE = FiniteRange(min=0.0, min_open=True)
 
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
