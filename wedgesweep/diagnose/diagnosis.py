@@ -54,7 +54,8 @@ DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]
 class Diagnosis:
     """Everything that was found; ``explanations`` are sorted, the best first.
 
-    ``untried``: what the budget of the search left out.
+    ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects of which nothing
+    at all was fitted for that reason.
     """
 
     measurement: Measurement
@@ -69,6 +70,7 @@ class Diagnosis:
     ladder: tuple[Rung, ...]
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
+    never_tried: tuple[tuple[str, ...], ...] = ()
 
     @property
     def extended(self) -> Fit:
@@ -142,6 +144,7 @@ def diagnose(
         ladder=rungs,
         calibration=calibration,
         untried=tuple(search.budget.untried),
+        never_tried=search.budget.never_tried,
     )
 
 

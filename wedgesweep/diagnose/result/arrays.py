@@ -126,7 +126,8 @@ def _waveforms(arrays: Arrays) -> Variables:
 
 
 def _inputs(arrays: Arrays) -> Variables:
-    data, fitted = arrays.data, np.array([arrays.data.amplitudes(fit.point) for fit in arrays.fits])
+    data = arrays.data
+    fitted = np.array([data.inputs_of(fit.model.scenario(fit.point)) for fit in arrays.fits])
     unit = "N" if data.model.forced else "m"
     return {
         "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),

@@ -50,6 +50,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
+        "never_tried": [list(each) for each in found.never_tried],
         "title": found.measurement.title,
         "kind": data.kind,
         "model": {
@@ -137,7 +138,7 @@ def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     if isinstance(data, SampledData):
         return sampled.tests(found, data)
     unit, size = data.model.amplitude_unit
-    amplitude = data.amplitudes(best.point)
+    amplitude = data.inputs_of(best.model.scenario(best.point))
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
         noise = spectrum.sample_noise
