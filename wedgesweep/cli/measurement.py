@@ -26,6 +26,13 @@ def print_measurement(measurement: "Measurement") -> None:
             click.echo(f"{test.file}: {'; '.join(test.remarks)}")
     derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
+    for kind in measurement.kinds:
+        _print_table(measurement.of_kind(kind))
+    print_warnings(measurement)
+
+
+def _print_table(measurement: "Measurement") -> None:
+    """Print the tests of one kind."""
     if measurement.kind == "loop":
         rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
     elif measurement.kind == "transient":
@@ -38,7 +45,6 @@ def print_measurement(measurement: "Measurement") -> None:
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
-    print_warnings(measurement)
 
 
 def print_warnings(measurement: "Measurement") -> None:

@@ -1,5 +1,6 @@
 """Declaration of every key of measured.toml."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isfinite, nan
 from typing import Any
@@ -28,6 +29,14 @@ PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MOD
 
 # Kinds of test: a periodic response, a free motion, or a force under an imposed motion.
 STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
+# What tests of several kinds are together.
+MIXED = "mixed"
+# Channels of each kind where several kinds share one declaration.
+CHANNELS = {
+    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT),
+    TRANSIENT: ("time", "displacement", "velocity"),
+    LOOP: ("time", "displacement", "force"),
+}
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
@@ -124,6 +133,14 @@ class Input(Inline):
             told = f"{show(read['unit'])} is no unit of {read['quantity']}; valid here: {valid}"
             problems.append(f"{path}.unit: {told}")
         return read
+
+
+def columns_of(columns: Mapping[str, Any], kind: str, alone: bool) -> dict[str, Any]:
+    """The declared channels that the files of tests of a kind have; all of them if no other kind is there."""
+    if alone:
+        return dict(columns)
+    used = CHANNELS[kind]
+    return {name: each for name, each in columns.items() if name in used}
 
 
 def units(channel: str, quantity: str | None = None) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """Checks of tests by their kind: which channels and keys they have, and what their records must show."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -25,14 +25,6 @@ MEANING = {
     "transient": "a transient is a free motion without any input",
     "loop": "a loop is the force under a recorded displacement",
 }
-
-
-def kind_faults(kinds: Sequence[str]) -> list[str]:
-    """Faults of the kinds of the tests together, as "key: fault"."""
-    if len(set(kinds)) < 2:
-        return []
-    mixed = " and ".join(sorted(set(kinds)))
-    return [f"test.kind: {mixed} are mixed; write a measurement for each kind"]
 
 
 def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:

@@ -4,7 +4,7 @@ from wedgesweep import effects
 from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.result.estimates import uncertain
-from wedgesweep.diagnose.sampled_data import SampledData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 
 def extended(found: Diagnosis) -> str:
@@ -13,7 +13,7 @@ def extended(found: Diagnosis) -> str:
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
-    if isinstance(data, SampledData):
+    if not isinstance(data, HarmonicData):
         return _heading(found) + toml.dumps(document)
     # Repeated tests are one case, and single cases do not continue one another.
     unit = data.model.amplitude_unit
