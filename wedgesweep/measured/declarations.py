@@ -217,6 +217,13 @@ TEST = RecordTable(
         (Number.of(FROM, optional=True),),
         (Number.of(TO, optional=True),),
         (DETREND,),
+        (
+            Text(
+                key="repeat_of",
+                meaning="file of the test that this one repeats: what differs is noise",
+                optional=True,
+            ),
+        ),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )

@@ -28,7 +28,8 @@ class TestRecord:
     samples at these times, and so are ``acceleration`` (m/s^2) and the recorded ``input`` (SI); None where
     not measured. ``model``: numbers of the base model in this test, by "section.key", in its units.
     ``kind``: of test; ``force`` (N) and ``cutoff`` (Hz, of a low-pass filter; None: chosen) are a loop's.
-    ``recorded_s``: length (s) of the file's record, None if all of it is used.
+    ``recorded_s``: length (s) of the file's record, None if all of it is used. ``repeat_of``: file of the
+    test that this one repeats.
     """
 
     __test__ = False  # not a test of pytest
@@ -48,6 +49,7 @@ class TestRecord:
     force: np.ndarray | None = None
     cutoff: float | None = None
     recorded_s: float | None = None
+    repeat_of: str | None = None
     remarks: tuple[str, ...] = ()
 
     @cached_property

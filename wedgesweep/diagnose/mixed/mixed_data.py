@@ -132,9 +132,9 @@ class MixedData(FitData):
         return tuple(one for each in (*first, *rest) for one in each)
 
     def start(self) -> tuple[np.ndarray, MixedStart]:
-        starts = self._each(lambda part: part.start())
-        nuisance = self._joined([each and each[0] for each in starts])
-        return nuisance, MixedStart(tuple(each and each[1] for each in starts), self.layout)
+        starts = [(None, None) if part is None else part.start() for part in self.parts]
+        nuisance = self._joined([each[0] for each in starts])
+        return nuisance, MixedStart(tuple(each[1] for each in starts), self.layout)
 
     def _joined(self, nuisances: Sequence[np.ndarray | None]) -> np.ndarray:
         """Nuisance parameters (t, N) of each kind as those of all tests; 0 where they are another kind's."""
@@ -148,7 +148,7 @@ class MixedData(FitData):
             for rows, columns, warm in pairs
         ]
 
-    def _whole(self, points: Sequence[Point | None]) -> Point:
+    def _whole(self, points: Sequence[Any]) -> Point:
         """The point of all tests from those of each kind."""
         x = next(each.x for each in points if each is not None)
         nuisance = self._joined([each and each.nuisance for each in points])

@@ -1,6 +1,7 @@
-"""Free motions as data of a fit: each test starts from a state of its own, which is fitted.
+"""Transients as data of a fit: each window of a record starts from a state of its own, which is fitted.
 
-What is compared are samples in time. Their noise counts as white; the zero of the displacement is unknown.
+A window is a test: errors of phase do not add up over a long record (multiple shooting with free starts). The
+zero of the displacement is unknown in each.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,13 +21,15 @@ from wedgesweep.natural_units import NaturalUnits
 
 # Effects of an input, or of a sensor whose state at the first sample is not known.
 OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "velocity_lag")
+# Blocks of a record that are left out in turn, at most.
+MOST_BLOCKS = 12
 # Displacement and velocity of the start, over the largest displacement and that a natural time later.
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 
 
 @dataclass(frozen=True, eq=False)
 class TransientData(SampledData):
-    """T free motions; arrays (T, m) hold displacement and velocity, one after the other."""
+    """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other."""
 
     releases: tuple[Release, ...]
     uncertain: dict[str, float]
@@ -58,28 +61,26 @@ class TransientData(SampledData):
 
     @cached_property
     def recorded(self) -> np.ndarray:
-        return self._padded([own.channels for own in self.releases])
+        return self._padded([own.compared for own in self.releases])
 
     @cached_property
     def noise(self) -> np.ndarray:
-        return self._padded([self._of_each_sample(own, own.noise) for own in self.releases])
+        return self._padded([own.noise for own in self.releases])
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Rms (T, m) of each channel about its mean."""
-        return self._padded([self._of_each_sample(own, own.channels.std(axis=1)) for own in self.releases])
-
-    @staticmethod
-    def _of_each_sample(own: Release, values: np.ndarray) -> np.ndarray:
-        """A number (C,) of each channel for every sample of it, (C, k)."""
-        return np.broadcast_to(values[:, None], own.channels.shape)
+        """Rms (T, m) that the coefficients of each channel have where they hold all its power."""
+        rms = [np.sqrt(own.spread) * own.rms for own in self.releases]
+        shapes = [(each.size, own.coefficients) for each, own in zip(rms, self.releases, strict=True)]
+        pairs = zip(rms, shapes, strict=True)
+        return self._padded([np.broadcast_to(each[:, None], shape) for each, shape in pairs])
 
     @cached_property
     def shifted(self) -> np.ndarray:
-        displacement = [np.zeros(own.channels.shape) for own in self.releases]
-        for each in displacement:
-            each[0] = 1.0
-        return self._padded(displacement)
+        """The first coefficient of the displacement is its mean."""
+        found = np.zeros_like(self.recorded)
+        found[:, 0] = [np.sqrt(own.channels.shape[1]) for own in self.releases]
+        return found
 
     @property
     def dof(self) -> np.ndarray:
@@ -108,7 +109,7 @@ class TransientData(SampledData):
         return START
 
     def start(self) -> tuple[np.ndarray, NoStart]:
-        return np.array([own.start() for own in self.releases]) / self._scale, NoStart()
+        return np.array([own.guess for own in self.releases]) / self._scale, NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         releases = tuple(self.releases[row] for row in np.arange(self.tests)[rows])
@@ -129,4 +130,9 @@ class TransientData(SampledData):
         )
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        return [("record", np.array([t])) for t in range(self.tests)]
+        """Each record, or where there is only one blocks of windows that follow one another."""
+        numbers = np.array([own.number for own in self.releases])
+        if np.ptp(numbers) > 0:
+            return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
+        blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))
+        return [("block", rows) for rows in blocks]
