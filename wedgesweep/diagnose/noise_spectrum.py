@@ -2,9 +2,9 @@
 
 Noise is taken to be red and white: S(w) = a/(1 + r^2 - 2 r cos w) + b, with w in rad a sample. Its three
 numbers fit the periodogram by Whittle's likelihood (Whittle, 1953, Arkiv foer Matematik 2, 423) at the
-frequencies at which noise is all there is: those that stand out are of the motion. That assumes that the noise
-below the motion's frequencies goes on as it is above them. Of several r that fit about as well the one with
-most noise counts, as an estimate that is too low would look like a misfit.
+frequencies at which noise is all there is: those that stand out are of the motion. That assumes that the
+noise at the motion's frequencies goes on as it is above them. Of several r that fit about as well the one
+with most noise counts, as an estimate that is too low would look like a misfit.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ UPWARDS = 4
 BANDS, STEEP = 2, 12.0
 # Least share of the bins above the motion, and least number of bins, that must count as noise.
 LEAST_KEPT, FEWEST = 0.25, 8
-# Log-likelihood that colour must gain over white noise, and its loss at which another pole fits about as well.
+# Log-likelihood that colour must gain over white noise, and its loss at which another pole fits as well.
 COLOURED, AS_WELL = 3.0, 0.5
 # Standard deviations by which the level is raised: one end of a 95 % interval.
 ONE_END = 1.96
@@ -63,6 +63,11 @@ class NoiseSpectrum:
     def std(self) -> float:
         """Standard deviation of a sample."""
         return sqrt(self.red / (1.0 - self.pole**2) + self.white)
+
+    def covariance(self, distance: np.ndarray) -> np.ndarray:
+        """Covariance of two samples by their distance in samples."""
+        red = self.red / (1.0 - self.pole**2) * self.pole ** distance.astype(float)
+        return red + self.white * (distance == 0)
 
     @property
     def correlation(self) -> float:

@@ -1,7 +1,7 @@
 """Noise from tests that were run more than once: what does not repeat.
 
-Repeats never start alike. Each is compared with the mean of the others as it would be a little larger, a little
-later, and with another zero and drift; what is left is noise.
+Repeats never start alike. Each is compared with the mean of the others as it would be a little larger, a
+little later, and with another zero and drift; what is left is noise.
 """
 
 from collections.abc import Sequence

@@ -1,15 +1,18 @@
 """A recorded loop as it is compared: smoothed motion, force at independent samples, and blocks of cycles."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import hypot
 
 import numpy as np
 
 from wedgesweep import systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
+from wedgesweep.diagnose.loop.decorrelation import Decorrelation, decorrelation
+from wedgesweep.diagnose.loop.force_noise import of_force
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.solvers import imposed_motion
@@ -29,8 +32,8 @@ class Recording:
     """One test.
 
     ``model``: the base model with the numbers of the test; ``places`` (k,): samples of the motion at which
-    the ``force`` (k,) is compared; ``noise``: its std (N); ``blocks``: slices of the k samples, whole cycles
-    of the motion each.
+    the ``force`` (k,) is compared; ``spectrum`` of its noise there; ``known`` (k,): whether friction is; it
+    is not where the mass rests or turns; ``blocks``: slices of the k samples, whole cycles each.
     """
 
     name: str
@@ -40,20 +43,19 @@ class Recording:
     motion: Motion
     places: np.ndarray
     force: np.ndarray
-    noise: float
+    spectrum: NoiseSpectrum
+    known: np.ndarray
     blocks: tuple[slice, ...]
 
-    @cached_property
-    def known(self) -> np.ndarray:
-        """Whether friction is known at each compared sample, (k,): not where the mass rests or turns.
+    @property
+    def noise(self) -> float:
+        """Standard deviation (N) of a compared force."""
+        return self.spectrum.std
 
-        Noise shifts the time of a turn, and dry friction jumps there.
-        """
-        own = self.motion
-        within = AT_REST * own.velocity_noise + 0.5 * np.abs(own.acceleration) / self.low_pass.rate
-        slow = np.abs(own.velocity) <= within
-        near = np.convolve(slow, np.ones(2 * REACH * self.low_pass.stride + 1), mode="same") > 0.5
-        return ~near[self.places]
+    @cached_property
+    def decorrelated(self) -> tuple[Decorrelation, ...]:
+        """Independent combinations of the compared forces of each block."""
+        return tuple(decorrelation(self.known[block], self.spectrum.covariance) for block in self.blocks)
 
     def simulated(self, scenarios: list[Values]) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined."""
@@ -89,6 +91,7 @@ def recording(
     rate: float,
     samples: tuple[np.ndarray, np.ndarray],
     cutoff: float | None,
+    differences: Sequence[np.ndarray] = (),
 ) -> Recording:
     """Prepare a test.
 
@@ -102,6 +105,9 @@ def recording(
         Displacement (m) and force (N).
     cutoff : float, optional
         Cut-off frequency (Hz); by default as high as the noise of the displacement allows.
+    differences : sequence of ndarray
+        What repeats of the test leave of its force (N), which is noise; without them it is what no smooth
+        function of the motion explains.
     """
     displacement, force = samples
     mass = float(systems.moving_mass(model.record_with(model.effects, law))[0])
@@ -110,9 +116,22 @@ def recording(
     own = motion(displacement, noise, low_pass)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
-    std = hypot(low_pass.noise(white_noise(force, rate)), mass * own.acceleration_noise)
+    compared, clear = low_pass(force)[places], ~_slow(own, low_pass)[places]
+    if differences:
+        found = of_noise(
+            [low_pass(each)[ends : -ends : low_pass.stride] for each in differences], FROM_REPEATS
+        )
+    else:
+        found = of_force(own, compared, low_pass, places, clear)
     blocks = _blocks(own.velocity[places])
-    return Recording(name, model, law, low_pass, own, places, low_pass(force)[places], std, blocks)
+    return Recording(name, model, law, low_pass, own, places, compared, found, clear, blocks)
+
+
+def _slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
+    """Whether (n,) the mass rests or turns at or near a sample: noise shifts the time of a turn."""
+    within = AT_REST * motion.velocity_noise + 0.5 * np.abs(motion.acceleration) / low_pass.rate
+    slow = np.abs(motion.velocity) <= within
+    return np.convolve(slow, np.ones(2 * REACH * low_pass.stride + 1), mode="same") > 0.5
 
 
 def _blocks(velocity: np.ndarray) -> tuple[slice, ...]:

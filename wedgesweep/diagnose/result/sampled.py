@@ -46,6 +46,8 @@ def _of_loops(data: LoopData) -> list[dict[str, Any]]:
         {
             "lowpass_hz": finite(own.low_pass.cutoff),
             "noise_force_N": finite(own.noise),
+            "noise_from": own.spectrum.source,
+            "noise_correlation": finite(own.spectrum.correlation),
             "noise_velocity_mm_per_s": finite(1e3 * own.motion.velocity_noise),
         }
         for own in recordings
@@ -102,7 +104,8 @@ def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
 
 def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     """Forces along the imposed motion."""
-    shown = np.where(data.weight > 0.0, 1.0, np.nan)
+    shown = np.where(data.seen, 1.0, np.nan)
+    measured, simulated = data.in_samples(data.measured), data.in_samples(simulated)
     position, velocity = (
         data.padded([getattr(own.motion, name)[own.places] for own in data.recordings]) * shown
         for name in ("displacement", "velocity")
@@ -110,9 +113,14 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     return {
         "displacement": (BY_SAMPLE, position, "m", "imposed displacement"),
         "velocity": (BY_SAMPLE, velocity, "m/s", "imposed velocity"),
-        "measured_force": (BY_SAMPLE, data.measured * shown, "N", "measured force"),
+        "measured_force": (BY_SAMPLE, measured * shown, "N", "measured force"),
         "simulated_force": (("model", *BY_SAMPLE), simulated * shown, "N", "simulated, with the fitted zero"),
-        "force_noise": (("test",), data.noise.max(axis=-1), "N", "noise of a compared force"),
+        "force_noise": (
+            ("test",),
+            np.array([data.recordings[number].noise for number, _ in data.chosen]),
+            "N",
+            "noise of a compared force",
+        ),
     }
 
 
