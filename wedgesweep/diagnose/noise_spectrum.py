@@ -7,7 +7,7 @@ noise at the motion's frequencies goes on as it is above them. Of several r that
 with most noise counts, as an estimate that is too low would look like a misfit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 
@@ -129,12 +129,19 @@ def _faded(frequency: np.ndarray, power: np.ndarray) -> int:
     return int(np.searchsorted(bands, names[last], side="right"))
 
 
-def of_noise(records: Sequence[np.ndarray], source: str) -> NoiseSpectrum:
-    """The noise whose samples are known, up to the lowest frequencies, in records (n,) each."""
+def of_noise(
+    records: Sequence[np.ndarray], source: str, known: Callable[[np.ndarray], np.ndarray] | None = None
+) -> NoiseSpectrum:
+    """The noise whose samples are known, up to the lowest frequencies, in records (n,) each.
+
+    ``known``: power that part of it has by frequency (rad a sample), which is not part of the result.
+    """
     both = [periodogram(each) for each in records]
     frequency, power = (np.concatenate(each) for each in zip(*both, strict=True))
     order = np.argsort(frequency, kind="stable")
-    found = _fit(frequency[order], power[order], np.ones(order.size, bool), AS_WELL)
+    frequency, power = frequency[order], power[order]
+    floor = np.zeros(frequency.size) if known is None else known(frequency)
+    found = _fit(frequency, power, np.ones(order.size, bool), AS_WELL, floor)
     return NoiseSpectrum(found.red, found.pole, found.white, source=source)
 
 
@@ -153,10 +160,19 @@ def _spread(marked: np.ndarray) -> np.ndarray:
     return np.convolve(marked, np.ones(2 * NEIGHBOURS + 1), mode="same") > 0.5
 
 
-def _fit(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, as_well: float) -> NoiseSpectrum:
-    """Fit to the kept bins; of poles that fit about as well the one with most noise elsewhere."""
+def _fit(
+    frequency: np.ndarray,
+    power: np.ndarray,
+    kept: np.ndarray,
+    as_well: float,
+    floor: np.ndarray | None = None,
+) -> NoiseSpectrum:
+    """Fit to the kept bins; of poles that fit about as well the one with most noise elsewhere.
+
+    ``floor``: power that is known and comes on top.
+    """
     here, shape = power[kept], _shape(POLES[:, None], frequency[kept])
-    least = 1e-12 * here.mean() + 1e-300
+    least = 1e-12 * here.mean() + 1e-300 + (0.0 if floor is None else floor[kept])
     red, white = 0.5 * here.mean() / shape.mean(axis=1), np.full(POLES.size, 0.5 * here.mean())
     for _ in range(UPDATES):
         level = red[:, None] * shape + white[:, None] + least
@@ -165,11 +181,21 @@ def _fit(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, as_well: fl
         white *= (here / level**2).sum(axis=1) / (1.0 / level).sum(axis=1)
     level = red[:, None] * shape + white[:, None] + least
     loss = (here / level + np.log(level)).sum(axis=1) / CORRELATED
-    alone = here.size * (1.0 + np.log(here.mean() + least)) / CORRELATED
+    level = _white(here, least) + least
+    alone = (here / level + np.log(level)).sum() / CORRELATED
     raised = 1.0 + ONE_END * sqrt(CORRELATED / kept.sum()) if as_well else 1.0
     if alone <= loss.min() + COLOURED:
-        return NoiseSpectrum(0.0, 0.0, float(raised * (here.mean() + least)))
+        return NoiseSpectrum(0.0, 0.0, float(raised * _white(here, least)))
     elsewhere = red * _shape(POLES[:, None], frequency).mean(axis=1) + white
     good = np.flatnonzero(loss <= loss.min() + as_well)
     best = int(good[np.argmax(elsewhere[good])])
-    return NoiseSpectrum(float(raised * red[best]), float(POLES[best]), float(raised * (white[best] + least)))
+    return NoiseSpectrum(float(raised * red[best]), float(POLES[best]), float(raised * white[best]))
+
+
+def _white(power: np.ndarray, floor: np.ndarray | float) -> float:
+    """White noise that fits bins best on top of a floor."""
+    white = float(power.mean())
+    for _ in range(UPDATES):
+        level = white + floor
+        white *= float((power / level**2).sum() / (np.ones(power.size) / level).sum())
+    return white

@@ -5,6 +5,10 @@ acceleration, and in the distance since the last reversal, so that it can take t
 it leaves is noise, or physics that is none of these; both are told alike, and the spectrum is that of both.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
 import numpy as np
 
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_noise
@@ -26,16 +30,44 @@ FARTHER = 3
 LEAST_CLEAR = 0.2
 
 
+@dataclass(frozen=True)
+class InertiaNoise:
+    """Force (N) that noise of the displacement, of some ``std`` (m), makes of a ``mass`` (kg).
+
+    It has passed a filter, of which every so many samples are compared (``low_pass.stride``).
+    """
+
+    low_pass: LowPass
+    mass: float
+    std: float
+
+    @cached_property
+    def _power(self) -> np.ndarray:
+        """Power up to half the sampling rate, of all samples."""
+        return self.low_pass.power(self.mass * self.std, 2)
+
+    def power(self, frequency: np.ndarray) -> np.ndarray:
+        """Power at frequencies in rad a compared sample."""
+        stride = self.low_pass.stride
+        grid = np.linspace(0.0, stride * pi, self._power.size)
+        return np.interp(frequency, grid, self._power) / stride
+
+    def covariance(self, distance: np.ndarray) -> np.ndarray:
+        """Covariance of two compared samples by their distance."""
+        values = np.fft.irfft(self._power)[: self._power.size : self.low_pass.stride]
+        return np.where(distance < values.size, values[np.minimum(distance, values.size - 1)], 0.0)
+
+
 def of_force(
-    motion: Motion, force: np.ndarray, low_pass: LowPass, places: np.ndarray, clear: np.ndarray
+    motion: Motion, force: np.ndarray, places: np.ndarray, clear: np.ndarray, inertia: InertiaNoise
 ) -> NoiseSpectrum:
     """The noise of a force (k,) that was filtered, at some places (k,) of a motion.
 
     ``clear`` (k,): those that are away from reversals, where noise of the motion turns a jump of friction
-    into an outlier. Noise of the motion is part of what is found.
+    into an outlier. ``inertia``: the noise that is known to come from the motion, which is not counted again.
     """
     clear = np.convolve(clear, np.ones(2 * FARTHER + 1), mode="same") > 2 * FARTHER + 0.5
-    columns = low_pass(_functions(motion).T)[:, places].T
+    columns = inertia.low_pass(_functions(motion).T)[:, places].T
     columns = columns[:, : max(int(clear.sum()) // ENOUGH, 4)]
     u, size, _ = np.linalg.svd(columns[clear], full_matrices=False)
     basis = u[:, size > DEPENDENT * size[0]]
@@ -45,7 +77,7 @@ def of_force(
     whole[clear] = left
     # Samples that are left out carry their share of the power.
     share = max(float(clear.mean()), LEAST_CLEAR)
-    return of_noise([whole / np.sqrt(share)], FROM_MOTION)
+    return of_noise([whole / np.sqrt(share)], FROM_MOTION, inertia.power)
 
 
 def _functions(motion: Motion) -> np.ndarray:

@@ -11,7 +11,7 @@ from wedgesweep import systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop.decorrelation import Decorrelation, decorrelation
-from wedgesweep.diagnose.loop.force_noise import of_force
+from wedgesweep.diagnose.loop.force_noise import InertiaNoise, of_force
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
@@ -32,8 +32,9 @@ class Recording:
     """One test.
 
     ``model``: the base model with the numbers of the test; ``places`` (k,): samples of the motion at which
-    the ``force`` (k,) is compared; ``spectrum`` of its noise there; ``known`` (k,): whether friction is; it
-    is not where the mass rests or turns; ``blocks``: slices of the k samples, whole cycles each.
+    the ``force`` (k,) is compared; ``spectrum`` of its noise there beside that of the ``inertia``; ``known``
+    (k,): whether friction is; it is not where the mass rests or turns; ``blocks``: slices of the k samples,
+    whole cycles each.
     """
 
     name: str
@@ -44,18 +45,23 @@ class Recording:
     places: np.ndarray
     force: np.ndarray
     spectrum: NoiseSpectrum
+    inertia: InertiaNoise
     known: np.ndarray
     blocks: tuple[slice, ...]
 
     @property
     def noise(self) -> float:
         """Standard deviation (N) of a compared force."""
-        return self.spectrum.std
+        return float(np.sqrt(self._covariance(np.zeros(1, int))[0]))
+
+    def _covariance(self, distance: np.ndarray) -> np.ndarray:
+        """Covariance (N^2) of two compared forces by their distance."""
+        return self.spectrum.covariance(distance) + self.inertia.covariance(distance)
 
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
         """Independent combinations of the compared forces of each block."""
-        return tuple(decorrelation(self.known[block], self.spectrum.covariance) for block in self.blocks)
+        return tuple(decorrelation(self.known[block], self._covariance) for block in self.blocks)
 
     def simulated(self, scenarios: list[Values]) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined."""
@@ -116,15 +122,15 @@ def recording(
     own = motion(displacement, noise, low_pass)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
+    inertia = InertiaNoise(low_pass, mass, noise)
     compared, clear = low_pass(force)[places], ~_slow(own, low_pass)[places]
     if differences:
-        found = of_noise(
-            [low_pass(each)[ends : -ends : low_pass.stride] for each in differences], FROM_REPEATS
-        )
+        left = [low_pass(each)[ends : -ends : low_pass.stride] for each in differences]
+        found = of_noise(left, FROM_REPEATS, inertia.power)
     else:
-        found = of_force(own, compared, low_pass, places, clear)
+        found = of_force(own, compared, places, clear, inertia)
     blocks = _blocks(own.velocity[places])
-    return Recording(name, model, law, low_pass, own, places, compared, found, clear, blocks)
+    return Recording(name, model, law, low_pass, own, places, compared, found, inertia, clear, blocks)
 
 
 def _slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
