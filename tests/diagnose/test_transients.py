@@ -118,10 +118,7 @@ def test_starts_and_zero_are_found_and_the_misfit_is_noise(tmp_path):
     data = transient_data(read(write(tmp_path)))
     fit = base_fit(Search.of(data, [])).base.fit
     assert 0.75 < fit.chi2 / fit.dof < 1.05
-    for own, found, start in zip(data.releases, data.starts(fit.point), STARTS, strict=True):
-        # A simulation starts in the middle of the first samples that it stands for.
-        later = free_motion(parse(OSCILLATOR, "model"), {}, start, 1.0 / own.starts_at, 2)[1]
-        assert found[0] == pytest.approx(later, abs=1e-4)
+    assert data.starts(fit.point) == pytest.approx(np.array(STARTS), abs=5e-4)
     assert data.zero(data.measured - fit.evaluation.response)[0] == pytest.approx(ZERO, abs=1e-5)
 
 

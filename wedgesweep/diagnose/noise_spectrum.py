@@ -19,6 +19,8 @@ POLES = np.array([0.0, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.995,
 UPDATES = 150
 # A frequency stands out if its power is this many times the noise, and so do its neighbours; found in rounds.
 STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
+# Power over the noise of a line above the motion that is told of.
+LINE = 30.0
 # Standard deviations by which the mean of some bins exceeds the noise if they are skirts of the motion.
 SKIRT = 2.0
 # Bands by which the first one that counts as noise is moved up at most.
@@ -98,8 +100,8 @@ def of_record(samples: np.ndarray) -> NoiseSpectrum:
             break
         first, kept = following, above
     found = _fit(frequency, power, kept, AS_WELL)
-    out = frequency[~kept]
-    return NoiseSpectrum(found.red, found.pole, found.white, float(out.max(initial=0.0)))
+    strong = frequency[power > LINE * found(frequency)].max(initial=frequency[first])
+    return NoiseSpectrum(found.red, found.pole, found.white, float(strong))
 
 
 def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.ndarray:

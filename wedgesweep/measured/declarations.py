@@ -27,14 +27,15 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
-# Kinds of test: a periodic response, a free motion, or a force under an imposed motion.
+# Kinds of test: a periodic response, a motion from some start with or without an input, or a force under an
+# imposed motion.
 STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
 # What tests of several kinds are together.
 MIXED = "mixed"
 # Channels of each kind where several kinds share one declaration.
 CHANNELS = {
     STEADY: ("time", "displacement", "velocity", "acceleration", INPUT),
-    TRANSIENT: ("time", "displacement", "velocity"),
+    TRANSIENT: ("time", "displacement", "velocity", INPUT),
     LOOP: ("time", "displacement", "force"),
 }
 
@@ -55,6 +56,11 @@ FROM = Quantity("from_s", nan, "time in the file from which the record is used; 
 TO = Quantity("to_s", nan, "time in the file up to which the record is used; by default all of it")
 DETREND = Flag(
     key="detrend", meaning="whether to remove the straight line of a sensor that drifts", default=False
+)
+UNDRIVEN = Flag(
+    key="undriven",
+    meaning="transient: whether no input acts in this test, so that its file has none",
+    default=False,
 )
 MODEL_ERROR = Quantity(
     "model_error",
@@ -204,7 +210,7 @@ TEST = RecordTable(
         (
             Choice(
                 key="kind",
-                meaning="steady: periodic response; transient: free motion; loop: force under a motion",
+                meaning="steady: periodic response; transient: decay, sweep; loop: force under a motion",
                 choices=KINDS,
                 default=STEADY,
             ),
@@ -224,6 +230,7 @@ TEST = RecordTable(
                 optional=True,
             ),
         ),
+        (UNDRIVEN,),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )

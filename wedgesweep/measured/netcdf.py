@@ -33,7 +33,9 @@ from wedgesweep.measured.declarations import (
     QUANTITIES,
     STEADY,
     TEST,
+    TRANSIENT,
     UNCERTAIN,
+    UNDRIVEN,
     UNITS,
 )
 from wedgesweep.measured.declarations import units as units_of
@@ -78,6 +80,8 @@ def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
         "model": json.dumps(dict(test.model)) if test.model else None,
         "kind": test.kind,
         "lowpass_hz": test.cutoff,
+        "undriven": 1 if test.kind == TRANSIENT and test.input is None else None,
+        "repeat_of": test.repeat_of,
     }
     group.setncatts({name: value for name, value in given.items() if value is not None})
     group.createDimension("sample", test.time.size)
@@ -169,7 +173,9 @@ def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[st
         kind = getattr(group, "kind", STEADY)
         known = found.setdefault(kind if kind in KINDS else STEADY, own)
         shared = {name: each for other in found.values() for name, each in other.items()}
-        different = different or own != known or any(own[name] != shared[name] for name in own)
+        undriven = bool(getattr(group, "undriven", 0))
+        same = known == own or (undriven and {**own, INPUT: known.get(INPUT)} == known)
+        different = different or not same or any(own[name] != shared[name] for name in own)
     return found, different
 
 
@@ -242,8 +248,9 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
 
 def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
     """Attributes of a test with its numbers of the model read from their text, and 0 or 1 as a flag."""
-    if attributes.get(DETREND.key) in (0, 1):  # an attribute cannot be a truth value
-        attributes = attributes | {DETREND.key: bool(attributes[DETREND.key])}
+    for flag in (DETREND.key, UNDRIVEN.key):
+        if attributes.get(flag) in (0, 1):  # an attribute cannot be a truth value
+            attributes = attributes | {flag: bool(attributes[flag])}
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:

@@ -10,7 +10,7 @@ from wedgesweep.config.keys import show
 from wedgesweep.files import read_text
 from wedgesweep.measured import arrays, channels, csv_columns, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import ROOT, STEADY, columns_of
+from wedgesweep.measured.declarations import INPUT, ROOT, STEADY, columns_of
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
@@ -128,6 +128,8 @@ def _tests(
             continue
         seen[file] = i
         own = by_kind[given.get("kind", STEADY)]
+        if given.get("undriven"):
+            own = {name: each for name, each in own.items() if name != INPUT}
         problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, own, model))
         if complete and own:
             tests += _test(path.parent / file, at, given, {**measurement, "columns": own}, problems)

@@ -4,8 +4,10 @@ import numpy as np
 
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise, of_record
-from wedgesweep.diagnose.transient.release import FEWEST, Recorded, Release, windows
+from wedgesweep.diagnose.transient.driven import Driven, factors
+from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.diagnose.transient.windows import FEWEST, Recorded, windows
 from wedgesweep.measured import Measurement, TestRecord
 
 
@@ -16,16 +18,49 @@ def transient_data(measurement: Measurement) -> TransientData:
     spectra = _spectra(tests, channels)
     fewest = FEWEST if len(tests) == 1 else 1
     found: list[Release] = []
-    for number, (test, own, noise) in enumerate(zip(tests, channels, spectra, strict=True)):
-        record = Recorded(test.name, own, test.sampling_rate, noise, number)
-        found += windows(record, measurement.model_of(test), measurement.law, fewest)
-    return TransientData(tuple(found), dict(measurement.uncertain), measurement.model_error)
+    for number, test in enumerate(tests):
+        model, driven = measurement.model_of(test), _driven(measurement, test)
+        record = Recorded(test.name, channels[number], test.sampling_rate, spectra[number], driven, number)
+        record = _as_simulated(record, measurement)
+        found += windows(record, model, measurement.law, fewest)
+    return TransientData(
+        tuple(found), dict(measurement.uncertain), measurement.model_error, measurement.input_gain_std
+    )
+
+
+def _names(measurement: Measurement, test: TestRecord) -> list[str]:
+    """Channels that are measurements of their own."""
+    derived = ("velocity",) if measurement.derived_velocity else ()
+    return [
+        name
+        for name in ("displacement", "velocity")
+        if getattr(test, name) is not None and name not in derived
+    ]
 
 
 def _channels(measurement: Measurement, test: TestRecord) -> np.ndarray:
-    """Displacement and, where it is a measurement of its own, velocity, (C, n)."""
-    recorded = (test.displacement, None if measurement.derived_velocity else test.velocity)
-    return np.array([each for each in recorded if each is not None])
+    """Channels (C, n) as recorded."""
+    return np.array([getattr(test, name) for name in _names(measurement, test)])
+
+
+def _driven(measurement: Measurement, test: TestRecord) -> Driven | None:
+    if test.input is None or measurement.recorded_input is None:
+        return None
+    return Driven(test.input, measurement.recorded_input, test.sampling_rate)
+
+
+def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
+    """The record with its channels as the motion that is simulated."""
+    test = measurement.tests[record.number]
+    model = measurement.model_of(test)
+    named = [measurement.columns[name].get("of", "relative") for name in _names(measurement, test)]
+    both = [factors(model, of) for of in named]
+    channels = record.channels * np.array([factor for factor, _ in both])[:, None]
+    if record.driven is not None and any(share for _, share in both):
+        base = record.driven.displacement
+        for place, (own, (_, share)) in enumerate(zip(channels, both, strict=True)):
+            own += share * (base if place == 0 else np.gradient(base) * record.rate)
+    return record._replace(channels=channels)
 
 
 def _spectra(tests: tuple[TestRecord, ...], channels: list[np.ndarray]) -> list[list[NoiseSpectrum]]:
