@@ -47,7 +47,9 @@ def response(config, effects, given, quantity):
     return -np.array([found[0][0], found[1][0]])
 
 
-def write(folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=2e-5, more="", unoise=2e-3):
+def write(
+    folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=2e-5, more="", unoise=2e-3
+):
     """Files of tests under some inputs (n,); returns the path of measured.toml."""
     rng, (unit, size) = np.random.default_rng(1), UNITS[quantity]
     config = parse(model, "model")
