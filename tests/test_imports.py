@@ -13,14 +13,14 @@ FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.r
 
 NUMERICS = (
     *("compiled.py", "inner_code.py", "outcome.py", "natural_units.py", "quantity.py"),
-    *("excitation.py", "sensor.py", "trigonometry.py"),
+    *("excitation.py", "sampled_input.py", "sensor.py", "trigonometry.py"),
     *("friction/", "effects/", "hybrid/", "systems/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
     *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report"),
     "diagnosis_result",
 )
-MECHANICS = ("friction", "effects", "excitation")
+MECHANICS = ("friction", "effects", "excitation", "sampled_input")
 FORBIDDEN = {
     NUMERICS: ("xarray", "joblib", "netCDF4", *(f"wedgesweep.{name}" for name in ABOVE)),
     # A solver knows a system by hybrid/interface.py, and by the kits of its records.
