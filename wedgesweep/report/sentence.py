@@ -245,8 +245,9 @@ def _next_test(result: DiagnosisResult, rivals: str = "") -> str:
     test = result.document["next_test"]
     if test is None:
         return ""
-    rivals = rivals or " from ".join(test["separates"])
-    if not phrases.distinguishes(result.document):
-        best = phrases.next_test(test)
-        return f"; no test would reliably distinguish {rivals}, the best one is at {best}"
-    return f"; a test at {phrases.next_test(test)} would distinguish {rivals}"
+    place, found = phrases.next_test(test), phrases.separated(result.document)
+    if found is None:
+        rivals = rivals or " from ".join(test["separates"])
+        return f"; no test would reliably distinguish {rivals}, the best one is at {place}"
+    told = rivals if rivals and not found.left else found.told
+    return f"; a test at {place} would distinguish {told}"

@@ -49,6 +49,8 @@ NOT_GROWING = 0.5
 SHORTEST = 1e-13
 # A mode that needs more steps than this per period of the fastest input will not end.
 MOST_STEPS = 100_000
+# Nor does a window of more periods of the fastest input than this end in a reasonable time.
+LONGEST_WINDOW = 1_000_000
 # A minimum is looked for where the parabola through three values falls below this share of the least.
 SUSPECT = 0.3
 # Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; and the phase (rad) after
@@ -338,7 +340,10 @@ def integrate(state, keep_from, stop, p, recorder, work):
 
     Returns how it ended (OK, LOCKED, FAILED, CHATTERING) and the state reached.
     """
-    limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + (stop - state.t) * fastest(p) / (2.0 * pi))
+    window = (stop - state.t) * fastest(p) / (2.0 * pi)
+    if window > LONGEST_WINDOW:
+        return FAILED, state
+    limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + window)
     while state.t < stop:
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from

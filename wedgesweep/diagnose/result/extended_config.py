@@ -5,7 +5,7 @@ from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.result.estimates import uncertain
-from wedgesweep.diagnose.sampled_data import SampledData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 
 def extended(found: Diagnosis) -> str:
@@ -15,7 +15,7 @@ def extended(found: Diagnosis) -> str:
     known = uncertain(best)
     nuisance = {name: {"scale": each["scale"]} for name, each in known.items() if name != INPUT_GAIN}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
-    if isinstance(data, SampledData):
+    if not isinstance(data, HarmonicData):
         return _heading(found) + toml.dumps(document)
     # Repeated tests are one case, and single cases do not continue one another.
     unit, inputs = data.model.amplitude_unit, data.inputs_of(best.model.scenario(best.point))
