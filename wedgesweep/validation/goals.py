@@ -112,6 +112,7 @@ def goals(sets: Sets) -> list[Goal]:
         _at_most("  wrong `named`", share(imperfect, judge.names_another_cause), 0.03),
         _at_least("small errors only: nothing missing", share(errors, judge.nothing_missing), 0.90),
         _told("  an error that is there named", share(errors, judge.names_what_is_there)),
+        _told("  they leave more than is allowed for", share(errors, judge.errs_by_more)),
         _at_least(
             "rig of any size: exact or in a tie", share(sets.of("random-rig"), judge.exact_or_tied), 0.95
         ),

@@ -24,6 +24,8 @@ HARMONICS, RECORDED_HARMONICS = 0.002, 0.01
 GAIN = 0.005
 # Relative std of stated amplitudes.
 AMPLITUDE = 0.005
+# Model error that is allowed for.
+MODEL_ERROR = 0.02
 # What a user declares of this.
 DECLARED = {"bolster_mass": 0.005, "bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "friction_level": 0.03}
 # Effects that stand for errors which are there in truth.

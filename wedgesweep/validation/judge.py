@@ -60,6 +60,12 @@ def names_what_is_there(record: Record) -> bool:
     return bool(answer(record)) and {*answer(record)} <= {*imperfect.EFFECTS}
 
 
+def errs_by_more(record: Record) -> bool:
+    """Whether the base model is off by more than the model error that is allowed for."""
+    accuracy = record["ladder"][0]["accuracy"]
+    return accuracy is None or bool(accuracy > imperfect.MODEL_ERROR)
+
+
 def names_another_cause(record: Record) -> bool:
     """Whether a verdict on an imperfect bench is certain and wrong."""
     return record["verdict"] == "named" and not names_cause(record)

@@ -177,6 +177,8 @@ def _right(record: Record) -> bool:
         return judge.abstains(record)
     if record["kind"] == "imperfect":
         return judge.names_cause(record)
+    if record["kind"] == "errors-only":
+        return judge.nothing_missing(record)
     return judge.exact(record) if record["truth"] else not record["causes"]
 
 
