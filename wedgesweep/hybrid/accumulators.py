@@ -77,13 +77,19 @@ def add_motion(sums, y, weight, mode, p):
 
 
 @inner
-def add(sums, t, y, weight, mode, p):
-    """Add one point of the kept window."""
-    add_motion(sums, y, weight, mode, p)
-    dissipated, supplied, first, second = powers(t, y, mode, p)
+def add_powers(sums, now, weight):
+    """Add the powers and normal forces of one point, as from ``interface.powers``."""
+    dissipated, supplied, first, second = now
     sums.dissipated += weight * dissipated
     sums.supplied += weight * supplied
     if first == first:  # NaN: not determined
         sums.normal_force = min(sums.normal_force, first, second)
         if first < 0.0 or second < 0.0:
             sums.lifted_time += weight
+
+
+@inner
+def add(sums, t, y, weight, mode, p):
+    """Add one point of the kept window."""
+    add_motion(sums, y, weight, mode, p)
+    add_powers(sums, powers(t, y, mode, p), weight)

@@ -6,7 +6,8 @@ With constant coefficients of friction the suspension is a linear oscillator:
     x(t) = centre + forced sin(omega t) + A cos(Omega s) + B sin(Omega s),   s = t - start
 
 A scan with rotation matrices (no trigonometry) finds the interval of the first event, a safeguarded Newton
-iteration the event itself, to rounding error. The release from rest is in ``release.py``.
+iteration the event itself, to rounding error. Normal forces are watched only where the amplitudes of both
+parts of the motion allow them to vanish. The release from rest is in ``release.py``.
 """
 
 from math import inf, pi, sqrt
@@ -16,15 +17,23 @@ from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
 from wedgesweep.hybrid.interface import closed_form, implement
-from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, keep_constant, put_node, put_sample
-from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
+from wedgesweep.hybrid.recorder import (
+    NODES,
+    WEIGHTS,
+    first_sample,
+    keep_constant,
+    put_known_node,
+    put_sample,
+)
+from wedgesweep.hybrid.search import Bracket, minimum, searched, zero_after_start, zero_near
 from wedgesweep.hybrid.state import NO_EVENT
+from wedgesweep.systems.suspension.energy import friction_power, supplied_power
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE, stuck
-from wedgesweep.systems.suspension.newton import Coefficients, Loads, loads, reactions
+from wedgesweep.systems.suspension.newton import Coefficients, Forces, Loads, loads, reactions
 from wedgesweep.systems.suspension.release import release
-from wedgesweep.trigonometry import cosine, sine
+from wedgesweep.trigonometry import cosine, sine, small_turn
 
 # Scanned intervals per period of input or free vibration, whichever is shorter.
 SCAN = 16
@@ -157,6 +166,20 @@ def advanced(phase, time, o, p):
 
 
 @inlined
+def _small_angles(time, o, p):
+    """As ``_angles``, for at most an interval of the scan."""
+    input_cos, input_sin = small_turn(p.input.omega * time)
+    free_cos, free_sin = small_turn(o.frequency * time)
+    return input_cos, input_sin, free_cos, free_sin
+
+
+@inlined
+def _soon(phase, time, o, p):
+    """As ``advanced``, for at most an interval of the scan."""
+    return _rotated(phase, *_small_angles(time, o, p))
+
+
+@inlined
 def motion(phase, o, p):
     """Displacement (m) and velocity (m/s)."""
     x = o.centre + o.forced * phase.sine + phase.free
@@ -177,8 +200,32 @@ class _Sample(NamedTuple):
 
 
 @inlined
-def _sample(phase, o, mode, p):
-    return _Sample(event_values(phase, o, mode, p), event_slopes(phase, o, mode, p))
+def _sample(phase, forces, o, mode, p):
+    """The event functions at a phase; unless ``forces``, normal forces count as infinite."""
+    if forces:
+        return _Sample(event_values(phase, o, mode, p), event_slopes(phase, o, mode, p))
+    velocity = motion(phase, o, p)[1]
+    return _Sample(
+        (mode.column * velocity - o.threshold, inf, inf),
+        (mode.column * _acceleration(phase, o, p), 0.0, 0.0),
+    )
+
+
+@inlined
+def _least(offset, by_x, by_u, amplitude, o, p):
+    """Lower bound of a normal force while the mode lasts; ``amplitude`` (m) of the free part."""
+    driven = by_x * o.forced - by_u * p.input.amplitude * p.input.omega**2
+    return offset + by_x * o.centre - abs(driven) - abs(by_x) * amplitude
+
+
+@inlined
+def _forces_may_vanish(phase, o, mode, p):
+    """Whether a normal force may become zero on the mode."""
+    amplitude = sqrt(phase.free**2 + phase.quadrature**2)
+    a, b = mode.column_sign, mode.bolster_sign
+    column = _least(a * o.column, a * o.column_x, a * o.column_u, amplitude, o, p)
+    bolster = _least(b * o.bolster, b * o.bolster_x, b * o.bolster_u, amplitude, o, p)
+    return min(column, bolster) <= 0.0
 
 
 @inlined
@@ -220,7 +267,7 @@ class _Piece(NamedTuple):
 def _value(time, piece):
     """An event function some time (s) after the phase of a piece."""
     which, phase, o, mode, p = piece
-    there = advanced(phase, time, o, p)
+    there = _soon(phase, time, o, p)
     return event_values(there, o, mode, p)[which], event_slopes(there, o, mode, p)[which]
 
 
@@ -237,6 +284,20 @@ def _may_graze(which, before, after, span):
         return False
     lowest = (rising * now - falling * following + falling * rising * span) / (rising - falling)
     return lowest < 0.1 * now
+
+
+@inlined
+def _crossing(which, before, after, span):
+    """Estimate of the time at which an event function that falls over an interval is zero.
+
+    Hermite's cubic for time as a function of the value; between samples this close it is good to 1e-4.
+    """
+    rise, start, end = after.values[which] - before.values[which], before.slopes[which], after.slopes[which]
+    share = -before.values[which] / rise
+    if not (start < 0.0 and end < 0.0):
+        return share * span
+    rest = 1.0 - share
+    return share * (share * (3.0 - 2.0 * share) * span + rest * rise * (rest / start - share / end))
 
 
 @inner
@@ -256,7 +317,7 @@ def _first_event(phase, o, mode, span, samples, at_zero, p):
         if which == at_zero or bracket.at_low <= 0.0:
             time = zero_after_start(piece, bracket, nearest, close)
         else:
-            time = zero(piece, bracket, close)
+            time = zero_near(piece, bracket, _crossing(which, before, after, span), close)
         if time < earliest:
             earliest, first = time, which
     return earliest, first
@@ -276,20 +337,21 @@ def slide(state, stop, o, p):
     """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
     t, (x, velocity), mode, last_event, _ = state
     step = 2.0 * pi / max(p.input.omega, o.frequency) / SCAN
-    turn = _angles(step, o, p)
+    turn = _small_angles(step, o, p)
     at_zero = last_event - COLUMN_NORMAL + COLUMN_FORCE if last_event >= COLUMN_NORMAL else -1
     if velocity == 0.0 or last_event == o.event:
         at_zero = SLIP
     phase = _phase(t, x, velocity, o, p)
-    now = _sample(phase, o, mode, p)
+    forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, o, mode, p)
+    now = _sample(phase, forces, o, mode, p)
     while t < stop:
         span = min(step, stop - t)
-        later = _rotated(phase, *turn) if span == step else advanced(phase, span, o, p)
-        following = _sample(later, o, mode, p)
+        later = _rotated(phase, *turn) if span == step else _soon(phase, span, o, p)
+        following = _sample(later, forces, o, mode, p)
         if _any_event(now, following, span):
             found, which = _first_event(phase, o, mode, span, (now, following), at_zero, p)
             if which >= 0:
-                x, velocity = motion(advanced(phase, found, o, p), o, p)
+                x, velocity = motion(_soon(phase, found, o, p), o, p)
                 return t + found, x, velocity, o.event if which == SLIP else COLUMN_NORMAL - 1 + which
         t += span
         phase, now = later, following
@@ -314,11 +376,23 @@ def _fastest(phase, low, high, rate, following, o, p):
 
 
 @inner
+def _put_node(phase, weight, mode, o, recorder, p):
+    """Add a node to the sums, with the forces that the closed form knows."""
+    y = motion(phase, o, p)
+    base = -p.input.amplitude * p.input.omega**2 * phase.sine
+    column = o.column + o.column_x * y[0] + o.column_u * base
+    bolster = o.bolster + o.bolster_x * y[0] + o.bolster_u * base
+    taken = friction_power(0.0, y, mode, Forces(0.0, 0.0, 0.0, column, bolster), p)
+    powers = (taken, supplied_power(base, y, p), column, bolster)
+    put_known_node(powers, y, weight, mode, recorder, p)
+
+
+@inner
 def _keep_nodes(state, end, o, recorder, p):
     """Add the nodes of a piece to the sums, its ends, and where the velocity is extreme."""
     t, (x, velocity), mode, _, _ = state
     start = _phase(t, x, velocity, o, p)
-    put_node(t, (x, velocity), 0.0, mode, recorder, p)
+    _put_node(start, 0.0, mode, o, recorder, p)
     earlier, rate = 0.0, _acceleration(start, o, p)
     parts = int((end - t) * max(p.input.omega, o.frequency) / (2.0 * pi) * INTERVALS) + 1
     span = (end - t) / parts
@@ -341,8 +415,8 @@ def _keep_nodes(state, end, o, recorder, p):
         now = _acceleration(there, o, p)
         if rate * now < 0.0:
             fastest = _fastest(start, earlier, time, rate, now, o, p)
-            put_node(t + fastest, motion(advanced(start, fastest, o, p), o, p), 0.0, mode, recorder, p)
-        put_node(t + time, motion(there, o, p), weight, mode, recorder, p)
+            _put_node(advanced(start, fastest, o, p), 0.0, mode, o, recorder, p)
+        _put_node(there, weight, mode, o, recorder, p)
         earlier, rate = time, now
 
 
