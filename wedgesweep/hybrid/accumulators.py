@@ -5,10 +5,11 @@ begins or ends and where displacement or velocity is extreme.
 """
 
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import compiled, inner
+from wedgesweep.compiled import compiled, inlined, inner
 from wedgesweep.hybrid.interface import observed, powers, sticks
 
 SUMS = np.dtype(
@@ -77,9 +78,10 @@ def add_motion(sums, y, weight, mode, p):
 
 
 @inner
-def add_powers(sums, now, weight):
-    """Add the powers and normal forces of one point, as from ``interface.powers``."""
-    dissipated, supplied, first, second = now
+def add(sums, t, y, weight, mode, p):
+    """Add one point of the kept window."""
+    add_motion(sums, y, weight, mode, p)
+    dissipated, supplied, first, second = powers(t, y, mode, p)
     sums.dissipated += weight * dissipated
     sums.supplied += weight * supplied
     if first == first:  # NaN: not determined
@@ -88,8 +90,39 @@ def add_powers(sums, now, weight):
             sums.lifted_time += weight
 
 
+class Span(NamedTuple):
+    """Integrals over some time (s) of a mode: displacement (m s), energies (J).
+
+    ``sticks`` and ``lifted``: whether the contact sticks, and whether a normal force is negative.
+    """
+
+    time: float
+    integral: float
+    sticks: bool
+    lifted: bool
+    dissipated: float
+    supplied: float
+
+
 @inner
-def add(sums, t, y, weight, mode, p):
-    """Add one point of the kept window."""
-    add_motion(sums, y, weight, mode, p)
-    add_powers(sums, powers(t, y, mode, p), weight)
+def add_span(sums, span):
+    """Add a span whose integrals are known; its extremes come from ``add_extremes``."""
+    _count_onset(sums, 1.0 if span.sticks else 0.0)
+    sums.time += span.time
+    sums.integral += span.integral
+    sums.dissipated += span.dissipated
+    sums.supplied += span.supplied
+    if span.sticks:
+        sums.stuck_time += span.time
+    if span.lifted:
+        sums.lifted_time += span.time
+
+
+@inlined
+def add_extremes(sums, x, velocity, normal_force, energies):
+    """Add what may be an extreme; ``normal_force`` (N) is the smaller one."""
+    sums.lowest = min(sums.lowest, x)
+    sums.highest = max(sums.highest, x)
+    sums.peak_velocity = max(sums.peak_velocity, abs(velocity))
+    if energies:
+        sums.normal_force = min(sums.normal_force, normal_force)

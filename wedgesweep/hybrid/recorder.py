@@ -48,14 +48,6 @@ def put_node(t, y, weight, mode, recorder, p):
 
 
 @inlined
-def put_known_node(powers, y, weight, mode, recorder, p):
-    """As ``put_node``, with what ``interface.powers`` would return."""
-    accumulators.add_motion(recorder.sums[0], y, weight, mode, p)
-    if recorder.energies:
-        accumulators.add_powers(recorder.sums[0], powers, weight)
-
-
-@inlined
 def put_sample(i, y, mode, recorder, p):
     """Store sample i if the grid has it."""
     if i >= recorder.x.size:
