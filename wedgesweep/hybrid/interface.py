@@ -162,6 +162,11 @@ def powers(t, y, mode, p):
 
 
 @declared
+def expected_event(forces, t, y, mode, p):
+    """Time (s) in which a velocity would reach the end of its branch at its present rate; inf: in none."""
+
+
+@declared
 def driving_force(t, acceleration, y, mode, p):
     """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined."""
 

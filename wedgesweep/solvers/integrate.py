@@ -18,6 +18,7 @@ from wedgesweep.hybrid.interface import (
     event,
     event_count,
     events,
+    expected_event,
     fastest,
     holds,
     initial_mode,
@@ -56,6 +57,10 @@ SUSPECT = 0.3
 CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
 # Error of a place at which a step is only to be cut, and how far beyond it the step then goes.
 ROUGHLY, PAST_EVENT = 1e-3, 2e-2
+# How far a step goes beyond an event that is expected, as a share of the time to it; the least share of a
+# step that it then has; and the share of the step before which an event must not lie: stages would see too
+# much of the friction beyond it.
+PAST_EXPECTED, LEAST_SHARE, NEAR_END = 0.15, 0.02, 0.75
 
 
 class Workspace(NamedTuple):
@@ -253,6 +258,20 @@ by_record(_becomes_stiff, _if_stiff(lambda h, y, p: outruns(h, y, p), lambda h, 
 by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda h, p: h))
 
 
+def _expected(forces, t, y, mode, p):
+    """Time (s) after which the system expects an event; inf where it does not say."""
+
+
+by_record(
+    _expected,
+    lambda fields: (
+        (lambda forces, t, y, mode, p: expected_event(forces, t, y, mode, p))
+        if provided(expected_event, fields)
+        else (lambda forces, t, y, mode, p: inf)
+    ),
+)
+
+
 def _closed_form(state, stop, p, keeping, recorder):
     """The closed form of a mode, if the system has one."""
 
@@ -279,18 +298,20 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     to_event = inf
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
+    expected = _expected(forces, t, y, mode, p)
     most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
     implicitly = _begins_stiff(mode, p)
     if implicitly and last_event >= 0:
         h = _after_event(h, p)
     while t < stop:
         h = min(h, longest)
-        taken = min(h, stop - t, to_event)
+        aim = max((1.0 + PAST_EXPECTED) * expected, LEAST_SHARE * h)
+        taken = min(h, stop - t, to_event, aim)
         if implicitly:
-            step, within, forces, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
+            step, within, ahead, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / implicit.ORDER, implicit.STAGES
         else:
-            step, within, forces, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
+            step, within, ahead, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / explicit.ORDER, explicit.STAGES - 1
         work.counts[0] += evaluations
         if not error <= 1.0:
@@ -298,9 +319,9 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             if h < SHORTEST * period:
                 return State(t, y, mode, last_event, h), FAILED
             continue
-        close = ROUGHLY if to_event == inf else CLOSE
-        share, number = first_event(step, mode, last_event, (within, forces), close, p, work)
-        if number >= 0 and to_event == inf:
+        close = CLOSE if taken in (aim, to_event) else ROUGHLY
+        share, number = first_event(step, mode, last_event, (within, ahead), close, p, work)
+        if number >= 0 and to_event == inf and (taken != aim or share < NEAR_END):
             to_event = (share + PAST_EVENT) * taken
             continue
         to_event = inf
@@ -318,6 +339,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         y, k1, last_event = step.end, step.end_rate, NO_EVENT
         for i in range(event_count(p)):
             work.at_start[i] = work.at_end[i]
+        expected = _expected(ahead, t, y, mode, p)
         implicitly = implicitly or _becomes_stiff(taken, y, p)
         if taken < longest or error > NOT_GROWING:
             grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
