@@ -272,16 +272,20 @@ by_record(
 )
 
 
-def _closed_form(state, stop, p, keeping, recorder):
+def _closed_form(state, stop, p, keeping, recorder, counts):
     """The closed form of a mode, if the system has one."""
 
 
 by_record(
     _closed_form,
     lambda fields: (
-        (lambda state, stop, p, keeping, recorder: closed_form(state, stop, p, keeping, recorder))
+        (
+            lambda state, stop, p, keeping, recorder, counts: closed_form(
+                state, stop, p, keeping, recorder, counts
+            )
+        )
         if provided(closed_form, fields)
-        else (lambda state, stop, p, keeping, recorder: (False, state.t, state.y, NO_EVENT))
+        else (lambda state, stop, p, keeping, recorder, counts: (False, state, NO_EVENT))
     ),
 )
 
@@ -364,13 +368,13 @@ def integrate(state, keep_from, stop, p, recorder, work):
     while state.t < stop:
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        done, t, y, number = _closed_form(state, end, p, keeping, recorder)
-        if done:
-            state = State(t, y, state.mode, state.last_event, state.step)
-        else:
+        done, state, number = _closed_form(state, end, p, keeping, recorder, work.counts)
+        if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
-        if number == NO_EVENT:
+        if number == NO_EVENT and work.counts[2] <= limit:
             continue
+        if number == NO_EVENT:
+            return CHATTERING, state
         if number < NO_EVENT:
             return number, state
         y, mode, unique = transition(state.t, state.y, state.mode, number, p)

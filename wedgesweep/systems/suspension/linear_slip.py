@@ -28,6 +28,7 @@ class Oscillator(NamedTuple):
     frequency: float  # Omega, rad/s
     centre: float  # m
     forced: float  # m
+    driven: float  # cu
     column: float
     column_x: float
     column_u: float
@@ -68,7 +69,7 @@ def _constant_friction(mode, p):
 def oscillator(y, mode, p):
     """Closed form of a mode with constant friction; ``linear`` is False where there is none."""
     if not (p.geometry.always_well_posed and _constant_friction(mode, p)):
-        return Oscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
+        return Oscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
     s, g, omega = p.suspension, p.geometry, p.input.omega
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(mode.column_sign * column_mu, mode.bolster_sign * bolster_mu, 0.0, 0.0)
@@ -88,6 +89,7 @@ def oscillator(y, mode, p):
         sqrt(square),
         at_rest.acceleration / square,
         driven.acceleration * p.input.amplitude * omega**2 / (omega**2 - square),
+        driven.acceleration,
         at_rest.column,
         by_x.column,
         driven.column,
@@ -189,3 +191,11 @@ def jolt(phase, o, p):
 def base_acceleration(phase, p):
     """U'' in m/s^2."""
     return -p.input.amplitude * p.input.omega**2 * phase.sine
+
+
+@inlined
+def forces_at(x, u2, o):
+    """Acceleration z'' (m/s^2) and the smaller normal force (N) at a displacement and base acceleration."""
+    column = o.column + o.column_x * x + o.column_u * u2
+    bolster = o.bolster + o.bolster_x * x + o.bolster_u * u2
+    return o.driven * u2 - o.frequency**2 * (x - o.centre), min(column, bolster)
