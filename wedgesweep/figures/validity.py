@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from wedgesweep import formatting
 from wedgesweep.outcome import settled
 
 LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
@@ -47,9 +48,9 @@ def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -
 def shares(ds: xr.Dataset) -> str:
     """How many of the cases lift off and are unsettled, in words; empty if none does."""
     told = [
-        f"{int(marked.sum())} of {marked.size} cases {words}"
+        f"{int(marked.sum())} of {formatting.counted(marked.size, 'case')} {words}"
         for marked, words in (
-            (lifted(ds), "lift off: outside of the model's validity"),
+            (lifted(ds), "with lift-off, outside of the model's validity"),
             (unsettled(ds), "did not settle"),
         )
         if marked.any()

@@ -64,6 +64,6 @@ def _row(test: Mapping[str, Any], kind: str, models: tuple[str, ...]) -> list[st
 
 def _overall(result: DiagnosisResult, kind: str) -> str:
     misfit, count = result.document["misfit"], result.data.sizes["test"]
-    tests = phrases.counted(count, "block" if kind == "loop" else "test")
+    tests = formatting.counted(count, "block" if kind == "loop" else "test")
     error = phrases.times_noise(misfit["chi2_base"], misfit["dof"])
     return f"{COMPARED[kind].format(tests=tests)}, the base model leaves an error of {error}."
