@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from math import inf, nan
 from typing import Any
 
+from wedgesweep.config.input_contradictions import input_contradictions
+
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield all contradictions, each as a line that names the key and a valid setting."""
@@ -13,6 +15,8 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     if "oscillator" in document:
         yield from _oscillator(document)
     yield from _settling(document)
+    if "input" in document:
+        yield from input_contradictions(document)
 
 
 def _geometry(document: Mapping[str, Any]) -> Iterator[str]:
