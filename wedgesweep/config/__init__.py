@@ -424,9 +424,7 @@ def parse(text: str, source: str = "<config>", directory: Path = Path()) -> Conf
     return from_document(given, source, directory)
 
 
-def from_document(
-    given: Mapping[str, Any], source: str = "<config>", directory: Path = Path()
-) -> Config:
+def from_document(given: Mapping[str, Any], source: str = "<config>", directory: Path = Path()) -> Config:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
     from wedgesweep.config.declarations import root
 

@@ -19,6 +19,9 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
     A law, beta or amplitude that was selected as a single value gets its dimension back. A list of cases
     stays one, if the figure draws such lists.
     """
+    if "scale" in ds.coords and "scale" not in needs:
+        message = "draws responses to sines, but the input of this dataset does not repeat"
+        raise ValueError(message)
     if "case" in ds.dims and not case_lists:
         message = (
             "needs a grid of friction_law, beta and amplitude, "
@@ -31,6 +34,8 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
         hint = "; run the sweep again with keep_waveforms = true" if waveforms else ""
         message = f"the dataset has no {', '.join(missing)}{hint}"
         raise ValueError(message)
+    if "scale" in ds.coords:
+        return ds.expand_dims([name for name in ("scale", "friction_law") if ds[name].ndim == 0])
     single = [name for name in ("amplitude", "beta", "friction_law") if ds[name].ndim == 0]
     ds = ds.expand_dims(single)
     if "beta" in single and "frequency" in ds.coords:

@@ -19,7 +19,9 @@ def transient(
     sampled, sign = given.sampled(natural), 1.0 if oscillator else -1.0
     start = (sign * given.start[0], sign * given.start[1])
     samples = given.stored(natural, rate)
-    return Transient(sampled, _length(given, sampled, natural, absolute), natural, given.duration, samples, start)
+    return Transient(
+        sampled, _length(given, sampled, natural, absolute), natural, given.duration, samples, start
+    )
 
 
 def _length(given: Input, sampled: SampledInput, natural: float, absolute: bool) -> float:

@@ -18,7 +18,7 @@ LIFT_OFF = "lift_off_fraction"
 
 
 class CaseResult(NamedTuple):
-    """How one case ended; amplitude in ``unit``, m or N.
+    """How one case ended; amplitude in ``unit``, m or N, or "" for the scale of an input.
 
     ``period``, ``periodicity`` and ``lift_off_fraction`` are the dataset's variables of these names.
     """
@@ -50,6 +50,8 @@ class CaseResult(NamedTuple):
 
 def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
     """How each case of a dataset ended."""
+    if "scale" in ds.coords:
+        return _of_transients(ds)
     if LIFT_OFF not in ds:  # of an oscillator, whose normal force is given
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
     frame = ds[["status", "message", "period", "periodicity", LIFT_OFF]].to_dataframe().reset_index()
@@ -60,6 +62,21 @@ def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
     return list(map(CaseResult, *columns.values()))
 
 
+def _of_transients(ds: xr.Dataset) -> list[CaseResult]:
+    """How each case of a dataset ended whose input does not repeat."""
+    lifted = ds.get(LIFT_OFF, xr.zeros_like(ds["status"], float))
+    frame = ds[["status", "message"]].assign({LIFT_OFF: lifted}).to_dataframe().reset_index()
+    return [
+        _transient(row.friction_law, row.scale, row.status, row.message, getattr(row, LIFT_OFF))
+        for row in frame.itertuples()
+    ]
+
+
+def _transient(law: str, scale: float, status: int, message: str, lifted: float) -> CaseResult:
+    # Nothing has to settle.
+    return CaseResult(law, 1.0, scale, Outcome(status), message, 1, 0.0, lifted, "")
+
+
 def of_journal(path: Path) -> list[CaseResult]:
     """How the finished cases of an unfinished sweep ended."""
     header = journal.header(path)
@@ -68,6 +85,18 @@ def of_journal(path: Path) -> list[CaseResult]:
         message = f"{path}: damaged in its first line, whose config is not that of the records"
         raise SweepError(message)
     cases = settings.case_list()
+    records = journal.read(path, Sweep(settings, path).dtype)
+    if settings.transient:
+        return [
+            _transient(
+                cases[record["index"]].law,
+                cases[record["index"]].amplitude,
+                record["status"],
+                record["message"].decode(),
+                float(record[LIFT_OFF]),
+            )
+            for record in records
+        ]
     return [
         CaseResult(
             **cases[record["index"]]._asdict(),
@@ -78,7 +107,7 @@ def of_journal(path: Path) -> list[CaseResult]:
             lift_off_fraction=float(record[LIFT_OFF]),
             unit="N" if settings.forced else "m",
         )
-        for record in journal.read(path, Sweep(settings, path).dtype)
+        for record in records
     ]
 
 

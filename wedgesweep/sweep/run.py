@@ -21,7 +21,7 @@ from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset, journal, labels, provenance
+from wedgesweep.sweep import dataset, journal, labels, provenance, transients
 from wedgesweep.sweep.backend import Backend, local
 from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
 from wedgesweep.sweep.fingerprint import differences, fingerprint
@@ -64,6 +64,9 @@ class Sweep:
     def sizes(self) -> dict[str, int]:
         """Sizes of the dataset's dimensions within a case."""
         samples = self.settings.samples_per_period
+        transient = self.settings.transient
+        if transient is not None:
+            return {"time": transient.samples if self.settings.keep_waveforms else 0}
         return {
             "phase": self.settings.kept_periods * samples if self.settings.keep_waveforms else 0,
             "samples_per_period": samples,
@@ -98,7 +101,9 @@ class Sweep:
     @property
     def kit(self) -> int:
         """The largest kit of parts that the cases need."""
-        return int(kits(self.parameters).max(initial=0))
+        own = int(kits(self.parameters).max(initial=0))
+        # A kit of odd number has room for an input that is not a sine.
+        return own | 1 if self.config.transient else own
 
     @property
     def fingerprint(self) -> dict[str, str]:
@@ -247,14 +252,14 @@ class Sweep:
         if failed.size:
             case = self.config.case_list()[failed[0]["index"]]
             unit = "N" if self.config.forced else "m"
-            message = (
-                f"{describe(case.law, case.beta, case.amplitude, unit)}: {failed[0]['message'].decode()}"
-            )
+            where = describe(case.law, case.beta, case.amplitude, "" if self.config.transient else unit)
+            message = f"{where}: {failed[0]['message'].decode()}"
             raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:
         """Assemble the dataset from the records of all cases."""
         shape, coords = self.config.case_coordinates()
+        coords |= self._time()
         return dataset.assemble(
             records,
             dataset.coordinates(coords, self.sizes),
@@ -262,6 +267,13 @@ class Sweep:
             {**self._physics(), **provenance.attributes(self.config, started, self.command)},
             labels.of(self.config),
         )
+
+    def _time(self) -> dict[str, Any]:
+        """Coordinates of the stored waveforms of an input that does not repeat: time, and the input."""
+        transient = self.settings.transient
+        if transient is None or not self.settings.keep_waveforms:
+            return {}
+        return transients.coordinates(self.config.input, transient, self.config.document["input"])
 
     def _physics(self) -> dict[str, Any]:
         """Properties of the system that figures refer to (SI)."""
