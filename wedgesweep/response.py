@@ -133,7 +133,7 @@ def _sensed(x, velocity, step, periodic, p):
 
 @compiled
 def sensed(x, velocity, step, parameters):
-    """Deflection and velocity of a motion that does not repeat, ``step`` (s) apart, as the sensors show them."""
+    """Deflection and velocity, as ``channels``, of a motion that does not repeat; ``step`` (s) apart."""
     return _sensed(x, velocity, step, False, parameters[0])
 
 

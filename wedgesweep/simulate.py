@@ -76,7 +76,7 @@ def _solver(settings: Settings) -> Any:
 
 
 def transient(parameters: np.ndarray, given: Transient, scale: float, settings: Settings) -> Trajectory:
-    """Run one case under an input times ``scale``; parameters: a full record, shape (1,). Raises CaseError."""
+    """Run a case under an input times ``scale``; parameters: a full record, shape (1,). Raises CaseError."""
     case = parameters.copy()
     set_sampled(case, given.sampled, scale * given.length, given.omega, given.span, scale)
     window = Span(given.omega, 0, 1, given.samples, given.span)

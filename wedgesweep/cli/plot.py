@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
-from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
+from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
+OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS)
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
 
 
@@ -34,6 +35,10 @@ For a dataset, KIND is one of
 {_table(DESCRIPTIONS)}
 
 \b
+For a dataset whose input does not repeat ([input] in its config), one of
+{_table(transient.DESCRIPTIONS)}
+
+\b
 For the directory of a diagnosis, one of
 {_table(diagnosis.DESCRIPTIONS)}
 
@@ -46,7 +51,7 @@ POSITIVE = click.FloatRange(min=0.0, min_open=True)
 
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
-@click.argument("kind", metavar="KIND", type=click.Choice([*DESCRIPTIONS, *diagnosis.DESCRIPTIONS, ALL]))
+@click.argument("kind", metavar="KIND", type=click.Choice([*OF_DATASETS, *diagnosis.DESCRIPTIONS, ALL]))
 @DATASET
 @click.option(
     "-o",
@@ -128,7 +133,7 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
     if "amplitude" in given:
         factor = 1.0 if found.attrs.get("excitation") == "force" else 1e-3
         given["amplitude"] = [value * factor for value in given["amplitude"]]
-    for name in ("beta", "amplitude"):
+    for name in [each for each in ("beta", "amplitude") if each in found.coords]:
         for value in np.atleast_1d(given.get(name, ())):
             there = np.atleast_1d(found[name].values)
             nearest = there[np.abs(there - value).argmin()]
@@ -141,7 +146,7 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
 
 def _require_kind(kind: str, path: Path) -> None:
     """Refuse a figure of a diagnosis for a dataset, and the reverse."""
-    if path.is_dir() and kind in DESCRIPTIONS:
+    if path.is_dir() and kind in OF_DATASETS:
         valid = ", ".join(diagnosis.DESCRIPTIONS)
         message = f"{path}: a directory; {kind} draws the dataset of a run, a diagnosis has {valid}"
         raise Failure(message)

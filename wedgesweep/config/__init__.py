@@ -103,12 +103,12 @@ class Config:
     @cached_property
     def oscillator(self) -> dict[str, Any]:
         """SI numbers of the oscillator, and its contact."""
-        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY
+        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY, BRISTLES
         from wedgesweep.systems.oscillator.parameters import OSCILLATOR as QUANTITIES
 
         given = self.document[OSCILLATOR]
-        belt = (BELT_VELOCITY,) if BELT_VELOCITY.key in given else ()
-        return {**_si((*QUANTITIES, *belt), given), "contact": given["contact"]}
+        more = [each for each in (BELT_VELOCITY, *BRISTLES) if each.key in given]
+        return {**_si((*QUANTITIES, *more), given), "contact": given["contact"]}
 
     @property
     def possible_effects(self) -> tuple[str, ...]:

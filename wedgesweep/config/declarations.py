@@ -14,7 +14,14 @@ from wedgesweep.friction.names import LAW_NAMES
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
 from wedgesweep.solvers.names import SOLVERS
-from wedgesweep.systems.oscillator.parameters import BASE, BELT_VELOCITY, CONTACTS, EXCITATIONS, OSCILLATOR
+from wedgesweep.systems.oscillator.parameters import (
+    BASE,
+    BELT_VELOCITY,
+    BRISTLES,
+    CONTACTS,
+    EXCITATIONS,
+    OSCILLATOR,
+)
 from wedgesweep.systems.suspension.parameters import SUSPENSION
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
@@ -181,6 +188,10 @@ OSCILLATOR_TABLE = table(
         default=BASE,
     ),
     Number.of(BELT_VELOCITY, optional=True, example=200.0),
+    *(
+        Number.of(quantity, optional=True, example=example)
+        for quantity, example in zip(BRISTLES, (100.0, 300.0, 0.4), strict=True)
+    ),
 )
 
 

@@ -36,9 +36,8 @@ def _of_kind(given: Mapping[str, Any]) -> Iterator[str]:
     if given.get("kind") == "record" and {"quantity", "unit"} <= given.keys():
         units = RECORDED[given["quantity"]]
         if given["unit"] not in units:
-            yield (
-                f"input.unit: {given['unit']} is no unit of {given['quantity']}; valid here: {', '.join(units)}"
-            )
+            told = f"{given['unit']} is no unit of {given['quantity']}; valid here: {', '.join(units)}"
+            yield f"input.unit: {told}"
     if given.get("kind") == "random":
         yield from _density(given)
     highest = max([given.get("start_hz", 0.0), given.get("stop_hz", 0.0), *given.get("frequency_hz", ())])
@@ -74,7 +73,7 @@ def _of_system(document: Mapping[str, Any]) -> Iterator[str]:
     """Inputs that a system does not have."""
     given, own = document["input"], document.get("oscillator")
     if is_force(given) and own is None:
-        yield "input: a suspension is driven by its side frame, not by a force; write a motion, or [oscillator]"
+        yield "input: a suspension is driven by its side frame; write a motion, or [oscillator]"
     contact = "base" if own is None else own.get("contact", "base")
     if given.get("kind") == "ramp" and contact == "base":
         yield (
@@ -83,6 +82,6 @@ def _of_system(document: Mapping[str, Any]) -> Iterator[str]:
         )
     at_rest = given.get("displacement_mm") == given.get("velocity_mm_per_s") == 0.0
     if given.get("kind") == "release" and at_rest and contact != "belt":
-        yield "input.displacement_mm: 0 without a velocity is rest; write a displacement, or velocity_mm_per_s"
+        yield "input.displacement_mm: 0 without a velocity is rest; write one of both"
     if is_force(given) and "stray_vibration" in document.get("effects", {}):
         yield "effects.stray_vibration: under a force the base does not move; remove it"

@@ -19,9 +19,6 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
     A law, beta or amplitude that was selected as a single value gets its dimension back. A list of cases
     stays one, if the figure draws such lists.
     """
-    if "scale" in ds.coords and "scale" not in needs:
-        message = "draws responses to sines, but the input of this dataset does not repeat"
-        raise ValueError(message)
     if "case" in ds.dims and not case_lists:
         message = (
             "needs a grid of friction_law, beta and amplitude, "

@@ -3,8 +3,9 @@
     T = sigma_0 z + sigma_1 z' + sigma_2 v
     z' = v - sigma_0 |v| z / g(v),     g(v) = N (mu_d + (mu_s - mu_d) exp(-(v/v_t)^2))
 
-For oscillators only: the bristles are in lugre_bristles.py. Their stiffness sigma_0, their damping sigma_1 and
-the viscous part sigma_2 are keys of [oscillator]. There is no true sticking: slip below v_t counts as stuck.
+For oscillators only: the bristles are in lugre_bristles.py. Their stiffness sigma_0, their damping sigma_1
+and the viscous part sigma_2 are keys of [oscillator]. There is no true sticking: slip below v_t counts as
+stuck.
 """
 
 from math import exp

@@ -18,8 +18,8 @@ class Recorder(NamedTuple):
 
     ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks.
     ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), or has shape (2, 0):
-    then none are kept; as for ``acceleration`` (n,), the rate of the velocity. Without ``energies`` the sums leave out forces and energies, which saves half of
-    the time.
+    then none are kept; so does ``acceleration`` (n,), the rate of the velocity. Without ``energies`` the sums
+    leave out forces and energies, which saves half of the time.
     """
 
     start: float

@@ -39,8 +39,8 @@ class Input:
         """SI unit of the quantity."""
         return SI[self.quantity]
 
-    def sampled(self, natural: float) -> SampledInput:
-        """What acts: displacement of the base (m) or force (N), for a model of a natural frequency (rad/s)."""
+    def sampled(self) -> SampledInput:
+        """What acts: displacement of the base (m) or force (N)."""
         fastest = 2.0 * pi * self.highest if self.highest else None
         return from_samples(self.given, self.step, self.quantity, fastest=fastest)
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.sampled_input import SampledInput
 from wedgesweep.simulate import Transient
@@ -16,7 +15,7 @@ def transient(
     ``natural``: the model's natural frequency (rad/s); ``rate`` (Hz) of the stored samples; ``absolute``:
     displacements are against the ground. A suspension's state is minus what results are reported as.
     """
-    sampled, sign = given.sampled(natural), 1.0 if oscillator else -1.0
+    sampled, sign = given.sampled(), 1.0 if oscillator else -1.0
     start = (sign * given.start[0], sign * given.start[1])
     samples = given.stored(natural, rate)
     return Transient(

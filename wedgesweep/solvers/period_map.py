@@ -52,7 +52,7 @@ def memory(
 ) -> Memory:
     """Room for runs that keep at most this many periods.
 
-    ``energies``: of forces and energies the sums tell; ``forces``: normal forces are sampled, and ``acceleration``.
+    ``energies``: of forces and energies the sums tell; ``forces``, ``acceleration``: they are sampled.
     """
     n = periods * samples_per_period
     return Memory(

@@ -170,7 +170,7 @@ def add(
 def sample(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> np.ndarray:
     """What is recorded of states (n, k), shape (6, k).
 
-    Displacement, velocity, both normal forces, whether the observed contact sticks (0 or 1), and acceleration.
+    Displacement, velocity, both normal forces, whether the observed contact sticks (0 or 1), acceleration.
     """
     out = np.empty((6, t.size))
     _along(SAMPLE, _points(t, y), mode, case, _NO_SUMS, out)

@@ -102,6 +102,7 @@ TRANSIENT = (
     Variable("displacement", "m", _NAMED["displacement"].long_name, TIME),
     Variable("velocity", "m s-1", "relative velocity x' - y'", TIME),
     Variable("acceleration", "m s-2", "relative acceleration x'' - y''", TIME),
+    Variable("force", "N", "force that springs, dampers and friction set against x - y", TIME),
     Variable("normal_force_column", "N", "normal force on the column face", TIME, "f4"),
     Variable("normal_force_bolster", "N", "normal force on the bolster face", TIME, "f4"),
     Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", TIME, "i1"),
@@ -168,7 +169,8 @@ def assemble(
     """Assemble the dataset from the records of all cases, in any order.
 
     ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), two
-    if the input does not repeat (friction_law, scale), one for a list (case). ``long_names``: those of another system, by variable; None: it does not have it.
+    where the input does not repeat (friction_law, scale), one for a list (case). ``long_names``: those of
+    another system, by variable; None: it does not have it.
     """
     case_dims: tuple[str, ...] = {3: GRID, 2: SCALED, 1: ("case",)}[len(shape)]
     in_order = (records["index"][:-1] <= records["index"][1:]).all()

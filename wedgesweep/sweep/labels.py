@@ -74,6 +74,7 @@ def _of_transients(config: Config) -> dict[str, str | None]:
         "displacement": f"displacement {x} of the mass",
         "velocity": f"velocity {rates[0]} of the mass",
         "acceleration": f"acceleration {rates[1]} of the mass",
+        "force": "force that spring, dampers and friction set against the motion of the mass",
         **dict.fromkeys(
             ("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster"), None
         ),

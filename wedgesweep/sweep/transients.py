@@ -11,10 +11,11 @@ from wedgesweep.inputs import sine_sweep
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.simulate import Settings, Transient
 from wedgesweep.solvers.trajectory import CaseError, Trajectory
+from wedgesweep.systems import driven_mass, is_oscillator, moving_mass
 
 
 def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
-    """Run a parameter record, shape (1,), whose input amplitude is the scale, into a record. Raises CaseError."""
+    """Run a case, shape (1,), whose input amplitude is the scale, into a record. Raises CaseError."""
     given = settings.transient
     if given is None:
         message = "settings without an input"
@@ -30,11 +31,24 @@ def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
         "acceleration": -run.samples.acceleration,
         "normal_force_column": run.samples.normal[0],
         "normal_force_bolster": run.samples.normal[1],
+        "force": _force(case, given, run),
         "stuck": run.samples.sticks,
     }
     variables = {**_numbers(run, case[0], x, velocity), **run.statistics, **waveforms}
     for name in variables.keys() & set(record.dtype.names or ()):
         record[name] = variables[name]
+
+
+def _force(case: np.ndarray, given: Transient, run: Trajectory) -> np.ndarray:
+    """Force (N) of springs, dampers and friction against the displacement: what is left of inertia."""
+    scale, inertia = float(case["input"]["amplitude"][0]), moving_mass(case)[0] * run.samples.acceleration
+    if is_oscillator(case) and case["oscillator"]["forced"][0]:
+        return inertia + scale * given.sampled(run.samples.t)
+    if is_oscillator(case) and case["oscillator"]["absolute"][0]:
+        return inertia
+    driven = driven_mass(case)[0] * scale * given.sampled(run.samples.t, 2)
+    # The displacement of a suspension is that of the side frame against the bolster.
+    return inertia - driven if is_oscillator(case) else inertia + driven
 
 
 def _numbers(run: Trajectory, p: np.void, x: np.ndarray, velocity: np.ndarray) -> dict[str, float]:

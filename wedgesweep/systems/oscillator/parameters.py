@@ -29,8 +29,10 @@ BELT_VELOCITY = Quantity("belt_velocity_mm_per_s", nan, 'velocity of the belt, f
 # Numbers of the bristles of the law "lugre".
 BRISTLES = (
     Quantity("bristle_stiffness_N_per_mm", nan, 'stiffness of bristles, sigma_0, for "lugre"', above=0.0),
-    Quantity("bristle_damping_N_s_per_m", 0.0, "damping of bristles, sigma_1", minimum=0.0),
-    Quantity("bristle_viscous_N_s_per_m", 0.0, "viscous friction beside them, sigma_2", minimum=0.0),
+    Quantity("bristle_damping_N_s_per_m", nan, "damping of bristles, sigma_1; default: 0", minimum=0.0),
+    Quantity(
+        "bristle_viscous_N_s_per_m", nan, "viscous friction beside them, sigma_2; default: 0", minimum=0.0
+    ),
 )
 # The bristles are a state, as effects have them.
 known.REGISTERED[bristles.NAME] = bristles
@@ -142,7 +144,7 @@ def _set_bristles(p: np.void, oscillator: Mapping[str, Any]) -> None:
     """Fill in the bristles of a record, in place."""
     for quantity in BRISTLES:
         name = quantity.name.removeprefix("bristle_")
-        p[bristles.NAME][name] = oscillator.get(quantity.name, quantity.default * quantity.factor)
+        p[bristles.NAME][name] = oscillator.get(quantity.name, 0.0)
     p[bristles.NAME]["coulomb"] = p["friction"]["mu_d"] * p["oscillator"]["normal_force"]
 
 
