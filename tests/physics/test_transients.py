@@ -203,7 +203,8 @@ def test_a_release_with_a_velocity_rings_down():
     assert ds["displacement"].values == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.parametrize("number", [0, 1, 2, 5, 7, 8, 11, 12, 16, 21])
+# Suspensions and oscillators, three laws, effects; 12, 20, 24 and 28 of the script would compile for minutes.
+@pytest.mark.parametrize("number", [0, 2, 5, 6, 9, 11, 16, 17, 25, 34])
 def test_both_solvers_agree_on_random_transients(number):
     result = transients.compared(number)
     assert result.difference < transients.CLOSE, result
@@ -221,7 +222,7 @@ def test_bristles_pulled_by_a_spring_end_where_they_are_published_to_end():
     ds = run(given, own, friction=friction, law="lugre").sel(time=25.0, method="nearest")
     assert ds["time"].item() == pytest.approx(25.0, abs=1e-12)
     assert ds["displacement"].item() == pytest.approx(1.9088391992, abs=1e-8)
-    # z from the balance of forces: k (u - x) - M x'' - sigma_2 v = sigma_0 z + sigma_1 (v - sigma_0 |v| z / g).
+    # z from the balance of forces: k (u - x) - M x'' - sigma_2 v = sigma_0 z + sigma_1 z'.
     v, damping = ds["velocity"].item(), sqrt(1e5)
     held = 2.0 * (2.5 - ds["displacement"].item()) - ds["acceleration"].item() - 0.4 * v
     level = 1.0 + 0.5 * exp(-((v / 1e-3) ** 2))

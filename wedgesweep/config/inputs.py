@@ -181,7 +181,9 @@ SCALE = Series(
 
 def template(mark: str = "# ") -> str:
     """TOML text of all kinds, commented out."""
-    lines = [f"\n# {INPUT.meaning}:\n# then [sweep] holds only friction_law and scale\n"]
+    lines = [
+        f"\n# {INPUT.meaning}:\n# then [sweep] holds only friction_law and scale, and [solver] no settle\n"
+    ]
     lines.append(f"{mark}sweep.{SCALE.written}  # {SCALE.meaning}\n")
     for name, kind in KINDS.items():
         lines.append(f"# kind {name}: {kind.meaning}\n{mark}[input]\n{mark}{KIND} = {toml.inline(name)}\n")

@@ -1,8 +1,9 @@
 """Figures of a sweep's dataset and of a diagnosis, one figure per file.
 
-A file here (in ``transient/`` where the input does not repeat, in ``diagnosis/`` of a diagnosis) that defines ``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)``
-is a figure; no list names it. ``NEEDS`` names the variables and attributes that it needs of a dataset. The
-keywords of ``draw`` are the figure's options, in SI units as the dataset is; mm exist on axes only.
+A file here (in ``transient/`` where the input does not repeat, in ``diagnosis/`` of a diagnosis) that defines
+``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)`` is a figure; no list names it. ``NEEDS`` names
+the variables and attributes that it needs of a dataset. The keywords of ``draw`` are the figure's options, in
+SI units as the dataset is; mm exist on axes only.
 """
 
 import io

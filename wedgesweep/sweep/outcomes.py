@@ -1,10 +1,12 @@
 """How each case of a sweep ended, whether the sweep is finished or not."""
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from wedgesweep import config
@@ -15,6 +17,8 @@ from wedgesweep.sweep.cases import describe
 from wedgesweep.sweep.run import Sweep
 
 LIFT_OFF = "lift_off_fraction"
+# Variables of the dataset that Outcomes holds.
+COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
 
 class CaseResult(NamedTuple):
@@ -48,84 +52,109 @@ class CaseResult(NamedTuple):
         return f"{where}: {self.status}: {self.message}"
 
 
-def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
+@dataclass(frozen=True)
+class Outcomes:
+    """How cases ended: columns, shape (n,), as a sweep may have millions of cases.
+
+    ``describe_case`` gives law, beta, amplitude, unit and message of one of them.
+    """
+
+    status: np.ndarray
+    period: np.ndarray
+    periodicity: np.ndarray
+    lift_off_fraction: np.ndarray
+    describe_case: Callable[[int], tuple[str, float, float, str, str]]
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __getitem__(self, place: int) -> CaseResult:
+        law, beta, amplitude, unit, message = self.describe_case(place)
+        return CaseResult(
+            law,
+            beta,
+            amplitude,
+            Outcome(self.status[place]),
+            message,
+            int(self.period[place]),
+            float(self.periodicity[place]),
+            float(self.lift_off_fraction[place]),
+            unit,
+        )
+
+    @property
+    def counts(self) -> dict[Outcome, int]:
+        """Number of cases with each outcome that occurs, the most frequent first."""
+        numbers = np.bincount(self.status, minlength=len(Outcome)).tolist()
+        found = {outcome: numbers[outcome] for outcome in Outcome if numbers[outcome]}
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+    @cached_property
+    def failures(self) -> np.ndarray:
+        """Places of cases that failed."""
+        return np.flatnonzero(self.status != Outcome.OK)
+
+    @property
+    def unsettled(self) -> int:
+        """Number of cases that were solved, but did not reach a steady response."""
+        return int(((self.status == Outcome.OK) & ~settled(self.period, self.periodicity)).sum())
+
+    @property
+    def lifted(self) -> int:
+        """Number of cases that were solved, but lie outside of the model's validity."""
+        return int(((self.status == Outcome.OK) & (self.lift_off_fraction > 0.0)).sum())
+
+
+def of_dataset(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended."""
     if "scale" in ds.coords:
         return _of_transients(ds)
     if LIFT_OFF not in ds:  # of an oscillator, whose normal force is given
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
-    frame = ds[["status", "message", "period", "periodicity", LIFT_OFF]].to_dataframe().reset_index()
-    frame = frame.rename(columns={"friction_law": "law"})
-    frame["unit"] = ds["amplitude"].attrs.get("units", "m")
-    columns = {name: frame[name].tolist() for name in CaseResult._fields}
-    columns["status"] = map(Outcome, columns["status"])
-    return list(map(CaseResult, *columns.values()))
+    unit = ds["amplitude"].attrs.get("units", "m")
+    shape, dims = ds["status"].shape, ds["status"].dims
+
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        at = dict(zip(dims, (int(each) for each in np.unravel_index(place, shape)), strict=True))
+        case = ds[["friction_law", "beta", "amplitude", "message"]].isel(at)
+        law, beta, amplitude, message = (
+            case[name].item() for name in ("friction_law", "beta", "amplitude", "message")
+        )
+        return law, beta, amplitude, unit, message
+
+    columns = {name: ds[name].values.ravel() for name in COLUMNS}
+    return Outcomes(**columns, describe_case=described)
 
 
-def _of_transients(ds: xr.Dataset) -> list[CaseResult]:
+def _of_transients(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended whose input does not repeat."""
-    lifted = ds.get(LIFT_OFF, xr.zeros_like(ds["status"], float))
-    frame = ds[["status", "message"]].assign({LIFT_OFF: lifted}).to_dataframe().reset_index()
-    return [
-        _transient(row.friction_law, row.scale, row.status, row.message, getattr(row, LIFT_OFF))
-        for row in frame.itertuples()
-    ]
+    shape, nothing = ds["status"].shape, np.zeros(ds["status"].size)
 
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        law, scale = np.unravel_index(place, shape)
+        case = ds[["friction_law", "scale", "message"]].isel(friction_law=int(law), scale=int(scale))
+        return case["friction_law"].item(), 1.0, case["scale"].item(), "", case["message"].item()
 
-def _transient(law: str, scale: float, status: int, message: str, lifted: float) -> CaseResult:
+    lifted = ds[LIFT_OFF].values.ravel() if LIFT_OFF in ds else nothing
     # Nothing has to settle.
-    return CaseResult(law, 1.0, scale, Outcome(status), message, 1, 0.0, lifted, "")
+    return Outcomes(ds["status"].values.ravel(), nothing + 1.0, nothing, lifted, described)
 
 
-def of_journal(path: Path) -> list[CaseResult]:
+def of_journal(path: Path) -> Outcomes:
     """How the finished cases of an unfinished sweep ended."""
     header = journal.header(path)
     settings = config.parse(header["config"], str(path))
     if settings.sha256 != header["config_sha256"]:
         message = f"{path}: damaged in its first line, whose config is not that of the records"
         raise SweepError(message)
-    cases = settings.case_list()
     records = journal.read(path, Sweep(settings, path).dtype)
+    unit = "" if settings.transient else "N" if settings.forced else "m"
+
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        case = settings.sweep.case(records["index"][place])
+        return (*case, unit, records["message"][place].decode())
+
     if settings.transient:
-        return [
-            _transient(
-                cases[record["index"]].law,
-                cases[record["index"]].amplitude,
-                record["status"],
-                record["message"].decode(),
-                float(record[LIFT_OFF]),
-            )
-            for record in records
-        ]
-    return [
-        CaseResult(
-            **cases[record["index"]]._asdict(),
-            status=Outcome(record["status"]),
-            message=record["message"].decode(),
-            period=int(record["period"]),
-            periodicity=float(record["periodicity"]),
-            lift_off_fraction=float(record[LIFT_OFF]),
-            unit="N" if settings.forced else "m",
-        )
-        for record in records
-    ]
-
-
-def counts(results: Sequence[CaseResult]) -> Counter[Outcome]:
-    """Number of cases with each outcome."""
-    return Counter(result.status for result in results)
-
-
-def failures(results: Sequence[CaseResult]) -> list[CaseResult]:
-    """Cases that failed."""
-    return [result for result in results if result.status != Outcome.OK]
-
-
-def unsettled(results: Sequence[CaseResult]) -> list[CaseResult]:
-    """Cases that were solved, but did not reach a steady response."""
-    return [result for result in results if result.status == Outcome.OK and not result.settled]
-
-
-def lifted(results: Sequence[CaseResult]) -> list[CaseResult]:
-    """Cases that were solved, but lie outside of the model's validity."""
-    return [result for result in results if result.status == Outcome.OK and result.lifted]
+        nothing = np.zeros(len(records))
+        return Outcomes(records["status"], nothing + 1.0, nothing, records[LIFT_OFF], described)
+    return Outcomes(**{name: records[name] for name in COLUMNS}, describe_case=described)

@@ -1,5 +1,7 @@
 """Force over displacement: the largest cycle is marked, with the energy that it encloses."""
 
+from itertools import pairwise
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -24,7 +26,7 @@ def largest_cycle(x: np.ndarray) -> slice | None:
     starts = picks.rising(x)
     if starts.size < 2:
         return None
-    spans = [np.ptp(x[a:b]) for a, b in zip(starts[:-1], starts[1:], strict=True)]
+    spans = [np.ptp(x[a:b]) for a, b in pairwise(starts)]
     place = int(np.argmax(spans))
     return slice(int(starts[place]), int(starts[place + 1]) + 1)
 

@@ -43,5 +43,4 @@ def extremes(displacement: np.ndarray) -> np.ndarray:
     """Indices of the samples at which a motion turns round, shape (k,)."""
     slope = np.sign(np.diff(displacement))
     moving = np.flatnonzero(slope != 0.0)
-    turns = moving[1:][slope[moving[1:]] != slope[moving[:-1]]]
-    return turns
+    return moving[1:][slope[moving[1:]] != slope[moving[:-1]]]

@@ -21,6 +21,12 @@ from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
 from wedgesweep.systems.suspension.equilibrium import determinant, equilibrium
 
+EQUATIONS = (
+    "M_w (u'' e_z + r z'' t_c) = (F_w - M_w g) e_z - (N_c n_c + mu_c |N_c| t_c) + (N_b p_b - mu_b |N_b| t_b)",
+    "M_b (u'' + z'') = F_b - M_b g - 2 (N_b p_b - mu_b |N_b| t_b) . e_z",
+    "F_b = -k_b z + R",
+    "F_w = F_w0 - k_w r z cos(gamma)",
+)
 SUSPENSION = (
     Quantity("bolster_mass_kg", 0.70, "mass of the bolster, M_b", above=0.0),
     Quantity("wedge_mass_kg", 0.17, "mass of one wedge, M_w", minimum=0.0),
