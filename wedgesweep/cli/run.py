@@ -99,6 +99,9 @@ def run(
 
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"), command_line())
     progress, check = ProgressReport(), Verify(options.pop("verify"), options.pop("seed"))
+    if settings.transient and check.cases:
+        message = "--verify compares steady states; with an [input] run CONFIG again with --solver radau"
+        raise click.UsageError(message)
     try:
         options |= {"n_jobs": count_jobs(options["n_jobs"]), "backend": _backend(backend, scheduler)}
         ctx.exit(_run(sweep, progress, check, options))

@@ -288,7 +288,7 @@ def _faults(ds: "xr.Dataset") -> Iterator[str]:
 
 
 def _shape_faults(
-    ds: xr.Dataset, known: Mapping[str, Variable], case_dims: tuple[str, ...], coords: tuple[str, ...]
+    ds: "xr.Dataset", known: Mapping[str, Variable], case_dims: tuple[str, ...], coords: tuple[str, ...]
 ) -> Iterator[str]:
     """What is wrong with dimensions and types of known variables and of coordinates."""
     for name in [each for each in ds.variables if each in known or each in coords]:
