@@ -76,7 +76,9 @@ def test_a_recorded_input_is_found_beside_its_config_and_counts_from_its_first_s
     assert ds["input"].attrs["units"] == "m"
     peaks = ds["peak_displacement"].values
     assert np.abs(ds["displacement"]).max("time").values == pytest.approx(peaks, rel=1e-2)
-    assert (peaks > 0.0).all()
+    # Friction of 2 N holds 2 kg on all but the largest bump.
+    assert peaks[0, :2] == pytest.approx(0.0, abs=1e-15)
+    assert (peaks[:, 2] > 1e-4).all()
 
 
 def test_a_file_that_changed_is_another_sweep(folder):
@@ -110,7 +112,9 @@ def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
     ds = Sweep(config.load("release.toml"), folder / "a.nc").run_here()
     start = 0.5 * 800.0 * (0.03 * ds["scale"]) ** 2
     left = 0.5 * 800.0 * ds["displacement"][..., -1] ** 2 + 0.5 * 2.0 * ds["velocity"][..., -1] ** 2
-    assert ds["dissipated_energy"].values == pytest.approx((start - left).values, rel=0.02)
+    assert ds["dissipated_energy"].values == pytest.approx(
+        (start - left).transpose(*ds["dissipated_energy"].dims).values, rel=0.02
+    )
     x, force = ds["displacement"].sel(scale=2.0), ds["force"].sel(scale=2.0)
     for law in ("coulomb", "static-dynamic"):
         motion, resistance = x.sel(friction_law=law).values, force.sel(friction_law=law).values
@@ -147,8 +151,8 @@ def test_figures_of_sines_are_not_offered(folder):
     invoke("run", "swept.toml")
     told = invoke("plot", "all", "swept.nc", "-o", "drawn")
     assert told.count("wrote") == 3
-    assert "there are envelope, loop, ring-down" in invoke("plot", "stick-map", "swept.nc", code=1)
-    assert "takes no --beta" in invoke("plot", "loop", "swept.nc", "--beta", "1", code=1)
+    assert "there are envelope, loop, ring-down" in invoke("plot", "stick-map", "swept.nc", code=2)
+    assert "takes no --beta" in invoke("plot", "loop", "swept.nc", "--beta", "1", code=2)
     assert "6 = 2 friction laws x 3 scales" in invoke("check", "swept.toml")
 
 

@@ -188,7 +188,11 @@ def _draw(
 ) -> None:
     import xarray as xr
 
-    picks = _accepted(kind, figures.options(figures.of(found)[kind]), options, strict)
+    kinds = figures.of(found)
+    if kind not in kinds:
+        message = f"no figure '{kind}' of these data; there are {', '.join(kinds)}"
+        raise ValueError(message)
+    picks = _accepted(kind, figures.options(kinds[kind]), options, strict)
     try:
         figures.save(figures.draw(found, kind, **picks), file)
     except DAMAGE as error:

@@ -23,7 +23,7 @@ BELT = {
     "highest": (1.1339447, 1e-6),
     "lowest": (-0.5554327, 1e-6),
 }
-# The pulled mass of Exudyn's test of LuGre friction, at a time (s): displacement and deflection of the bristles
+# The mass of Exudyn's test of LuGre friction, at a time (s): displacement and deflection of the bristles
 # (m), and their allowed errors.
 PULLED_AT = 25.0
 PULLED = {"displacement": (1.9088391992, 1e-7), "bristles": (1.18167955e-5, 1e-11)}
@@ -80,9 +80,7 @@ def pulled_mass(ds: xr.Dataset) -> tuple[Check, ...]:
     own, friction = model.oscillator, model.friction
     stiffness, damping, viscous = (own[f"bristle_{name}"] for name in ("stiffness", "damping", "viscous"))
     fading = exp(-((v / friction["threshold_velocity"]) ** 2))
-    level = own["normal_force"] * (
-        friction["dynamic"] + (friction["static"] - friction["dynamic"]) * fading
-    )
+    level = own["normal_force"] * (friction["dynamic"] + (friction["static"] - friction["dynamic"]) * fading)
     # sigma_0 z + sigma_1 (v - sigma_0 |v| z / g) + sigma_2 v = k (u - x) - m a
     friction_force = own["spring"] * (case["input"].item() - x) - own["mass"] * a
     bent = (friction_force - (damping + viscous) * v) / (stiffness * (1.0 - damping * abs(v) / level))

@@ -57,7 +57,7 @@ def _numbers(run: Trajectory, p: np.void, x: np.ndarray, velocity: np.ndarray) -
     slipping = one["time"] - (one["stuck_time"] if p["friction"]["set_valued"] else 0.0)
     lagged = p["velocity_lag"]["time"] > 0.0
     return {
-        "peak_displacement": gain * max(one["highest"], -one["lowest"]),
+        "peak_displacement": gain * max(abs(one["highest"]), abs(one["lowest"])),
         "peak_to_peak": gain * (one["highest"] - one["lowest"]),
         "peak_velocity": float(np.abs(velocity).max()) if lagged else one["peak_velocity"],
         "mean_displacement": -gain * one["integral"] / one["time"],
