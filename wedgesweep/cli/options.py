@@ -3,6 +3,7 @@
 import os
 import shlex
 import sys
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,16 @@ N_JOBS = click.option(
     default=None,
     help="Number of parallel jobs; default: one per processor.",
 )
+
+
+class FiniteRange(click.FloatRange):
+    """A number in a range; a comparison alone does not refuse nan."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        found = super().convert(value, param, ctx)
+        if not isfinite(found):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return found
 
 
 class OutputPath(click.Path):

@@ -12,7 +12,7 @@ from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, OutputPath, command_line
+from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
@@ -47,7 +47,7 @@ BACKENDS = ("threads", "loky", "dask")
 )
 @click.option(
     "--case-timeout",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=FiniteRange(min=0.0, min_open=True),
     metavar="SECONDS",
     help="Time limit per case (radau only); overrides the config's solver.case_timeout_s.",
 )

@@ -259,6 +259,11 @@ def _faults(ds: "xr.Dataset") -> Iterator[str]:
             yield f"{name} holds {found.dtype}"
         elif not found.size:
             yield f"{name} is empty"
+        elif (
+            name in FLAGS
+            and not np.isin(found, FLAGS[str(name)][0] + np.arange(len(FLAGS[str(name)][1]))).all()
+        ):
+            yield f"{name} holds numbers without a meaning"
 
 
 def _expected(
