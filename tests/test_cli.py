@@ -268,7 +268,7 @@ def test_ctrl_c_stops_threads_at_once(here):
     assert process.returncode == 130, told
     assert "finished cases are stored in long.nc.partial; rerun the same command" in told
     assert "Traceback" not in told
-    assert "cases are drawn" in invoke("plot", "peak-to-peak", "long.nc")
+    assert "cases are there" in invoke("plot", "peak-to-peak", "long.nc")
     assert "from an earlier run" in run("long.toml", "--n-jobs", 2)
     run("long.toml", "-o", "other.nc", "--n-jobs", 1, "--backend", "loky")
     small_sweep.assert_same_numbers(xr.load_dataset("long.nc"), xr.load_dataset("other.nc"))

@@ -246,6 +246,11 @@ def test_sentence_says_what_the_budget_left_out(tmp_path):
         assert sentence.startswith(complete.removesuffix("."))
         assert sentence.endswith(words)
         assert not re.search(r"\.\s", sentence)
+    document["never_tried"] = [["ageing", "preload"], ["end_stop", "preload"]]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    singles = sum(len(each["effects"]) == 1 for each in document["candidates"])
+    told = f"2 of the {singles * (singles - 1) // 2} possible pairs of effects were never tried"
+    assert f"{told} (ageing + preload, end_stop + preload)." in plain(report.sentence(tmp_path))
 
 
 def test_sentence_names_tests_whose_history_matters(tmp_path):

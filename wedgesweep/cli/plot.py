@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET
+from wedgesweep.cli.options import DATASET, FiniteRange
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 from wedgesweep.outcome import Outcome
 
@@ -45,7 +45,7 @@ For both
   {ALL:<16} every figure that suits OUT
 """
 
-POSITIVE = click.FloatRange(min=0.0, min_open=True)
+POSITIVE = FiniteRange(min=0.0, min_open=True)
 
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
@@ -106,15 +106,19 @@ def _beside(path: Path) -> Path:
 
 def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     from wedgesweep import diagnosis_result
+
+    return diagnosis_result.read(path) if path.is_dir() else read_dataset(path)
+
+
+def read_dataset(path: Path) -> "xr.Dataset":
+    """Read the dataset of a run, also of one that has not finished."""
     from wedgesweep.sweep import dataset, run
 
-    if path.is_dir():
-        return diagnosis_result.read(path)
     unfinished = run.unfinished(path)
     if unfinished is None:
         return dataset.read_sweep(path)
     done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
-    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn")
+    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are there")
     return unfinished
 
 

@@ -16,6 +16,7 @@ from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
 from wedgesweep.files import read_text
+from wedgesweep.kinds import CONFIG, confusion
 from wedgesweep.natural_units import natural_units
 
 log = logging.getLogger(__name__)
@@ -394,8 +395,7 @@ class Config:
 
 def load(path: str | Path) -> Config:
     """Read a config file; raises ConfigError."""
-    if Path(path).suffix in (".nc", ".nc4"):
-        problem = f"{path}: a dataset, where a config (TOML) is wanted; 'wedgesweep status' tells its content"
+    if problem := confusion(Path(path), CONFIG):
         raise ConfigError([problem])
     try:
         text = read_text(Path(path))

@@ -27,11 +27,11 @@ CAPTIONS = {
 PEAK_TO_PEAK = "Peak-to-peak over frequency; lines join tests of about the same input amplitude."
 
 
-def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
+def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit") -> Markup:
     """Section with all that is measured against simulated."""
     order = by_misfit(result.data).tolist()
     return html.section(
-        "misfit",
+        place,
         heading(result),
         html.paragraph(_overall(result)),
         draw("misfit", _extremes(result)),

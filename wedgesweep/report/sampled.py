@@ -42,13 +42,13 @@ COMPARED = {
 }
 
 
-def section(result: DiagnosisResult, draw: InlineFigures, heading: str) -> Markup:
+def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: str) -> Markup:
     """Section with the samples and a table of the tests."""
     kind, order = result.document["kind"], by_misfit(result.data).tolist()
     head = ["test", "samples", *COLUMNS[kind], *(f"error, {model}" for model in result.models)]
     rows = [_row(test, kind, result.models) for test in result.document["misfit"]["tests"]]
     return html.section(
-        "misfit",
+        place,
         heading,
         html.paragraph(_overall(result, kind)),
         draw(FIGURES[kind], CAPTIONS[kind], order[:SHOWN]),

@@ -34,14 +34,25 @@ def _never_steady(result: DiagnosisResult) -> str:
 
 
 def _untried(result: DiagnosisResult) -> str:
-    """How much the budget of the search left out, and the most promising of it; empty for most diagnoses."""
+    """What the budget of the search left out, the most promising first; empty for most diagnoses."""
     left_out = result.document.get("untried", [])
     if not left_out:
         return ""
     first = "{what} ({left_out} of {of})".format(**left_out[0])
     if len(left_out) > 1:
         first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
-    return f"; the search had spent its budget before it tried {first}"
+    return f"; the search had spent its budget before it tried {first}{_never_tried(result)}"
+
+
+def _never_tried(result: DiagnosisResult) -> str:
+    """The pairs of effects that the budget left out altogether."""
+    never = result.document.get("never_tried", [])
+    if not never:
+        return ""
+    singles = len({each["effects"][0] for each in result.document["candidates"] if len(each["effects"]) == 1})
+    possible = singles * (singles - 1) // 2
+    which = ", ".join(map(phrases.combination, never[:SHOWN])) + (", ..." if len(never) > SHOWN else "")
+    return f"; {len(never)} of the {possible} possible pairs of effects were never tried ({which})"
 
 
 def _nothing_missing(result: DiagnosisResult) -> str:

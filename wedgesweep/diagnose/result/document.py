@@ -10,14 +10,16 @@ import numpy as np
 from wedgesweep import __version__
 from wedgesweep.config import AmplitudeUnit, Config
 from wedgesweep.diagnose.cross_validation import Gain
-from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
+from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.verdict import p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
@@ -50,6 +52,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
+        "never_tried": [list(each) for each in found.never_tried],
         "title": found.measurement.title,
         "kind": data.kind,
         "model": {
@@ -134,10 +137,13 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
+    if isinstance(data, MixedData):
+        parts = of_each_kind(found).items()
+        return [{"kind": kind, **row} for kind, part in parts for row in _tests(part)]
     if isinstance(data, SampledData):
         return sampled.tests(found, data)
     unit, size = data.model.amplitude_unit
-    amplitude = data.amplitudes(best.point)
+    amplitude = data.inputs_of(best.model.scenario(best.point))
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
         noise = spectrum.sample_noise
@@ -223,7 +229,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        **({} if isinstance(found.data, SampledData) else {"harmonics": found.data.shape[1]}),
+        **({"harmonics": found.data.shape[1]} if isinstance(found.data, HarmonicData) else {}),
         "calibrated": found.calibration,
     }
 

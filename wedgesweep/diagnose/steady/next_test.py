@@ -15,6 +15,7 @@ from typing import NamedTuple, cast
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
+from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.jacobian import STEP, derivatives
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady import simulation
@@ -167,7 +168,7 @@ def _responses(
         simulation.records(
             data.model,
             data.law,
-            model.values(fit.x + step[:-1]),
+            {name: each for name, each in model.values(fit.x + step[:-1]).items() if name != INPUT_GAIN},
             tests.omega,
             tests.amplitude * (1.0 + step[-1]),
         )
