@@ -78,6 +78,8 @@ def _grid(settings: "Config") -> str:
     sweep, count = settings.sweep, settings.sweep.count
     if sweep.cases is not None:
         return f"{count}, listed individually"
+    if settings.transient:
+        return f"{count} = {len(sweep.friction_law)} friction laws x {sweep.amplitude.size} scales"
     laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
     parts = (
         formatting.counted(laws, "friction law"),
