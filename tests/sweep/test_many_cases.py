@@ -64,7 +64,7 @@ def test_check_answers_at_once(tmp_path, text):
     told = invoke("check", tmp_path / "many.toml")
     assert time.process_time() - began < 2.0  # with Python's start a second more
     assert _peak() - peak < 20e6
-    assert f"{config.parse(text).sweep.count} = 1 friction laws x" in told
+    assert f"{config.parse(text).sweep.count} = 1 friction law x" in told
 
 
 def test_a_list_of_many_numbers_is_read_in_a_moment():
