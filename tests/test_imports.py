@@ -54,12 +54,8 @@ ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/", "api.py"),  # there for annotations only
     "joblib": (
-<<<<<<< HEAD
-        *("sweep/backend.py", "sweep/cluster.py", "sweep/workers.py", "synthesize/", "validation/", "cli/"),
-=======
-        *("sweep/backend.py", "sweep/cluster.py", "sweep/run.py", "sweep/verification.py"),
+        *("sweep/backend.py", "sweep/cluster.py", "sweep/workers.py", "sweep/verification.py"),
         *("synthesize/", "validation/", "cli/"),
->>>>>>> 994ae00df48ea6f36fe44010ad56a1556f5034f8
         "reproduce/chandiramani.py",
     ),
     "distributed": ("sweep/cluster.py",),

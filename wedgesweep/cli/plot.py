@@ -10,12 +10,8 @@ from click.core import ParameterSource
 
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
-<<<<<<< HEAD
-from wedgesweep.cli.options import DATASET, FiniteRange
-=======
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET
->>>>>>> 994ae00df48ea6f36fe44010ad56a1556f5034f8
+from wedgesweep.cli.options import DATASET, FiniteRange
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 from wedgesweep.outcome import Outcome
 

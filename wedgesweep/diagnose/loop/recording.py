@@ -12,6 +12,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
+from wedgesweep.errors import InputError
 from wedgesweep.solvers import imposed_motion
 
 # Below so many standard deviations of its noise the velocity has no sign, and friction is not known.
@@ -110,6 +111,9 @@ def recording(
     own = motion(displacement, noise, low_pass)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
+    if not places.size:
+        told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
+        raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
     std = hypot(low_pass.noise(white_noise(force, rate)), mass * own.acceleration_noise)
     blocks = _blocks(own.velocity[places])
     return Recording(name, model, law, low_pass, own, places, low_pass(force)[places], std, blocks)
