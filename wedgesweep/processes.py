@@ -23,8 +23,8 @@ def end_with(parent: int) -> None:
 def apart(function: Callable[..., Any], *arguments: Any) -> Any:
     """Call a function in a fork of this process; raises OSError if that dies of it.
 
-    Libraries that read damaged files may end the process they run in. Where processes cannot fork, the function
-    is called here.
+    Libraries that read damaged files may end the process they run in. Where processes cannot fork, the
+    function is called here.
     """
     if not hasattr(os, "fork"):
         return function(*arguments)
