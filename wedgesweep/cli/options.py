@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from wedgesweep.cli.failure import Failure
+from wedgesweep.kinds import confusion
 
 CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
 DATASET = click.argument("path", metavar="OUT", type=click.Path(path_type=Path))
@@ -47,6 +48,12 @@ class OutputPath(click.Path):
         if not os.access(path.parent, os.W_OK):
             self.fail(f"Directory '{path.parent}' is not writable.", param, ctx)
         return path
+
+
+def require_kind(path: Path, wanted: str) -> None:
+    """Refuse a file of this package that is of another kind."""
+    if problem := confusion(path, wanted):
+        raise Failure(problem)
 
 
 def require_place_for(directory: Path) -> None:
