@@ -61,7 +61,7 @@ def test_all_faults_are_reported_at_once_with_their_paths():
         ("suspension", "bolster_mass_kg = true", "not a finite number"),
         ("suspension", "bolster_mass_kg = nan", "not a finite number"),
         ("suspension", "bolster_mass_kg = inf", "not a finite number"),
-        ("suspension", f"bolster_mass_kg = 1{'0' * 400}", "not a finite number"),
+        ("suspension", f"bolster_mass_kg = 1{'0' * 400}", "out of range"),
         ("suspension", "bolster_mass_kg = 1979-05-27", "not a finite number"),
         ("suspension", "wedge_angle_deg = 90", "less than 90"),
         ("solver", "rtol = 0.1", "at most 0.01"),

@@ -219,10 +219,15 @@ def _attributes(variable: Variable, long_name: str) -> dict[str, Any]:
     if variable.units:
         attributes["units"] = variable.units
     if variable.name in FLAGS:
-        first, meanings = FLAGS[variable.name]
-        attributes["flag_values"] = np.arange(first, first + len(meanings), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(meanings)
+        attributes["flag_values"] = _flag_values(variable.name)
+        attributes["flag_meanings"] = " ".join(FLAGS[variable.name][1])
     return attributes
+
+
+def _flag_values(name: str) -> np.ndarray:
+    """Values that a flag variable may have."""
+    first, meanings = FLAGS[name]
+    return np.arange(first, first + len(meanings), dtype=np.int8)
 
 
 def write(dataset: "xr.Dataset", path: Path) -> None:
