@@ -17,6 +17,7 @@ from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
 from wedgesweep.errors import InputError
 from wedgesweep.files import read_text
+from wedgesweep.kinds import CONFIG, confusion
 from wedgesweep.natural_units import natural_units
 
 log = logging.getLogger(__name__)
@@ -431,8 +432,7 @@ class Config:
 
 def load(path: str | Path) -> Config:
     """Read a config file; raises ConfigError."""
-    if Path(path).suffix in (".nc", ".nc4"):
-        problem = f"{path}: a dataset, where a config (TOML) is wanted; 'wedgesweep status' tells its content"
+    if problem := confusion(Path(path), CONFIG):
         raise ConfigError([problem])
     try:
         text = read_text(Path(path))

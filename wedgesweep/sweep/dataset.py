@@ -11,6 +11,7 @@ import numpy as np
 
 from wedgesweep.errors import SweepError
 from wedgesweep.files import regular, written
+from wedgesweep.kinds import SWEEP, confusion
 from wedgesweep.outcome import Outcome
 
 # xarray takes a third of a second to load, in which the processes that solve cases could already do so.
@@ -249,6 +250,8 @@ def read(path: Path) -> "xr.Dataset":
     """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
     import xarray as xr
 
+    if problem := confusion(path, SWEEP):
+        raise SweepError(problem)
     try:
         regular(path)
     except OSError as error:
@@ -300,6 +303,11 @@ def _shape_faults(
             yield f"{name} holds {found.dtype}"
         elif not found.size:
             yield f"{name} is empty"
+        elif (
+            name in FLAGS
+            and not np.isin(found, FLAGS[str(name)][0] + np.arange(len(FLAGS[str(name)][1]))).all()
+        ):
+            yield f"{name} holds numbers without a meaning"
 
 
 def _expected(

@@ -5,7 +5,7 @@ from typing import TypedDict
 from wedgesweep.config import Config
 
 
-class Attributes(TypedDict):
+class Attributes(TypedDict, total=False):
     """Global attributes of an oscillator's dataset; ``reference`` is what motions are compared with."""
 
     system: str
@@ -15,7 +15,9 @@ class Attributes(TypedDict):
 
 
 def attributes(config: Config) -> Attributes:
-    """Return what tells how to read the dataset of an oscillator."""
+    """Return what tells how to read the dataset of an oscillator; nothing for the suspension."""
+    if config.system != "oscillator":
+        return {}
     return {
         "system": config.system,
         "contact": config.oscillator["contact"],
