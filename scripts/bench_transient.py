@@ -26,7 +26,7 @@ from wedgesweep.diagnose.search import Search
 from wedgesweep.effects import EFFECTS
 from wedgesweep.measured import Measurement, read
 from wedgesweep.synthesize.campaign import Options, synthesize
-from wedgesweep.synthesize.plan import PlannedTest, Plan
+from wedgesweep.synthesize.plan import Plan, PlannedTest
 
 MASS, STIFFNESS, DAMPING, FRICTION = 2.0, 500.0, 0.4, 0.3
 RIG = {
