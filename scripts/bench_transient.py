@@ -94,7 +94,9 @@ def scipy_fit(measurement: Measurement) -> np.ndarray:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--seconds", type=float, default=25.0)
     parser.add_argument("--rate", type=float, default=1000.0)
     parser.add_argument("--scipy-seconds", type=float, default=5.0)
@@ -104,7 +106,9 @@ def main() -> None:
         short = measured(Path(folder), given.scipy_seconds, given.rate)
         names = list(EFFECTS)
         found, spent = timed(lambda: api.diagnose_measurement(long, effects=names, n_jobs=1))
-        print(f"{given.seconds:g} s at {given.rate:g} Hz, all effects: {found.verdict}, {spent:.1f} s of CPU time")
+        print(
+            f"{given.seconds:g} s at {given.rate:g} Hz, all effects: {found.verdict}, {spent:.1f} s of CPU time"
+        )
         own, mine = timed(lambda: own_fit(short))
         other, its = timed(lambda: scipy_fit(short))
         print(f"one fit of {given.scipy_seconds:g} s ({'damping':>8} {'friction':>8})")

@@ -1,4 +1,4 @@
-"""An input that is known by samples at even times: one piecewise polynomial, of which u' and u'' are the slopes.
+"""An input that is known by samples at even times: a piecewise polynomial, with u' and u'' as its slopes.
 
 Between two samples the input is a polynomial of degree 5, so that u, u' and u'' agree exactly:
 

@@ -10,18 +10,20 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import N_JOBS, require_place_for
+from wedgesweep.cli.options import N_JOBS, require_kind, require_place_for
 from wedgesweep.cli.steps import StepReport
 from wedgesweep.files import beside
+from wedgesweep.kinds import MEASURED
 
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
+DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain")
+FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
 # A file that is in the directory of a result while an earlier one gives way to it.
 MOVING = ".unfinished-diagnosis"
 # Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"}
 
 
 @click.command()
@@ -63,6 +65,7 @@ def diagnose(
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
 
+    require_kind(measured, MEASURED)
     measurement = api.read_measurement(measured, model)
     print_warnings(measurement)
     log.debug(f"{measured}: {len(measurement.tests)} tests, model {measurement.model.title}")

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from math import inf, nan
 from typing import Any
 
+from wedgesweep.config.input_contradictions import input_contradictions
+
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield all contradictions, each as a line that names the key and a valid setting."""
@@ -13,6 +15,8 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     if "oscillator" in document:
         yield from _oscillator(document)
     yield from _settling(document)
+    if "input" in document:
+        yield from input_contradictions(document)
 
 
 def _geometry(document: Mapping[str, Any]) -> Iterator[str]:
@@ -78,6 +82,7 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
         yield 'oscillator.belt_velocity_mm_per_s: missing; contact = "belt" needs it, as in 200.0'
     if not on_belt and "belt_velocity_mm_per_s" in own:
         yield f'oscillator.belt_velocity_mm_per_s: contact is "{own.get("contact")}"; write contact = "belt"'
+    yield from _bristles(document)
     forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
     if not on_belt and 0.0 in forces:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
@@ -88,6 +93,19 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     for name in document.get("effects", {}):
         if name not in effect_names():
             yield f"effects.{name}: an oscillator has no such part; valid here: {', '.join(effect_names())}"
+
+
+def _bristles(document: Mapping[str, Any]) -> Iterator[str]:
+    """What the law of bristles needs, and what it replaces."""
+    own, lugre = document["oscillator"], "lugre" in _named_laws(document.get("sweep", {}))
+    given = [key for key in own if key.startswith("bristle_")]
+    if not lugre:
+        yield from (f'oscillator.{key}: belongs to friction_law = "lugre"; remove it' for key in given)
+        return
+    if "bristle_stiffness_N_per_mm" not in own:
+        yield "oscillator.bristle_stiffness_N_per_mm: missing; lugre needs it, as in 100.0"
+    for name in {"presliding", "guide_friction", "ageing"}.intersection(document.get("effects", {})):
+        yield f"effects.{name}: lugre has bristles of its own; remove it, or choose another law"
 
 
 def _listed(value: Any) -> list[Any]:

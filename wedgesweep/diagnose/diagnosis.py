@@ -56,7 +56,8 @@ DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]
 class Diagnosis:
     """Everything that was found; ``explanations`` are sorted, the best first.
 
-    ``untried``: what the budget of the search left out.
+    ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects of which nothing
+    at all was fitted for that reason.
     """
 
     measurement: Measurement
@@ -71,6 +72,7 @@ class Diagnosis:
     ladder: tuple[Rung, ...]
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
+    never_tried: tuple[tuple[str, ...], ...] = ()
 
     @property
     def extended(self) -> Fit:
@@ -144,6 +146,7 @@ def diagnose(
         ladder=rungs,
         calibration=calibration,
         untried=tuple(search.budget.untried),
+        never_tried=search.budget.never_tried,
     )
 
 
@@ -228,9 +231,15 @@ def explain(search: Search) -> Explained:
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should separate: a cause and its rivals, or without one what comes closest."""
+    """Fits that a next test should separate: those that are reported as rivals.
+
+    These are a cause and its rivals, or without a cause all that would do; where fewer than two would, those
+    that come closest.
+    """
     if finding.cause is not None:
         return [finding.cause.fit, *(each.fit for each in finding.rivals)]
-    if finding.verdict == verdict.INSUFFICIENT:
-        return [each.fit for each in verdict.ranked(explanations, thresholds.gap)[:COMPARED]]
-    return []
+    if finding.verdict != verdict.INSUFFICIENT:
+        return []
+    adequate = finding.alternatives
+    closest = adequate if len(adequate) > 1 else verdict.ranked(explanations, thresholds.gap)
+    return [each.fit for each in closest[:COMPARED]]

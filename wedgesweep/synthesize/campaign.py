@@ -12,6 +12,7 @@ from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT, UNITS
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
 from wedgesweep.synthesize import files, noise, other_tables, recorded_input
 from wedgesweep.synthesize.files import Table
@@ -127,7 +128,7 @@ def _motions(truth: Truth, options: Options, n_jobs: int, source: str) -> list[M
         )
         for test in truth.tests
     )
-    found = joblib.Parallel(n_jobs=n_jobs)(jobs)
+    found = in_order(jobs, n_jobs)
     faults = [_fault(truth, test, motion) for test, motion in zip(truth.tests, found, strict=True)]
     problems = [
         f"{source}: {_name(i, test)}: {fault}"

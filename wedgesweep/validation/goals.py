@@ -56,15 +56,19 @@ def _shows(record: Record) -> bool:
 
 
 class Goal(NamedTuple):
-    """One line of the table; ``satisfied`` is None without any sets, or if nothing is required."""
+    """One line of the table; ``satisfied`` is None without any sets, or if nothing is ``required`` ("")."""
 
     what: str
     required: str
     reached: str
     satisfied: bool | None
 
+    @property
+    def has_sets(self) -> bool:
+        return self.satisfied is not None or not (self.required or self.reached == str(Share(0, 0)))
+
     def __str__(self) -> str:
-        outcome = {None: "no sets" if self.required else "", True: "met", False: "missed"}[self.satisfied]
+        outcome = {None: "", True: "met", False: "missed"}[self.satisfied]
         return f"{self.what:52} {self.required:18} {self.reached:28} {outcome}".rstrip()
 
 

@@ -13,6 +13,7 @@ from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.steady import waveforms
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.sweep import labels
 
 CHANNELS = ("displacement", "velocity")
 # Dimensions, values, unit and meaning of a variable.
@@ -68,6 +69,7 @@ def dataset(found: Diagnosis) -> xr.Dataset:
         "verdict": found.finding.verdict,
         "law": data.law,
         "wedgesweep_version": __version__,
+        **labels.attributes(data.model),
     }
     return xr.Dataset(data_variables, coordinates, attributes)
 
@@ -154,7 +156,8 @@ def _waveforms(arrays: Arrays) -> Variables:
 
 
 def _inputs(arrays: Arrays) -> Variables:
-    data, fitted = arrays.data, np.array([arrays.data.amplitudes(fit.point) for fit in arrays.fits])
+    data = arrays.data
+    fitted = np.array([data.inputs_of(fit.model.scenario(fit.point)) for fit in arrays.fits])
     unit = "N" if data.model.forced else "m"
     return {
         "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),
@@ -196,8 +199,9 @@ def _dwells(arrays: Arrays) -> Variables:
 def _misfit(arrays: Arrays) -> Variables:
     base = arrays.fits[0]
     force = waveforms.residual_force(arrays.data, base, waveforms.measured_from_phase_zero(arrays.data, base))
+    body = "mass" if arrays.data.model.system == "oscillator" else "bolster"
     return {
-        "leftover_force": (("test", "phase"), force, "N", "force on the bolster that the base model lacks"),
+        "leftover_force": (("test", "phase"), force, "N", f"force on the {body} that the base model lacks"),
         "q": (
             BY_MODEL,
             np.array([fit.evaluation.chi2_by_test for fit in arrays.fits]),

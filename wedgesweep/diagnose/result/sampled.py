@@ -11,6 +11,7 @@ from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result.estimates import finite
 from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.sweep import labels
 
 # Dimensions, values, unit and meaning of a variable.
 Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
@@ -98,6 +99,7 @@ def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
             "verdict": found.finding.verdict,
             "law": data.law,
             "wedgesweep_version": __version__,
+            **labels.attributes(data.model),
         },
     )
 
