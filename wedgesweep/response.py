@@ -27,6 +27,11 @@ NUMBERS = np.dtype(
             "supplied_energy",
             "phase_lag",
             "periodicity",
+            "column_open_fraction",
+            "bolster_open_fraction",
+            "impacts",
+            "largest_impulse",
+            "impact_energy",
         )
     ]
 )
@@ -110,6 +115,11 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     numbers.supplied_energy = sums.supplied / periods
     numbers.phase_lag = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], amplitude)
     numbers.periodicity = _change(x, periods) / amplitude
+    numbers.column_open_fraction = sums.first_open / sums.time
+    numbers.bolster_open_fraction = sums.second_open / sums.time
+    numbers.impacts = sums.impacts / periods
+    numbers.largest_impulse = sums.impulse
+    numbers.impact_energy = sums.struck / periods
     sensor.apply_to_spectra(spectra, p)
     if p.velocity_lag.time > 0.0:
         numbers.peak_velocity = 0.0

@@ -8,8 +8,8 @@ from math import inf
 
 import numpy as np
 
-from wedgesweep.compiled import compiled, inner
-from wedgesweep.hybrid.interface import observed, powers, sticks
+from wedgesweep.compiled import by_record, compiled, inlined, inner
+from wedgesweep.hybrid.interface import impact, observed, opened, powers, provided, sticks
 
 SUMS = np.dtype(
     [
@@ -28,6 +28,12 @@ SUMS = np.dtype(
             "onsets",  # of sticking
             "began_stuck",
             "is_stuck",
+            "first_open",  # s with the first contact open
+            "second_open",
+            "either_open",
+            "impacts",
+            "impulse",  # largest (N s)
+            "struck",  # energy that impacts took (J)
         )
     ]
 )
@@ -48,6 +54,8 @@ def clear(sums):
     one.peak_velocity = one.time = one.integral = 0.0
     one.stuck_time = one.lifted_time = one.dissipated = one.supplied = 0.0
     one.onsets = one.began_stuck = one.is_stuck = 0.0
+    one.first_open = one.second_open = one.either_open = 0.0
+    one.impacts = one.impulse = one.struck = 0.0
 
 
 @inner
@@ -58,6 +66,46 @@ def _count_onset(sums, is_stuck):
     if is_stuck and not sums.is_stuck:
         sums.onsets += 1.0
     sums.is_stuck = is_stuck
+
+
+def _add_open(sums, weight, mode, p):
+    """Add the time for which contacts are open, if those of the system can be."""
+
+
+def add_impact(sums, y, mode, place, p):
+    """Add an event that is an impact, before the state changes, if the system has any."""
+
+
+@inlined
+def _of_contacts(sums, weight, mode, p):
+    first, second = opened(mode, p)
+    if first:
+        sums.first_open += weight
+    if second:
+        sums.second_open += weight
+    if first or second:
+        sums.either_open += weight
+
+
+@inner
+def _of_impact(sums, y, mode, place, p):
+    strikes, impulse, energy = impact(y, mode, place, p)
+    if strikes:
+        sums.impacts += 1.0
+        sums.impulse = max(sums.impulse, impulse)
+        sums.struck += energy
+
+
+def _nothing_open(sums, weight, mode, p):
+    return None
+
+
+def _no_impact(sums, y, mode, place, p):
+    return None
+
+
+by_record(_add_open, lambda fields: _of_contacts if provided(opened, fields) else _nothing_open)
+by_record(add_impact, lambda fields: _of_impact if provided(impact, fields) else _no_impact)
 
 
 @inner
@@ -74,6 +122,7 @@ def add_motion(sums, y, weight, mode, p):
     sums.integral += weight * x
     if stuck:
         sums.stuck_time += weight
+    _add_open(sums, weight, mode, p)
 
 
 @inner
