@@ -111,6 +111,8 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     numbers.stick_phases = onsets / periods
     numbers.minimum_normal_force = sums.normal_force if sums.normal_force < inf else nan
     numbers.lift_off_fraction = sums.lifted_time / slipping_time if slipping_time > 0.0 else nan
+    if sums.either_open > 0.0:
+        numbers.lift_off_fraction = sums.either_open / sums.time
     numbers.dissipated_energy = sums.dissipated / periods
     numbers.supplied_energy = sums.supplied / periods
     numbers.phase_lag = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], amplitude)

@@ -8,14 +8,15 @@ from matplotlib.lines import Line2D
 from wedgesweep.outcome import settled
 
 LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
+OPENS = "column_open_fraction"  # of joints that may lift off
 HOLLOW = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "markersize": 4.5, "zorder": 4}
 PALE = {"linestyle": "", "marker": "o", "color": "0.6", "markersize": 4.5, "zorder": 4}
 FEW_POINTS = 60
 
 
 def lifted(ds: xr.Dataset) -> xr.DataArray:
-    """Whether a normal force turned negative in each case: the model does not hold there."""
-    if LIFT_OFF not in ds:
+    """Whether a held joint pulls in each case, where a real one would lift off: the model does not hold."""
+    if LIFT_OFF not in ds or OPENS in ds:
         return xr.zeros_like(ds["status"], bool)
     return ds[LIFT_OFF] > 0.0
 

@@ -104,7 +104,19 @@ def _no_impact(sums, y, mode, place, p):
     return None
 
 
+def _pulls(first, second, p):
+    """Whether a contact pulls where a real one would open."""
+
+
 by_record(_add_open, lambda fields: _of_contacts if provided(opened, fields) else _nothing_open)
+by_record(
+    _pulls,
+    lambda fields: (
+        (lambda first, second, p: False)
+        if provided(opened, fields)
+        else (lambda first, second, p: first < 0.0 or second < 0.0)
+    ),
+)
 by_record(add_impact, lambda fields: _of_impact if provided(impact, fields) else _no_impact)
 
 
@@ -134,5 +146,5 @@ def add(sums, t, y, weight, mode, p):
     sums.supplied += weight * supplied
     if first == first:  # NaN: not determined
         sums.normal_force = min(sums.normal_force, first, second)
-        if first < 0.0 or second < 0.0:
+        if _pulls(first, second, p):
             sums.lifted_time += weight

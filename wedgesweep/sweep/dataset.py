@@ -49,6 +49,11 @@ VARIABLES = (
     Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
     Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
     Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
+    Variable("column_open_fraction", "1", "share of time with the column contact open"),
+    Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
+    Variable("impacts", "1", "impacts of a wedge per forcing period"),
+    Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
+    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
     Variable(
         "periodicity",
         "1",

@@ -4,6 +4,18 @@ from typing import TypedDict
 
 from wedgesweep.config import Config
 
+# Variables that datasets of unilateral joints have; what another one means there.
+OF_LIFT_OFF = (
+    *("column_open_fraction", "bolster_open_fraction"),
+    *("impacts", "largest_impulse", "impact_energy"),
+)
+_OPEN = {
+    "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
+    "lift_off_fraction": "share of time with at least one contact open",
+    "stick_fraction": "share of time stuck (coulomb) or with the column face closed and below the "
+    "threshold velocity",
+}
+
 
 class Attributes(TypedDict):
     """Global attributes of an oscillator's dataset; ``reference`` is what motions are compared with."""
@@ -26,13 +38,15 @@ def attributes(config: Config) -> Attributes:
 
 def of(config: Config) -> dict[str, str | None]:
     """Return the long names of variables by name, None for those that the system does not have."""
+    if config.opens:
+        return dict(_OPEN)
     if config.system != "oscillator":
-        return {}
+        return dict.fromkeys(OF_LIFT_OFF)
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced
     x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
     size = _reference(config)
-    return {
+    return dict.fromkeys(OF_LIFT_OFF) | {
         "amplitude_ratio": f"half peak-to-peak of {x} over {size}",
         "peak_to_peak": f"peak-to-peak of the displacement {x}",
         "peak_velocity": f"largest magnitude of the velocity {v}",

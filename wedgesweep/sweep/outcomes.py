@@ -15,6 +15,8 @@ from wedgesweep.sweep.cases import describe
 from wedgesweep.sweep.run import Sweep
 
 LIFT_OFF = "lift_off_fraction"
+# A variable of unilateral joints.
+OPENS = "column_open_fraction"
 
 
 class CaseResult(NamedTuple):
@@ -50,7 +52,7 @@ class CaseResult(NamedTuple):
 
 def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
     """How each case of a dataset ended."""
-    if LIFT_OFF not in ds:  # of an oscillator, whose normal force is given
+    if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
     frame = ds[["status", "message", "period", "periodicity", LIFT_OFF]].to_dataframe().reset_index()
     frame = frame.rename(columns={"friction_law": "law"})
@@ -75,7 +77,7 @@ def of_journal(path: Path) -> list[CaseResult]:
             message=record["message"].decode(),
             period=int(record["period"]),
             periodicity=float(record["periodicity"]),
-            lift_off_fraction=float(record[LIFT_OFF]),
+            lift_off_fraction=0.0 if settings.opens else float(record[LIFT_OFF]),
             unit="N" if settings.forced else "m",
         )
         for record in journal.read(path, Sweep(settings, path).dtype)

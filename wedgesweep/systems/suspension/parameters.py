@@ -164,6 +164,13 @@ def _acting(p: np.void) -> list[str]:
     return records.acting(p, known.EFFECTS)
 
 
+def effects_with_lift_off() -> tuple[str, ...]:
+    """Names of the effects that unilateral joints go with."""
+    return tuple(
+        name for name, effect in known.EFFECTS.items() if name in GO_WITH_LIFT_OFF or not effect.extends
+    )
+
+
 def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
     """Whether the joints of full records can open, of records of any shape."""
     return np.isfinite(rows[UNILATERAL]["restitution"])
@@ -172,6 +179,9 @@ def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
 def _kit_of(p: np.void) -> int:
     acting = _acting(p)
     if has_unilateral_joints(p):
+        if refused := set(acting) - set(effects_with_lift_off()):
+            message = f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}"
+            raise ValueError(message)
         return JOINTS_OPEN_WITH_EFFECTS if acting else JOINTS_OPEN
     if not acting:
         return BASE
