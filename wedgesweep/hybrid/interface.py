@@ -6,8 +6,8 @@ mode holds, all its event functions are positive; where one reaches zero the sys
 follows (``transition``).
 
 Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a
-system, which are known by the name of one of their fields; of several the first in the record counts. Times in s, all else in the units of
-``scales``.
+system, which are known by the name of one of their fields; of several the first in the record counts. Times
+in s, all else in the units of ``scales``.
 """
 
 from collections.abc import Callable, Mapping

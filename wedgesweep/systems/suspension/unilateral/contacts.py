@@ -1,4 +1,4 @@
-"""Which contacts of a wedge carry load, and with what forces: a complementarity problem with Coulomb friction.
+"""Contacts of a wedge that carry load, and their forces: a complementarity problem with Coulomb friction.
 
 One problem serves accelerations and impulses. Known is how the wedge and the bolster would move without
 contact forces; sought are reactions that are compressive, obey Coulomb's law, and let no face penetrate:
@@ -146,8 +146,7 @@ def sticking_reactions(free, column_mu, bolster_mu, p):
     Four reactions stand against three equations: they lie on a line, of which Coulomb's law allows an
     interval. The reactions are those of its middle; its length is negative where there is none.
     """
-    s, g = p.suspension, p.geometry
-    lift = -0.5 * s.bolster_mass * free.rise
+    lift = -0.5 * p.suspension.bolster_mass * free.rise
     start = _on_line(free, lift, 0.0, p)
     there = _on_line(free, lift, 1.0, p)
     low, high = -inf, inf
@@ -211,8 +210,9 @@ def _direction(state):
 
 
 @inlined
-def _face_margin(state, touches, moving, mu, normal, friction, gap, slip):
-    """Least of the numbers that a face wants positive; gap and slip times a mass."""
+def _face_margin(state, touches, moving, mu, reaction, after):
+    """Least of the numbers that a face wants positive; ``after``: its gap and slip times a mass."""
+    (normal, friction), (gap, slip) = reaction, after
     if state == OPEN:
         return gap if touches else inf
     if state == STICK:
@@ -244,20 +244,16 @@ def _solution(column, bolster, free, faces, p):
         faces.column,
         faces.moving,
         faces.column_mu,
-        now.column,
-        now.column_friction,
-        mass * after.gap,
-        mass * after.along,
+        (now.column, now.column_friction),
+        (mass * after.gap, mass * after.along),
     )
     of_bolster = _face_margin(
         bolster,
         faces.bolster,
         faces.moving,
         faces.bolster_mu,
-        now.bolster,
-        now.bolster_friction,
-        mass * bolster_gap(after, p),
-        mass * bolster_slip(after, p),
+        (now.bolster, now.bolster_friction),
+        (mass * bolster_gap(after, p), mass * bolster_slip(after, p)),
     )
     return Solution(column, bolster, now, min(of_column, of_bolster))
 

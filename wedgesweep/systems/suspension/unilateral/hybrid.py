@@ -134,8 +134,9 @@ def _stuck_events(t, y, mode, p, out):
 
 
 @inlined
-def _face_events(slip, branch, normal, tangential, place, y, p, out):
-    """Write the ends of the slip branch of the only closed face."""
+def _face_events(slip, branch, reaction, place, y, p, out):
+    """Write the ends of the slip branch of the only closed face, under its normal and friction force."""
+    normal, tangential = reaction
     if not p.friction.set_valued:
         friction.write_branch_ends(slip, p.friction.v_t, branch, place, out)
     elif branch == 0:
@@ -153,13 +154,14 @@ def _apart_events(now, y, mode, p, out):
         out[COLUMN_CLOSES] = y[COLUMN_GAP]
     else:
         out[COLUMN_NORMAL] = now.column
-        _face_events(motion.along, mode.column, now.column, now.column_friction, 2 * COLUMN, y, p, out)
+        reaction = now.column, now.column_friction
+        _face_events(motion.along, mode.column, reaction, 2 * COLUMN, y, p, out)
     if mode.bolster_sign == 0:
         out[BOLSTER_CLOSES] = y[BOLSTER_GAP]
     else:
         out[BOLSTER_NORMAL] = now.bolster
-        slip = bolster_slip(motion, p)
-        _face_events(slip, mode.bolster, now.bolster, now.bolster_friction, 2 * BOLSTER, y, p, out)
+        reaction = now.bolster, now.bolster_friction
+        _face_events(bolster_slip(motion, p), mode.bolster, reaction, 2 * BOLSTER, y, p, out)
     if travel.acts(p):
         travel.write_events(y[X], mode.segment, p, TRAVEL, out)
 
@@ -175,7 +177,7 @@ def all_events(now, t, y, mode, p, out):
         _stuck_events(t, y, mode, p, out)
     elif closed(mode):
         events.events(now, t, y, mode, p, out)
-        if held(mode):
+        if held(mode):  # by a jump of friction: the forces are those of its convex combination
             both = filippov.contact_forces(t, y, mode, p)
             out[COLUMN_NORMAL], out[BOLSTER_NORMAL] = both.column, both.bolster
     else:
@@ -230,7 +232,9 @@ def _after_slip(t, y, mode, place, p):
         if closed(mode):
             y = replaced(y, VELOCITY, 0.0)
         found, certain = resolve(t, y, _at_rest(mode), mode.segment, p)
-        return y, found, certain
+        # What stops to hold the bolster, and then holds it again, may have touched its limit: if proved.
+        again = stuck(mode, p) and stuck(found, p)
+        return y, found, certain and (not again or p.geometry.always_well_posed != 0)
     if not closed(mode):
         axis = place // 2
         now = mode.column if axis == COLUMN else mode.bolster
@@ -343,5 +347,3 @@ def follow(state, stop, p, keeping, recorder):
     if keeping:
         closed_form.keep(short, end, free_motion, recorder, p)
     return True, end, (x, velocity, 0.0, 0.0, 0.0, 0.0), event_place
-
-

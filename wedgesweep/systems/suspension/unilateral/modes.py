@@ -1,4 +1,4 @@
-"""Which contacts stay closed, and which faces slip or stick, at an instant: modes of a wedge that may lift off.
+"""Contacts that stay closed and faces that slip or stick at an instant: modes of a wedge that may lift off.
 
 A mode is a ``ContactMode`` whose signs of the normal forces are 1 for a closed contact and 0 for an open
 one. The branch of an open face is 0.
@@ -173,9 +173,7 @@ def without_jump(t, y, contact, segment, p):
     column, bolster = contact.column_branch, contact.bolster_branch
     if abs(column) != HELD and abs(bolster) != HELD:
         return contact
-    outer = Touching(
-        contact.column, contact.bolster, _outside(column), _outside(bolster)
-    )
+    outer = Touching(contact.column, contact.bolster, _outside(column), _outside(bolster))
     free = free_accelerations(t, y, segment, p)
     motion = moved(free, solve(free, _faces(y, outer, p), p)[0].reactions, p)
     return Touching(
