@@ -12,7 +12,7 @@ import xarray as xr
 from tests import small_sweep
 from wedgesweep import config
 from wedgesweep.errors import SweepError
-from wedgesweep.sweep import dataset, labels, provenance
+from wedgesweep.sweep import dataset, provenance
 from wedgesweep.sweep.dataset import STATUSES, VARIABLES
 
 FEW = small_sweep.CONFIG.replace("1.1, ", "")
@@ -33,9 +33,8 @@ def ds(sweep):
 
 
 def test_variables_have_the_declared_dimensions_units_and_names(ds):
-    names = {variable.name for variable in VARIABLES} - {*labels.OF_LIFT_OFF}
-    assert set(ds.data_vars) == names
-    for variable in [each for each in VARIABLES if each.name in names]:
+    assert set(ds.data_vars) == {variable.name for variable in VARIABLES}
+    for variable in VARIABLES:
         found = ds[variable.name]
         assert found.dims == (*dataset.GRID, *variable.dims)
         assert found.attrs["long_name"] == variable.long_name

@@ -49,11 +49,6 @@ VARIABLES = (
     Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
     Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
     Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
-    Variable("column_open_fraction", "1", "share of time with the column contact open"),
-    Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
-    Variable("impacts", "1", "impacts of a wedge per forcing period"),
-    Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
-    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
     Variable(
         "periodicity",
         "1",
@@ -87,6 +82,15 @@ VARIABLES = (
 
 WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
 
+# Additional variables of unilateral joints.
+OF_LIFT_OFF = (
+    Variable("column_open_fraction", "1", "share of time with the column contact open"),
+    Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
+    Variable("impacts", "1", "impacts of a wedge per forcing period"),
+    Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
+    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
+)
+
 # Additional variables of a continuation; all others belong to its sweep up in beta. Two responses are
 # distinct if their amplitude ratios differ by more than DISTINCT times steady_tolerance, or their periods.
 DISTINCT = 1000.0
@@ -115,7 +119,7 @@ def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
     Without samples (``sizes["phase"]`` = 0) there are no waveforms; ``continued`` adds CONTINUED.
     """
     fields: list[tuple[Any, ...]] = [("index", "i8")]
-    for variable in VARIABLES + CONTINUED * continued:
+    for variable in VARIABLES + OF_LIFT_OFF + CONTINUED * continued:
         if variable.dims == PHASE and not sizes["phase"]:
             continue
         dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
@@ -152,7 +156,7 @@ def assemble(
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
-    for variable in VARIABLES + CONTINUED:
+    for variable in VARIABLES + OF_LIFT_OFF + CONTINUED:
         long_name = long_names.get(variable.name, variable.long_name)
         if variable.name not in (records.dtype.names or ()) or long_name is None:
             continue
@@ -240,7 +244,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
     if "beta" not in ds.coords:
         return
     case_dims = ("case",) if ds["beta"].dims == ("case",) else GRID
-    known = {variable.name: variable for variable in VARIABLES + CONTINUED}
+    known = {variable.name: variable for variable in VARIABLES + OF_LIFT_OFF + CONTINUED}
     for name in [each for each in ds.variables if each in known or each in (*GRID, "frequency")]:
         found = ds[name]
         dims, kinds = _expected(str(name), known.get(str(name)), case_dims)

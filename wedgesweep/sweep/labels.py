@@ -3,12 +3,10 @@
 from typing import TypedDict
 
 from wedgesweep.config import Config
+from wedgesweep.sweep.dataset import OF_LIFT_OFF
 
-# Variables that datasets of unilateral joints have; what another one means there.
-OF_LIFT_OFF = (
-    *("column_open_fraction", "bolster_open_fraction"),
-    *("impacts", "largest_impulse", "impact_energy"),
-)
+# What only datasets of unilateral joints have, and what other variables mean there.
+_OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)
 _OPEN = {
     "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
     "lift_off_fraction": "share of time with at least one contact open",
@@ -41,12 +39,12 @@ def of(config: Config) -> dict[str, str | None]:
     if config.opens:
         return dict(_OPEN)
     if config.system != "oscillator":
-        return dict.fromkeys(OF_LIFT_OFF)
+        return _OF_LIFT_OFF
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced
     x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
     size = _reference(config)
-    return dict.fromkeys(OF_LIFT_OFF) | {
+    return _OF_LIFT_OFF | {
         "amplitude_ratio": f"half peak-to-peak of {x} over {size}",
         "peak_to_peak": f"peak-to-peak of the displacement {x}",
         "peak_velocity": f"largest magnitude of the velocity {v}",
