@@ -21,6 +21,14 @@ def lifted(ds: xr.Dataset) -> xr.DataArray:
     return ds[LIFT_OFF] > 0.0
 
 
+def opened(ds: xr.Dataset) -> xr.DataArray | None:
+    """Whether a contact is open at each phase; None without waveforms, or where joints are held."""
+    faces = ("normal_force_column", "normal_force_bolster")
+    if OPENS not in ds or any(name not in ds for name in faces):
+        return None
+    return (ds[faces[0]] == 0.0) | (ds[faces[1]] == 0.0)
+
+
 def unsettled(ds: xr.Dataset) -> xr.DataArray:
     """Whether each solved case was still changing when it ended."""
     if not {"period", "periodicity"} <= set(ds.variables):
