@@ -254,6 +254,35 @@ def test_a_steady_response_with_impacts_is_that_of_a_long_run():
         assert one[name] == pytest.approx(expected[name], rel=1e-5), name
 
 
+EFFECTS = {
+    "viscous_damping": {"coefficient": 8.0},
+    "end_stop": {"clearance": 1e-3, "stiffness": 2e4},
+    "stribeck": {"velocity": 5e-3, "peak": 0.05},
+    "input_distortion": {"second": 0.1},
+}
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_effects_act_on_joints_that_lift_off(law):
+    settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=60, kept_periods=2)
+    made = [
+        parameters.record(law, a, 1.75 * OMEGA_N, {"joints": joints}, {}, EFFECTS)
+        for a in (1e-4, 1.5e-3)
+        for joints in parameters.JOINTS
+    ]
+    held, closed, _, opens = (respond(case, settled, 3)[0].numbers for case in made)
+    assert closed == pytest.approx(held, rel=1e-9, abs=1e-12, nan_ok=True)
+    assert opens["impacts"] > 0.0
+    taken = opens["dissipated_energy"] + opens["impact_energy"]
+    assert taken == pytest.approx(opens["supplied_energy"], rel=1e-5)
+
+
+def test_effects_with_degrees_of_freedom_of_their_own_are_refused():
+    effects = {"column_compliance": {"stiffness": 1e5}}
+    with pytest.raises(ValueError, match="unilateral joints do not go with: column_compliance"):
+        parameters.record("coulomb", 1e-3, OMEGA_N, {"joints": "unilateral"}, {}, effects)
+
+
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic"])
 def test_a_wedge_that_locks_is_never_a_number(law):
     case = record(law, 4.75e-3, 1.0, friction={"dynamic": 1.0, "static": 1.1}, column_angle=-0.07)

@@ -8,7 +8,7 @@ and the velocities v+ + e v at the contacts its change is [P (v+ + e v) - (1 - e
 positive inverse mass, and P (v+ + e v) <= 0.
 
 Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); Leine and van de Wouw,
-Stability and Convergence of Mechanical Systems with Unilateral Constraints (2008), section 5.3.
+Stability and Convergence of Mechanical Systems with Unilateral Constraints (2008).
 """
 
 from typing import Any, NamedTuple
