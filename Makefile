@@ -39,10 +39,14 @@ validate: install  ## hide effects in data, diagnose them, compare with the trut
 	$(BIN)/python -m pytest -q tests/validation/diagnoses.py
 	$(BIN)/python -m wedgesweep.validation --output $(OUT)/validation
 
+torture: install  ## 100,000 hostile inputs and 200 kills (hours)
+	$(BIN)/python scripts/fuzz.py
+	$(BIN)/python scripts/kill_campaign.py
+
 bench: install  ## benchmarks, as ratios within one run
 	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
-.PHONY: help install run test lint check reproduce validate bench clean
+.PHONY: help install run test lint check reproduce validate torture bench clean

@@ -15,7 +15,7 @@ from tests import fixture_dataset, fixture_diagnosis, small_sweep
 from tests.command import invoke
 from tests.small_sweep import CONFIG, LOCKED
 from wedgesweep import config, figures
-from wedgesweep.cli import cli
+from wedgesweep.cli import cli, messages
 from wedgesweep.cli.failure import _failure
 from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.progress import ProgressReport
@@ -511,6 +511,7 @@ def records(*statuses):
 
 
 def test_log_lines_tell_counts_failures_and_time_left(capfd):
+    messages.begin()
     progress = ProgressReport()
     for total, kept in ((40, 10), (20, 0)):
         progress(records(*[0] * kept), total)

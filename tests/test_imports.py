@@ -54,7 +54,8 @@ ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/", "api.py"),  # there for annotations only
     "joblib": (
-        *("sweep/backend.py", "sweep/cluster.py", "sweep/run.py", "synthesize/", "validation/", "cli/"),
+        *("sweep/backend.py", "sweep/cluster.py", "sweep/run.py", "sweep/verification.py"),
+        *("synthesize/", "validation/", "cli/"),
         "reproduce/chandiramani.py",
     ),
     "distributed": ("sweep/cluster.py",),

@@ -68,14 +68,32 @@ def test_every_figure_has_a_size_and_is_inside_the_page(tab, page):
         sizes = tab.evaluate("[...document.images].map(i => [i.naturalWidth, i.width, i.height, i.complete])")
         assert len(sizes) >= 10
         assert all(natural > 0 and shown > 0 and high > 0 and done for natural, shown, high, done in sizes)
-        # On a narrow screen figures keep their size, so that their text can be read, and scroll in place.
+        # Figures keep their size, so that their text can be read, and scroll in place.
         drawn = tab.evaluate("[...document.images].map(i => [i.width, +i.getAttribute('width')])")
-        assert width > 1000 or all(shown == own for shown, own in drawn)
+        assert all(shown == own for shown, own in drawn)
         boxes = tab.evaluate("[...document.querySelectorAll('figure')].map(f => f.clientWidth)")
         assert all(0 < box <= width for box in boxes)
         assert tab.evaluate("document.documentElement.scrollWidth") <= width
         small = "[...document.querySelectorAll('body *')].map(e => parseFloat(getComputedStyle(e).fontSize))"
         assert min(tab.evaluate(small)) >= 10.0
+
+
+def test_a_figure_opens_large_on_a_tap_and_closes_where_it_was(tab, page):
+    box = "(({left, top, width, height}) => [left, top, width, height])"
+    box += "(document.querySelector('figure').getBoundingClientRect())"
+    for width in (1200, 400):
+        tab.open(page, width=width)
+        before = tab.evaluate("document.querySelector('figure img').width")
+        tab.evaluate("document.querySelector('figure a.open').click()")
+        assert tab.evaluate(box) == [0, 0, width, 900]
+        assert tab.evaluate("document.querySelector('figure img').width") >= 1.4 * before
+        assert tab.evaluate("document.querySelector('figure').scrollWidth") > width
+        tab.evaluate("document.querySelector('figure a.close').click()")
+        left, top, _, height = tab.evaluate(box)
+        assert tab.evaluate("document.querySelector('figure img').width") == before
+        assert left > 0
+        assert -10 <= top < 900
+        assert height < 900
 
 
 def test_texts_stand_out_in_light_and_dark(tab, page):

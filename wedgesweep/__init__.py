@@ -1,5 +1,6 @@
 """Batch sweeps of a friction wedge suspension, and a diagnosis of what its model misses."""
 
+import logging
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ __all__ = [
     "run_sweep",
     "simulate_case",
 ]
+
+# What is done is told to those who ask for it: logging.getLogger("wedgesweep").
+logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 
 def __getattr__(name: str) -> Any:

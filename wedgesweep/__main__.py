@@ -1,6 +1,7 @@
 """Entry point: ``wedgesweep`` and ``python -m wedgesweep``."""
 
 import os
+import signal
 import sys
 
 # One thread per process, whatever the machine's settings: the jobs share out the processors, and no
@@ -15,11 +16,15 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         # A terminal that cannot show a character, as in the locale C, gets its code.
         stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    from wedgesweep.cli import cli
-    from wedgesweep.cli.failure import end_on_signals
+    try:
+        from wedgesweep.cli.failure import end_on_signals
 
-    end_on_signals()
-    cli(prog_name="wedgesweep")
+        end_on_signals()
+        from wedgesweep.cli import cli
+
+        cli(prog_name="wedgesweep")
+    except KeyboardInterrupt as interrupt:  # before or after the command itself
+        sys.exit(128 + getattr(interrupt, "number", signal.SIGINT))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 
@@ -64,6 +65,19 @@ def written(path: Path) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
+@contextmanager
+def beside(path: Path) -> Iterator[Path]:
+    """A temporary directory beside ``path`` for what shall get there when it is complete; it is removed."""
+    _sweep(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with naming(path):
+            temporary.mkdir()
+            yield temporary
+    finally:
+        rmtree(temporary, ignore_errors=True)
+
+
 def write_text(path: Path, text: str) -> None:
     """Write UTF-8 text, all of it or nothing."""
     with written(path) as temporary:
@@ -82,12 +96,12 @@ def naming(path: Path) -> Iterator[None]:
 
 
 def _sweep(path: Path) -> None:
-    """Remove temporary files of ``path`` whose processes have ended."""
+    """Remove temporary files and directories of ``path`` whose processes have ended."""
     for orphan in path.parent.glob(f".{_literal(path.name)}.*"):
         process = orphan.name.rpartition(".")[2]
         if process.isascii() and process.isdigit() and not _runs(int(process)):
             with suppress(OSError):
-                orphan.unlink()
+                rmtree(orphan) if orphan.is_dir() else orphan.unlink()
 
 
 def _literal(name: str) -> str:

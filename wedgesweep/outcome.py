@@ -16,6 +16,7 @@ class Outcome(IntEnum):
     SOLVER_FAILURE = auto()
     NOT_FINITE = auto()
     NOT_RUN = auto()
+    WORKER_LOST = auto()
 
     def __str__(self) -> str:
         return self.name.lower()

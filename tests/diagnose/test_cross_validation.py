@@ -43,6 +43,18 @@ def test_retuning_alone_gains_nothing():
     assert base_square == pytest.approx(noise, rel=0.2)
 
 
+def test_a_cause_that_only_the_test_left_out_shows_predicts_nothing():
+    """An end stop that one test touches: without this test its clearance and stiffness may be anything."""
+    data = drawn({"end_stop": {"clearance": 3.6e-4, "stiffness": 2e5}}, std=0.015)
+    _, base, (stop,) = searched(data, "end_stop")
+    left = base.fit.evaluation.chi2_by_test - stop.fit.evaluation.chi2_by_test
+    assert np.flatnonzero(left > 100.0).tolist() == [3]
+    measured = cross_validation.cross_validate(base.fit, stop.fit, serial)
+    assert measured.excess_removed == pytest.approx(0.0, abs=1e-3)
+    found, nothing = (cross_validation.held_out_accuracy(fit, serial) for fit in (stop.fit, base.fit))
+    assert found == pytest.approx(nothing, rel=1e-2)
+
+
 def test_a_model_that_fits_nothing_predicts_as_accurately_as_it_explains():
     base = base_of(drawn(LAG, std=0.0))
     data, evaluation = base.model.data, base.evaluation

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import AMPLITUDES, LAG, drawn, searched
-from wedgesweep.diagnose.least_squares import _covariance, tight_refit
+from wedgesweep.diagnose.least_squares import _covariance, lm_step, tight_refit
+from wedgesweep.diagnose.normal_equations import normal_equations
 
 
 def test_clean_data_leave_chi_squared():
@@ -47,6 +48,26 @@ def test_the_error_of_a_simulation_is_no_information():
     coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
     np.testing.assert_allclose(coarse, std, rtol=0.1)
     assert fine.chi2 == pytest.approx(stop.fit.chi2, abs=0.1)
+
+
+def test_a_parameter_that_does_not_show_shortens_no_step():
+    """Equations in which one number hardly shows, and would move by far more than its range."""
+    search, base, _ = searched(drawn(LAG), "velocity_lag")
+    model = search.model("velocity_lag", "viscous_damping")
+    start = model.evaluate(model.start(base.fit, np.array([1e-4, 1.0])))
+    found = normal_equations(model, start)
+    unseen = np.array([1.0, 0.0])
+    alone = replace(
+        found,
+        global_block=found.global_block * np.outer(unseen, unseen) + np.diag([0.0, 1e-9]),
+        coupling_block=found.coupling_block * unseen,
+        global_gradient=found.global_gradient * unseen,
+    )
+    wild = replace(alone, global_gradient=alone.global_gradient + np.array([0.0, 1.0]))
+    expected, seen = (lm_step(model, start.point, each, 1e-3).point.x for each in (alone, wild))
+    assert seen[0] == pytest.approx(expected[0], rel=1e-9)
+    assert expected[0] != start.point.x[0]
+    assert seen[1] != expected[1]
 
 
 def test_what_the_equations_leave_open_is_wide():

@@ -14,8 +14,15 @@ from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p
 DOF, PENALTY = 700, 12.6
 
 
-def explained(q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None, constant=1.0):
-    data = SimpleNamespace(tests=tests, uncertain=uncertain or {}, dof=np.full(tests, DOF / tests))
+def explained(
+    q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None, constant=1.0, error=0.0
+):
+    data = SimpleNamespace(
+        tests=tests,
+        uncertain=uncertain or {},
+        dof=np.full(tests, DOF / tests),
+        model_misfit=np.full(tests, error * DOF / tests),
+    )
     model = SimpleNamespace(data=data, size=numbers * len(effects))
     fit = SimpleNamespace(
         chi2=q,
@@ -52,6 +59,21 @@ def test_a_strong_cause_is_named():
 def test_weak_evidence_is_only_consistent():
     found = verdict_of(explained(1000.0), explained(705.0, "stribeck"), explained(800.0, "preload"))
     assert found.verdict == "consistent-with"
+
+
+def test_a_model_error_may_be_larger_in_single_tests():
+    """Errors of the model that are most of the variance scatter more than noise does."""
+    loud = np.where(np.arange(12) < 2, 2000.0, 60.0)
+    for q, error, least, most in (
+        (1.0, 0.0, 0.0, 1.0),
+        (2.0, 0.0, 0.0, 1e-6),
+        (2.0, 0.95, 0.01, 0.5),
+        (8.0, 0.95, 0.0, 1e-3),
+    ):
+        by_test = np.where(np.arange(12) < 2, q * DOF / 12, 30.0)
+        base = explained(5000.0, by_test=loud, error=error)
+        best = explained(600.0, "stribeck", by_test=by_test, error=error)
+        assert least <= p_where_it_shows(base.fit, best.fit) <= most
 
 
 def test_two_numbers_of_the_model_may_stand_for_a_third():

@@ -41,6 +41,7 @@ FORMS = {
     "header is a comment": (lambda rows: [f"# {rows[0]}", *rows[1:]], "utf-8", ""),
     "head of a logger": (lambda rows: ["Date;1.1.", "", "Rate,1000", *rows], "utf-8", "header in line 4"),
     "units": (units_row, "utf-8", "a row of units"),
+    "micro": (lambda rows: [rows[0], "sec,mm,mm/s", *rows[1:]], "utf-8", "a row of units"),
     "carriage returns": (lambda rows: [f"{row}\r" for row in rows], "utf-8", ""),
 }
 
@@ -75,6 +76,11 @@ FAULTS = {
         '"1,234" may be a decimal or thou',
     ),
     "unit": (units_row(lines()), None, 'the file says "mm", its unit is stated as "um"'),
+    "micrometres": (
+        [lines()[0], "s,µm,mm/s", *lines()[1:]],
+        "",
+        'the file says "um", its unit is stated as "mm"',
+    ),
     "encoding": (lines(), 'encoding = "klingon"', 'no encoding "klingon"'),
     "not that encoding": ([*lines(), "ü"], 'encoding = "ascii"', "not ascii text (byte"),
     "binary": (["t,d,v", "\0\0\0"], 'encoding = "utf-8"', "null characters"),
@@ -99,6 +105,22 @@ def test_doubts_and_faults_are_named(tmp_path, fault):
         measured.read(fixture_measured.write(tmp_path, text, csv=rows))
     assert len(caught.value.problems) == 1, caught.value
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("beginning", "words"),
+    [
+        (b"PK\x03\x04\0\0", "a zip archive, as workbooks of Excel are; export it as CSV"),
+        (b"\x1f\x8b\0", "compressed by gzip; unpack it"),
+        (b"\x89HDF\r\n\x1a\n\0", "end its name with .h5"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0\xff\xd8", "no text"),
+    ],
+)
+def test_what_is_no_text_is_called_what_it_is(tmp_path, beginning, words):
+    path = fixture_measured.write(tmp_path)
+    (tmp_path / "one.csv").write_bytes(beginning + bytes(range(256)))
+    with pytest.raises(measured.MeasuredError, match=words):
+        measured.read(path)
 
 
 def write_hdf5(path, columns):
@@ -135,6 +157,31 @@ def test_binary_files_hold_variables(tmp_path, plain, name, write):
         measured.read(path)
     (tmp_path / name).write_bytes((tmp_path / name).read_bytes()[:100])
     with pytest.raises(measured.MeasuredError, match=r"cannot be read|give the path"):
+        measured.read(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "inside"), [("one.mat", "bench."), ("new.mat", "bench."), ("new.mat", "bench/")]
+)
+def test_channels_in_a_struct(tmp_path, plain, name, inside):
+    columns = dict(zip("tdv", vibration(), strict=True))
+    if name == "one.mat":
+        savemat(tmp_path / name, {"bench": columns, "matrix": np.eye(3)})
+    else:
+        with pytest.importorskip("h5py").File(tmp_path / name, "w") as file:
+            for each, values in columns.items():
+                file[f"bench/{each}"] = values[:, None]
+    text = MEASURED.replace("one.csv", name)
+    for column in "tdv":
+        text = text.replace(f'column = "{column}"', f'column = "{inside}{column}"')
+    path = fixture_measured.write(tmp_path, text)
+    np.testing.assert_allclose(measured.read(path).tests[0].displacement, plain.displacement, rtol=1e-5)
+
+
+def test_a_matrix_is_no_channel(tmp_path):
+    savemat(tmp_path / "one.mat", {"t": np.eye(3), "d": np.arange(9.0), "v": np.arange(9.0)})
+    path = fixture_measured.write(tmp_path, MEASURED.replace("one.csv", "one.mat"))
+    with pytest.raises(measured.MeasuredError, match="holds 3 x 3 numbers; store each channel"):
         measured.read(path)
 
 

@@ -108,6 +108,22 @@ def test_keys_of_a_test_mend_its_record(tmp_path):
     assert told(written(tmp_path, ODD["drift"][0], "detrend = true\n")) == []
 
 
+def test_detrend_removes_a_drift_and_nothing_of_a_vibration(tmp_path):
+    """A straight line through periods that are not whole is a part of the vibration itself."""
+    for drift in (0.0, 2.0):
+        for periods in (6.8, 7.5, 20.3):
+
+            def drifting(t, d, v, drift=drift):
+                return d + drift * t / t[-1], v
+
+            path = written(tmp_path, drifting, "detrend = true\n", periods=periods)
+            (found,) = measured.read(path).tests
+            clean = 1e-3 * vibration(periods=periods)[1]
+            left = found.displacement - clean
+            assert np.ptp(left) < 0.03 * clean.std()
+            assert warnings(found) == []
+
+
 @pytest.mark.parametrize(
     ("keys", "words"),
     [

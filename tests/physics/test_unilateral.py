@@ -277,10 +277,12 @@ def test_effects_act_on_joints_that_lift_off(law):
     assert taken == pytest.approx(opens["supplied_energy"], rel=1e-5)
 
 
-def test_effects_with_degrees_of_freedom_of_their_own_are_refused():
-    effects = {"column_compliance": {"stiffness": 1e5}}
-    with pytest.raises(ValueError, match="unilateral joints do not go with: column_compliance"):
-        parameters.record("coulomb", 1e-3, OMEGA_N, {"joints": "unilateral"}, {}, effects)
+@pytest.mark.parametrize(
+    ("name", "numbers"), [("column_compliance", {"stiffness": 1e5}), ("guide_friction", {"force": 0.1})]
+)
+def test_effects_that_the_contacts_do_not_know_are_refused(name, numbers):
+    with pytest.raises(ValueError, match=f"unilateral joints do not go with: {name}"):
+        parameters.record("coulomb", 1e-3, OMEGA_N, {"joints": "unilateral"}, {}, {name: numbers})
 
 
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic"])

@@ -14,6 +14,7 @@ from tests.command import invoke
 from tests.small_sweep import CASES, CONFIG, assert_same_numbers
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.sweep import cluster as clusters
+from wedgesweep.sweep import workers as workers_of_a_sweep
 
 dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed", reason="Dask is not installed")
@@ -74,8 +75,8 @@ def test_a_killed_worker_costs_its_chunk_only(tmp_path, expected, cluster):
     assert [path.name for path in tmp_path.iterdir()] == ["small.nc"]
 
 
-def test_a_chunk_that_dask_gives_up_ends_the_run_and_loses_nothing_else(tmp_path, expected):
-    kept = []
+def test_what_dask_gives_up_is_solved_again(tmp_path, expected):
+    kept, remarks = [], []
 
     def kill_all(records, total):
         kept.extend(records["index"].tolist())
@@ -88,10 +89,10 @@ def test_a_chunk_that_dask_gives_up_ends_the_run_and_loses_nothing_else(tmp_path
         dask.config.set({"distributed.scheduler.allowed-failures": 0}),
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as running,
         distributed.Client(running) as client,
-        pytest.raises(SweepError, match="the Dask cluster gave up"),
     ):
-        sweep.run(backend=through(client), progress=kill_all)
-    assert_same_numbers(sweep.run(n_jobs=1), expected)
+        found = sweep.run(backend=through(client), progress=kill_all, tell=remarks.append)
+    assert_same_numbers(found, expected)
+    assert remarks == [workers_of_a_sweep.TOLD]
 
 
 def test_workers_of_another_version_are_refused(tmp_path, cluster, monkeypatch):

@@ -14,8 +14,7 @@ from wedgesweep.friction import LAW_NAMES
 from wedgesweep.response import NUMBERS
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
-from wedgesweep.sweep import cases, dataset
-from wedgesweep.sweep import run as sweep
+from wedgesweep.sweep import cases, chunks, dataset
 from wedgesweep.sweep.dataset import STATUSES
 from wedgesweep.systems.suspension import parameters
 
@@ -36,8 +35,8 @@ def expected(tmp_path_factory):
 
 @pytest.mark.parametrize("chunk", [1, 5, 200])
 def test_chunks_change_no_bit(tmp_path, expected, monkeypatch, chunk):
-    monkeypatch.setattr(sweep, "CHUNK", chunk)
-    monkeypatch.setattr(sweep, "CHUNKS", 1)
+    monkeypatch.setattr(chunks, "CHUNK", chunk)
+    monkeypatch.setattr(chunks, "CHUNKS", 1)
     told = []
     ds = run(tmp_path, progress=lambda records, total: told.append(len(records)))
     assert_same_numbers(ds, expected)
@@ -60,15 +59,6 @@ def test_order_of_the_cases_changes_no_bit(tmp_path, expected):
         values = expected[name].values.reshape(len(listed), *expected[name].shape[3:])
         is_float = values.dtype.kind == "f"
         assert np.array_equal(shuffled[name].values, values[order], equal_nan=is_float), name
-
-
-def test_every_chunk_is_solved_once():
-    for number in (1, 2, 63, 64, 65, 1800, 100_800):
-        for method in ("radau", "event-driven"):
-            chunks = list(sweep._chunks(np.arange(number)[:, None] + 5, method))
-            assert sorted(np.concatenate(chunks).tolist()) == list(range(5, number + 5))
-            assert max(map(len, chunks)) <= (sweep.CHUNK if method == "event-driven" else 1)
-            assert max(map(len, chunks)) - min(map(len, chunks)) <= 1
 
 
 def test_agrees_with_radau_in_every_variable(tmp_path):

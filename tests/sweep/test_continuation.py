@@ -12,8 +12,7 @@ from wedgesweep import response
 from wedgesweep.cli import cli
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
-from wedgesweep.sweep import batch, continuation, dataset, journal
-from wedgesweep.sweep import run as sweep
+from wedgesweep.sweep import batch, chunks, continuation, dataset, journal
 from wedgesweep.sweep.dataset import DISTINCT, STATUSES
 
 CONTINUED = {variable.name for variable in dataset.CONTINUED}
@@ -92,10 +91,10 @@ def restarted(case, state, period):
 
 def test_both_sides_are_steady_states(tmp_path, steep):
     swept = small_sweep.sweep(tmp_path, STEEP)
-    line = swept.together[0]
+    line = swept.rows.cases(np.array([0]))[0]
     both = continuation.there_and_back(line)
     found, ends = batch.solve_batch(
-        swept.parameters[both], both, swept.settings, swept.dtype, continuation=True
+        swept.config.records()[both], both, swept.settings, swept.dtype, continuation=True
     )
     (up, down), (states, back) = np.split(found, 2), np.split(ends, 2)
     stored = steep.isel(friction_law=0, amplitude=0)
@@ -105,7 +104,7 @@ def test_both_sides_are_steady_states(tmp_path, steep):
     assert down["settled_periods"][0] <= 2 * down["period"][0]
     for place in np.flatnonzero(stored["coexisting"].values == 1).tolist():
         for records, ends, at in ((up, states, place), (down, back, -1 - place)):
-            case = swept.parameters[line[place] : line[place] + 1]
+            case = swept.config.records()[line[place] : line[place] + 1]
             ratio, moved = restarted(case, ends[at][:2], int(records["period"][at]))
             assert ratio == pytest.approx(records["amplitude_ratio"][at], abs=1e-6)
             assert np.abs(moved).max() < 1e-6
@@ -119,17 +118,19 @@ def test_the_way_down_begins_in_the_whole_state_of_the_way_up(tmp_path):
     top = ds.isel(beta=-1, amplitude=0)
     assert (top["coexisting"] == 0).all()
     assert (top["period"] == top["period_down"]).all()
-    line = swept.together[0]
+    line = swept.rows.cases(np.array([0]))[0]
     both = continuation.there_and_back(line)
-    found, _ = batch.solve_batch(swept.parameters[both], both, swept.settings, swept.dtype, continuation=True)
+    found, _ = batch.solve_batch(
+        swept.config.records()[both], both, swept.settings, swept.dtype, continuation=True
+    )
     assert found["settled_periods"][line.size] <= 2 * found["period"][line.size]
 
 
 def test_a_line_follows_its_neighbours_and_no_other_line(steep, tmp_path):
     swept = small_sweep.sweep(tmp_path, STEEP)
-    lines = swept.together
+    lines = swept.rows.cases(np.arange(swept.rows.count))
     assert lines.shape == (4, 8)
-    assert (np.diff(swept.parameters["input"]["omega"][lines], axis=1) > 0.0).all()
+    assert (np.diff(swept.config.records()["input"]["omega"][lines], axis=1) > 0.0).all()
     mixed = np.random.default_rng(1).permutation(np.concatenate([lines[2], lines[0]]))
     records = np.sort(swept.solve(mixed), order="index")
     for name in (
@@ -145,8 +146,8 @@ def test_a_line_follows_its_neighbours_and_no_other_line(steep, tmp_path):
 
 @pytest.mark.parametrize(("chunk", "n_jobs"), [(1, 1), (20, 1), (200, 2)])
 def test_chunks_and_jobs_change_no_bit(tmp_path, monkeypatch, steep, chunk, n_jobs):
-    monkeypatch.setattr(sweep, "CHUNK", chunk)
-    monkeypatch.setattr(sweep, "CHUNKS", 1)
+    monkeypatch.setattr(chunks, "CHUNK", chunk)
+    monkeypatch.setattr(chunks, "CHUNKS", 1)
     told = []
     ds = run(tmp_path, n_jobs=n_jobs, progress=lambda records, total: told.append(len(records)))
     assert_same_numbers(ds, steep)

@@ -49,7 +49,7 @@ def test_coordinates(ds, sweep):
     assert ds["frequency"].attrs["units"] == "Hz"
     omega = 2.0 * np.pi * ds["frequency"].values
     assert ds["beta"].values * ds.attrs["omega_n"] == pytest.approx(omega)
-    assert sweep.parameters["input"]["omega"] == pytest.approx(np.tile(np.repeat(omega, 4), 2))
+    assert sweep.config.records()["input"]["omega"] == pytest.approx(np.tile(np.repeat(omega, 4), 2))
     phase = ds["phase"].values
     assert (phase[0], phase[32]) == (0.0, pytest.approx(2.0 * np.pi))
     assert phase.size == 64

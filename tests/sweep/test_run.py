@@ -65,6 +65,15 @@ def test_two_jobs_give_the_same_bits(finished, tmp_path):
     assert_same_numbers(small_sweep.sweep(tmp_path).run(n_jobs=2), finished[1])
 
 
+def test_a_job_loads_nothing_that_solves_no_case():
+    code = "import sys, wedgesweep.sweep.cases; print(*{'xarray', 'pandas', 'matplotlib'} & set(sys.modules))"
+    environment = small_sweep.environment()
+    found = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    assert found.stdout.split() == []
+
+
 def test_threads_of_numpys_libraries_change_no_bit(finished, tmp_path):
     code = (
         "from pathlib import Path; from tests import small_sweep; import numpy as np;"

@@ -61,7 +61,7 @@ def test_wilson_intervals(hits, n, low, high):
 def test_the_strength_wanted_is_found():
     for target in (200.0, 3000.0):
         s = strength.reach(target, lambda s: 1e5 * s**4)
-        assert 1e5 * s**4 == pytest.approx(target, rel=0.06)
+        assert 1e5 * s**4 == pytest.approx(target, rel=0.25)
     assert strength.reach(200.0, lambda s: 10.0 * s) is None
     assert strength.reach(200.0, lambda s: 1e4 if s > 0.3 else 1.0) is None
 
@@ -105,6 +105,12 @@ def test_an_error_that_is_there_may_be_named_beside_the_cause():
     assert [judge.names_cause(r) for r in (alone, both, other, error)] == [True, True, False, False]
     assert [judge.names_another_cause(r) for r in (alone, both, other, error)] == [False, False, True, True]
     assert not judge.names_another_cause(record("tied", ["ageing"]))
+    there = [record("named", given) for given in (["input_distortion"], ["input_distortion", "ageing"])]
+    assert [judge.names_what_is_there(r) for r in (*there, record("tied", ["bolster_mass"]))] == [
+        True,
+        False,
+        False,
+    ]
 
 
 def test_coverage_allows_for_full_turns_of_angles():

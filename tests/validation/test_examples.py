@@ -1,15 +1,9 @@
-"""Some of the examples of an independent simulator; ``make validate`` diagnoses all of them."""
+"""An example that the search for pairs once got wrong; test_scale.py has others."""
 
 import pytest
 
 from tests.validation import examples
 from tests.validation.laboratory import diagnose
-
-
-@pytest.mark.skipif(not examples.TRUTH, reason="no ../shared/blind-examples beside the checkout")
-@pytest.mark.parametrize("name", examples.QUICK)
-def test_example_comes_out_right(name, tmp_path):
-    examples.comes_out_right(name, tmp_path)
 
 
 @pytest.mark.skipif(not examples.HARD_TRUTH, reason="no ../shared/hard-examples beside the checkout")

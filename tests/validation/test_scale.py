@@ -1,8 +1,8 @@
-"""Examples of an independent simulator at the size of a wagon: the same answer at the same cost."""
+"""Examples of an independent simulator come out right, and at the size of a wagon alike, at the same cost."""
 
 import pytest
 
-from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER
+from tests.scaling import FROUDE, HEAVIER
 from tests.validation import examples
 from tests.validation.laboratory import diagnose
 from tests.validation.resized import resized
@@ -41,11 +41,12 @@ def quantity(cause, key) -> Quantity:
 def same_answer(name, size, folder, monkeypatch):
     """Diagnose an example at both sizes, and compare."""
     count, answers, simulated = Count(monkeypatch), [], []
-    for label, each in (("bench", BENCH_SIZE), ("rig", size)):
-        measured = resized(examples.EXAMPLES / name, each, folder / label)
-        answers.append(diagnose(measured, folder / f"{label}-found"))
+    example = examples.EXAMPLES / name
+    for measured in (example / "measured.toml", resized(example, size, folder / "rig")):
+        answers.append(diagnose(measured, folder / f"found-{len(answers)}"))
         simulated.append(count.take())
     bench, rig = answers
+    examples.is_right(name, bench)
     assert rig.verdict == bench.verdict
     assert rig.explanations == bench.explanations
     for cause, other in zip(bench.document["causes"], rig.document["causes"], strict=True):
@@ -58,6 +59,6 @@ def same_answer(name, size, folder, monkeypatch):
 
 
 @pytest.mark.skipif(not examples.TRUTH, reason="no ../shared/blind-examples beside the checkout")
-@pytest.mark.parametrize(("name", "size"), [("set-052", FROUDE), ("set-017", HEAVIER)])
+@pytest.mark.parametrize(("name", "size"), [*zip(examples.QUICK, (HEAVIER, FROUDE), strict=True)])
 def test_an_example_has_the_same_answer_at_the_size_of_a_wagon(name, size, tmp_path, monkeypatch):
     same_answer(name, size, tmp_path, monkeypatch)

@@ -10,6 +10,7 @@ from wedgesweep.cli.case import case
 from wedgesweep.cli.configs import check, init, schema
 from wedgesweep.cli.diagnose import diagnose
 from wedgesweep.cli.failure import Commands
+from wedgesweep.cli.messages import with_verbosity
 from wedgesweep.cli.plot import plot
 from wedgesweep.cli.reproduce import reproduce
 from wedgesweep.cli.run import run
@@ -27,7 +28,10 @@ fish_source for the other shells).
 
 @click.group(
     cls=Commands,
-    commands=[init, schema, check, run, status, case, plot, reproduce, synthesize, diagnose],
+    commands=[
+        with_verbosity(command)
+        for command in (init, schema, check, run, status, case, plot, reproduce, synthesize, diagnose)
+    ],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=EPILOG,
 )

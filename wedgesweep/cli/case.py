@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import SOME_FAILED, Failure
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, OutputPath, command_line
-from wedgesweep.cli.run import announce_compiling, print_remark
+from wedgesweep.cli.run import print_remark
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -64,7 +66,7 @@ def case(
     print_remark(settings)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
-    announce_compiling(settings.solver.method, system=settings.system)
+    announce_compiling()
     from wedgesweep.sweep.run import Sweep
 
     ds = Sweep(settings, stem, command_line()).run_here()
@@ -80,18 +82,16 @@ def _print_remarks(ds: "xr.Dataset") -> None:
     """Tell what makes the numbers of a solved case doubtful."""
     from wedgesweep.sweep import outcomes
 
-    (result,) = outcomes.of_dataset(ds)
+    result = outcomes.of_dataset(ds)[0]
     if result.lifted:
         share = f"{100.0 * result.lift_off_fraction:.2g} % of the slipping time"
-        click.echo(
-            f"outside of the model's validity: a joint lifts off in {share}, where it is held", err=True
-        )
+        log.warning(f"outside of the model's validity: a joint lifts off in {share}, where it is held")
     if not result.settled:
-        click.echo("not settled: the response still changes from period to period", err=True)
+        log.warning("not settled: the response still changes from period to period")
 
 
 def _name(config_path: Path, settings: "Config") -> str:
-    law, beta, amplitude = settings.case_list()[0]
+    law, beta, amplitude = settings.sweep.case(0)
     size = f"{amplitude:.6g}N" if settings.forced else f"{amplitude * 1e3:.6g}mm"
     return f"{config_path.stem}-{law}-{beta:.6g}-{size}"
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
+from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, OutputPath
 from wedgesweep.cli.run import print_remark
@@ -15,7 +16,6 @@ from wedgesweep.files import write_text
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
-    from wedgesweep.sweep.estimate import Estimate
 
 STANDARD_OUTPUT = Path("-")
 
@@ -60,36 +60,21 @@ def check(config_path: Path) -> None:
     settings = config.load(config_path)
     click.echo(f"{config_path}: valid\ntitle: {settings.title}\ncases: {_grid(settings)}")
     print_remark(settings)
-    from wedgesweep.sweep import backend
-    from wedgesweep.sweep.estimate import estimate
+    from wedgesweep.sweep.backend import count_jobs
     from wedgesweep.sweep.run import Sweep
 
-    sweep, n_jobs = Sweep(settings, Path(f"{config_path.stem}.nc")), backend.count_jobs(None)
-    threads = backend.local(sweep.settings.method) is backend.threads
-    _print_estimate(estimate(sweep), n_jobs, 1 if threads else n_jobs + 1)
+    sweep = Sweep(settings, Path(f"{config_path.stem}.nc"))
+    announce_compiling()
+    print_cost(sweep, count_jobs(None))
 
 
 def _grid(settings: "Config") -> str:
     """Describe the number of cases as the product of the grid's axes."""
-    sweep, count = settings.sweep, len(settings.case_list())
+    sweep, count = settings.sweep, settings.sweep.count
     if sweep.cases is not None:
         return f"{count}, listed individually"
     laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
     return f"{count} = {laws} friction laws x {betas} frequencies x {amplitudes} amplitudes"
-
-
-def _print_estimate(cost: "Estimate", n_jobs: int, processes: int) -> None:
-    memory = cost.process_bytes * processes + 2 * cost.dataset_bytes
-    click.echo(
-        f"time: about {duration(cost.seconds_on_one_job / n_jobs)} on {n_jobs} jobs "
-        f"(from {cost.sampled.size} cases run now)\n"
-        f"memory: about {size(memory)} on {n_jobs} jobs\n"
-        f"dataset: at most {size(cost.dataset_bytes)}, less after compression"
-    )
-    failed = cost.sampled[cost.sampled["status"] != 0]
-    if failed.size:
-        reason = failed[0]["message"].decode()
-        click.echo(f"{failed.size} of the {cost.sampled.size} cases failed, the first by: {reason}")
 
 
 def _put(text: str, path: Path) -> None:

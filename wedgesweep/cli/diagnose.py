@@ -2,19 +2,24 @@
 
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import N_JOBS, require_place_for
+from wedgesweep.cli.steps import StepReport
+from wedgesweep.files import beside
 
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
+# A file that is in the directory of a result while an earlier one gives way to it.
+MOVING = ".unfinished-diagnosis"
 # Figures of one kind of test only.
 OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
 
@@ -57,29 +62,31 @@ def diagnose(
     """
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
-    from wedgesweep.sweep.cases import compiled_mark
 
     measurement = api.read_measurement(measured, model)
     print_warnings(measurement)
+    log.debug(f"{measured}: {len(measurement.tests)} tests, model {measurement.model.title}")
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     _require_own(directory)
     processors = count_jobs(n_jobs)
-    diagnosed_before = compiled_mark("diagnose")
-    if not diagnosed_before.exists():
-        click.echo("compiling the solver (once, a minute or two)", err=True)
-    found = api.diagnose_measurement(
-        measurement, effects=_names(effects), n_jobs=processors, progress=_print_step, calibrate=calibrate
-    )
-    diagnosed_before.touch()
+    announce_compiling()
+    steps = StepReport()
+    try:
+        found = api.diagnose_measurement(
+            measurement, effects=_names(effects), n_jobs=processors, progress=steps, calibrate=calibrate
+        )
+    finally:
+        steps.stop()
     # Beside the result, to be moved there when all is written: an earlier one stays until then.
-    with TemporaryDirectory(prefix=f".{directory.name}.", dir=_existing(directory.parent)) as place:
-        made = Path(place)
+    target = directory.resolve()
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with beside(target) as made:
         found.write(made)
         if reported:
             _draw(found, made, processors)
             report.write(made, processors)
-        _move(made, directory)
+        _move(made, target)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {directory / report.PAGE if reported else directory}")
 
@@ -96,7 +103,7 @@ def _require_own(directory: Path) -> None:
     """Refuse to replace files of the names of a result that no diagnosis has left there."""
     mark, *others = _result_files()
     foreign = [name for name in others if (directory / name).exists()]
-    if foreign and not (directory / mark).is_file():
+    if foreign and not any((directory / each).is_file() for each in (mark, MOVING)):
         message = f"{directory / foreign[0]}: not the result of a diagnosis; choose another -o to keep it"
         raise Failure(message)
 
@@ -109,20 +116,19 @@ def _result_files() -> tuple[str, ...]:
     return (*data, report.PAGE, *FIGURE_FILES.values())
 
 
-def _existing(directory: Path) -> Path:
-    directory.mkdir(parents=True, exist_ok=True)
-    return directory
-
-
 def _move(made: Path, directory: Path) -> None:
     """Replace an earlier result by a complete one; between the two there is no verdict."""
     first, *others = _result_files()
-    (_existing(directory) / first).unlink(missing_ok=True)
+    directory.mkdir(exist_ok=True)
+    # If this process is killed now, the next one knows the files for those of a diagnosis.
+    (directory / MOVING).touch()
+    (directory / first).unlink(missing_ok=True)
     for name in (*others, first):
         if (made / name).exists():
             (made / name).replace(directory / name)
         else:
             (directory / name).unlink(missing_ok=True)
+    (directory / MOVING).unlink()
 
 
 def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
@@ -137,7 +143,7 @@ def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
     ]
     save = partial(_save, found)
     for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
-        click.echo(f"skipped {problem}", err=True)
+        log.info(f"skipped {problem}")
 
 
 def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
@@ -150,7 +156,3 @@ def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
     except ValueError as error:
         return str(error)
     return None
-
-
-def _print_step(step: str) -> None:
-    click.echo(f"  {step}", err=True)

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from wedgesweep.cli import messages
 from wedgesweep.errors import InputError, SweepError
 
 SOME_FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -48,6 +49,10 @@ class Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)  # in the order in which they are used, not alphabetical
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        messages.begin()
+        return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
         try:

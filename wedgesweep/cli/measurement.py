@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.messages import log
+
 if TYPE_CHECKING:
     from wedgesweep.measured import Measurement, TestRecord
 
@@ -47,7 +49,7 @@ def print_warnings(measurement: "Measurement") -> None:
 
     for test in measurement.tests:
         for warning in warnings(test):
-            click.echo(f"warning: {test.file}: {warning}", err=True)
+            log.warning(f"warning: {test.file}: {warning}")
 
 
 def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:

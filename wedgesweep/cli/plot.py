@@ -10,6 +10,7 @@ from click.core import ParameterSource
 
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import DATASET
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
 from wedgesweep.outcome import Outcome
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
+# What drawing raises where a part of a diagnosis is missing or of another kind.
+DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
 
 
@@ -111,7 +114,7 @@ def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     if unfinished is None:
         return dataset.read_sweep(path)
     done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
-    click.echo(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn", err=True)
+    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn")
     return unfinished
 
 
@@ -135,7 +138,7 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
             if not isclose(nearest, value, rel_tol=1e-6):
                 unit = found[name].attrs.get("units", "1").replace("1", "")
                 told = f"{name} {value:.6g} {unit}".rstrip()
-                click.echo(f"{told}: the nearest one there is {nearest:.6g}", err=True)
+                log.warning(f"{told}: the nearest one there is {nearest:.6g}")
     return given
 
 
@@ -169,7 +172,7 @@ def _draw_all(
             _draw(kind, found, directory / f"{kind}.{suffix}", options, strict=False)
             drawn += 1
         except ValueError as error:
-            click.echo(f"skipped {error}", err=True)
+            log.info(f"skipped {error}")
     if not drawn:
         message = "no figure suits this dataset"
         raise Failure(message)
@@ -178,8 +181,17 @@ def _draw_all(
 def _draw(
     kind: str, found: "xr.Dataset | DiagnosisResult", file: Path, options: dict[str, Any], strict: bool = True
 ) -> None:
+    import xarray as xr
+
     picks = _accepted(kind, figures.options(figures.of(found)[kind]), options, strict)
-    figures.save(figures.draw(found, kind, **picks), file)
+    try:
+        figures.save(figures.draw(found, kind, **picks), file)
+    except DAMAGE as error:
+        if isinstance(found, xr.Dataset):  # whose content has been checked
+            raise
+        message = f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it"
+        told = f"{message} ({type(error).__name__}: {error})"
+        raise ValueError(told) from error
     click.echo(f"wrote {file}")
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from wedgesweep.cli.humanize import duration
+from wedgesweep.cli.messages import log, shows_status
 
 if TYPE_CHECKING:
     import numpy as np
@@ -50,8 +51,8 @@ class ProgressReport:
         self._started = self._said = perf_counter()
         self._said_done = self.done
         kept = f", {self.kept} of them from an earlier run" if self.kept else ""
-        click.echo(f"{self.total} cases{kept}", err=True)
-        if sys.stderr.isatty() and self.done < self.total:
+        log.info(f"{self.total} cases{kept}")
+        if shows_status() and self.done < self.total:
             self._bar = click.progressbar(
                 length=self.total - self.kept,
                 show_pos=True,
@@ -65,7 +66,7 @@ class ProgressReport:
         due = self.done - self._said_done >= LINE_SHARE * self.total
         if due or now - self._said >= LINE_SECONDS or self.done == self.total:
             self._said, self._said_done = now, self.done
-            click.echo(self._line(now - self._started), err=True)
+            log.info(self._line(now - self._started))
 
     def _line(self, elapsed: float) -> str:
         left = elapsed / max(self.done - self.kept, 1) * (self.total - self.done)

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.options import N_JOBS
 from wedgesweep.cli.progress import ProgressReport
-from wedgesweep.cli.run import announce_compiling
-from wedgesweep.solvers.names import SOLVERS
 
 
 @click.command()
@@ -36,6 +35,6 @@ def reproduce(ctx: click.Context, output: Path, only: str | None, n_jobs: int | 
     from wedgesweep.sweep.backend import count_jobs
 
     output.mkdir(parents=True, exist_ok=True)
-    announce_compiling(SOLVERS[0])
+    announce_compiling()
     as_recorded = run_all(output, count_jobs(n_jobs), click.echo, ProgressReport(), only=only)
     ctx.exit(0 if as_recorded else 1)

@@ -3,15 +3,19 @@
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
+from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.humanize import duration
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
+from wedgesweep.cli.verify import print_verification
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
@@ -20,6 +24,13 @@ if TYPE_CHECKING:
     from wedgesweep.sweep.run import Sweep
 
 BACKENDS = ("threads", "loky", "dask")
+
+
+class Verify(NamedTuple):
+    """How many random cases to solve again (None: no), and the seed that draws them."""
+
+    cases: int | None
+    seed: int
 
 
 @click.command()
@@ -57,6 +68,15 @@ BACKENDS = ("threads", "loky", "dask")
     help="Address of a running Dask scheduler (tcp://host:8786) whose workers have one thread each.",
 )
 @click.option("--fresh", is_flag=True, help="Discard the results of earlier runs of this output.")
+@click.option("--yes", is_flag=True, help=f"Run also more than {MANY} cases.")
+@click.option(
+    "--verify",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Solve N random cases of the result, also of an earlier run, again by Radau at rtol 1e-9, and tell "
+    "the largest difference; exit code 1 beyond 1e-3 of an amplitude ratio or a stick fraction of 1e-2.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of --verify.")
 @click.pass_context
 def run(
     ctx: click.Context,
@@ -78,10 +98,10 @@ def run(
     from wedgesweep.sweep.run import CaseFailedError, Sweep
 
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"), command_line())
-    progress = ProgressReport()
+    progress, check = ProgressReport(), Verify(options.pop("verify"), options.pop("seed"))
     try:
         options |= {"n_jobs": count_jobs(options["n_jobs"]), "backend": _backend(backend, scheduler)}
-        ctx.exit(_run(sweep, progress, options))
+        ctx.exit(_run(sweep, progress, check, options))
     except KeyboardInterrupt as interrupt:
         _stopped(progress, sweep, "interrupted", "rerun the same command to resume")
         ctx.exit(exit_code(interrupt))
@@ -127,33 +147,34 @@ def _backend(name: str | None, scheduler: str | None) -> "Backend | None":
     return {None: None, "threads": backend.threads, "loky": backend.loky}[name]
 
 
-def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> int:
+def _run(sweep: "Sweep", progress: ProgressReport, check: Verify, options: dict[str, Any]) -> int:
     """Run the sweep unless it is complete; return the exit code."""
-    stored = None if options["fresh"] else sweep.stored()
-    if stored is not None:
+    confirmed = options.pop("yes")
+    result = None if options["fresh"] else sweep.stored()
+    if result is not None:
         click.echo(f"{sweep.out}: already complete; use --fresh to run it again")
-        return print_summary(stored)
-    announce_compiling(sweep.settings.method, sweep.kit, sweep.config.system)
-    print_remark(sweep.config)
-    started = perf_counter()
-    result = sweep.run(progress=progress, **options)
-    code = print_summary(result)
-    click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
+        code = print_summary(result)
+    else:
+        announce_compiling()
+        print_remark(sweep.config)
+        require_confirmed(sweep, options["n_jobs"], confirmed)
+        started = perf_counter()
+        result = sweep.run(progress=progress, tell=_remark, **options)
+        code = print_summary(result)
+        click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
+    if check.cases is not None:
+        code = max(code, print_verification(sweep, result, check.cases, check.seed, options["n_jobs"]))
     return code
+
+
+def _remark(text: str) -> None:
+    click.echo(text, err=True)
 
 
 def print_remark(settings: "Config") -> None:
     """Print what is to be known of the friction of a config."""
     if settings.remark:
-        click.echo(f"note: {settings.remark}", err=True)
-
-
-def announce_compiling(method: str, kit: int = 0, system: str = "suspension") -> None:
-    """Announce the compilation that delays a first run."""
-    from wedgesweep.sweep.cases import is_compiled
-
-    if not is_compiled(method, kit, system):
-        click.echo("compiling the solver (once, some 20 s)", err=True)
+        log.info(f"note: {settings.remark}")
 
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:

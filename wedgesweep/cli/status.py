@@ -47,7 +47,7 @@ def _unfinished(partial: Path) -> int:
     _print_versions(header)
     for difference in differences(header, fingerprint(settings)):
         click.echo(f"cannot be resumed: {difference}")
-    return print_outcomes(outcomes.of_journal(partial), total=len(settings.case_list()))
+    return print_outcomes(outcomes.of_journal(partial), total=settings.sweep.count)
 
 
 def _fingerprint(ds: "xr.Dataset") -> dict[str, str]:

@@ -5,8 +5,9 @@ from typing import Any
 
 import click
 
+from wedgesweep.cli.compiling import announce_compiling
+from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS
-from wedgesweep.cli.run import announce_compiling
 from wedgesweep.synthesize.names import NOISES, QUANTITIES
 
 SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
@@ -98,7 +99,7 @@ def synthesize(
 
     settings, tests = config.load(config_path), plan.load(plan_path)
     directory = output or Path(f"{config_path.stem}-measured")
-    announce_compiling("radau")
+    announce_compiling()
     for remark in make(settings, str(config_path), tests, Options(**options), directory, count_jobs(n_jobs)):
-        click.echo(remark, err=True)
+        log.info(remark)
     click.echo(f"wrote {directory / 'measured.toml'}: {len(tests.tests)} tests")

@@ -1,10 +1,11 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
+import logging
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from math import isnan, pi, sqrt
+from math import isnan, pi, prod, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +17,8 @@ from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import InputError
 from wedgesweep.files import read_text
 from wedgesweep.natural_units import natural_units
+
+log = logging.getLogger(__name__)
 
 # With this effect a suspension may have no equilibrium.
 SOFTENING = "cubic_stiffness"
@@ -55,6 +58,48 @@ class Cases:
     amplitude: np.ndarray
     omega_n: float
     cases: tuple[Case, ...] | None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Sizes of the case dimensions: of laws, frequencies and amplitudes, or of the list."""
+        if self.cases is not None:
+            return (len(self.cases),)
+        return len(self.friction_law), self.beta.size, self.amplitude.size
+
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        return prod(self.shape)
+
+    @cached_property
+    def laws(self) -> tuple[str, ...]:
+        """The laws of the cases, each once."""
+        if self.cases is None:
+            return self.friction_law
+        return tuple(dict.fromkeys(case.law for case in self.cases))
+
+    def at(self, indices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Place in ``laws``, beta and amplitude of some cases, each of the shape of ``indices``.
+
+        A grid counts law, beta, amplitude (the last varies fastest). No other case is made.
+        """
+        if self.cases is None:
+            law, beta, amplitude = np.unravel_index(indices, self.shape)
+            return law, self.beta[beta], self.amplitude[amplitude]
+        laws, betas, amplitudes = self._columns
+        return laws[indices], betas[indices], amplitudes[indices]
+
+    @cached_property
+    def _columns(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """All cases of a list, as ``at`` returns some."""
+        place = {law: number for number, law in enumerate(self.laws)}
+        laws, betas, amplitudes = zip(*self.cases or (), strict=True)
+        return np.array([place[law] for law in laws]), np.array(betas), np.array(amplitudes)
+
+    def case(self, index: int) -> Case:
+        """One of the cases."""
+        law, beta, amplitude = self.at(np.array(index))
+        return Case(self.laws[int(law)], float(beta), float(amplitude))
 
 
 class AmplitudeUnit(NamedTuple):
@@ -214,7 +259,7 @@ class Config:
         config's first.
         """
         given = {
-            "friction_law": law.lower() if law else self.case_list()[0].law,
+            "friction_law": law.lower() if law else self.sweep.laws[0],
             "beta": beta,
             "frequency_hz": frequency_hz,
             "excitation": self.document["sweep"].get("excitation"),
@@ -227,16 +272,9 @@ class Config:
         return from_document(self.document | {"sweep": grid, "solver": solver}, "case")
 
     def case_list(self) -> list[Case]:
-        """All cases; a grid in the order law, beta, amplitude (the last varies fastest)."""
-        sweep = self.sweep
-        if sweep.cases is not None:
-            return list(sweep.cases)
-        return [
-            Case(law, beta, amplitude)
-            for law in sweep.friction_law
-            for beta in sweep.beta.tolist()
-            for amplitude in sweep.amplitude.tolist()
-        ]
+        """All cases, which may be many: ``sweep.case`` makes one of them."""
+        laws, *numbers = (each.tolist() for each in self.sweep.at(np.arange(self.sweep.count)))
+        return [Case(self.sweep.laws[law], *pair) for law, *pair in zip(laws, *numbers, strict=True)]
 
     def case_coordinates(
         self,
@@ -246,16 +284,14 @@ class Config:
         if sweep.cases is None:
             dims = ["friction_law", "beta", "amplitude"]
             laws, betas, amplitudes = list(sweep.friction_law), sweep.beta, sweep.amplitude
-            shape: tuple[int, ...] = (len(laws), len(betas), len(amplitudes))
         else:
             dims = ["case"] * 3
             laws = [case.law for case in sweep.cases]
-            betas, amplitudes = np.array([case[1:] for case in sweep.cases]).T
-            shape = (len(laws),)
+            _, betas, amplitudes = sweep.at(np.arange(sweep.count))
         frequencies = betas * sweep.omega_n / (2.0 * pi)
         unit, amplitude = ("N", "amplitude of the force") if self.forced else ("m", "input amplitude a")
         beta = "input frequency over 1 Hz" if self.has_no_spring else "input frequency over omega_n"
-        return shape, {
+        return sweep.shape, {
             "friction_law": (dims[0], laws, {"long_name": "friction law"}),
             "beta": (dims[1], betas, {"units": "1", "long_name": beta}),
             "amplitude": (dims[2], amplitudes, {"units": unit, "long_name": amplitude}),
@@ -311,22 +347,20 @@ class Config:
         own = self.oscillator
         return 1.0 / (own["spring"] or own["mass"] * omega**2)
 
-    def records(self) -> np.ndarray:
-        """Parameter records of all cases, shape (n,)."""
+    def records(self, indices: np.ndarray | None = None) -> np.ndarray:
+        """Parameter records of the cases of these indices, shape (n,); by default of all."""
         sweep = self.sweep
-        if sweep.cases is None:
-            axes = (sweep.friction_law, sweep.beta, sweep.amplitude)
-            laws, betas, amplitudes = (grid.ravel() for grid in np.meshgrid(*axes, indexing="ij"))
-        else:
-            laws, betas, amplitudes = map(np.array, zip(*sweep.cases, strict=True))
+        laws, betas, amplitudes = sweep.at(np.arange(sweep.count) if indices is None else indices)
+        records = self.records_of_laws[laws]
         # Only amplitude and frequency differ between the cases of a law.
-        one_by_law = {law: self.record(Case(law, 1.0, 1.0)) for law in dict.fromkeys(laws.tolist())}
-        records = np.empty(laws.size, next(iter(one_by_law.values())).dtype)
-        for law, one in one_by_law.items():
-            records[laws == law] = one
         records["input"]["amplitude"] = amplitudes
         records["input"]["omega"] = betas * sweep.omega_n
         return records
+
+    @cached_property
+    def records_of_laws(self) -> np.ndarray:
+        """Parameter records of one case of each of ``sweep.laws``."""
+        return np.concatenate([self.record(Case(law, 1.0, 1.0)) for law in self.sweep.laws])
 
     def to_toml(self) -> str:
         """The resolved config with every key, ranges expanded; ``parse`` of it gives the same config."""
@@ -352,9 +386,8 @@ class Config:
         """Set-valued friction that effects make smooth."""
         from wedgesweep.systems.suspension import parameters
 
-        law, sweep = "coulomb", self.sweep
-        laws = sweep.friction_law or [case.law for case in sweep.cases or ()]
-        if self.system == OSCILLATOR or law not in laws:
+        law = "coulomb"
+        if self.system == OSCILLATOR or law not in self.sweep.laws:
             return None
         if not parameters.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
             return None
@@ -382,7 +415,9 @@ def load(path: str | Path) -> Config:
     except OSError as error:
         problem = f"{path}: {error.strerror}; give the path of a TOML file"
         raise ConfigError([problem]) from error
-    return parse(text, str(path))
+    found = parse(text, str(path))
+    log.debug("%s: %d cases, %s", path, found.sweep.count, found.document["solver"]["method"])
+    return found
 
 
 def parse(text: str, source: str = "<config>") -> Config:

@@ -1,13 +1,26 @@
-"""The template: a config with every key, its default and its meaning."""
+"""The template: a config with every key, its meaning, and its default or what a beginner should choose."""
 
+from typing import Any
+
+from wedgesweep.config import toml
 from wedgesweep.config.keys import Key
 from wedgesweep.config.tables import GridOrList, Table, TableList
 
 HEAD = """\
 # Config of wedgesweep. The ending of a key names its unit. Only [sweep] is required; all other keys are shown
-# with their defaults. To switch an effect on, remove the "# " before its table and keys.
+# with their defaults, but for the solver. To switch an effect on, remove the "# " before its table and keys.
 
 """
+
+# What the template says in place of defaults, and why: steady states of any grid, in seconds.
+CHOSEN: dict[str, Any] = {"solver.method": "event-driven", "solver.settle": "steady"}
+REASONS = {
+    "solver": """\
+# Here: steady states by the event-driven solver. Radau, the default of method, is the slower, independent
+# choice: write method = "radau", and settle_periods or duration_s in place of settle. To have Radau judge
+# some cases of any sweep: wedgesweep run CONFIG --verify 20
+""",
+}
 
 
 def template(root: Table) -> str:
@@ -16,11 +29,13 @@ def template(root: Table) -> str:
 
 
 def _body(table: Table, path: str, mark: str) -> str:
-    return "".join(
-        _entry(key, path, "# " if mark or key.optional or place else "")
-        for group in table.groups
-        for place, key in enumerate(group)
-    )
+    lines = []
+    for group in table.groups:
+        written = next((key for key in group if path + key.key in CHOSEN), group[0])
+        for key in group:
+            off = mark or key is not written or (key.optional and path + key.key not in CHOSEN)
+            lines.append(_entry(key, path, "# " if off else ""))
+    return "".join(lines)
 
 
 def _entry(key: Key, path: str, mark: str) -> str:
@@ -32,8 +47,9 @@ def _entry(key: Key, path: str, mark: str) -> str:
     if isinstance(key, TableList):
         return f"{mark}[[{at}]]\n{_body(key.item, f'{at}.', mark)}"
     if not isinstance(key, Table):
-        return f"{mark}{key.written}  # {'; '.join(filter(None, (key.meaning, key.limits)))}\n"
+        written = f"{key.key} = {toml.inline(CHOSEN[at])}" if at in CHOSEN else key.written
+        return f"{mark}{written}  # {'; '.join(filter(None, (key.meaning, key.limits)))}\n"
     body = _body(key, f"{at}.", mark)
     holds_only_tables = all(isinstance(each, Table) for each in key.keys.values())
     header = "" if holds_only_tables else f"{mark}[{at}]\n"
-    return f"\n# {key.meaning}\n{header}{body}"
+    return f"\n# {key.meaning}\n{REASONS.get(at, '')}{header}{body}"

@@ -5,18 +5,18 @@ the TOML path, the fault and a valid alternative to ``problems``, and returns No
 "absent" (TOML has no null).
 """
 
-import sys
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Self
 
 from wedgesweep.config import toml
 from wedgesweep.quantity import Quantity
 
-LARGEST = sys.float_info.max
+# Numbers beyond these, 0 aside, are of no rig, and their products are no numbers.
+LARGEST, SMALLEST = 1e15, 1e-15
 
 
 def show(value: Any) -> str:
@@ -148,8 +148,12 @@ class Number(Key):
 
     def read(self, value: Any, path: str, problems: list[str]) -> float | None:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not abs(value) <= LARGEST:
+        if not is_number or not abs(value) < inf:
             problems.append(f"{path}: {show(value)} is not a finite number; write one, unquoted")
+            return None
+        if value and not SMALLEST <= abs(value) <= LARGEST:
+            limits = f"between {SMALLEST:g} and {LARGEST:g} in size, or 0"
+            problems.append(f"{path}: {show(value)} is out of range; it must be {limits}")
             return None
         if fault := self.quantity.fault(value):
             problems.append(f"{path}: {show(value)} is out of range; it {fault}")

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import ndtr, stdtrit
 
 from wedgesweep.diagnose import accuracy
+from wedgesweep.diagnose.explanation import PENALTY
 from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
@@ -21,7 +22,8 @@ LOCAL_STEP = 0.3
 RESAMPLED, FEWEST = 2000, 8
 # Bootstrap samples with less than this share of the excess contain nothing that could be removed.
 SHOWS = 0.1
-
+# A parameter whose standard deviation is so many scales is undetermined.
+VAGUE = 3.0
 
 # Maps a function over a list.
 Each = Callable[[Callable, list], list]
@@ -192,14 +194,40 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
     """
     trained = subset_fit(fit, np.setdiff1d(np.arange(fit.model.data.tests), rows))
     if len(fit.x):
-        trained = minimise(trained.model, trained.evaluation, ADAPT)
+        trained = supported(minimise(trained.model, trained.evaluation, ADAPT))
     part = subset_fit(fit, rows)
+    part = replace(part, model=replace(part.model, hypothesis=trained.model.hypothesis))
     evaluation = part.model.evaluate(replace(part.point, x=trained.x))
     for _ in range(LOCAL):
         if not evaluation.found:
             break
         evaluation = part.model.evaluate(_with_own_nuisances(part.model, evaluation))
     return Prediction(scheme, rows, part.model.data, evaluation)
+
+
+def supported(trained: Fit) -> Fit:
+    """The fit without effects of which the remaining tests know too little.
+
+    A parameter that they leave undetermined stays where the fit to all tests had left it: it knows the tests
+    that were left out. Where the effect gains less than its parameters cost, the model predicts without it.
+    """
+    for effect in undetermined(trained):
+        rest = tuple(name for name in trained.effects if name != effect)
+        model = replace(trained.model, hypothesis=replace(trained.model.hypothesis, effects=rest), held=None)
+        x = model.hypothesis.at(trained.values)
+        less = minimise(model, model.evaluate(model.start(trained, x)), ADAPT)
+        penalty = np.log(model.data.observations.sum()) + PENALTY
+        if less.chi2 < trained.chi2 + penalty * (trained.model.size - model.size):
+            trained = less
+    return trained
+
+
+def undetermined(fit: Fit) -> tuple[str, ...]:
+    """Effects with a parameter whose standard deviation is most of its range."""
+    std = np.sqrt(np.diag(fit.covariance))[: fit.model.size]
+    loose = std > VAGUE * fit.model.scale[: fit.model.size]
+    names = [each.name.split(".")[0] for each in fit.model.hypothesis.parameters]
+    return tuple(dict.fromkeys(name for name, is_loose in zip(names, loose, strict=True) if is_loose))
 
 
 def _with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:

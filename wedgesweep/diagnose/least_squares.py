@@ -20,6 +20,8 @@ DAMPING, LEAST_DAMPING, MOST_DAMPING, UP, DOWN = 1e-3, 1e-9, 1e8, 8.0, 8.0
 UNDETERMINED = 1e-12
 # Largest step of one iteration, in scales of the parameters.
 MAX_STEP = 3.0
+# Change of chi-squared by such a step of one parameter that no fit need care about.
+UNNOTICED = 1.0
 
 
 class Step(NamedTuple):
@@ -69,14 +71,14 @@ def lm_step(model: Model, point: Point, equations: NormalEquations, damping: flo
     x = point.x
     matrix, gradient = equations.schur_complement(damping)
     free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
-    step = np.zeros(len(x))
-    if free.any():
-        block = matrix[np.ix_(free, free)]
-        scale = np.diag(np.diag(block) + 1e-12 * (1.0 + np.trace(block)))
-        step[free] = -np.linalg.solve(block + damping * scale, gradient[free])
-    longest = np.max(np.abs(step) / model.scale, initial=0.0)
-    if longest > MAX_STEP:
-        step *= MAX_STEP / longest
+    longest = MAX_STEP * model.scale
+    step = _damped_solution(matrix, gradient, damping, free)
+    wild = free & (np.diag(matrix) * longest**2 < UNNOTICED) & (np.abs(step) > longest)
+    if wild.any():
+        # A parameter that hardly shows must not shorten the step of the others.
+        fixed = np.where(wild, np.clip(step, -longest, longest), 0.0)
+        step = fixed + _damped_solution(matrix, gradient + matrix @ fixed, damping, free & ~wild)
+    step /= max(np.max(np.abs(step) / longest, initial=0.0), 1.0)
     aim = np.clip(x + step, model.low, model.high)
     limited = bool((aim != x + step).any())
     step = aim - x
@@ -87,6 +89,18 @@ def lm_step(model: Model, point: Point, equations: NormalEquations, damping: flo
     local = np.clip(local, -longest_local, longest_local)
     predicted = equations.predicted_reduction(step, local)
     return Step(point.moved(step, local[:, equations.eliminated :]), predicted, limited)
+
+
+def _damped_solution(
+    matrix: np.ndarray, gradient: np.ndarray, damping: float, free: np.ndarray
+) -> np.ndarray:
+    """Step (k,) of the parameters that are ``free`` (k,) towards the minimum of the quadratic model."""
+    step = np.zeros(len(gradient))
+    if free.any():
+        block = matrix[np.ix_(free, free)]
+        scale = np.diag(np.diag(block) + 1e-12 * (1.0 + np.trace(block)))
+        step[free] = -np.linalg.solve(block + damping * scale, gradient[free])
+    return step
 
 
 def tight_refit(fit: Fit) -> Fit:

@@ -149,7 +149,6 @@ def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
     own = search.model(effect).hypothesis
     points = [model.hypothesis.at({**pair.values, **own.in_key_units(x)}) for x in own.starts()]
     evaluations = rough.evaluate_all([rough.start(pair, x) for x in points])
-    search.progress(f"{' + '.join(pair.effects)}, all starting points of {effect}")
     first = [each.name.split(".")[0] for each in model.hypothesis.parameters].index(effect)
     return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
 
@@ -289,5 +288,4 @@ def _complete(search: Search, base: Fit, subset: Fit) -> Explanation:
     """A fit to all tests from one to some of them."""
     model = search.model(*subset.effects)
     fit = minimise(model, model.evaluate(model.start(base, subset.x[: model.size])))
-    search.progress(" + ".join(subset.effects))
     return search.explanation(fit)

@@ -6,6 +6,7 @@ Each stage is a function of what earlier stages returned; nothing is kept in bet
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from itertools import count
 from math import inf, log
 from typing import Any, NamedTuple
 
@@ -17,6 +18,7 @@ from wedgesweep.diagnose.fit_data import Evaluation, FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
+from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
 
 
@@ -106,24 +108,32 @@ class Search:
 
         ``what``: what is reported to have been left out otherwise.
         """
-        found = self._each(function, items, self.budget.left)
+        found = self._each(function, items, self.budget.left, what)
         self.budget.leave_out(what, len(items) - len(found), len(items))
         return found
 
-    def _each(self, function: Callable[[Any], Any], items: Sequence[Any], limit: float) -> list[Any]:
+    def _each(
+        self, function: Callable[[Any], Any], items: Sequence[Any], limit: float, what: str = ""
+    ) -> list[Any]:
         """Results for the items before which less work than the limit was done for the others.
+
+        ``what``: the name of this stage to those who are told of progress; "" is not told.
 
         Threads may finish more of them than that; these are dropped, or results would depend on timing.
         """
-        spent = np.zeros(len(items))
+        spent, finished = np.zeros(len(items)), count(1)
 
         def one(place: int) -> work.Piece | None:
-            if spent[:place].sum() >= limit:
-                return None
-            piece = work.apart(lambda: function(items[place]))
-            spent[place] = piece.work
+            piece = None
+            if spent[:place].sum() < limit:
+                piece = work.apart(lambda: function(items[place]))
+                spent[place] = piece.work
+            if what:
+                self.progress(Step(what, next(finished), len(items)))
             return piece
 
+        if what:
+            self.progress(Step(what, 0, len(items)))
         if self.threads == 1:
             pieces = [one(place) for place in range(len(items))]
         else:
@@ -139,7 +149,7 @@ class Search:
     def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
         """Results of a function for every candidate effect, in their order; the slowest begin first."""
         order = sorted(self.effects, key=lambda effect: effect not in SLOWEST)
-        found = dict(zip(order, self.each(function, order), strict=True))
+        found = dict(zip(order, self._each(function, order, inf, "single effects"), strict=True))
         return {effect: found[effect] for effect in self.effects}
 
 
@@ -235,7 +245,6 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
     if data.brings_nuisances(effect):
         fit = _aligned(fit)
-    search.progress(effect)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
 
 
@@ -257,7 +266,6 @@ def multistart(search: Search, scans: Scans) -> list[Explanation]:
 
     def fitted(effect: str) -> Explanation:
         evaluations = best_per_value(scans[effect])
-        search.progress(f"{effect}, all starting points")
         return search.explanation(best_of(search.model(effect), evaluations, MULTISTART_SCHEDULE))
 
     order = sorted(search.effects, key=lambda effect: min(map(_chi2, scans[effect])))

@@ -180,14 +180,21 @@ def _least_p(base: Explanation, best: Explanation) -> float:
 def p_where_it_shows(base: Fit, fit: Fit) -> float:
     """The p-value of a fit over the tests that hold most of the base model's excess.
 
-    Quiet tests cannot make up for a misfit there with less noise than they should have.
+    Quiet tests cannot make up for a misfit there with less noise than they should have. A model error has
+    one shape in each test, and so one degree of freedom where it counts for M: chi-squared has the variance
+    of noise in the rest, and 2 M^2. It is compared with the scaled chi-squared of this mean and variance
+    (Satterthwaite, 1946).
     """
     dof = fit.model.data.dof
     excess = np.maximum(base.evaluation.chi2_by_test - dof, 0.0)
     order = np.argsort(-excess)
     most = int(np.searchsorted(np.cumsum(excess[order]), EXCESS_SHARE * excess.sum()))
     rows = order[: most + 1]
-    return float(chdtrc(max(dof[rows].sum() - fit.model.size, 1), fit.evaluation.chi2_by_test[rows].sum()))
+    mean = max(float(dof[rows].sum()) - fit.model.size, 1.0)
+    by_errors = fit.model.data.model_misfit[rows]
+    variance = 2.0 * max(mean - by_errors.sum(), 0.0) + 2.0 * (by_errors**2).sum()
+    scale = variance / (2.0 * mean)
+    return float(chdtrc(mean / scale, fit.evaluation.chi2_by_test[rows].sum() / scale))
 
 
 def on_held_out_tests(

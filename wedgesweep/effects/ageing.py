@@ -1,10 +1,8 @@
 """Static friction that grows with the time at rest (Dieterich, 1972; Rabinowicz, 1958).
 
-    mu_s -> mu_s + rate ln(1 + t_stuck/time)                     on both faces
-
-t_stuck is the time since the column face last slipped: |v_c| > v_t, or under the Coulomb law z' != 0,
-where friction lets go at mu_d + rate ln(1 + t_stuck/time). A run begins with t_stuck = 0; a steady response
-without slip, whose t_stuck grows for ever, is the one after 100 periods at rest.
+It grows on both faces; t_stuck is the time since the column face last slipped: |v_c| > v_t, or under the
+Coulomb law z' != 0. A run begins with t_stuck = 0; a steady response without slip, whose t_stuck grows for
+ever, is the one after 100 periods at rest.
 Neutral and default: rate = 0. Time must be given.
 """
 
@@ -16,6 +14,9 @@ from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.effects.states import TIME, set_state, state
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("mu_s -> mu_s + rate ln(1 + t_stuck/time)",)
+REMARK = "Under Coulomb's law friction lets go at $mu_d + rate ln(1 + t_stuck/time)$."
 
 EFFECT = Effect(
     name="ageing",

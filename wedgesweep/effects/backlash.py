@@ -1,14 +1,13 @@
 """Play of the spring: about its rest position the spring's force does not change.
 
-    R = k x                          for |x| <= clearance       on the mass, k the stiffness of its spring,
-    R = k clearance sign(x)          beyond                     x from the rest position
-
 It takes back what the spring itself gains in the play. Neutral and default: clearance = 0.
 """
 
 from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("R = k_b z_r  for |z_r| <= clearance", "R = k_b clearance sign(z_r)  for |z_r| > clearance")
 
 EFFECT = Effect(
     name="backlash",

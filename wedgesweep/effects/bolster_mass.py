@@ -1,7 +1,5 @@
 """Another mass of the bolster than the model's; its weight goes with it.
 
-    M_b -> scale M_b
-
 Neutral and default: scale = 1. omega_n stays that of the nominal suspension.
 """
 
@@ -9,6 +7,8 @@ import numpy as np
 
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("M_b -> scale M_b",)
 
 EFFECT = Effect(
     name="bolster_mass",

@@ -1,7 +1,5 @@
 """Another stiffness under the bolster than the model's.
 
-    k_b -> scale k_b
-
 Neutral and default: scale = 1. omega_n stays that of the nominal suspension.
 """
 
@@ -9,6 +7,8 @@ import numpy as np
 
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("k_b -> scale k_b",)
 
 EFFECT = Effect(
     name="bolster_stiffness",

@@ -1,9 +1,7 @@
 """Columns that yield sideways: one more degree of freedom, the way Q outward.
 
-    M_q Q'' = (N_c n_c + mu_c |N_c| t_c).e_x - k Q - 2 damping_ratio sqrt(k M_q) Q'
-
-The wedge follows: (w - Q e_x).n_c = 0; slip on the column is relative to it. Q starts at its static
-place. Under the Coulomb law the faces are regularised: mu_d |v|/v_t up to v_t = 1e-3 mm/s.
+The wedge follows the column. Q starts at its static place. Under the Coulomb law the faces are regularised:
+mu_d |v|/v_t up to v_t = 1e-3 mm/s.
 Neutral: the limit of infinite stiffness; off where the table is absent (0 in the record).
 Default: mass = half the side frame's (0.23 kg on the bench) and damping_ratio = 0.03, neither fitted;
 stiffness must be given.
@@ -16,7 +14,18 @@ import numpy as np
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.effects.states import LENGTH, VELOCITY, place_of, state
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = (
+    "mass Q'' = (N_c n_c + mu_c |N_c| t_c) . e_x - stiffness Q - 2 damping_ratio sqrt(stiffness mass) Q'",
+    "(w - Q e_x) . n_c = 0",
+)
+SYMBOLS = {
+    "Q": Meaning("displacement of a column outward", "m"),
+    "w": Meaning("displacement of the wedge, a vector", "m"),
+}
+REMARK = "Slip on the column is relative to it."
 
 EFFECT = Effect(
     name="column_compliance",

@@ -1,10 +1,7 @@
-"""Slip out of the plane: friction shares itself between both directions.
+"""Slip out of the plane: friction of both faces shares itself between both directions.
 
-    |V| = hypot(v, W cos(omega t + phase))         W = velocity, v slip of a face in the plane
-    mu -> mu(|V|) v/|V|                            its share in the plane, on both faces
-
-For |V| <= v_t this is the base law's mu_s v/v_t. A column face under ``presliding`` keeps its bristle.
-Under the Coulomb law the faces are regularised: mu_d |V|/v_t up to v_t = 1e-3 mm/s.
+For V <= v_t the share in the plane is the base law's mu_s v/v_t. A column face under ``presliding`` keeps its
+bristle. Under the Coulomb law the faces are regularised: mu_d V/v_t up to v_t = 1e-3 mm/s.
 Neutral and default: velocity = 0. Default: phase = 0. Half a turn of the phase changes nothing: a fit looks
 for it between -90 and 90 degrees.
 """
@@ -13,7 +10,13 @@ from math import cos, hypot, sin
 
 from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("V = sqrt(v^2 + (velocity cos(omega t + phase))^2)", "mu -> mu(V) v/V")
+SYMBOLS = {
+    "V": Meaning("magnitude of the slip velocity of a face in both directions", "m/s"),
+}
 
 EFFECT = Effect(
     name="cross_slip",

@@ -1,13 +1,13 @@
 """Bolster springs that stiffen with travel (Duffing, 1918).
 
-    R = -coefficient z^3             on the bolster, z from the springs' free length
-
-It moves the rest position. Neutral and default: coefficient = 0.
+z is counted from the springs' free length. It moves the rest position. Neutral and default: coefficient = 0.
 """
 
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("R = -coefficient z^3",)
 
 EFFECT = Effect(
     name="cubic_stiffness",

@@ -1,10 +1,7 @@
 """Viscous damping that differs by direction, as between bump and rebound of a damper.
 
-    R + R_0 = -(coefficient + c_0) (1 + asymmetry sign(z')) z'     on the mass
-
-c_0 is the damper that the model itself has (an oscillator's ``damping_N_s_per_m``; a suspension has none) and
-R_0 = -c_0 z' its force: asymmetry is that of all viscous damping. Neutral and default: coefficient = 0,
-asymmetry = 0.
+The model's own damper is an oscillator's ``damping_N_s_per_m``; a suspension has none. The asymmetry is that
+of all viscous damping. Neutral and default: coefficient = 0, asymmetry = 0.
 """
 
 from collections.abc import Mapping
@@ -12,7 +9,14 @@ from typing import Any
 
 from wedgesweep.compiled import by_record, function_of, inlined
 from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("R + R_0 = -(coefficient + c_0) (1 + asymmetry sign(z')) z'", "R_0 = -c_0 z'")
+SYMBOLS = {
+    "c_0": Meaning("damping constant of the model's own damper, 0 without one", "N s/m"),
+    "R_0": Meaning("force of that damper", "N"),
+}
 
 EFFECT = Effect(
     name="directional_damping",

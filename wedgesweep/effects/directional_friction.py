@@ -1,6 +1,4 @@
-"""Friction of another strength up than down, as with worn or machined faces.
-
-    mu -> mu (1 + asymmetry sign(z'))                            on both faces
+"""Friction of another strength up than down, as with worn or machined faces, on both faces.
 
 Neutral and default: asymmetry = 0.
 """
@@ -10,6 +8,8 @@ import numpy as np
 from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("mu -> mu (1 + asymmetry sign(v_z))",)
 
 EFFECT = Effect(
     name="directional_friction",

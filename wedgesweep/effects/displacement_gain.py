@@ -1,12 +1,17 @@
 """A gain error of the displacement channel.
 
-    y = scale d                      d displacement, y its channel
-
 Neutral and default: scale = 1.
 """
 
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("d_m = scale d",)
+SYMBOLS = {
+    "d": Meaning("displacement", "m"),
+    "d_m": Meaning("displacement that its channel shows", "m"),
+}
 
 EFFECT = Effect(
     name="displacement_gain",

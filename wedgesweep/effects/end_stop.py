@@ -1,8 +1,5 @@
 """Springs that the bolster meets at the ends of its travel.
 
-    R = -stiffness (x - clearance)   for x >  clearance         on the bolster, x from its rest position
-    R = -stiffness (x + clearance)   for x < -clearance
-
 Neutral: the limit of infinite clearance, and stiffness = 0; off where the table is absent.
 Default: none, both must be given.
 """
@@ -12,6 +9,11 @@ from math import nan
 from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = (
+    "R = -stiffness (z_r - clearance)  for z_r > clearance",
+    "R = -stiffness (z_r + clearance)  for z_r < -clearance",
+)
 
 EFFECT = Effect(
     name="end_stop",

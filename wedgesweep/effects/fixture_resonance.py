@@ -1,9 +1,6 @@
 """The side frame rides on a compliant table; data are relative to the side frame.
 
-    M_sf x_f'' = -k_f (x_f - u) - c_f (x_f' - u') + force of the suspension, less its static part
-    k_f = M_sf (2 pi frequency)^2,  c_f = 2 damping_ratio sqrt(k_f M_sf),  z = y - x_f
-
-u and the input amplitude are the table's. The run starts with the side frame at rest against the table.
+The input amplitude is the table's. The run starts with the side frame at rest against the table.
 Neutral: the limit of infinite frequency; off where the table is absent (0 in the record).
 Default: none, both must be given.
 """
@@ -15,7 +12,23 @@ import numpy as np
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.effects.states import LENGTH, VELOCITY, state
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = (
+    "M_sf x_f'' = -k_f (x_f - u) - c_f (x_f' - u') + F_s",
+    "k_f = M_sf (2 pi frequency)^2",
+    "c_f = 2 damping_ratio sqrt(k_f M_sf)",
+    "z = y - x_f",
+)
+SYMBOLS = {
+    "x_f": Meaning("displacement of the side frame", "m"),
+    "u": Meaning("displacement of the table", "m"),
+    "y": Meaning("displacement of the bolster", "m"),
+    "k_f": Meaning("stiffness between table and side frame", "N/m"),
+    "c_f": Meaning("damping constant between them", "N s/m"),
+    "F_s": Meaning("force of the suspension on the side frame, less its static part", "N"),
+}
 
 EFFECT = Effect(
     name="fixture_resonance",

@@ -1,7 +1,5 @@
 """Another level of friction than the model's, on both faces of the wedges.
 
-    mu_s, mu_d -> scale mu_s, scale mu_d
-
 Neutral and default: scale = 1.
 """
 
@@ -9,6 +7,8 @@ import numpy as np
 
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("mu_s -> scale mu_s", "mu_d -> scale mu_d")
 
 EFFECT = Effect(
     name="friction_level",

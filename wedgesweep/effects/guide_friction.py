@@ -1,14 +1,15 @@
-"""Dry friction between the bolster and its lateral guide, which moves with the side frame.
+"""Constant dry friction between the bolster and its lateral guide, which moves with the side frame.
 
-    R = -force sign(z')           on the bolster, force constant
-
-set-valued at z' = 0 under the Coulomb law; under the regularised laws R = -force z'/v_t inside |z'| <= v_t.
+It is set-valued at rest under the Coulomb law.
 Neutral and default: force = 0. With frictionless wedges this is Den Hartog's oscillator (1930).
 """
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("R = -force sign(v_z)",)
+REMARK = "Under the regularised laws $R = -force v_z/v_t$ for $|v_z| <= v_t$."
 
 EFFECT = Effect(
     name="guide_friction",

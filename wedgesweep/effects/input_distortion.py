@@ -1,6 +1,4 @@
-"""Harmonics in the motion of the side frame (or of the table under it).
-
-    u = a (sin wt + second sin(2wt + second_phase) + third sin(3wt + third_phase))
+"""Harmonics in the motion of the side frame (or of the table under it); a force has them in the same way.
 
 Neutral and default: second = third = 0; both phases 0.
 """
@@ -10,6 +8,10 @@ from math import cos, sin
 from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = (
+    "u = a (sin(omega t) + second sin(2 omega t + second_phase) + third sin(3 omega t + third_phase))",
+)
 
 EFFECT = Effect(
     name="input_distortion",

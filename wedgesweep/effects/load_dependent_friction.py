@@ -1,9 +1,7 @@
 """Coefficients of friction that depend on the normal force (Hertzian contacts: exponent 1/3).
 
-    mu -> mu (|N|/reference)^(-exponent)                         on both faces, each with its own N
-
-N and mu are solved together. Neutral and default: exponent = 0. Default: reference = the normal force on the
-column face at frictionless rest, not fitted.
+Each face has its own N; N and mu are solved together. Neutral and default: exponent = 0. Default: reference
+= the normal force on the column face at frictionless rest, not fitted.
 """
 
 from math import nan
@@ -13,6 +11,8 @@ import numpy as np
 from wedgesweep.compiled import term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("mu -> mu (|N|/reference)^(-exponent)",)
 
 EFFECT = Effect(
     name="load_dependent_friction",

@@ -1,6 +1,4 @@
-"""More preload of the wedge springs than the model's.
-
-    F_w0 -> F_w0 + force             of each wedge
+"""More preload of each wedge spring than the model's.
 
 Neutral and default: force = 0.
 """
@@ -9,6 +7,8 @@ import numpy as np
 
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("F_w0 -> F_w0 + force",)
 
 EFFECT = Effect(
     name="preload",

@@ -1,11 +1,8 @@
-"""Elastic creep of the column face before it slips (Dahl, 1968).
+"""Elastic creep of the column face before it slips, for every law (Dahl, 1968).
 
-    mu = mu_d b                      on the column face, for every law; the bolster face keeps its own
-    b' = (v_c/length) (1 - b sign(v_c))
-
-b is the share of the bristles' deflection at which they slip. Neutral: the limit length -> 0 is
-set-valued friction on the column face, the base model under no regularised law; off where the table
-is absent (0 in the record). Default: none, length must be given.
+The bolster face keeps its law. Neutral: the limit length -> 0 is set-valued friction on the column face, the
+base model under no regularised law; off where the table is absent (0 in the record). Default: none, length
+must be given.
 """
 
 from math import nan
@@ -13,7 +10,14 @@ from math import nan
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.effects.states import SHARE, state
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("mu_c = mu_d b", "b' = v_c/length (1 - b sign(v_c))")
+SYMBOLS = {
+    "b": Meaning("share of the bristles' deflection at which they slip"),
+}
+REMARK = "It replaces the law on this face."
 
 EFFECT = Effect(
     name="presliding",

@@ -1,13 +1,13 @@
 """Damping that grows with the square of the velocity: flow through an orifice, drag.
 
-    R = -coefficient |z'| z'         on the mass
-
 Neutral and default: coefficient = 0.
 """
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("R = -coefficient |z'| z'",)
 
 EFFECT = Effect(
     name="quadratic_drag",

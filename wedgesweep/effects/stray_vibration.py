@@ -1,7 +1,5 @@
 """A foreign tone in the acceleration of the side frame (or of the table under it).
 
-    u'' -> u'' + acceleration sin(2 pi frequency t + phase)
-
 Its phase is another one in every measurement (``stray_vibration_phase`` of a case, 0 unless set), and
 the response is not periodic in the forcing.
 Neutral and default: acceleration = 0; frequency must be given.
@@ -11,7 +9,13 @@ from math import cos, nan, pi, sin
 
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("u'' -> u'' + acceleration sin(2 pi frequency t + phase)",)
+SYMBOLS = {
+    "phase": Meaning("phase of the tone, another one in every test", "rad"),
+}
 
 EFFECT = Effect(
     name="stray_vibration",

@@ -1,10 +1,6 @@
 """Friction that falls from its static value as slip gets faster (Stribeck, 1902).
 
-    mu = (mu_s + peak) v/v_t                                                     for |v| <= v_t
-    mu = base law + sign(v) (mu_s - mu_d + peak) exp(-(|v| - v_t)/velocity)      for |v| >  v_t
-
-v is each face's own slip velocity. Under the Coulomb law v_t = 0, and friction lets go at mu_s + peak.
-The form is that of Bo and Pavelescu (1982) with exponent 1.
+v is each face's own slip velocity. The form is that of Bo and Pavelescu (1982) with exponent 1.
 Neutral: the limit velocity -> 0 with peak = 0; off where the table is absent (0 in the record).
 Default: peak = 0; velocity must be given.
 """
@@ -15,7 +11,17 @@ import numpy as np
 
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = (
+    "mu = (mu_s + peak) v/v_t  for |v| <= v_t",
+    "mu = mu_0 + sign(v) (mu_s - mu_d + peak) exp(-(|v| - v_t)/velocity)  for |v| > v_t",
+)
+SYMBOLS = {
+    "mu_0": Meaning("coefficient of the model's friction law"),
+}
+REMARK = "Under a set-valued law $v_t = 0$, and friction lets go at $mu_s + peak$."
 
 EFFECT = Effect(
     name="stribeck",

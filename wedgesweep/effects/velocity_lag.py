@@ -1,12 +1,17 @@
 """The velocity channel lags behind the displacement channel: a first-order filter.
 
-    time y' = v - y                  v velocity, y its channel
-
 Neutral and default: time = 0.
 """
 
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("time v_m' = d' - v_m",)
+SYMBOLS = {
+    "d": Meaning("displacement", "m"),
+    "v_m": Meaning("velocity that its channel shows", "m/s"),
+}
 
 EFFECT = Effect(
     name="velocity_lag",

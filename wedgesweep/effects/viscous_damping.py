@@ -1,13 +1,13 @@
 """Viscous damping between the bolster and the side frame.
 
-    R = -coefficient z'              on the bolster
-
 Neutral and default: coefficient = 0.
 """
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("R = -coefficient z'",)
 
 EFFECT = Effect(
     name="viscous_damping",

@@ -1,7 +1,5 @@
 """Another stiffness under the wedges than the model's.
 
-    k_w -> scale k_w
-
 Neutral and default: scale = 1.
 """
 
@@ -9,6 +7,8 @@ import numpy as np
 
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
+
+EQUATIONS = ("k_w -> scale k_w",)
 
 EFFECT = Effect(
     name="wedge_stiffness",

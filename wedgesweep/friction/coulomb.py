@@ -1,13 +1,10 @@
-"""Coulomb's law (the paper's Eq. 1), set-valued at rest.
-
-mu = mu_d sign(v)             for v != 0
-mu in [-mu_d, mu_d]           for v = 0: the face sticks
-"""
+"""Coulomb's law (the paper's Eq. 1), set-valued at rest: there the face sticks."""
 
 import numpy as np
 
 from wedgesweep.compiled import inlined
 
+EQUATIONS = ("mu = mu_d sign(v)  for v != 0", "-mu_d <= mu <= mu_d  for v = 0")
 SET_VALUED = True
 
 

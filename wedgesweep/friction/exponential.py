@@ -1,8 +1,5 @@
 """Exponential friction (the paper's Eq. 3): beyond the ramp it falls slowly with velocity.
 
-    mu = mu_s v / v_t                               for |v| <= v_t  (branch 0)
-    mu = mu_d sign(v) (|v| / v_t)^exponent          for |v| >  v_t  (branch -1 or 1)
-
 The paper prints v^(-0.1), which has a meaning only for v in units of v_t.
 """
 
@@ -12,6 +9,10 @@ import numpy as np
 
 from wedgesweep.compiled import inlined
 
+EQUATIONS = (
+    "mu = mu_s v/v_t  for |v| <= v_t",
+    "mu = mu_d sign(v) (|v|/v_t)^velocity_exponent  for |v| > v_t",
+)
 SET_VALUED = False
 
 # A trial step of an integrator may look a little past the end of its branch, where the power law

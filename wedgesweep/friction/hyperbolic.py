@@ -1,15 +1,13 @@
 """Friction that falls with velocity for good, as in studies of stick-slip (Leine et al., 1998).
 
-mu = mu_s sign(v) / (1 + |v| / v_t)     for v != 0
-mu in [-mu_s, mu_s]                     for v = 0: the face sticks
-
-For oscillators only. v_t is the velocity at which it has fallen to half.
+It is set-valued at rest. For oscillators only. v_t is the velocity at which it has fallen to half.
 """
 
 import numpy as np
 
 from wedgesweep.compiled import inlined
 
+EQUATIONS = ("mu = mu_s sign(v)/(1 + |v|/v_t)  for v != 0", "-mu_s <= mu <= mu_s  for v = 0")
 SET_VALUED = True
 
 # A trial step may look a little past zero velocity, where this would run to infinity. No solution gets there.

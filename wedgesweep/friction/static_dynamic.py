@@ -1,13 +1,13 @@
 """Static-dynamic friction (the paper's Eq. 2): a steep ramp up to mu_s, then a drop to mu_d.
 
-mu = mu_s v / v_t             for |v| <= v_t  (branch 0)
-mu = mu_d sign(v)             for |v| >  v_t  (branch -1 or 1)
+The ramp is branch 0, and slip either way is branch -1 or 1.
 """
 
 import numpy as np
 
 from wedgesweep.compiled import inlined
 
+EQUATIONS = ("mu = mu_s v/v_t  for |v| <= v_t", "mu = mu_d sign(v)  for |v| > v_t")
 SET_VALUED = False
 
 

@@ -1,7 +1,7 @@
 """Columns of a test from binary files: variables of MATLAB (.mat), HDF5 and Parquet files."""
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,7 @@ def _read(
     except Exception as error:  # the libraries raise nearly anything for damaged files
         problems.append(f"{file}: cannot be read ({(str(error) or type(error).__name__).splitlines()[0]})")
         return NOTHING
+    found = {name: each for name, each in found.items() if not name.startswith("__")}
     faults = [
         f"no variable {show(name)}; {hint(name, found)}" for name in wanted.values() if name not in found
     ]
@@ -62,8 +63,11 @@ def _read(
 def _numbers(values: Any) -> tuple[np.ndarray, list[str]]:
     """A list, row or column of real numbers as floats, shape (n,), and its faults."""
     array = np.asarray(values)
-    if array.dtype.kind not in "fiu" or max(array.shape, default=0) != array.size or not array.size:
+    if array.dtype.kind not in "fiu" or not array.size:
         return np.zeros(0), ["is no list of real numbers"]
+    if max(array.shape, default=0) != array.size:
+        shape = " x ".join(map(str, array.shape))
+        return np.zeros(0), [f"holds {shape} numbers; store each channel as a variable of its own"]
     numbers = array.ravel().astype(float)
     wrong = np.flatnonzero(~np.isfinite(numbers))
     return numbers, [f"has no finite number at sample {wrong[0]}"] if wrong.size else []
@@ -76,15 +80,27 @@ def _matlab(file: Path, names: list[str]) -> Mapping[str, Any]:
         return _hdf5(file, names)
     from scipy.io import loadmat, whosmat
 
-    there = {name: None for name, _, _ in whosmat(file)}
-    return {**there, **loadmat(file, variable_names=[name for name in names if name in there])}
+    classes = {name: kind for name, _, kind in whosmat(file)}
+    wanted = [name for name, kind in classes.items() if name in names or kind == "struct"]
+    return dict.fromkeys(classes) | dict(_fields(loadmat(file, variable_names=wanted)))
+
+
+def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    """Variables, and the fields of structs among them as struct.field."""
+    for name, value in variables.items():
+        yield path + name, value
+        if isinstance(value, np.ndarray) and value.dtype.names and value.size == 1:
+            yield from _fields({each: value[each].item() for each in value.dtype.names}, f"{path}{name}.")
 
 
 def _hdf5(file: Path, names: list[str]) -> Mapping[str, Any]:
+    """Variables by their paths; a dot will do for a slash, as structs of MATLAB are groups."""
     with _module("h5py").File(file, "r") as opened:
         there: list[str] = []
         opened.visit(there.append)
-        return {name: opened[name][()] if name in names else None for name in there}
+        found = {name: opened[name] for name in there}
+        found |= {name: found[name.replace(".", "/")] for name in names if name.replace(".", "/") in found}
+        return {name: each[()] if name in names else None for name, each in found.items()}
 
 
 def _parquet(file: Path, names: list[str]) -> Mapping[str, Any]:

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, nan
 from typing import Any
 
 import numpy as np
 
 from wedgesweep.measured import decimation, sampling
+from wedgesweep.measured.cycles import slope_of_means
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
     FORCE_AMPLITUDE,
@@ -18,7 +19,7 @@ from wedgesweep.measured.declarations import (
     UNITS,
     units,
 )
-from wedgesweep.measured.frequency import estimate_frequency
+from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
 from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
@@ -54,9 +55,14 @@ class Channels:
         columns = {name: samples[kept] for name, samples in self.columns.items()}
         return replace(self, columns=columns, where=lambda sample: self.where(int(kept[sample])))
 
-    def without_trend(self) -> "Channels":
-        """The same with the straight line through each channel removed."""
-        straight = {name: without_trend(samples) for name, samples in self.columns.items() if name != "time"}
+    def without_trend(self, frequency: float) -> "Channels":
+        """The same without the drift of channels that vibrate at a frequency (Hz; NaN: at none)."""
+        time = self.seconds
+        straight = {
+            name: _straightened(time, samples, frequency)
+            for name, samples in self.columns.items()
+            if name != "time"
+        }
         return replace(self, columns={**self.columns, **straight})
 
     @property
@@ -77,10 +83,11 @@ def build_record(
     grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
     if len(problems) > before:
         return None
+    frequency = _frequency(given, channels, grid)
     if given.get("detrend", False):
-        channels = channels.without_trend()
+        channels = channels.without_trend(frequency)
     cut = channels.seconds.size != recorded.seconds.size
-    channels, grid, thinned = _shortened(given, channels, grid)
+    channels, grid, thinned = _shortened(given, channels, grid, frequency)
     amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
@@ -137,17 +144,31 @@ def _size_faults(channels: Channels) -> Iterator[str]:
             yield f"{channel} is constant; there is no vibration in it"
 
 
+def _frequency(given: Mapping[str, Any], channels: Channels, grid: np.ndarray) -> float:
+    """Frequency (Hz) of a steady record where its drift or its length matters, else NaN."""
+    if given.get("kind", STEADY) != STEADY or not (given.get("detrend") or grid.size > MOST_SAMPLES):
+        return nan
+    names = [name for name in channels.columns if name != "time"]
+    leading = channels.columns[INPUT if INPUT in names else names[0]][:MOST_SAMPLES]
+    seconds = UNITS["time"][channels.units["time"]]
+    stated: float | None = given.get("frequency_hz")
+    return stated or estimate_frequency(grid[:MOST_SAMPLES] * seconds, without_trend(leading))
+
+
+def _straightened(time: np.ndarray, samples: np.ndarray, frequency: float) -> np.ndarray:
+    """Samples less their drift about the middle of the record."""
+    if not FEWEST_CYCLES <= frequency * (time[-1] - time[0]) <= 0.25 * time.size:
+        return without_trend(samples)
+    return samples - slope_of_means(time, samples, frequency) * (time - time.mean())
+
+
 def _shortened(
-    given: Mapping[str, Any], channels: Channels, grid: np.ndarray
+    given: Mapping[str, Any], channels: Channels, grid: np.ndarray, frequency: float
 ) -> tuple[Channels, np.ndarray, str]:
     """A steady record of at most MOST_SAMPLES, the times, and a remark if samples were left out."""
     if grid.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
         return channels, grid, ""
-    names = [name for name in channels.columns if name != "time"]
-    leading = channels.columns[INPUT if INPUT in names else names[0]][:MOST_SAMPLES]
+    columns = {name: samples for name, samples in channels.columns.items() if name != "time"}
     seconds = UNITS["time"][channels.units["time"]]
-    frequency = given.get("frequency_hz") or estimate_frequency(grid[:MOST_SAMPLES] * seconds, leading)
-    columns, grid, told = decimation.shortened(
-        {name: channels.columns[name] for name in names}, grid, frequency * seconds, MOST_SAMPLES
-    )
+    columns, grid, told = decimation.shortened(columns, grid, frequency * seconds, MOST_SAMPLES)
     return replace(channels, columns={"time": grid, **columns}), grid, told

@@ -25,6 +25,16 @@ MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+# Beginnings of files that are no text, and what they are.
+BINARY = (
+    (b"PK\x03\x04", "a zip archive, as workbooks of Excel are; export it as CSV"),
+    (b"\xd0\xcf\x11\xe0", "a workbook of Excel or another document; export it as CSV"),
+    (b"\x1f\x8b", "compressed by gzip; unpack it"),
+    (b"\x89HDF", "an HDF5 file; end its name with .h5, or with .mat if it is MATLAB's"),
+    (b"MATLAB 5.0 MAT-file", "a file of MATLAB; end its name with .mat"),
+    (b"PAR1", "a Parquet file; end its name with .parquet"),
+)
+NO_TEXT = "holds null characters, so that it is no text; export it as CSV"
 LINE_END = re.compile(r"\r\n|\n|\r")
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
@@ -66,7 +76,10 @@ class Dialect:
 
 def decode(content: bytes, encoding: str | None) -> tuple[str, str]:
     """Text of a file, and its encoding; raises ValueError if it is no text."""
-    encoding = encoding or _encoding(content)
+    for mark, told in BINARY:
+        if content.startswith(mark):
+            raise ValueError(told)
+    stated, encoding = encoding, encoding or _encoding(content)
     try:
         text = content.decode(encoding)
     except LookupError as error:
@@ -74,10 +87,11 @@ def decode(content: bytes, encoding: str | None) -> tuple[str, str]:
         raise ValueError(message) from error
     except UnicodeDecodeError as error:
         message = f"not {encoding} text (byte {error.start}); state another measurement.csv.encoding"
+        if stated is None and b"\0" in content:
+            message = NO_TEXT
         raise ValueError(message) from error
     if "\0" in text:
-        message = "holds null characters, so that it is no text; export it as CSV"
-        raise ValueError(message)
+        raise ValueError(NO_TEXT)
     return text, encoding
 
 
@@ -150,23 +164,25 @@ def _candidates(lines: Sequence[str], stated: Mapping[str, Any]) -> Iterator[tup
 
 
 def _units(rows: Sequence[Sequence[str]], columns: Sequence[int], width: int) -> tuple[str, ...]:
-    """The first row, if it names the unit of each wanted column: mm or, in brackets, anything."""
+    """The first row, if it has words only, and some are units: mm or, in brackets, anything."""
     if not rows or len(rows[0]) != width:
         return ()
     cells = [rows[0][column] for column in columns]
-    return tuple(bare(cell) for cell in cells) if all(map(_is_unit, cells)) else ()
+    words = not any(character.isdigit() for cell in cells for character in bare(cell)[:1])
+    return tuple(bare(cell) for cell in cells) if words and any(map(_is_unit, cells)) else ()
 
 
 def bare(cell: str) -> str:
-    """A unit without its brackets."""
-    return cell.strip().removeprefix("[").removesuffix("]").removeprefix("(").removesuffix(")").strip()
+    """A unit without its brackets, with u for micro."""
+    inner = cell.strip().removeprefix("[").removesuffix("]").removeprefix("(").removesuffix(")").strip()
+    return inner.replace("\u00b5", "u").replace("\u03bc", "u")
 
 
 def _is_unit(cell: str) -> bool:
     from wedgesweep.measured.declarations import UNITS
 
     bracketed = cell[:1] + cell[-1:] in ("[]", "()")
-    return bracketed or any(cell in units for units in UNITS.values())
+    return bracketed or any(bare(cell) in units for units in UNITS.values())
 
 
 def _decimal(rows: Sequence[Sequence[str]], columns: Sequence[int]) -> str:

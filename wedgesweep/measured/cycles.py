@@ -52,3 +52,13 @@ def cut(
     middle = float(time[0] + step * (first + 0.5 * (count * length - 1)))
     turned = here * np.exp(-1j * omega * np.outer(times, orders))
     return Cycles(omega, middle, times, orders, turned, signal.mean() + fitted[:, 0])
+
+
+def slope_of_means(time: np.ndarray, signal: np.ndarray, frequency: float) -> float:
+    """Slope of the straight line through the means of the cycles of a frequency (Hz), per unit of time.
+
+    A line through the samples would take a part of the vibration with it, unless its periods are whole.
+    """
+    cycles = cut(time, signal, frequency, FIRST_HARMONICS)
+    about = cycles.times - cycles.times.mean()
+    return float(about @ cycles.means / (about @ about))

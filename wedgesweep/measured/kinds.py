@@ -53,7 +53,8 @@ def key_faults(given: Mapping[str, Any]) -> list[str]:
 
 def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
     """Faults of a loop, in its data or by its keys at ``at``."""
-    assert test.displacement is not None
+    if test.displacement is None:  # a fault of the columns
+        return []
     if test.time.size < FEWEST:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a loop"]
     if test.cutoff is not None and not test.cutoff <= HIGHEST * test.sampling_rate:
@@ -69,7 +70,8 @@ def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
 
 def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
     """Faults of a free motion, which must decay."""
-    assert test.displacement is not None
+    if test.displacement is None:  # a fault of the columns
+        return []
     if test.time.size < FEWEST:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a transient"]
     signal = test.displacement

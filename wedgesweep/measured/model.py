@@ -25,7 +25,7 @@ def parse_model(text: str, source: str, problems: list[str]) -> tuple[Config | N
 
 def with_law(config: Config, source: str, problems: list[str]) -> tuple[Config, str]:
     """Return the config and its one friction law; several laws are a fault."""
-    laws = list(dict.fromkeys(case.law for case in config.case_list()))
+    laws = config.sweep.laws
     if len(laws) > 1:
         names = ", ".join(laws)
         problems.append(f"{source}: sweep.friction_law: {names}; a model must name exactly one law")

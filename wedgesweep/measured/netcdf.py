@@ -102,7 +102,10 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         problem = f"{path}: {getattr(error, 'strerror', error)}; give the path of a netCDF file"
         raise MeasuredError([problem]) from error
     with root:
-        return _read(root, path, model)
+        try:
+            return _read(root, path, model)
+        except (RuntimeError, OSError) as error:  # of netCDF4, where content is damaged
+            raise MeasuredError([f"{path}: damaged ({error})"]) from error
 
 
 def _read(root: Any, path: Path, model: Path | None) -> Measurement:

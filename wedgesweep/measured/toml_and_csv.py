@@ -16,7 +16,7 @@ from wedgesweep.measured.measurement import MeasuredError, Measurement, TestReco
 from wedgesweep.measured.model import load_model
 
 # Also matches in a file that is not valid TOML, so that its errors are those of measured data.
-HEADER = re.compile(r"^\s*\[+\s*measurement\b", re.MULTILINE)
+HEADER = re.compile(r"""^\s*(\[+\s*["']?measurement\b|["']?measurement["']?\s*[.=])""", re.MULTILINE)
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:

@@ -1,14 +1,11 @@
 """The extended model: equations and parameters of what was added to the base model."""
 
-from inspect import cleandoc
-from types import ModuleType
 from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.effects import EFFECTS, REGISTERED
-from wedgesweep.friction import LAWS
-from wedgesweep.report import html, phrases
+from wedgesweep.effects import EFFECTS
+from wedgesweep.report import html, mathematics, phrases
 from wedgesweep.report.html import Markup
 
 HEAD = ("parameter", "value", "95 % interval")
@@ -23,8 +20,17 @@ def section(result: DiagnosisResult) -> Markup:
         *_introduction(result),
         *(_effect(result, effect) for effect in result.added),
         _uncertain(result),
-        html.details(f"The base model's friction law: {model['law']}", _law(model["law"])),
+        html.details("Equations of the base model", *_base(model["law"], phrases.system(result.document))),
     )
+
+
+def _base(law: str, system: str) -> list[Markup]:
+    """Equations of motion of the base model, and its friction law."""
+    return [
+        mathematics.of_system(system),
+        html.paragraph(f"Friction law: {law}."),
+        mathematics.of_law(law, system),
+    ]
 
 
 def _introduction(result: DiagnosisResult) -> list[Markup]:
@@ -43,20 +49,14 @@ def _introduction(result: DiagnosisResult) -> list[Markup]:
 
 def _effect(result: DiagnosisResult, effect: str) -> Markup:
     rows = [_row(*each) for each in _parameters(result, effect)]
-    equation = explained(REGISTERED.get(effect))
     return html.join(
         [
             html.element("h3", f"{effect}: {phrases.meaning(effect, result.document)}"),
-            html.element("pre", equation) if equation else Markup(),
+            mathematics.of_effect(effect, phrases.system(result.document)),
             html.table(f"Parameters of {effect}", HEAD, rows),
             html.paragraph(_place(result, effect)),
         ]
     )
-
-
-def explained(module: ModuleType | None) -> str:
-    """The docstring of a module, which holds the equation of an effect or a law; empty for an unknown one."""
-    return cleandoc(module.__doc__ or "") if module else ""
 
 
 def _place(result: DiagnosisResult, effect: str) -> str:
@@ -94,9 +94,3 @@ def _uncertain(result: DiagnosisResult) -> Markup:
     if not rows:
         return Markup()
     return html.table("Uncertain parameters of the model, as fitted", ("scale of", "value", "std"), rows)
-
-
-def _law(law: str) -> Markup:
-    if law not in LAWS:
-        return html.paragraph("This version does not know this law.")
-    return html.element("pre", explained(LAWS[law]))

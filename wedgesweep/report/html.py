@@ -2,12 +2,19 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
+from typing import NamedTuple
 
 
 class Markup(str):
     """Text that is HTML already."""
 
     __slots__ = ()
+
+
+class Spanning(NamedTuple):
+    """A cell of text that fills what is left of its row."""
+
+    content: object
 
 
 def text(value: object) -> Markup:
@@ -53,7 +60,10 @@ def table(
 ) -> Markup:
     """Table whose first column heads its rows; the first ``text_columns`` are text, the others numbers."""
     headers = (element("th", name, scope="col", class_=_kind(i, text_columns)) for i, name in enumerate(head))
-    body = (element("tr", *(_cell(i, cell, text_columns) for i, cell in enumerate(row))) for row in rows)
+    body = (
+        element("tr", *(_cell(i, cell, text_columns, len(head)) for i, cell in enumerate(row)))
+        for row in rows
+    )
     whole = element(
         "table",
         element("caption", caption),
@@ -68,9 +78,11 @@ def _kind(column: int, text_columns: int) -> str | None:
     return None if column < text_columns else "number"
 
 
-def _cell(column: int, cell: object, text_columns: int) -> Markup:
+def _cell(column: int, cell: object, text_columns: int, columns: int) -> Markup:
     if column == 0:
         return element("th", cell, scope="row")
+    if isinstance(cell, Spanning):
+        return element("td", cell.content, colspan=columns - column)
     return element("td", cell, class_=_kind(column, text_columns))
 
 

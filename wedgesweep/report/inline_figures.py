@@ -1,4 +1,8 @@
-"""Figures inside the page, as SVG in its text, each with a caption and an alternative text."""
+"""Figures inside the page, as SVG in its text, each with a caption and an alternative text.
+
+A tap on one fills the window with it: the link leads to the figure itself, and the style sheet shows the
+target of a link large. The link to close it leads to the place where it was.
+"""
 
 import re
 from base64 import b64encode
@@ -37,12 +41,14 @@ class InlineFigures:
 
     def fill(self, page: Markup, n_jobs: int) -> Markup:
         """Return the page with its figures in their places, drawn by ``n_jobs`` processes."""
-        drawn = parallel.map_forked(partial(_draw, self.result), self.wanted, n_jobs)
+        numbered = list(enumerate(self.wanted))
+        drawn = parallel.map_forked(partial(_draw, self.result), numbered, n_jobs)
         return Markup(re.sub("<!-- figure ([0-9]+) -->", lambda place: drawn[int(place[1])], page))
 
 
-def _draw(result: DiagnosisResult, wanted: Wanted) -> Markup:
+def _draw(result: DiagnosisResult, numbered: tuple[int, Wanted]) -> Markup:
     """Draw a figure with its caption; if the tests lack something for it, a sentence says what."""
+    place, wanted = numbered
     picks: dict[str, Any] = {} if wanted.tests is None else {"tests": wanted.tests}
     try:
         figure = figures.draw(result, wanted.name, **picks)
@@ -53,4 +59,18 @@ def _draw(result: DiagnosisResult, wanted: Wanted) -> Markup:
     address = "data:image/svg+xml;base64," + b64encode(figures.svg(figure)).decode("ascii")
     # Its size keeps the page from jumping while it opens.
     image = html.image(src=address, width=width, height=height, alt=alternative)
-    return html.element("figure", image, html.element("figcaption", wanted.caption))
+    return _opening(place, image, width, wanted.caption)
+
+
+def _opening(place: int, image: Markup, width: int, caption: str) -> Markup:
+    """A figure that opens large, and closes again."""
+    large, here = f"figure-{place}", f"at-figure-{place}"
+    figure = html.element(
+        "figure",
+        html.element("a", image, href=f"#{large}", class_="open", title="Open large"),
+        html.element("figcaption", caption),
+        html.element("a", "Close", href=f"#{here}", class_="close"),
+        id=large,
+        style=f"--width: {width}px",
+    )
+    return html.element("div", figure, id=here)

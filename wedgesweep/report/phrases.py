@@ -5,26 +5,14 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from wedgesweep import formatting
+from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.effects import EFFECTS
+from wedgesweep.equations.symbols import unit_of
 from wedgesweep.formatting import LARGE, NO_BREAK, NONE, SMALL, decimals, fixed, number, percent, short
 from wedgesweep.quantity import Quantity
 
+NOISE = "noise"
 INTERVAL = f"95{NO_BREAK}% interval"
-UNITS = {
-    "_N_per_mm3": "N/mm³",
-    "_N_per_mm": "N/mm",
-    "_N_s2_per_m2": "N s²/m²",
-    "_N_s_per_m": "N s/m",
-    "_m_per_s2": "m/s²",
-    "_rad_per_s": "rad/s",
-    "_mm_per_s": "mm/s",
-    "_deg": "°",
-    "_kg": "kg",
-    "_mm": "mm",
-    "_hz": "Hz",
-    "_N": "N",
-    "_s": "s",
-}
 
 
 class Rounded(NamedTuple):
@@ -59,7 +47,7 @@ def counted(count: int, noun: str) -> str:
 def split_key(key: str) -> tuple[str, str]:
     """Name and unit of a config key."""
     quantity = Quantity(key, 0.0, "")
-    return quantity.name.replace("_", " "), UNITS.get(quantity.suffix, "")
+    return quantity.name.replace("_", " "), unit_of(quantity)
 
 
 def with_unit(text: str, unit: str) -> str:
@@ -111,11 +99,21 @@ def interval(gain: Mapping[str, Any]) -> str:
     return f"{INTERVAL} {percent(low)} to {percent(high)}"
 
 
+def system(document: Mapping[str, Any]) -> str:
+    """The mechanical system of a diagnosis."""
+    return document["model"].get("system", "suspension")
+
+
 def meaning(effect: str, document: Mapping[str, Any]) -> str:
     """What an effect is, in words, on the system of a diagnosis."""
     if effect not in EFFECTS:
         return effect.replace("_", " ")
-    return EFFECTS[effect].described(document["model"].get("system", "suspension"))
+    return EFFECTS[effect].described(system(document))
+
+
+def meanings(effects: Sequence[str], document: Mapping[str, Any]) -> str:
+    """What the effects of one explanation are, in words."""
+    return listing([meaning(effect, document) for effect in effects])
 
 
 def combination(effects: Sequence[str]) -> str:
@@ -127,12 +125,23 @@ def accuracy(size: float | None) -> str:
     """A relative model error as a share of the response; 0 is noise alone."""
     if size is None:
         return "none"
-    return "noise" if size == 0.0 else formatting.error(size)
+    return NOISE if size == 0.0 else formatting.error(size)
+
+
+def over_noise(q: float | None, dof: float) -> str:
+    """The error that a misfit stands for, in standard deviations of the noise."""
+    return number(None if q is None or dof <= 0 else sqrt(q / dof))
 
 
 def times_noise(q: float | None, dof: float) -> str:
-    """The error that a misfit stands for, in standard deviations of the noise."""
-    return f"{number(None if q is None or dof <= 0 else sqrt(q / dof))} times the noise"
+    """The same with its unit."""
+    return f"{over_noise(q, dof)} times the noise"
+
+
+def these_tests(result: DiagnosisResult) -> str:
+    """The tests of a diagnosis, at the beginning of a clause: this test, these 12 tests."""
+    count = result.data.sizes["test"]
+    return "this test" if count == 1 else f"these {count} tests"
 
 
 def distinguishes(document: Mapping[str, Any]) -> bool:

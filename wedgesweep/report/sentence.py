@@ -105,8 +105,7 @@ def _rival(rival: Mapping[str, Any], document: Mapping[str, Any]) -> str:
 
 
 def _insufficient(result: DiagnosisResult) -> str:
-    count = result.data.sizes["test"]
-    tests = "this test" if count == 1 else f"these {count} tests"
+    tests = phrases.these_tests(result)
     return f"{_wrong(result)}, but {tests} cannot show what{_adequate(result)}{_next_test(result)}."
 
 

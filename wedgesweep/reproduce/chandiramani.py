@@ -96,7 +96,7 @@ def _search(
     """Results in the order of the searches, whichever job finishes first."""
     tasks = [joblib.delayed(partial(_numbered, k))(*each) for k, each in enumerate(searches)]
     with loky(n_jobs, dict) as pool:
-        return [result for _, result in sorted(pool(tasks), key=lambda pair: pair[0])]
+        return [result for _, result in sorted(pool.parallel()(tasks), key=lambda pair: pair[0])]
 
 
 def _numbered(

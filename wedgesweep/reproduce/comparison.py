@@ -74,11 +74,8 @@ def caveats(runs: Runs) -> list[dict[str, Any]]:
 
 def failed_cases(runs: Runs) -> list[str]:
     """Each failed case in words."""
-    return [
-        f"{name}: {outcome}"
-        for name, run in runs.named.items()
-        for outcome in outcomes.failures(outcomes.of_dataset(run.ds))
-    ]
+    found = {name: outcomes.of_dataset(run.ds) for name, run in runs.named.items()}
+    return [f"{name}: {own[place]}" for name, own in found.items() for place in own.failures.tolist()]
 
 
 def _caveat(name: str, run: Run, law: str) -> dict[str, Any]:

@@ -5,7 +5,7 @@ and event functions are compiled; what remains is scipy's.
 """
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import inf, pi
 from time import perf_counter
@@ -68,7 +68,7 @@ def solve(
     window: Window,
     rtol: float,
     time_limit: float,
-    start: tuple[float, float] = (0.0, 0.0),
+    start: Sequence[float] | np.ndarray = (0.0, 0.0),
     settled: float | None = None,
 ) -> Trajectory:
     """Run one case.
@@ -83,8 +83,9 @@ def solve(
         Relative tolerance of each step.
     time_limit : float
         Wall time (s) after which the case is given up.
-    start : tuple of float
-        Deflection from the rest position (m) and its rate (m/s) at t = 0.
+    start : sequence of float
+        State at t = 0: deflection from the rest position (m), its rate (m/s), then the states of effects,
+        which may be left out where they are 0.
     settled : float, optional
         Settling ends early where a period changes the state by less than this share of input amplitude
         and input velocity; the window then begins earlier. Most of it is run at a coarser tolerance.
@@ -113,10 +114,11 @@ class _Run:
         self.first_step: float | None = None
         self.last_event = -1
 
-    def trajectory(self, start: tuple[float, float], settled: float | None) -> Trajectory:
+    def trajectory(self, start: Sequence[float] | np.ndarray, settled: float | None) -> Trajectory:
         """Follow the modes to the end of the window."""
         y = np.zeros(self.scales.size)
-        y[:2] = start
+        given = np.asarray(start)[: y.size]
+        y[: given.size] = given
         mode, unique = system.initial_mode(0.0, y, self.case)
         self._require(unique, 0.0)
         y, mode = self._settle(y, mode, settled)

@@ -1,16 +1,30 @@
-"""Backends: cases run in threads or processes of this machine; ``cluster`` adds a Dask cluster.
-
-Each backend provides a joblib.Parallel.
-"""
+"""Backends: cases run in threads or processes of this machine; ``cluster`` adds a Dask cluster."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 import joblib
 
 from wedgesweep.errors import SweepError
+
+# Tasks that a worker has, or that wait for it.
+SENT_AHEAD = 2
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Workers: ``parallel()`` is a joblib.Parallel on those that are there now.
+
+    A joblib.Parallel is of no more use after one of the errors ``lost``, which show that a worker has died.
+    """
+
+    parallel: Callable[[], joblib.Parallel]
+    n_jobs: int
+    lost: tuple[type[BaseException], ...] = ()
 
 
 class Backend(Protocol):
@@ -18,26 +32,27 @@ class Backend(Protocol):
 
     def __call__(
         self, n_jobs: int, fingerprint: Callable[[], dict[str, str]]
-    ) -> AbstractContextManager[joblib.Parallel]: ...
+    ) -> AbstractContextManager[Pool]: ...
 
 
 def parallel(**options: Any) -> joblib.Parallel:
     """Return a joblib.Parallel that yields results as they finish."""
     # Chunks are batches already.
-    return joblib.Parallel(return_as="generator_unordered", batch_size=1, **options)
+    ahead = f"{SENT_AHEAD} * n_jobs"
+    return joblib.Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch=ahead, **options)
 
 
 @contextmanager
-def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
+def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[Pool]:
     """Threads of this process: start at once, and suit compiled solvers, which release the GIL."""
-    yield parallel(n_jobs=n_jobs, backend="threading")
+    yield Pool(partial(parallel, n_jobs=n_jobs, backend="threading"), n_jobs)
 
 
 @contextmanager
-def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[joblib.Parallel]:
+def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[Pool]:
     """Processes of this machine."""
     try:
-        yield parallel(n_jobs=n_jobs)
+        yield Pool(partial(parallel, n_jobs=n_jobs), n_jobs, (BrokenExecutor,))
     except BrokenExecutor as error:
         message = "a job died, killed or out of memory; rerun the same command to resume"
         raise SweepError(message) from error

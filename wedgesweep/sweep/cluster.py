@@ -1,16 +1,16 @@
 """The backend of a Dask cluster, imported only when requested."""
 
 import importlib.util
+import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
-import joblib
 from joblib._dask import Batch, DaskDistributedBackend
 
 from wedgesweep.errors import SweepError
-from wedgesweep.sweep.backend import parallel
+from wedgesweep.sweep.backend import Pool, parallel
 from wedgesweep.sweep.fingerprint import differences
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ TIMEOUT = 10.0
 @contextmanager
 def dask(
     n_jobs: int, fingerprint: Callable[[], dict[str, str]], scheduler: str | None = None
-) -> Iterator[joblib.Parallel]:
+) -> Iterator[Pool]:
     """Workers of a running cluster, or of a local one with ``n_jobs`` processes that ends with this run.
 
     Raises SweepError if there is no cluster, or if its workers run another version.
@@ -37,8 +37,9 @@ def dask(
         client = _connected(opened, scheduler) if scheduler else _local(opened, n_jobs)
         _require_same(client, fingerprint)
         try:
-            yield parallel(backend=_Dask(client=client))
-        except (KilledWorker, CancelledError) as error:
+            cores = sum(client.ncores().values())
+            yield Pool(lambda: parallel(backend=_Dask(client=client)), cores, (KilledWorker,))
+        except CancelledError as error:
             message = f"the Dask cluster gave up: {error}; rerun the same command to resume"
             raise SweepError(message) from error
 
@@ -46,9 +47,9 @@ def dask(
 def _local(opened: ExitStack, n_jobs: int) -> "Client":
     from distributed import Client, LocalCluster
 
-    cluster = opened.enter_context(
-        LocalCluster(n_workers=n_jobs, threads_per_worker=1, processes=True, dashboard_address=":0")
-    )
+    # Workers that die are told by the sweep; what Dask logs when a run is stopped early reads like faults.
+    options = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.CRITICAL}
+    cluster = opened.enter_context(LocalCluster(n_workers=n_jobs, processes=True, **options))
     return opened.enter_context(Client(cluster, set_as_default=False))
 
 

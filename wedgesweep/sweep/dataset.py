@@ -1,17 +1,23 @@
 """The labelled dataset of a sweep: one table of every variable, and its netCDF encoding."""
 
+import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from wedgesweep.errors import SweepError
 from wedgesweep.files import regular, written
 from wedgesweep.outcome import Outcome
+
+# xarray takes a third of a second to load, in which the processes that solve cases could already do so.
+if TYPE_CHECKING:
+    import xarray as xr
+
+log = logging.getLogger(__name__)
 
 STATUSES = tuple(map(str, Outcome))
 HARMONICS = 9
@@ -146,12 +152,14 @@ def assemble(
     shape: tuple[int, ...],
     attrs: Mapping[str, Any],
     long_names: Mapping[str, str | None] = MappingProxyType({}),
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Assemble the dataset from the records of all cases, in any order.
 
     ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), one
     for a list (case). ``long_names``: those of another system, by variable; None: it does not have it.
     """
+    import xarray as xr
+
     case_dims = GRID if len(shape) == 3 else ("case",)
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
@@ -194,7 +202,7 @@ def _attributes(variable: Variable, long_name: str) -> dict[str, Any]:
     return attributes
 
 
-def write(dataset: xr.Dataset, path: Path) -> None:
+def write(dataset: "xr.Dataset", path: Path) -> None:
     """Write netCDF to a temporary file beside ``path``, and move it there when it is complete."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
     encoding: dict[str, dict[str, Any]] = {str(name): {"_FillValue": None} for name in dataset.coords}
@@ -212,10 +220,13 @@ def write(dataset: xr.Dataset, path: Path) -> None:
         ) as error:  # netCDF4 raises any of them, without a file name
             message = f"{path}: cannot be written ({_reason(error)}); is the disk full?"
             raise SweepError(message) from error
+    log.debug("%s: written, %d bytes", path, path.stat().st_size)
 
 
-def read(path: Path) -> xr.Dataset:
+def read(path: Path) -> "xr.Dataset":
     """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
+    import xarray as xr
+
     try:
         regular(path)
     except OSError as error:
@@ -228,7 +239,7 @@ def read(path: Path) -> xr.Dataset:
         raise SweepError(message) from error
 
 
-def read_sweep(path: Path) -> xr.Dataset:
+def read_sweep(path: Path) -> "xr.Dataset":
     """Load the dataset of a sweep; raises SweepError, also if it lacks what every sweep has."""
     found = read(path)
     if faults := list(_faults(found)):
@@ -237,7 +248,7 @@ def read_sweep(path: Path) -> xr.Dataset:
     return found
 
 
-def _faults(ds: xr.Dataset) -> Iterator[str]:
+def _faults(ds: "xr.Dataset") -> Iterator[str]:
     """What tells a dataset from that of a sweep: coordinates, dimensions, and the kinds of its variables."""
     yield from (f"no coordinate {name}" for name in (*GRID, "frequency") if name not in ds.coords)
     yield from (f"no variable {name}" for name in REQUIRED if name not in ds)

@@ -7,6 +7,8 @@ from time import perf_counter
 
 import numpy as np
 
+from wedgesweep.sweep.backend import local
+from wedgesweep.sweep.backend import threads as in_threads
 from wedgesweep.sweep.cases import compile_once
 from wedgesweep.sweep.run import Sweep
 
@@ -17,28 +19,39 @@ GOLDEN = 0.6180339887498949
 
 @dataclass(frozen=True)
 class Estimate:
-    """Cost of all cases of a sweep; ``sampled`` holds the records of the cases that were timed."""
+    """Cost of all cases of a sweep; ``sampled`` holds the records of the cases that were timed.
+
+    ``memory`` (bytes) is that of all processes, of which each case adds ``bytes_per_case``.
+    """
 
     sampled: np.ndarray
-    seconds_on_one_job: float
-    process_bytes: int
+    seconds: float
+    memory: float
+    bytes_per_case: int
     dataset_bytes: int
 
 
-def estimate(sweep: Sweep) -> Estimate:
-    """Time a few cases spread over the sweep, for some seconds, and extrapolate."""
-    cases = len(sweep.parameters)
+def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
+    """Time a few cases spread over the sweep, for some seconds, and extrapolate to ``n_jobs`` jobs."""
     compile_once(sweep.settings.method, sweep.kit, sweep.config.system)
     sweep.solve(np.array([0]))  # loads the compiled code
     started = perf_counter()
     records = []
-    for index in _spread(cases):
+    for index in _spread(sweep.count):
         records.append(sweep.solve(np.array([index])))
         if perf_counter() - started > SECONDS:
             break
     sampled = np.concatenate(records)
-    seconds = float(sampled["wall_time"].mean() * cases)
-    return Estimate(sampled, seconds, _peak_memory(), cases * sweep.dtype.itemsize)
+    threads = local(sweep.settings.method) is in_threads
+    processes = 1 if threads else n_jobs + 1
+    each = sweep.dtype.itemsize
+    return Estimate(
+        sampled,
+        float(sampled["wall_time"].mean() * sweep.count) / n_jobs,
+        processes * _peak_memory() + sweep.count * each,
+        each,
+        sweep.count * each,
+    )
 
 
 def _spread(count: int) -> list[int]:

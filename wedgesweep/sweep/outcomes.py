@@ -1,10 +1,12 @@
 """How each case of a sweep ended, whether the sweep is finished or not."""
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from wedgesweep import config
@@ -17,6 +19,8 @@ from wedgesweep.sweep.run import Sweep
 LIFT_OFF = "lift_off_fraction"
 # A variable of unilateral joints.
 OPENS = "column_open_fraction"
+# Variables of the dataset that Outcomes holds.
+COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
 
 class CaseResult(NamedTuple):
@@ -50,55 +54,92 @@ class CaseResult(NamedTuple):
         return f"{where}: {self.status}: {self.message}"
 
 
-def of_dataset(ds: xr.Dataset) -> list[CaseResult]:
+@dataclass(frozen=True)
+class Outcomes:
+    """How cases ended: columns, shape (n,), as a sweep may have millions of cases.
+
+    ``describe_case`` gives law, beta, amplitude, unit and message of one of them.
+    """
+
+    status: np.ndarray
+    period: np.ndarray
+    periodicity: np.ndarray
+    lift_off_fraction: np.ndarray
+    describe_case: Callable[[int], tuple[str, float, float, str, str]]
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __getitem__(self, place: int) -> CaseResult:
+        law, beta, amplitude, unit, message = self.describe_case(place)
+        return CaseResult(
+            law,
+            beta,
+            amplitude,
+            Outcome(self.status[place]),
+            message,
+            int(self.period[place]),
+            float(self.periodicity[place]),
+            float(self.lift_off_fraction[place]),
+            unit,
+        )
+
+    @property
+    def counts(self) -> dict[Outcome, int]:
+        """Number of cases with each outcome that occurs, the most frequent first."""
+        numbers = np.bincount(self.status, minlength=len(Outcome)).tolist()
+        found = {outcome: numbers[outcome] for outcome in Outcome if numbers[outcome]}
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+    @cached_property
+    def failures(self) -> np.ndarray:
+        """Places of cases that failed."""
+        return np.flatnonzero(self.status != Outcome.OK)
+
+    @property
+    def unsettled(self) -> int:
+        """Number of cases that were solved, but did not reach a steady response."""
+        return int(((self.status == Outcome.OK) & ~settled(self.period, self.periodicity)).sum())
+
+    @property
+    def lifted(self) -> int:
+        """Number of cases that were solved, but lie outside of the model's validity."""
+        return int(((self.status == Outcome.OK) & (self.lift_off_fraction > 0.0)).sum())
+
+
+def of_dataset(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended."""
     if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
-    frame = ds[["status", "message", "period", "periodicity", LIFT_OFF]].to_dataframe().reset_index()
-    frame = frame.rename(columns={"friction_law": "law"})
-    frame["unit"] = ds["amplitude"].attrs.get("units", "m")
-    columns = {name: frame[name].tolist() for name in CaseResult._fields}
-    columns["status"] = map(Outcome, columns["status"])
-    return list(map(CaseResult, *columns.values()))
+    unit = ds["amplitude"].attrs.get("units", "m")
+    shape, dims = ds["status"].shape, ds["status"].dims
+
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        at = dict(zip(dims, (int(each) for each in np.unravel_index(place, shape)), strict=True))
+        case = ds[["friction_law", "beta", "amplitude", "message"]].isel(at)
+        law, beta, amplitude, message = (
+            case[name].item() for name in ("friction_law", "beta", "amplitude", "message")
+        )
+        return law, beta, amplitude, unit, message
+
+    columns = {name: ds[name].values.ravel() for name in COLUMNS}
+    return Outcomes(**columns, describe_case=described)
 
 
-def of_journal(path: Path) -> list[CaseResult]:
+def of_journal(path: Path) -> Outcomes:
     """How the finished cases of an unfinished sweep ended."""
     header = journal.header(path)
     settings = config.parse(header["config"], str(path))
     if settings.sha256 != header["config_sha256"]:
         message = f"{path}: damaged in its first line, whose config is not that of the records"
         raise SweepError(message)
-    cases = settings.case_list()
-    return [
-        CaseResult(
-            **cases[record["index"]]._asdict(),
-            status=Outcome(record["status"]),
-            message=record["message"].decode(),
-            period=int(record["period"]),
-            periodicity=float(record["periodicity"]),
-            lift_off_fraction=0.0 if settings.opens else float(record[LIFT_OFF]),
-            unit="N" if settings.forced else "m",
-        )
-        for record in journal.read(path, Sweep(settings, path).dtype)
-    ]
+    records = journal.read(path, Sweep(settings, path).dtype)
 
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        case = settings.sweep.case(records["index"][place])
+        return (*case, "N" if settings.forced else "m", records["message"][place].decode())
 
-def counts(results: Sequence[CaseResult]) -> Counter[Outcome]:
-    """Number of cases with each outcome."""
-    return Counter(result.status for result in results)
-
-
-def failures(results: Sequence[CaseResult]) -> list[CaseResult]:
-    """Cases that failed."""
-    return [result for result in results if result.status != Outcome.OK]
-
-
-def unsettled(results: Sequence[CaseResult]) -> list[CaseResult]:
-    """Cases that were solved, but did not reach a steady response."""
-    return [result for result in results if result.status == Outcome.OK and not result.settled]
-
-
-def lifted(results: Sequence[CaseResult]) -> list[CaseResult]:
-    """Cases that were solved, but lie outside of the model's validity."""
-    return [result for result in results if result.status == Outcome.OK and result.lifted]
+    columns = {name: records[name] for name in COLUMNS}
+    if settings.opens:
+        columns[LIFT_OFF] = np.zeros(len(records))
+    return Outcomes(**columns, describe_case=described)

@@ -1,18 +1,15 @@
 """A sweep: solves the cases of a config in parallel, storing each at once, and assembles the dataset."""
 
-import signal
-import threading
-import warnings
-from collections.abc import Callable, Generator, Iterator
-from contextlib import ExitStack, closing, contextmanager
+import logging
+from collections.abc import Callable, Generator
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import cached_property, partial
+from functools import partial
 from math import nan
 from pathlib import Path
 from typing import Any
 
-import joblib
 import numpy as np
 import xarray as xr
 
@@ -22,21 +19,22 @@ from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, journal, labels, provenance
-from wedgesweep.sweep.backend import Backend, local
-from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases, solve_chunk
+from wedgesweep.sweep.backend import Backend, Pool, local
+from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases
+from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
+from wedgesweep.sweep.workers import Workers, interrupts_ignored
 from wedgesweep.systems import has_own_mechanics, kits, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
+
+log = logging.getLogger(__name__)
 
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
 
-# The event-driven solver takes CHUNK cases at a time, which also go into the journal together; a small
-# sweep is divided into CHUNKS smaller chunks.
-CHUNK, CHUNKS = 200, 64
-# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
-OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
+# How a case can end by the load or the state of the machine: such a case is run again.
+PASSING = (Outcome.TIME_LIMIT, Outcome.WORKER_LOST)
 
 
 class CaseFailedError(SweepError):
@@ -51,10 +49,10 @@ class Sweep:
     out: Path
     command: str = ""
 
-    @cached_property
-    def parameters(self) -> np.ndarray:
-        """Parameter records of all cases, shape (n,)."""
-        return self.config.records()
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        return self.config.sweep.count
 
     @property
     def settings(self) -> Settings:
@@ -76,15 +74,9 @@ class Sweep:
         return dataset.record_dtype(self.sizes, self.settings.continuation)
 
     @property
-    def together(self) -> np.ndarray:
-        """Indices of cases, shape (n, m); those in a row depend on each other.
-
-        In a continuation a row holds all frequencies of one law and amplitude, otherwise a single case.
-        """
-        indices = np.arange(len(self.parameters)).reshape(self.config.case_coordinates()[0])
-        if self.settings.continuation:
-            return indices.swapaxes(1, 2).reshape(-1, indices.shape[1])
-        return indices.reshape(-1, 1)
+    def rows(self) -> Rows:
+        """The cases, those together that depend on each other."""
+        return Rows(self.config.sweep.shape, self.settings.continuation)
 
     @property
     def journal_path(self) -> Path:
@@ -93,12 +85,12 @@ class Sweep:
     @property
     def extended(self) -> bool:
         """Whether effects of the config need the extended mechanics."""
-        return bool(has_own_mechanics(self.parameters).any())
+        return bool(has_own_mechanics(self.config.records_of_laws).any())
 
     @property
     def kit(self) -> int:
         """The largest kit of parts that the cases need."""
-        return int(kits(self.parameters).max(initial=0))
+        return int(kits(self.config.records_of_laws).max(initial=0))
 
     @property
     def fingerprint(self) -> dict[str, str]:
@@ -125,11 +117,13 @@ class Sweep:
         return found
 
     def discard(self) -> None:
-        """Delete the results of earlier runs; raises SweepError if ``out`` is not the dataset of a sweep."""
+        """Delete the journal of earlier runs; their dataset stays until another one takes its place.
+
+        Raises SweepError if ``out`` is not the dataset of a sweep.
+        """
         if self.out.exists():
             _read_sweep(self.out)
         journal.discard(self.journal_path)
-        self.out.unlink(missing_ok=True)
 
     def run(
         self,
@@ -139,6 +133,7 @@ class Sweep:
         progress: Progress = lambda records, total: None,
         backend: Backend | None = None,
         fresh: bool = False,
+        tell: Callable[[str], None] = lambda remark: None,
     ) -> xr.Dataset:
         """Run the cases that are not finished yet, or all if ``fresh``, and write the dataset.
 
@@ -156,6 +151,8 @@ class Sweep:
             Where the cases run; by default the backend of this machine that suits the solver.
         fresh : bool
             Whether to discard the results of earlier runs.
+        tell : callable
+            Called with a remark when workers die and are replaced.
 
         Returns
         -------
@@ -175,8 +172,8 @@ class Sweep:
             if fresh:
                 self.discard()
             kept = opened.enter_context(Journal(self.journal_path, self.dtype, self.journal_header))
-            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout)))
-            records = np.empty(len(self.parameters), self.dtype)
+            parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout, tell)))
+            records = self._empty()
             for part in parts:
                 records[part["index"]] = part
                 progress(part, len(records))
@@ -190,54 +187,54 @@ class Sweep:
     def run_here(self, case_timeout: float | None = None) -> xr.Dataset:
         """Run all cases one after the other in this process; nothing is stored."""
         started = datetime.now(UTC)
-        indices = np.arange(len(self.parameters))
+        indices = np.arange(self.count)
         return self.assembled(self.solve(indices, case_timeout), started)
 
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
         """Solve the cases with these indices (in a continuation: whole lines) in this process."""
         limit = self._limit(case_timeout)
-        return solve_cases(self.parameters[indices], indices, self.settings, limit, self.dtype)
+        return solve_cases(self.config.records(indices), indices, self.settings, limit, self.dtype)
 
-    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> joblib.Parallel:
-        with _interrupts_ignored():
+    def _open(self, opened: ExitStack, backend: Backend, n_jobs: int) -> Pool:
+        with interrupts_ignored():
             return opened.enter_context(backend(n_jobs, partial(fingerprint, self.config)))
 
     def _all_records(
-        self, kept: Journal, pool: joblib.Parallel, case_timeout: float | None
+        self, kept: Journal, pool: Pool, case_timeout: float | None, tell: Callable[[str], None]
     ) -> Generator[np.ndarray, None, None]:
-        # Whether a case exceeds its time limit depends on the load of the machine: such cases are run again.
-        whole = kept.records[kept.records["status"] != Outcome.TIME_LIMIT]
-        rows = self.together
-        todo = rows[~np.isin(rows, whole["index"]).all(axis=1)]
-        if todo.size:
+        whole = kept.records[~np.isin(kept.records["status"], PASSING)]
+        complete = self.rows.complete(whole["index"])
+        todo = self.rows.without(complete)
+        if len(todo):
             compile_once(self.settings.method, self.kit, self.config.system)
-        yield whole[~np.isin(whole["index"], todo)]
-        with closing(self._solve_parallel(todo, pool, self._limit(case_timeout))) as parts:
+        log.debug("%s: %d cases of an earlier run", self.journal_path, len(whole))
+        yield whole[np.isin(self.rows.of(whole["index"]), complete)]
+        workers = Workers(
+            pool,
+            partial(self.rows.chunks, method=self.settings.method),
+            partial(self._chunk, self._limit(case_timeout)),
+            self.rows.of,
+            tell,
+        )
+        with closing(workers.solve(todo)) as parts:
             for records in parts:
                 kept.append(records)
+                log.debug("%d cases solved in %.3g s", len(records), records["wall_time"].sum())
                 yield records
 
-    def _solve_parallel(
-        self, rows: np.ndarray, pool: joblib.Parallel, case_timeout: float
-    ) -> Generator[np.ndarray, None, None]:
-        if not rows.size:
-            return
-        with _interrupts_ignored():
-            results = pool(
-                joblib.delayed(solve_chunk)(
-                    Chunk(self.parameters[chunk], chunk, self.settings, case_timeout, self.dtype)
-                )
-                for chunk in _chunks(rows, self.settings.method)
-            )
+    def _chunk(self, case_timeout: float, rows: np.ndarray) -> Chunk:
+        """The task to solve some rows of cases."""
+        cases = self.rows.cases(rows).ravel()
+        return Chunk(self.config.records(cases), cases, self.settings, case_timeout, self.dtype)
+
+    def _empty(self) -> np.ndarray:
+        """Room for the records of all cases; the system hands it out as they are filled in."""
         try:
-            # "yield from" would close the results outside of the filter below.
-            for records in results:  # noqa: UP028
-                yield records
-        finally:
-            with warnings.catch_warnings():
-                # joblib warns when a run is stopped early.
-                warnings.simplefilter("ignore", UserWarning)
-                results.close()
+            return np.empty(self.count, self.dtype)
+        except MemoryError as error:
+            needed = f"{self.count * self.dtype.itemsize / 1e9:.3g} GB"
+            message = f"{self.count} cases need {needed} of memory; split the sweep into several configs"
+            raise SweepError(message) from error
 
     def _limit(self, case_timeout: float | None) -> float:
         return self.settings.case_timeout if case_timeout is None else case_timeout
@@ -245,7 +242,7 @@ class Sweep:
     def _require_ok(self, records: np.ndarray) -> None:
         failed = records[records["status"] != Outcome.OK]
         if failed.size:
-            case = self.config.case_list()[failed[0]["index"]]
+            case = self.config.sweep.case(failed[0]["index"])
             unit = "N" if self.config.forced else "m"
             message = (
                 f"{describe(case.law, case.beta, case.amplitude, unit)}: {failed[0]['message'].decode()}"
@@ -265,7 +262,7 @@ class Sweep:
 
     def _physics(self) -> dict[str, Any]:
         """Properties of the system that figures refer to (SI)."""
-        p = self.parameters[0]
+        p = self.config.records(np.array([0]))[0]
         if self.config.system == "oscillator":
             return {
                 "omega_n": self.config.sweep.omega_n,
@@ -283,17 +280,6 @@ class Sweep:
         }
 
 
-def _chunks(rows: np.ndarray, method: str) -> Iterator[np.ndarray]:
-    """Divide the rows of cases into the chunks that jobs solve: one slow case, or many fast ones.
-
-    A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
-    neighbours would leave some jobs idle at the end.
-    """
-    size = min(CHUNK, -(-rows.size // CHUNKS)) if method == "event-driven" else 1
-    count = -(-len(rows) // max(size // rows.shape[1], 1))
-    return (rows[first::count].ravel() for first in range(count))
-
-
 def unfinished(out: Path) -> xr.Dataset | None:
     """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
 
@@ -303,7 +289,7 @@ def unfinished(out: Path) -> xr.Dataset | None:
     if not path.exists():
         return None
     sweep = Sweep(parse(journal.header(path)["config"], str(path)), out)
-    records = dataset.blank(sweep.dtype, np.arange(len(sweep.parameters)))
+    records = dataset.blank(sweep.dtype, np.arange(sweep.count))
     done = journal.read(path, sweep.dtype)
     records[done["index"]] = done
     return sweep.assembled(records, datetime.now(UTC))
@@ -317,17 +303,3 @@ def _read_sweep(path: Path) -> xr.Dataset:
         message = f"{path}: not the dataset of a sweep, as its fingerprint is missing; it is not overwritten"
         raise SweepError(message) from error
     return found
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -69,7 +69,7 @@ def synthesize(
     if problems:
         raise SynthesisError(problems)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
-    motions = _motions(truth, options, n_jobs)
+    motions = _motions(truth, options, n_jobs, plan.source)
     tables = [_table(truth, *each, options) for each in zip(truth.tests, motions, strict=True)]
     model = Config(config.document | {"effects": {}, "title": "base model"})
     measured = _measured(directory.name, config, plan, options)
@@ -86,7 +86,7 @@ def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) 
     unit = config.amplitude_unit.unit
     excited = f'{source} has excitation = "{config.excitation}"'
     faults = [
-        f"test[{i}].amplitude_{test.unit}: {excited}; write amplitude_{unit}"
+        f"{plan.source}: test[{i}].amplitude_{test.unit}: {excited}; write amplitude_{unit}"
         for i, test in enumerate(plan.tests)
         if test.unit != unit
     ]
@@ -100,8 +100,8 @@ def _name(i: int, test: TrueTest) -> str:
     return f"test[{i}] ({test.plan.frequency_hz:g} Hz, {test.plan.amplitude:g} {test.plan.unit})"
 
 
-def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
-    """Simulate the tests; raises SynthesisError with every test that fails."""
+def _motions(truth: Truth, options: Options, n_jobs: int, source: str) -> list[Motion]:
+    """Simulate the tests; raises SynthesisError with every test of the plan's file that fails."""
     compile_once("radau", int(kits(truth.record(truth.tests[0]))[0]), truth.config.system)
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
@@ -117,7 +117,7 @@ def _motions(truth: Truth, options: Options, n_jobs: int) -> list[Motion]:
     found = joblib.Parallel(n_jobs=n_jobs)(jobs)
     faults = [_fault(truth, test, motion) for test, motion in zip(truth.tests, found, strict=True)]
     problems = [
-        f"{_name(i, test)}: {fault}"
+        f"{source}: {_name(i, test)}: {fault}"
         for i, (test, fault) in enumerate(zip(truth.tests, faults, strict=True))
         if fault
     ]

@@ -5,13 +5,13 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from shutil import rmtree
 from typing import Any
 
 import numpy as np
 
 from wedgesweep.config import Config, toml
 from wedgesweep.errors import InputError
+from wedgesweep.files import beside
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,18 +39,13 @@ def write(
     directory: Path, measured: dict[str, Any], model: Config, tables: Sequence[Table], truth: dict[str, Any]
 ) -> None:
     """Write all files into a directory, or nothing."""
-    partial = directory.with_name(f"{directory.name}.partial")
-    rmtree(partial, ignore_errors=True)
-    partial.mkdir()
-    try:
+    with beside(directory) as partial:
         (partial / "measured.toml").write_text(toml.dumps(measured), encoding="utf-8")
         (partial / "model.toml").write_text(model.to_toml(), encoding="utf-8")
         (partial / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
         for test, table in zip(measured["measurement"]["test"], tables, strict=True):
             _write_csv(partial / test["file"], table)
         os.replace(partial, directory)
-    finally:
-        rmtree(partial, ignore_errors=True)
 
 
 def _write_csv(path: Path, table: Table) -> None:

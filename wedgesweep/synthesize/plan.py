@@ -46,10 +46,11 @@ class PlannedTest:
 
 @dataclass(frozen=True)
 class Plan:
-    """The tests, and the relative std of uncertain numbers by the effect that scales them."""
+    """The tests, the relative std of uncertain numbers by the effect that scales them, and their file."""
 
     tests: tuple[PlannedTest, ...]
     uncertain: dict[str, float]
+    source: str = "tests"
 
 
 def load(path: Path) -> Plan:
@@ -65,7 +66,7 @@ def load(path: Path) -> Plan:
     document = ROOT.read(given, "", problems)
     if problems:
         raise InputError([f"{path}: {problem}" for problem in problems])
-    return Plan(tuple(map(_planned, document["test"])), document["uncertain"])
+    return Plan(tuple(map(_planned, document["test"])), document["uncertain"], str(path))
 
 
 def _planned(given: Mapping[str, Any]) -> PlannedTest:

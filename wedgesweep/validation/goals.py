@@ -55,7 +55,7 @@ def _shows(record: Record) -> bool:
 
 
 class Goal(NamedTuple):
-    """One line of the table; ``satisfied`` is None without any sets."""
+    """One line of the table; ``satisfied`` is None without any sets, or if nothing is required."""
 
     what: str
     required: str
@@ -63,8 +63,8 @@ class Goal(NamedTuple):
     satisfied: bool | None
 
     def __str__(self) -> str:
-        outcome = {None: "no sets", True: "met", False: "missed"}[self.satisfied]
-        return f"{self.what:52} {self.required:18} {self.reached:28} {outcome}"
+        outcome = {None: "no sets" if self.required else "", True: "met", False: "missed"}[self.satisfied]
+        return f"{self.what:52} {self.required:18} {self.reached:28} {outcome}".rstrip()
 
 
 def _at_least(what: str, found: Share, least: float) -> Goal:
@@ -75,11 +75,16 @@ def _at_most(what: str, found: Share, most: float) -> Goal:
     return Goal(what, f"<= {most:.0%}", str(found), found.value <= most if found.n else None)
 
 
+def _told(what: str, found: Share) -> Goal:
+    """A line that nothing is required of."""
+    return Goal(what, "", str(found), None)
+
+
 def goals(sets: Sets) -> list[Goal]:
     """All lines of the table."""
     clean = share(sets.of("clean"), lambda record: bool(record["causes"]))
     unknown, two, three = sets.of("unknown"), sets.of("poor"), sets.of("added")
-    imperfect = sets.of("imperfect")
+    imperfect, errors = sets.of("imperfect"), sets.of("errors-only")
     return [
         Goal("nothing hidden: a cause named", "at most 1", str(clean), clean.hits <= 1 if clean.n else None),
         _at_least("one effect, excess >= 800: right family", share(sets.strong, judge.right_family), 0.95),
@@ -99,10 +104,10 @@ def goals(sets: Sets) -> list[Goal]:
             "small errors, one effect: it leads the ladder", share(imperfect, judge.leads_ladder), 0.90
         ),
         _at_least("  named, alone or with errors that are there", share(imperfect, judge.names_cause), 0.80),
+        _told("  named alone", share(imperfect, judge.exact)),
         _at_most("  wrong `named`", share(imperfect, judge.names_another_cause), 0.03),
-        _at_least(
-            "small errors only: nothing missing", share(sets.of("errors-only"), judge.nothing_missing), 0.90
-        ),
+        _at_least("small errors only: nothing missing", share(errors, judge.nothing_missing), 0.90),
+        _told("  an error that is there named", share(errors, judge.names_what_is_there)),
         _at_least(
             "rig of any size: exact or in a tie", share(sets.of("random-rig"), judge.exact_or_tied), 0.95
         ),

@@ -55,6 +55,11 @@ def names_cause(record: Record) -> bool:
     return {*record["truth"]} <= {*answer(record)} and further <= {*imperfect.EFFECTS}
 
 
+def names_what_is_there(record: Record) -> bool:
+    """Whether a verdict on a bench with errors only names some of them, and nothing else."""
+    return bool(answer(record)) and {*answer(record)} <= {*imperfect.EFFECTS}
+
+
 def names_another_cause(record: Record) -> bool:
     """Whether a verdict on an imperfect bench is certain and wrong."""
     return record["verdict"] == "named" and not names_cause(record)

@@ -23,12 +23,12 @@ STUCK = 1e-3
 # Steps of log amplitudes and of factors on uncertain parameters in finite differences.
 STEP = 1e-4
 # An estimate need not be better than this share.
-FTOL, EVALUATIONS = 1e-3, 12
+FTOL, EVALUATIONS = 1e-2, 8
 # Residual that stands for a response that does not exist.
 ABSENT = 1e3
 START_PHASES = 256
 # Strengths at which `reach` looks first, its iterations, and how close log(excess) must come.
-COARSE, BISECTIONS, CLOSE = 13, 14, 0.05
+COARSE, BISECTIONS, CLOSE = 13, 14, 0.2
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from wedgesweep.excitation import has_series
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
 
+EQUATIONS = ("m x'' + c (x' - u') + k (x - u) + mu N = F + R",)
 OSCILLATOR = (
     Quantity("mass_kg", nan, "mass, m", above=0.0),
     Quantity("spring_N_per_mm", nan, "stiffness of the spring, k; 0: none", minimum=0.0),

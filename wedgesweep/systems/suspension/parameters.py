@@ -22,6 +22,12 @@ from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
 from wedgesweep.systems.suspension.equilibrium import determinant, equilibrium
 
+EQUATIONS = (
+    "M_w (u'' e_z + r z'' t_c) = (F_w - M_w g) e_z - (N_c n_c + mu_c |N_c| t_c) + (N_b p_b - mu_b |N_b| t_b)",
+    "M_b (u'' + z'') = F_b - M_b g - 2 (N_b p_b - mu_b |N_b| t_b) . e_z",
+    "F_b = -k_b z + R",
+    "F_w = F_w0 - k_w r z cos(gamma)",
+)
 SUSPENSION = (
     Quantity("bolster_mass_kg", 0.70, "mass of the bolster, M_b", above=0.0),
     Quantity("wedge_mass_kg", 0.17, "mass of one wedge, M_w", minimum=0.0),
@@ -64,11 +70,12 @@ RESTITUTION = Quantity(
 # Marks of records with unilateral joints, and of those without effects that have mechanics of their own.
 OPENS: list[tuple] = [(UNILATERAL, [("restitution", np.float64)])]
 PLAIN: list[tuple] = [("plain_unilateral", np.int64)]
-# Effects that unilateral joints go with, beside those that only change numbers of the model.
+# Effects with mechanics of their own that unilateral joints go with, and one without that they do not.
 GO_WITH_LIFT_OFF = (
     *("viscous_damping", "directional_damping", "quadratic_drag", "cubic_stiffness", "end_stop", "backlash"),
     *("stribeck", "input_distortion", "stray_vibration"),
 )
+NOT_WITH_LIFT_OFF = "guide_friction"
 
 # Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects;
 # unilateral joints without effects that have mechanics of their own, and with those that go with them.
@@ -167,7 +174,9 @@ def _acting(p: np.void) -> list[str]:
 def effects_with_lift_off() -> tuple[str, ...]:
     """Names of the effects that unilateral joints go with."""
     return tuple(
-        name for name, effect in known.EFFECTS.items() if name in GO_WITH_LIFT_OFF or not effect.extends
+        name
+        for name, effect in known.EFFECTS.items()
+        if name in GO_WITH_LIFT_OFF or not (effect.extends or name == NOT_WITH_LIFT_OFF)
     )
 
 
@@ -179,7 +188,8 @@ def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
 def _kit_of(p: np.void) -> int:
     acting = _acting(p)
     if has_unilateral_joints(p):
-        if refused := set(acting) - set(effects_with_lift_off()):
+        lateral = [NOT_WITH_LIFT_OFF] if p[NOT_WITH_LIFT_OFF]["force"] > 0.0 else []
+        if refused := {*acting, *lateral} - set(effects_with_lift_off()):
             message = f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}"
             raise ValueError(message)
         return JOINTS_OPEN_WITH_EFFECTS if acting else JOINTS_OPEN

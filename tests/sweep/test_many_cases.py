@@ -1,0 +1,114 @@
+"""A sweep of millions of cases costs nothing until they are solved."""
+
+import resource
+import sys
+import time
+import tracemalloc
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from tests.command import invoke
+from wedgesweep import config
+from wedgesweep.config import Case
+from wedgesweep.sweep import dataset, outcomes
+from wedgesweep.sweep.chunks import CHUNK, Rows
+from wedgesweep.sweep.run import Sweep
+
+GRID = """\
+[sweep]
+friction_law = "coulomb"
+beta = {{ start = 0.1, stop = 3.0, num = {betas} }}
+amplitude_mm = {{ start = 0.005, stop = 4.75, num = {amplitudes} }}
+[solver]
+method = "event-driven"
+settle_periods = 5
+keep_waveforms = false
+"""
+MILLION, MOST = GRID.format(betas=1000, amplitudes=1000), GRID.format(betas=10_000, amplitudes=10_000)
+
+
+@pytest.fixture(scope="module")
+def most():
+    return config.parse(MOST)
+
+
+def test_a_case_is_made_from_its_index(most):
+    few = config.parse(GRID.format(betas=3, amplitudes=2).replace('"coulomb"', '["coulomb", "exponential"]'))
+    assert few.sweep.shape == (2, 3, 2)
+    assert [few.sweep.case(index) for index in range(12)] == few.case_list()
+    assert few.case_list()[7] == Case("exponential", few.sweep.beta[0], few.sweep.amplitude[1])
+    assert np.array_equal(few.records(np.array([7, 2])), few.records()[[7, 2]])
+    assert most.sweep.case(99_999_999) == Case("coulomb", 3.0, 0.00475)
+
+
+def test_no_case_is_made_before_it_is_needed(most, tmp_path):
+    sweep = Sweep(most, tmp_path / "most.nc")
+    sweep.config.records(np.array([0]))
+    tracemalloc.start()
+    rows = sweep.rows.without(sweep.rows.complete(np.zeros(0, int)))
+    first = list(islice(sweep.rows.chunks(rows, "event-driven"), 3))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(rows) == 100_000_000
+    assert [len(chunk) for chunk in first] == [CHUNK] * 3
+    assert peak < 100_000
+
+
+@pytest.mark.parametrize("text", [MILLION, MOST], ids=["a million", "a hundred million"])
+def test_check_answers_at_once(tmp_path, text):
+    (tmp_path / "many.toml").write_text(text)
+    invoke("check", tmp_path / "many.toml")  # compiles
+    began, peak = time.process_time(), _peak()
+    told = invoke("check", tmp_path / "many.toml")
+    assert time.process_time() - began < 2.0
+    assert _peak() - peak < 20e6
+    assert f"{config.parse(text).sweep.count} = 1 friction laws x" in told
+
+
+def _peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+
+
+@pytest.mark.parametrize("shape", [(1,), (63,), (64,), (65,), (2, 30, 30), (3, 160, 210)])
+@pytest.mark.parametrize("method", ["radau", "event-driven"])
+def test_every_case_is_in_one_chunk(shape, method):
+    rows = Rows(shape)
+    sizes = _sizes(rows, rows.without(np.zeros(0, int)), method, np.arange(np.prod(shape)))
+    assert max(sizes) <= (CHUNK if method == "event-driven" else 1)
+    assert max(sizes) - min(sizes) <= 1
+
+
+def test_rows_of_a_continuation_hold_all_frequencies():
+    rows, cases = Rows((2, 5, 3), continuation=True), np.arange(30).reshape(2, 5, 3)
+    assert rows.cases(np.arange(rows.count)).tolist() == cases.swapaxes(1, 2).reshape(-1, 5).tolist()
+    assert [rows.of(row).tolist() for row in rows.cases(np.arange(6))] == [[row] * 5 for row in range(6)]
+    begun = np.append(rows.cases(np.array([1, 4])).ravel(), [0, 3])
+    assert rows.complete(begun).tolist() == [1, 4]
+    left = rows.without(rows.complete(begun))
+    _sizes(rows, left, "event-driven", rows.cases(np.array([0, 2, 3, 5])).ravel())
+
+
+def _sizes(rows, left, method, expected):
+    chunks = [rows.cases(chunk).ravel() for chunk in rows.chunks(left, method)]
+    assert sorted(np.concatenate(chunks).tolist()) == sorted(expected.tolist())
+    return [len(chunk) for chunk in chunks]
+
+
+def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
+    sweep = Sweep(config.parse(MILLION.replace("= 1000 }", "= 300 }")), tmp_path / "x.nc")
+    records = dataset.blank(sweep.dtype, np.arange(sweep.count))
+    records["status"], records["periodicity"], records["lift_off_fraction"] = 0, 0.0, 0.0
+    records["status"][[5, 70_000]], records["message"][70_000] = 1, b"locks"
+    records["periodicity"][:7] = 1.0
+    shape, coords = sweep.config.case_coordinates()
+    found = outcomes.of_dataset(
+        dataset.assemble(records, dataset.coordinates(coords, sweep.sizes), shape, {})
+    )
+    assert {str(outcome): count for outcome, count in found.counts.items()} == {"ok": 89_998, "locked": 2}
+    assert (found.unsettled, found.lifted, found.failures.tolist()) == (6, 0, [5, 70_000])
+    assert found[70_000].law == "coulomb"
+    assert str(found[70_000]).endswith("mm: locked: locks")
+    case = sweep.config.sweep.case(70_000)
+    assert (found[70_000].beta, found[70_000].amplitude) == (case.beta, case.amplitude)

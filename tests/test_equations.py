@@ -1,0 +1,106 @@
+"""Equations of effects, laws and systems: every one is stated, explained and well-formed."""
+
+import xml.etree.ElementTree as ET
+from types import SimpleNamespace
+
+import pytest
+
+from wedgesweep import equations
+from wedgesweep.effects import EFFECTS, NAMES, REGISTERED
+from wedgesweep.equations import latex, mathml, notation
+from wedgesweep.friction import LAWS
+from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
+from wedgesweep.friction.quantities import FRICTION
+from wedgesweep.systems import SYSTEMS
+from wedgesweep.systems.oscillator.parameters import effect_names
+
+OF_EFFECTS = [(name, "suspension") for name in NAMES]
+OF_EFFECTS += [(name, "oscillator") for name in effect_names() if name in NAMES]
+
+
+def stated(name, system):
+    return equations.of(REGISTERED[name], EFFECTS[name].quantities, system)
+
+
+def all_stated():
+    for name, system in OF_EFFECTS:
+        yield stated(name, system)
+    for name in LAW_NAMES:
+        yield equations.of(LAWS[name], FRICTION)
+    for name in (*LAW_NAMES, *OSCILLATOR_LAWS):
+        yield equations.of(LAWS[name], FRICTION, "oscillator")
+    for name, system in SYSTEMS.items():
+        yield equations.of(system, system=name)
+
+
+def test_every_effect_law_and_system_has_equations_whose_symbols_are_explained():
+    for each in all_stated():
+        assert each.lines
+        assert each.meanings
+        for name, meaning in each.meanings.items():
+            assert len(meaning.text) > 1, name
+
+
+@pytest.mark.parametrize(("name", "system"), OF_EFFECTS)
+def test_every_fitted_number_of_an_effect_stands_in_its_equations(name, system):
+    numbers = {each.name for each in EFFECTS[name].quantities if each.search}
+    assert numbers <= set(stated(name, system).meanings)
+
+
+def test_symbols_with_a_dimension_have_a_unit():
+    without = {"mu", "mu_s", "mu_d", "mu_c", "mu_b", "mu_0", "r", "b", "scale", "peak", "rate", "asymmetry"}
+    without |= {"damping_ratio", "exponent", "velocity_exponent", "second", "third"}
+    for each in all_stated():
+        unitless = {name for name, meaning in each.meanings.items() if not meaning.unit}
+        vectors = {name for name in unitless if "unit vector" in each.meanings[name].text}
+        assert unitless - vectors <= without
+
+
+def test_mathml_is_well_formed_and_holds_every_symbol():
+    for each in all_stated():
+        for line in each.lines:
+            tree = ET.fromstring(mathml.display(line))
+            assert tree.tag == "math"
+            assert tree.get("alttext") == line
+            shown = "".join(tree.itertext())
+            for name in notation.names(line):
+                stem = notation.Name(name).stem
+                assert mathml.LETTERS.get(stem, stem) in shown
+        ET.fromstring(f"<p>{mathml.prose(each.remark)}</p>")
+
+
+def test_structure():
+    assert mathml.symbol("mu_s").count("<msub><mi>μ</mi><mi>s</mi></msub>") == 1
+    assert "<mfrac><mi>v</mi><msub><mi>v</mi><mi>t</mi></msub></mfrac>" in mathml.display("v/v_t")
+    # Round brackets around all that is above, below or raised are not needed there.
+    assert "stretchy" not in mathml.display("(a + b)/(c + d)")
+    assert mathml.display("exp(-(a + b)/c)").count('stretchy="true"') == 2
+    assert "<msubsup><mi>x</mi><mi>f</mi><mo>″</mo></msubsup>" in mathml.display("x_f''")
+    assert "<msqrt>" in mathml.display("sqrt(k m)")
+    assert "damping ratio" in mathml.display("2 damping_ratio")
+    assert mathml.prose("a < $v_t$").startswith("a &lt; <math")
+
+
+def test_latex():
+    assert latex.line("mu = (mu_s + peak) v/v_t  for |v| <= v_t") == (
+        r"\mu = (\mu_{s} + \mathrm{peak}) \frac{v}{v_{t}} \quad\text{for } \lvert v\rvert \le v_{t}"
+    )
+    assert latex.line("R = -c z'") == "R = - c z'"
+    assert latex.line("sqrt(v^2)") == r"\sqrt{{v}^{2}}"
+
+
+@pytest.mark.parametrize("text", ["(a", "a)", "a +/ b", "a ^", "sin x", "a ? b", "|a", "a]"])
+def test_what_is_no_equation_is_refused(text):
+    with pytest.raises(ValueError, match=r"missing|closed|opens|cannot read"):
+        mathml.display(text)
+
+
+def test_a_symbol_that_nobody_explains_is_refused():
+    with pytest.raises(KeyError, match="lambda"):
+        equations.of(SimpleNamespace(EQUATIONS=("R = lambda z",)))
+
+
+def test_symbols_are_those_of_the_system():
+    assert stated("guide_friction", "suspension").lines == ["R = -force sign(z')"]
+    assert stated("guide_friction", "oscillator").lines == ["R = -force sign(v)"]
+    assert stated("bolster_mass", "oscillator").lines == ["m -> scale m"]

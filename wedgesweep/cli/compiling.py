@@ -1,0 +1,51 @@
+"""Announces compilation whenever numba has to compile: for half a minute nothing else would be heard."""
+
+from time import perf_counter
+from typing import Any
+
+from wedgesweep.cli.humanize import duration
+from wedgesweep.cli.messages import log
+
+# Compilation that takes less (s) is not worth a word; later there is one in so many seconds.
+WORTH, AGAIN = 1.0, 15.0
+FIRST = "compiling the solver (once: some 20 s of CPU time, for a diagnosis half a minute)"
+
+_listener: Any = None
+
+
+def announce_compiling() -> None:
+    """From now on, announce compilation in this process."""
+    global _listener
+    if _listener is None:
+        from numba.core import event
+
+        _listener = listener(event.Listener)
+        event.register("numba:compile", _listener)
+
+
+def listener(base: type) -> Any:
+    """A listener that numba tells when it begins and ends to compile a function, or one inside another."""
+
+    class Listener(base):
+        def __init__(self) -> None:
+            self.depth, self.began, self.before, self.due = 0, 0.0, 0.0, WORTH
+
+        def on_start(self, event: Any) -> None:
+            if self.depth == 0:
+                self.began = perf_counter()
+            self.depth += 1
+            self._tell()
+
+        def on_end(self, event: Any) -> None:
+            self.depth -= 1
+            self._tell()
+            if self.depth == 0:
+                self.before += perf_counter() - self.began
+
+        def _tell(self) -> None:
+            elapsed = self.before + perf_counter() - self.began
+            if elapsed > self.due:
+                log.info(FIRST if self.due == WORTH else f"compiling, {duration(elapsed)} so far")
+                self.due = elapsed + AGAIN
+
+    return Listener()

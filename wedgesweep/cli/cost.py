@@ -1,0 +1,38 @@
+"""What a sweep will cost: told by check, and by run where it is a lot."""
+
+from typing import TYPE_CHECKING
+
+import click
+
+from wedgesweep.cli.failure import Failure
+from wedgesweep.cli.humanize import duration, size
+
+if TYPE_CHECKING:
+    from wedgesweep.sweep.run import Sweep
+
+# More cases than this run only if that was confirmed.
+MANY = 10_000_000
+
+
+def print_cost(sweep: "Sweep", n_jobs: int) -> None:
+    """Time some cases of a sweep, and print what all of them need; no more is kept of those that fail."""
+    from wedgesweep.sweep.estimate import estimate
+
+    cost = estimate(sweep, n_jobs)
+    click.echo(
+        f"time: about {duration(cost.seconds)} on {n_jobs} jobs (from {cost.sampled.size} cases run now)\n"
+        f"memory: about {size(cost.memory)} on {n_jobs} jobs, {size(cost.bytes_per_case)} a case of it\n"
+        f"dataset: at most {size(cost.dataset_bytes)}, less after compression"
+    )
+    failed = cost.sampled[cost.sampled["status"] != 0]
+    if failed.size:
+        reason = failed[0]["message"].decode()
+        click.echo(f"{failed.size} of the {cost.sampled.size} cases failed, the first by: {reason}")
+
+
+def require_confirmed(sweep: "Sweep", n_jobs: int, confirmed: bool) -> None:
+    """Refuse a sweep of very many cases, with what it would cost, unless that was confirmed."""
+    if sweep.count > MANY and not confirmed:
+        print_cost(sweep, n_jobs)
+        message = f"{sweep.count} cases are more than {MANY}: --yes runs them all the same"
+        raise Failure(message)

@@ -1,0 +1,71 @@
+"""Chunks of a sweep's cases for the jobs, made one at a time: cases are counted, not listed.
+
+Cases that depend on each other form a row: in a continuation all frequencies of one law and amplitude,
+otherwise each case is a row by itself.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+
+# The event-driven solver takes CHUNK cases at a time, which also go into the journal together; a small
+# sweep is divided into CHUNKS smaller chunks.
+CHUNK, CHUNKS = 200, 64
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a sweep whose case dimensions have the sizes ``shape``."""
+
+    shape: tuple[int, ...]
+    continuation: bool = False
+
+    @property
+    def width(self) -> int:
+        """Number of cases of a row."""
+        return self.shape[1] if self.continuation else 1
+
+    @property
+    def count(self) -> int:
+        """Number of rows."""
+        return prod(self.shape) // self.width
+
+    def cases(self, rows: np.ndarray) -> np.ndarray:
+        """Indices of the cases of some rows, shape (n, width)."""
+        if not self.continuation:
+            return rows[:, None]
+        _, frequencies, amplitudes = self.shape
+        law, amplitude = np.divmod(rows[:, None], amplitudes)
+        return (law * frequencies + np.arange(frequencies)) * amplitudes + amplitude
+
+    def of(self, indices: np.ndarray) -> np.ndarray:
+        """Row that each case belongs to."""
+        if not self.continuation:
+            return indices
+        law, _, amplitude = np.unravel_index(indices, self.shape)
+        return law * self.shape[2] + amplitude
+
+    def complete(self, indices: np.ndarray) -> np.ndarray:
+        """Rows all of whose cases are among these different ones, in increasing order."""
+        rows, cases = np.unique(self.of(indices), return_counts=True)
+        return rows[cases == self.width]
+
+    def without(self, rows: np.ndarray) -> Sequence[int] | np.ndarray:
+        """All other rows; where none are left out they are not listed."""
+        if not rows.size:
+            return range(self.count)
+        left = np.ones(self.count, bool)
+        left[rows] = False
+        return np.flatnonzero(left)
+
+    def chunks(self, rows: Sequence[int] | np.ndarray, method: str) -> Iterator[np.ndarray]:
+        """Divide rows into the chunks that jobs solve: one slow row, or many fast ones.
+
+        A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
+        neighbours would leave some jobs idle at the end.
+        """
+        size = min(CHUNK, -(-len(rows) * self.width // CHUNKS)) if method == "event-driven" else 1
+        count = -(-len(rows) // max(size // self.width, 1))
+        return (np.array(rows[first::count]) for first in range(count))

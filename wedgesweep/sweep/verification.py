@@ -1,0 +1,166 @@
+"""The judge: random cases of a finished sweep, solved again by Radau at a tight tolerance.
+
+A case of a fixed length is run from rest as it was. A steady state that was found by shooting is begun in its
+state, and must come back to it: from rest it may take thousands of periods, or lead to another of several
+coexisting responses. Where Radau's own answer depends on its tolerance, the motion multiplies errors, and
+nobody can judge it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import nan
+from typing import NamedTuple
+
+import joblib
+import numpy as np
+import xarray as xr
+
+from wedgesweep import response
+from wedgesweep.outcome import Outcome
+from wedgesweep.simulate import Settings
+from wedgesweep.solvers import radau
+from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.sweep import dataset
+from wedgesweep.sweep.backend import loky
+from wedgesweep.sweep.batch import solve_batch
+from wedgesweep.sweep.cases import compile_once, describe
+from wedgesweep.sweep.run import Sweep
+
+RTOL, TIGHTER = 1e-9, 1e-10
+# Wall time (s) after which Radau gives up a case.
+TIME_LIMIT = 600.0
+# Largest difference of amplitude ratios, as a share of the ratio or of a tenth, and of stick fractions. Radau
+# is no judge where its answers at both tolerances differ by more than STEADY of that.
+RATIO_BOUND, SMALL_RATIO, STICK_BOUND, STEADY = 1e-3, 0.1, 1e-2, 0.1
+
+
+class Numbers(NamedTuple):
+    """What is compared of a case."""
+
+    ratio: float
+    stick: float
+
+    def apart(self, other: "Numbers") -> "Numbers":
+        """Differences."""
+        return Numbers(abs(self.ratio - other.ratio), abs(self.stick - other.stick))
+
+    def over_bound(self, other: "Numbers") -> float:
+        """The larger difference, over its bound."""
+        apart = self.apart(other)
+        return max(apart.ratio / (RATIO_BOUND * max(SMALL_RATIO, other.ratio)), apart.stick / STICK_BOUND)
+
+
+class Judged(NamedTuple):
+    """A case in words, its numbers as stored and by Radau, and why Radau cannot judge it, if so."""
+
+    case: str
+    stored: Numbers
+    judge: Numbers
+    message: str = ""
+
+    @property
+    def apart(self) -> Numbers:
+        """How far the stored numbers are off."""
+        return self.stored.apart(self.judge)
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether the stored numbers are off by more than the bounds."""
+        return not self.message and self.stored.over_bound(self.judge) > 1.0
+
+
+@dataclass(frozen=True)
+class Verification:
+    """The cases that were drawn with ``seed``, and how many could have been."""
+
+    seed: int
+    candidates: int
+    cases: tuple[Judged, ...]
+
+    @property
+    def judged(self) -> list[Judged]:
+        """Cases that Radau can judge."""
+        return [case for case in self.cases if not case.message]
+
+
+class _Task(NamedTuple):
+    """One case for Radau: its parameter record, shape (1,), its start and what is stored of it."""
+
+    words: str
+    record: np.ndarray
+    window: Window
+    start: np.ndarray
+    stored: Numbers
+
+
+def verify(sweep: Sweep, ds: xr.Dataset, count: int, seed: int, n_jobs: int) -> Verification:
+    """Solve ``count`` random cases of a sweep with dataset ``ds`` again, and compare.
+
+    Cases that failed, and those without a steady state where one was looked for, are not drawn.
+    """
+    shape = sweep.config.sweep.shape
+    values = {name: ds[name].values for name in ("status", "period", "amplitude_ratio", "stick_fraction")}
+    stored = {name: each.reshape(shape).ravel() for name, each in values.items()}
+    fine = stored["status"] == Outcome.OK
+    if sweep.settings.steady:
+        fine &= stored["period"] > 0
+    candidates = np.flatnonzero(fine)
+    drawn = np.random.default_rng(seed).choice(candidates, min(count, candidates.size), replace=False)
+    tasks = [_task(sweep, stored, index) for index in np.sort(drawn).tolist()]
+    compile_once("radau", sweep.kit, sweep.config.system)
+    with loky(n_jobs, dict) as pool:
+        found = list(pool.parallel()(joblib.delayed(_judged)(task) for task in tasks))
+    return Verification(seed, candidates.size, tuple(sorted(found)))
+
+
+def _task(sweep: Sweep, stored: dict[str, np.ndarray], index: int) -> _Task:
+    case = sweep.config.sweep.case(index)
+    record = sweep.config.records(np.array([index]))
+    omega, period = float(record["input"]["omega"][0]), int(stored["period"][index])
+    window, start = sweep.settings.window(omega), np.zeros(2)
+    if sweep.settings.steady:
+        # As many whole periods of the response as the sweep keeps, after one.
+        whole = period * -(-window.periods // period)
+        window, start = replace(window, settle_periods=period, periods=whole), _state(sweep, index)
+    return _Task(
+        describe(*case, "N" if sweep.config.forced else "m"),
+        record,
+        window,
+        start,
+        Numbers(float(stored["amplitude_ratio"][index]), float(stored["stick_fraction"][index])),
+    )
+
+
+def _state(sweep: Sweep, index: int) -> np.ndarray:
+    """The state in which the steady response of a case begins its period."""
+    row = sweep.rows.cases(sweep.rows.of(np.array([index])))[0]
+    numbers_only: Settings = replace(sweep.settings, keep_waveforms=False)
+    dtype = dataset.record_dtype({**sweep.sizes, "phase": 0}, sweep.settings.continuation)
+    records = sweep.config.records(row)
+    _, states = solve_batch(records, row, numbers_only, dtype, sweep.settings.continuation)
+    return states[row.tolist().index(index)]
+
+
+def _judged(task: _Task) -> Judged:
+    try:
+        numbers = _solved(task, RTOL)
+        if task.stored.over_bound(numbers) <= 1.0:
+            return Judged(task.words, task.stored, numbers)
+        tighter = _solved(task, TIGHTER)
+    except CaseError as error:
+        return Judged(task.words, task.stored, Numbers(nan, nan), f"Radau fails: {error}")
+    moved = numbers.apart(tighter)
+    unsteady = numbers.over_bound(tighter) > STEADY
+    message = f"Radau moves by {moved.ratio:.1g} itself from rtol {RTOL:g} to {TIGHTER:g}" if unsteady else ""
+    return Judged(task.words, task.stored, tighter, message)
+
+
+def _solved(task: _Task, rtol: float) -> Numbers:
+    run = radau.solve(task.record, task.window, rtol, TIME_LIMIT, task.start)
+    numbers = response.evaluate(run, task.record, dataset.HARMONICS).numbers
+    return Numbers(float(numbers["amplitude_ratio"]), float(numbers["stick_fraction"]))
+
+
+def largest(cases: Sequence[Judged], name: str) -> Judged:
+    """The case whose ``ratio`` or ``stick`` is farthest off."""
+    return max(cases, key=lambda case: getattr(case.apart, name))

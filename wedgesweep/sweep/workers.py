@@ -1,0 +1,133 @@
+"""Chunks of cases on the workers of a backend; workers that die are replaced.
+
+joblib ends all tasks when a worker dies, and does not tell which one that worker had. Any task that was
+sent out may be the reason, so these are solved alone, one after the other, and the rest in parallel again.
+A case whose worker dies every time is a failed case.
+"""
+
+import signal
+import threading
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
+from itertools import islice
+
+import joblib
+import numpy as np
+
+from wedgesweep.errors import SweepError
+from wedgesweep.outcome import Outcome
+from wedgesweep.sweep import dataset
+from wedgesweep.sweep.backend import SENT_AHEAD, Pool
+from wedgesweep.sweep.cases import Chunk, solve_chunk
+
+# Times that a case is tried alone, and losses after which a run ends if no case is their reason.
+TRIES, MOST_LOSSES = 2, 10
+TOLD = "a worker died, killed or out of memory; another one takes its place"
+MESSAGE = f"its worker died in each of {TRIES} tries, killed or out of memory"
+# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
+OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
+
+Records = Generator[np.ndarray, None, None]
+RowNumbers = Sequence[int] | np.ndarray
+
+
+@dataclass
+class Workers:
+    """Solves numbered rows of cases, where the cases of a row depend on each other.
+
+    ``divide`` parts rows into chunks of rows, ``chunk`` makes a task of some rows, and ``task`` solves it;
+    ``row_of`` tells the rows of some cases. ``tell`` gets a remark when a worker dies for the first time.
+    """
+
+    pool: Pool
+    divide: Callable[[RowNumbers], Iterable[np.ndarray]]
+    chunk: Callable[[np.ndarray], Chunk]
+    row_of: Callable[[np.ndarray], np.ndarray]
+    tell: Callable[[str], None]
+    task: Callable[[Chunk], np.ndarray] = solve_chunk
+    _losses: int = field(default=0, init=False)
+
+    def solve(self, rows: RowNumbers) -> Records:
+        """Records of all cases, by chunks, as they finish; raises SweepError if workers keep dying."""
+        while len(rows):
+            done = [np.zeros(0, int)]
+            try:
+                with closing(self._parallel(self.divide(rows))) as parts:
+                    for records in parts:
+                        done.append(self.row_of(records["index"]))
+                        yield records
+                return
+            except self.pool.lost as error:
+                self._count(error)
+            sent = islice(_without(done, self.divide(rows)), SENT_AHEAD * self.pool.n_jobs)
+            failed = False
+            for part in list(sent):
+                for records in self._alone(part):
+                    failed |= bool((records["status"] == Outcome.WORKER_LOST).any())
+                    done.append(self.row_of(records["index"]))
+                    yield records
+            self._losses -= failed
+            rows = np.concatenate([np.zeros(0, int), *_without(done, [np.array(rows)])])
+
+    def _count(self, error: BaseException) -> None:
+        if not self._losses:
+            self.tell(TOLD)
+        self._losses += 1
+        if self._losses > MOST_LOSSES:
+            message = "workers keep dying, killed or out of memory; rerun the same command to resume"
+            raise SweepError(message) from error
+
+    def _alone(self, rows: np.ndarray) -> Records:
+        """Records of a chunk of which nothing else is solved at the time; halved until a case is to blame."""
+        for _ in range(TRIES):
+            try:
+                with closing(self._parallel([rows])) as parts:
+                    found = list(parts)
+            except self.pool.lost:
+                continue
+            yield from found
+            return
+        if len(rows) > 1:
+            for half in np.array_split(rows, 2):
+                yield from self._alone(half)
+            return
+        task = self.chunk(rows)
+        records = dataset.blank(task.dtype, task.indices)
+        records["status"], records["message"] = Outcome.WORKER_LOST, MESSAGE.encode()
+        yield records
+
+    def _parallel(self, parts: Iterable[np.ndarray]) -> Records:
+        with interrupts_ignored():
+            results = self.pool.parallel()(joblib.delayed(self.task)(self.chunk(rows)) for rows in parts)
+        try:
+            # "yield from" would close the results outside of the filter below.
+            for records in results:  # noqa: UP028
+                yield records
+        finally:
+            with warnings.catch_warnings():
+                # joblib warns when a run is stopped early.
+                warnings.simplefilter("ignore", UserWarning)
+                results.close()
+
+
+def _without(done: list[np.ndarray], parts: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
+    """What is left of parts, without the rows that are done."""
+    rows = np.concatenate(done)
+    left = (part[~np.isin(part, rows)] for part in parts)
+    return (part for part in left if len(part))
+
+
+@contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
