@@ -1,6 +1,6 @@
 """What lift-off changes in the paper's cases: the table of docs/paper.md, from both kinds of joints.
 
-    .venv/bin/python scripts/lift_off_table.py
+.venv/bin/python scripts/lift_off_table.py
 """
 
 from math import inf
