@@ -430,8 +430,9 @@ def test_which_files_are_measured_data(tmp_path):
 def test_a_model_whose_joints_lift_off_is_refused():
     """A diagnosis would simulate effects that do not go with them."""
     problems = []
-    text = '[suspension]\njoints = "unilateral"\n[sweep]\nfriction_law = "coulomb"\nbeta = 1\namplitude_mm = 1\n'
-    with_law(config.parse(text), "model.toml", problems)
+    sweep = '[sweep]\nfriction_law = "coulomb"\nbeta = 1\namplitude_mm = 1\n'
+    model = config.parse(sweep + '[suspension]\njoints = "unilateral"\n')
+    with_law(model, "model.toml", problems)
     (problem,) = problems
     assert problem.startswith("model.toml: suspension.joints: ")
     assert '"bilateral"' in problem
