@@ -14,7 +14,7 @@ install: $(BIN)/.installed  ## create .venv and install wedgesweep with its test
 $(BIN)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable '.[test]'
+	PYTHONWARNINGS='ignore:Editable installation' $(BIN)/python -m pip install --quiet --editable '.[test]'
 	touch $@
 
 run: install  ## run configs/quick.toml; dataset and figures in out/
@@ -47,6 +47,6 @@ bench: install  ## benchmarks, as ratios within one run
 	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 clean:  ## remove everything that the other targets made
-	rm -rf $(VENV) $(OUT) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
 .PHONY: help install run test lint check reproduce validate torture bench clean

@@ -1,16 +1,20 @@
 """Time and memory of ``wedgesweep run`` over the number of cases, and what a sweep costs beyond solving.
 
-Each run is a process of its own that starts cold, with numba's cache warm. Memory: the largest process, and
-the sum over all processes of a run (proportional set size, sampled). Writes docs/bench_scaling.txt and draws
-docs/scaling.png.
+Each run is a process of its own that starts cold, with numba's cache warm. CPU time is that of all processes
+of a run; it says more than wall time where other jobs share the machine. Memory: the largest process, and the
+sum over all processes of a run (proportional set size, sampled). Writes docs/bench_scaling.txt and draws
+docs/scaling.png. Its parts can be run by their names, bench_scaling.py [cases [MOST]] [paper] [radau], where
+the others keep the lines of an earlier run. MOST: the largest number of cases, by default all grids.
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
+from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,8 +29,8 @@ ROOT = Path(__file__).parent.parent
 REPORT, PICTURE = ROOT / "docs" / "bench_scaling.txt", ROOT / "docs" / "scaling.png"
 COMMAND = [sys.executable, "-m", "wedgesweep", "run"]
 LAWS = ["coulomb", "static-dynamic", "exponential"]
-# Frequencies x amplitudes, of three laws each: 99, 999, 9,999 and 99,999 cases.
-GRIDS = ((3, 11), (9, 37), (33, 101), (123, 271))
+# Frequencies x amplitudes, of three laws each: 99, 999, 9,999, 99,999 and 1,000,119 cases.
+GRIDS = ((3, 11), (9, 37), (33, 101), (123, 271), (389, 857))
 PAPER_CASES, PAPER_GOAL = 1800, 4.0
 SAMPLING = 0.1  # s between looks at the memory
 EVENT_DRIVEN = """
@@ -49,11 +53,13 @@ def say(line):
 
 
 class Cost(NamedTuple):
-    """Wall time (s) and memory (bytes) of a run: largest process, all processes together."""
+    """Wall and CPU time (s), memory (bytes) of the largest process and of all together, bytes of the file."""
 
     wall: float
+    cpu: float
     largest: int
     together: int
+    file: int
 
 
 def tree_memory(session):
@@ -89,7 +95,7 @@ def run(config, out, *options):
         sys.exit(process.stderr.read().decode())
     largest = usage.ru_maxrss * 1024
     # Sampling misses peaks; all processes together hold at least what the largest one holds.
-    return Cost(wall, largest, max(together, largest))
+    return Cost(wall, usage.ru_utime + usage.ru_stime, largest, max(together, largest), out.stat().st_size)
 
 
 def values(numbers):
@@ -109,26 +115,34 @@ def middles(count):
     return (np.arange(count) + 0.5) / count
 
 
-def scaling(folder):
+def scaling(folder, largest=inf):
     """Costs over the number of cases: metrics only, event-driven, two jobs."""
-    say("cases     wall s   ms/case   largest process MB   all processes MB")
+    say("cases      wall s    CPU s   CPU ms/case   largest process MB   all processes MB   file MB")
     costs = {}
     for frequencies, amplitudes in GRIDS:
+        cases = len(LAWS) * frequencies * amplitudes
+        if cases > largest:
+            say(f"{cases:7} cases: not run here")
+            continue
         config = written(
             folder / "grid.toml",
             0.1 + 2.9 * middles(frequencies),
             0.005 * 950.0 ** middles(amplitudes),
             EVENT_DRIVEN,
         )
-        cases = len(LAWS) * frequencies * amplitudes
         cost = costs[cases] = run(config, folder / f"{cases}.nc", "--n-jobs", "2")
-        each = 1e3 * cost.wall / cases
-        say(f"{cases:6} {cost.wall:9.1f} {each:9.2f} {cost.largest / 1e6:12.0f} {cost.together / 1e6:19.0f}")
-    fewest, most = min(costs), max(costs)
-    slope = (costs[most].wall - costs[fewest].wall) / (most - fewest)
-    growth = [(getattr(costs[most], name) - getattr(costs[fewest], name)) / 1e6 for name in Cost._fields[1:]]
-    say(f"fixed part {costs[fewest].wall - slope * fewest:.1f} s, {1e3 * slope:.2f} ms a case more")
-    say(f"memory grows by {growth[0]:.0f} MB (largest process), {growth[1]:.0f} MB (all); goal: below 200 MB")
+        (folder / f"{cases}.nc").unlink()
+        say(
+            f"{cases:7} {cost.wall:9.1f} {cost.cpu:8.1f} {1e3 * cost.cpu / cases:13.3f} "
+            f"{cost.largest / 1e6:20.0f} {cost.together / 1e6:18.0f} {cost.file / 1e6:9.1f}"
+        )
+    fewest, *_, before, most = costs
+    slope = (costs[most].cpu - costs[fewest].cpu) / (most - fewest)
+    last = (costs[most].cpu - costs[before].cpu) / (most - before)
+    say(f"fixed part {costs[fewest].cpu - slope * fewest:.1f} s, {1e3 * slope:.3f} ms a case more (CPU)")
+    say(f"linear: the last {most - before} cases took {1e3 * last:.3f} ms each")
+    each = (costs[most].together - costs[fewest].together) / (most - fewest)
+    say(f"memory: {each:.0f} bytes a case; file: {costs[most].file / most:.0f} bytes a case")
     return costs
 
 
@@ -213,17 +227,30 @@ def warm(folder):
         run(config, folder / f"warm-{number}.nc", "--n-jobs", "2")
 
 
-def main():
-    folder = Path(tempfile.mkdtemp())
+PARTS = {"paper": paper, "cases": lambda folder, *most: draw(scaling(folder, *most)), "radau": overhead}
+
+
+def earlier():
+    """Lines of each part in the report."""
+    text = REPORT.read_text() if REPORT.exists() else ""
+    found = re.split(r"^== (\w+)\n", text, flags=re.MULTILINE)[1:]
+    return dict(zip(found[::2], found[1::2], strict=True))
+
+
+def main(arguments):
+    wanted = [name for name in arguments if name in PARTS] or list(PARTS)
+    most = [float(number) for number in arguments if number not in PARTS]
+    folder, lines = Path(tempfile.mkdtemp()), earlier()
     try:
         warm(folder)
-        paper(folder)
-        draw(scaling(folder))
-        overhead(folder)
-        REPORT.write_text("\n".join(said) + "\n")
+        for name in wanted:
+            said.clear()
+            PARTS[name](folder, *(most if name == "cases" else ()))
+            lines[name] = "\n".join(said) + "\n"
+            REPORT.write_text("".join(f"== {part}\n{lines[part]}" for part in PARTS if part in lines))
     finally:
         shutil.rmtree(folder)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -186,7 +186,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
         "gain": _gain(held_out),
         "detectable": DETECTABLE,
         "not_testable": NOT_TESTABLE,
-        "next_test": NEXT if verdict in ("tied", "data-insufficient") else None,
+        "next_test": dict(NEXT) if verdict in ("tied", "data-insufficient") else None,
         **TEXT,
         "method": {
             "penalty_per_parameter": 12.6,

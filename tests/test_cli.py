@@ -268,7 +268,7 @@ def test_ctrl_c_stops_threads_at_once(here):
     assert process.returncode == 130, told
     assert "finished cases are stored in long.nc.partial; rerun the same command" in told
     assert "Traceback" not in told
-    assert "cases are drawn" in invoke("plot", "peak-to-peak", "long.nc")
+    assert "cases are there" in invoke("plot", "peak-to-peak", "long.nc")
     assert "from an earlier run" in run("long.toml", "--n-jobs", 2)
     run("long.toml", "-o", "other.nc", "--n-jobs", 1, "--backend", "loky")
     small_sweep.assert_same_numbers(xr.load_dataset("long.nc"), xr.load_dataset("other.nc"))
@@ -417,12 +417,12 @@ def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_da
     to = ("-o", "figure.png")
     assert invoke("plot", "response", drawn_dataset, *to, "--beta", 0.4) == "wrote figure.png\n"
     told = invoke("plot", "response", drawn_dataset, *to, "--frequency", 5.3, "--law", "COULOMB")
-    assert "beta 0.390139: the nearest one there is 0.4" in told
+    assert "--frequency 5.3: the nearest one there is 5.434 Hz" in told
     told = invoke("plot", "bifurcation", drawn_dataset, *to, "--amplitude", 1.05)
-    assert "amplitude 0.00105: the nearest one there is 0.001" in told
+    assert "--amplitude 1.05: the nearest one there is 1 mm" in told
     for arguments, words in (
-        (("response", "--beta", 99), "response: no beta near 99; the dataset has 20 from 0.1 to 3.8"),
-        (("bifurcation", "--amplitude", 50), "bifurcation: no amplitude near 0.05; the dataset has 6 from"),
+        (("response", "--beta", 99), "--beta 99: no case is near; the dataset has 20 from 0.1 to 3.8"),
+        (("bifurcation", "--amplitude", 50), "--amplitude 50: no case is near; the dataset has 6 from"),
         (("response", "--beta", 1, "--frequency", 10), "give either --beta or --frequency"),
         (("stick-map", "--law", "x"), "stick-map: no friction law 'x' in the dataset; it has coulomb, stat"),
     ):
@@ -431,7 +431,7 @@ def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_da
 
 def test_what_lies_outside_of_validity_is_counted_and_told(here, drawn_dataset):
     told = invoke("status", drawn_dataset, code=1)
-    assert "lift off, which the model leaves out: outside of its validity (variable lift_off_" in told
+    assert "off, which the model leaves out: outside of its validity (variable lift_off_" in told
     assert "did not reach steady state" in told
     told = invoke("case", "few.toml", "--law", "Coulomb", "--beta", 1.1, "--amplitude", 1e9)
     assert "outside of the model's validity: a joint lifts off in" in told

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from wedgesweep.effects import EFFECTS
+from wedgesweep import equations
+from wedgesweep.effects import EFFECTS, REGISTERED
+from wedgesweep.equations import latex
 from wedgesweep.reproduce.claims import CLAIMS, RECORDED
 
 ROOT = Path(__file__).parents[1]
@@ -47,6 +49,17 @@ def test_every_effect_is_defined_in_its_family():
     assert names == list(EFFECTS)
     expected = dict.fromkeys(effect.family.replace("-", " ") for effect in EFFECTS.values())
     assert [family.lower().replace("-", " ") for family in families] == list(expected)
+
+
+def test_equations_are_those_of_the_effects():
+    written = {
+        re.match(r"`(\w+)`", cells[0])[1]: cells[1]
+        for cells in rows("## The 24 effects")
+        if cells[0][0] == "`"
+    }
+    for name, effect in EFFECTS.items():
+        for line in equations.of(REGISTERED[name], effect.quantities).lines:
+            assert f"${latex.line(line)}$" in written[name]
 
 
 def test_steady_responses_are_those_of_the_test_data():

@@ -86,7 +86,8 @@ def test_latex():
         r"\mu = (\mu_{s} + \mathrm{peak}) \frac{v}{v_{t}} \quad\text{for } \lvert v\rvert \le v_{t}"
     )
     assert latex.line("R = -c z'") == "R = - c z'"
-    assert latex.line("sqrt(v^2)") == r"\sqrt{{v}^{2}}"
+    assert latex.line("2 damping_ratio k_sf") == r"2\, \mathrm{damping~ratio}\, k_{\mathrm{sf}}"
+    assert latex.line("sqrt(v^2)") == r"\sqrt{v^{2}}"
 
 
 @pytest.mark.parametrize("text", ["(a", "a)", "a +/ b", "a ^", "sin x", "a ? b", "|a", "a]"])

@@ -343,7 +343,7 @@ def test_marked_points_are_those_of_the_variables(dataset):
     assert hollow.get_xdata().tolist() == case["beta"].values[case["lift_off_fraction"] > 0.0].tolist()
     assert grey.get_xdata().tolist() == [0.6]
     assert "24 of" not in validity.shares(case)
-    assert f"{len(hollow.get_xdata())} of 20 cases lift off" in validity.shares(case)
+    assert f"{len(hollow.get_xdata())} of 20 cases with lift-off" in validity.shares(case)
 
 
 @pytest.mark.parametrize("law", ["Coulomb", "EXPONENTIAL"])

@@ -1,18 +1,30 @@
 """Every figure of a diagnosis draws every verdict with few and many tests, or says what is missing."""
 
+import re
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from tests import fixture_diagnosis
+from tests import fixture_diagnosis, fixture_transient
 from wedgesweep import figures
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import diagnosis, svg
-from wedgesweep.figures.diagnosis import candidates, marks, misfit, peak_to_peak, plateaus, selection
+from wedgesweep.figures.diagnosis import (
+    candidates,
+    decays,
+    marks,
+    misfit,
+    peak_to_peak,
+    plateaus,
+    selection,
+    spectrogram,
+)
 from wedgesweep.figures.diagnosis.motion import motion
 
-# Figures of steady tests; tests/diagnose draws those of other kinds.
-KINDS = sorted(set(diagnosis.DESCRIPTIONS) - {"loops", "decays"})
+# Figures of steady tests; tests/diagnose draws loops.
+OF_TRANSIENTS = ("decays", "spectrogram")
+KINDS = sorted(set(diagnosis.DESCRIPTIONS) - {"loops", *OF_TRANSIENTS})
 BY_TEST = ("harmonics", "leftover-force", "phase-plane", "waveforms")
 
 
@@ -165,3 +177,68 @@ def test_one_panel_is_drawn_into_given_axes_and_several_into_a_subfigure():
     with pytest.raises(ValueError, match=r"^waveforms: 3 panels do not fit into one Axes"):
         figures.draw(result, "waveforms", ax=ax, tests=[0])
     assert figures.draw(result, "phase-plane", ax=Figure().subplots(), tests=[0]).axes[0].get_title()
+
+
+@pytest.mark.parametrize("kind", OF_TRANSIENTS)
+def test_transients(kind):
+    figure = draw(kind, fixture_transient.build())
+    assert figure.get_suptitle()
+    words = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
+    assert [text for text in words if "[" not in text] == []
+    with pytest.raises(ValueError, match=f"^{kind}: the tests are no transients"):
+        draw(kind, build())
+
+
+def test_swings_are_the_peaks_between_passages_through_zero():
+    time = np.linspace(0.0, 10.0, 100_001)
+    when, size = decays.swings(time, (1.0 - 0.05 * time) * np.sin(2.0 * np.pi * time))
+    # The first and the last one are cut, or begin at the first sample.
+    assert np.diff(when) == pytest.approx(0.5, abs=1e-3)
+    assert size == pytest.approx(1.0 - 0.05 * when, abs=1e-4)
+
+
+def test_a_spectrogram_shows_the_sweep_and_the_harmonic_that_the_base_model_lacks():
+    sweep, _ = spectrogram.records(fixture_transient.build(), [0, 1])
+    of = spectrogram.spectra(sweep)
+    rate = (fixture_transient.LAST - fixture_transient.FIRST) / sweep.time[-1]
+    expected = fixture_transient.FIRST + rate * of.time
+    measured, base, extended = of.power
+    # Within two lines of the spectrum.
+    two = 2.0 * of.frequency[1]
+    assert of.frequency[measured.argmax(axis=0)] == pytest.approx(expected, abs=two)
+    assert of.frequency[base.argmax(axis=0)] == pytest.approx(3.0 * expected, abs=two)
+    assert extended.sum() < 1e-3 * base.sum() < 0.1 * measured.sum()
+
+
+def test_parts_of_one_record_are_one_spectrogram():
+    whole, cut = fixture_transient.build(), fixture_transient.build(parts=4)
+    # Two records of four parts: the second begins where the clock of the first began.
+    joined = spectrogram.records(cut, range(8))
+    assert [each.test for each in joined] == [0, 4]
+    for one, other in zip(joined, spectrogram.records(whole, range(2)), strict=True):
+        assert one.time == pytest.approx(other.time)
+        assert np.array_equal(one.signals, other.signals)
+    assert [each.test for each in spectrogram.records(cut, [0, 2])] == [0, 2]
+    short = fixture_transient.build(parts=20)
+    with pytest.raises(ValueError, match="no record has 256 samples or more"):
+        figures.draw(short, "spectrogram", tests=[0, 2])
+
+
+def test_figures_of_an_oscillator_say_what_it_has():
+    """Axes and titles of a mass under a force name neither bolster nor side frame."""
+    result = build()
+    result.data.attrs |= {
+        **{"system": "oscillator", "contact": "ground", "excitation": "force"},
+        "reference": "force amplitude over k",
+    }
+    result.data["amplitude"].attrs["units"] = "N"
+    told = {}
+    for kind in KINDS:
+        figure = draw(kind, result)
+        axes = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel(), ax.get_title())]
+        told[kind] = " ".join([figure.get_suptitle(), *axes])
+        assert not re.search("x-y|bolster|side frame|mm,|[0-9] mm", told[kind]), told[kind]
+    assert "$x$ [mm]" in told["phase-plane"]
+    assert "$x'$ [mm/s]" in told["waveforms"]
+    assert "on the mass (positive along $x$)" in told["leftover-force"]
+    assert "the force puts in" in told["energy"]

@@ -246,6 +246,11 @@ def test_sentence_says_what_the_budget_left_out(tmp_path):
         assert sentence.startswith(complete.removesuffix("."))
         assert sentence.endswith(words)
         assert not re.search(r"\.\s", sentence)
+    document["never_tried"] = [["ageing", "preload"], ["end_stop", "preload"]]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    singles = sum(len(each["effects"]) == 1 for each in document["candidates"])
+    told = f"2 of the {singles * (singles - 1) // 2} possible pairs of effects were never tried"
+    assert f"{told} (ageing + preload, end_stop + preload)." in plain(report.sentence(tmp_path))
 
 
 def test_sentence_names_tests_whose_history_matters(tmp_path):
@@ -324,6 +329,19 @@ def test_a_recommended_test_says_whether_it_distinguishes_reliably(distance, wor
     (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     assert words in text.replace("\u00a0", " ")
+
+
+def test_rivals_that_the_next_test_does_not_distinguish_are_named(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "tied")
+    document["rivals"].append({"effects": ["preload"], "gap": 5.0})
+    test = document["next_test"]
+    near = {"separates": ["stribeck", "preload"], "distance": 3.0}
+    far = {"separates": ["guide_friction", "preload"], "distance": 50.0}
+    for distance, words in ((3.0, "stribeck from guide_friction, but not from preload."), (40.0, "them.")):
+        pairs = [{key: test[key] for key in ("separates", "distance")}, {**near, "distance": distance}, far]
+        document["next_test"] = {**test, "pairs": pairs}
+        (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+        assert plain(report.sentence(tmp_path)).endswith(f"0.1 mm would distinguish {words}")
 
 
 @pytest.mark.usefixtures("no_figures")

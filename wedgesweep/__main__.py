@@ -24,7 +24,7 @@ def main() -> None:
 
         cli(prog_name="wedgesweep")
     except KeyboardInterrupt as interrupt:  # before or after the command itself
-        sys.exit(128 + getattr(interrupt, "number", signal.SIGINT))
+        raise SystemExit(128 + getattr(interrupt, "number", signal.SIGINT)) from None
 
 
 if __name__ == "__main__":

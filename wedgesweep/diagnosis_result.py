@@ -1,7 +1,8 @@
 """The result of a diagnosis, and its files: diagnosis.json, diagnosis.nc and extended.toml."""
 
 import json
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ from wedgesweep.files import json_object, read_bytes, read_text, write_text
 from wedgesweep.sweep import dataset
 
 JSON, DATASET, EXTENDED = "diagnosis.json", "diagnosis.nc", "extended.toml"
+# Dataset of the tests of one kind among several.
+PARTS = {kind: f"diagnosis-{kind}.nc" for kind in ("steady", "transient", "loop")}
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")
 # Status of candidates whose fit gave no meaningful parameters.
 FAILED, NO_BETTER = "failed", "no better"
@@ -28,7 +31,8 @@ OF_STEADY = (
 )
 OF_LOOPS = ("displacement", "velocity", "measured_force", "simulated_force", "force_noise", "q", "dof")
 OF_TRANSIENTS = ("time", "measured", "simulated", "sample_noise", "q", "dof")
-VARIABLES = {"steady": OF_STEADY, "transient": OF_TRANSIENTS, "loop": OF_LOOPS}
+OF_ALL_KINDS = ("q", "dof")
+VARIABLES = {"steady": OF_STEADY, "transient": OF_TRANSIENTS, "loop": OF_LOOPS, "mixed": OF_ALL_KINDS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +47,23 @@ class DiagnosisResult:
         Content of diagnosis.nc: what was measured and simulated in each test, in SI units.
     extended_toml : str
         The base model with the effects found, as a config that runs the measured tests.
+    parts : mapping of str to xarray.Dataset
+        Where tests of several kinds were measured: content of diagnosis-KIND.nc, by kind.
     """
 
     document: dict[str, Any]
     data: xr.Dataset
     extended_toml: str = ""
+    parts: Mapping[str, xr.Dataset] = field(default_factory=dict)
+
+    def of_kind(self, kind: str) -> "DiagnosisResult":
+        """The result with the tests of one kind only."""
+        if kind not in self.parts:
+            return self
+        misfit = self.document["misfit"]
+        tests = [each for each in misfit["tests"] if each["kind"] == kind]
+        document = {**self.document, "kind": kind, "misfit": {**misfit, "tests": tests}}
+        return replace(self, document=document, data=self.parts[kind], parts={})
 
     @property
     def verdict(self) -> str:
@@ -69,6 +85,10 @@ class DiagnosisResult:
         # First of all, so that an interrupted write leaves no old verdict beside new data.
         (directory / JSON).unlink(missing_ok=True)
         dataset.write(self.data, directory / DATASET)
+        for kind, file in PARTS.items():
+            (directory / file).unlink(missing_ok=True)
+            if kind in self.parts:
+                dataset.write(self.parts[kind], directory / file)
         write_text(directory / EXTENDED, self.extended_toml)
         write_text(directory / JSON, text)
 
@@ -126,11 +146,21 @@ def read(directory: Path) -> DiagnosisResult:
             raise InputError([message])
     document = _document(directory / JSON)
     data = dataset.read(directory / DATASET)
-    missing = [name for name in VARIABLES[document.get("kind", "steady")] if name not in data]
-    if missing:
-        raise InputError([f"{directory / DATASET}: has no {', '.join(missing)}"])
+    kind = document.get("kind", "steady")
+    _require(data, kind, directory / DATASET)
+    parts = {}
+    for part in PARTS if kind == "mixed" else ():
+        if (directory / PARTS[part]).is_file():
+            parts[part] = dataset.read(directory / PARTS[part])
+            _require(parts[part], part, directory / PARTS[part])
     extended = directory / EXTENDED
-    return DiagnosisResult(document, data, read_text(extended) if extended.exists() else "")
+    return DiagnosisResult(document, data, read_text(extended) if extended.exists() else "", parts)
+
+
+def _require(data: xr.Dataset, kind: str, file: Path) -> None:
+    missing = [name for name in VARIABLES[kind] if name not in data]
+    if missing:
+        raise InputError([f"{file}: has no {', '.join(missing)}"])
 
 
 def _document(file: Path) -> dict[str, Any]:

@@ -4,14 +4,18 @@ A recorded input is a Fourier series in place of the sine:
 
     u = a sum_h (cosine_h cos(h omega t) + sine_h sin(h omega t)),  h = 1..count
 
-with the phase of omega t so that its fundamental is the sine (cosine_1 = 0, sine_1 = 1). Records without the
-part ``series`` do not contain its code.
+with the phase of omega t so that its fundamental is the sine (cosine_1 = 0, sine_1 = 1); or it is known by
+samples (``sampled_input``). Records without the part ``series`` do not contain the code of either.
 """
+
+from math import pi
 
 import numpy as np
 
+from wedgesweep import sampled_input
 from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.effects import hooks
+from wedgesweep.sampled_input import is_sampled
 from wedgesweep.trigonometry import cosine, sine
 
 # Harmonics of a Fourier series that a record has room for.
@@ -20,6 +24,7 @@ SERIES_FIELDS = [
     ("count", np.int64),
     ("cosine", np.float64, (HARMONICS,)),
     ("sine", np.float64, (HARMONICS,)),
+    *sampled_input.FIELDS,
 ]
 # Shape of the paper's base motion, as ``set_series`` takes it.
 SINE = np.array([-1j])
@@ -51,8 +56,8 @@ def set_no_motion(rows: np.ndarray, length: float) -> None:
 
 
 def has_series(rows: np.ndarray) -> np.ndarray:
-    """Whether the base motion of full records, shape (n,), has more harmonics than the first."""
-    return rows["series"]["count"] > 1
+    """Whether the input of full records, shape (n,), is not just a sine."""
+    return (rows["series"]["count"] > 1) | is_sampled(rows)
 
 
 @inner
@@ -71,25 +76,39 @@ def _series(t, power, p):
 @term("series", off="sine(p.input.omega * t)", sine=sine)
 def _shape(t, p):
     """Displacement over amplitude."""
+    if p.series.rows > 0:
+        return sampled_input.value(t, p)
     return _series(t, 0, p)[0]
 
 
 @term("series", off="cosine(p.input.omega * t)", cosine=cosine)
 def _slope(t, p):
     """Velocity over amplitude and angular frequency."""
+    if p.series.rows > 0:
+        return sampled_input.slope(t, p) / p.input.omega
     return _series(t, 1, p)[1]
 
 
 @term("series", off="sine(p.input.omega * t)", sine=sine)
 def _bend(t, p):
     """Negative acceleration over amplitude and squared angular frequency."""
+    if p.series.rows > 0:
+        return -sampled_input.bend(t, p) / (p.input.omega * p.input.omega)
     return _series(t, 2, p)[0]
 
 
-@term("series", off="1")
+@term("series", off="p.input.omega")
 def _highest(p):
-    """Highest harmonic of the input."""
-    return max(p.series.count, 1)
+    """Highest angular frequency (rad/s) of the input, or of the motions to expect."""
+    if p.series.rows > 0:
+        return max(p.series.fastest, p.input.omega)
+    return max(p.series.count, 1) * p.input.omega
+
+
+@term("series", off="2.0 * pi / p.input.omega", pi=pi)
+def cycle(p):
+    """Period of the input (s); the span of one that is known by samples."""
+    return p.series.span if p.series.rows > 0 else 2.0 * pi / p.input.omega
 
 
 @inlined
@@ -119,4 +138,4 @@ def force(t, p):
 @inlined
 def fastest(p):
     """Highest angular frequency (rad/s) of the input."""
-    return hooks.fastest(_highest(p) * p.input.omega, p)
+    return hooks.fastest(_highest(p), p)

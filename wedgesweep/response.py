@@ -138,11 +138,21 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
 @inner
 def channels(x, velocity, periods, p):
     """Deflection and velocity over whole periods of a kept window as the sensors show them."""
-    step = 2.0 * pi / p.input.omega * periods / velocity.size
+    return _sensed(x, velocity, 2.0 * pi / p.input.omega * periods / velocity.size, True, p)
+
+
+@inner
+def _sensed(x, velocity, step, periodic, p):
     seen = np.empty(x.size)
     for i in range(x.size):
         seen[i] = p.displacement_gain.scale * x[i]
-    return seen, sensor.lagged(velocity, step, True, p)
+    return seen, sensor.lagged(velocity, step, periodic, p)
+
+
+@compiled
+def sensed(x, velocity, step, parameters):
+    """Deflection and velocity, as ``channels``, of a motion that does not repeat; ``step`` (s) apart."""
+    return _sensed(x, velocity, step, False, parameters[0])
 
 
 @compiled

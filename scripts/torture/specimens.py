@@ -10,7 +10,7 @@ import numpy as np
 CONFIGS = Path(__file__).parents[2] / "configs"
 # Few and short cases, so that what is accepted does not cost time.
 SHORT = {"method": "event-driven", "settle_periods": 3, "kept_periods": 2, "samples_per_period": 32}
-AXES = {"beta": [0.3, 1.1], "amplitude_mm": [0.2, 1.2], "amplitude_N": [0.5]}
+AXES = {"beta": [0.3, 1.1], "amplitude_mm": [0.2, 1.2], "amplitude_N": [0.5], "frequency_hz": [20.0, 30.0]}
 SAMPLES, RATE, FREQUENCY = 360, 1000.0, 20.0
 MEASURED = {
     "measurement": {

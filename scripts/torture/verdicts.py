@@ -66,7 +66,7 @@ def _outcome(result: Any, command: Sequence[str]) -> str:
         return REFUSED if _names_something(result.stderr, command) else NAMELESS
     if result.exit_code not in (0, 1):
         return CODE
-    if NUMBERLESS.search(TITLE.sub("", result.stdout)):
+    if set(NUMBERLESS.findall(TITLE.sub("", result.stdout))) - set(command):
         return NOT_FINITE
     return FAILED if result.exit_code else ACCEPTED
 

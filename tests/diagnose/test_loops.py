@@ -235,13 +235,6 @@ def test_what_is_wrong_is_told(tmp_path, fault):
         read(path)
 
 
-def test_kinds_are_not_mixed(tmp_path):
-    path = write(tmp_path, motions=((0.01, 1.1, 8.0), (0.02, 0.7, 8.0)))
-    path.write_text(path.read_text().replace('kind = "loop"\n', "", 1))
-    with pytest.raises(MeasuredError, match="loop and steady are mixed"):
-        read(path)
-
-
 def test_a_loop_needs_displacement_and_force(tmp_path):
     path = write(tmp_path)
     path.write_text(path.read_text().replace('force = { column = "F", unit = "N" }\n', ""))

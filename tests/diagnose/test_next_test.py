@@ -47,6 +47,7 @@ def test_the_next_test_makes_every_suspect_move(suspects):
     test = next_test.recommend(suspects)
     assert test.distance >= SEPARATED
     assert set(test.separates) == {"friction_level", "bolster_stiffness"}
+    assert test.pairs == ((test.separates, test.distance),)
     for fit in suspects:
         assert gain(fit, test, 0.8) > 0.5 * gain(fit, test, 1.0) > 1e-3
 

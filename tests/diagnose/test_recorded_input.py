@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import chdtrc
 
-from tests.diagnose.synthetic import MODEL
+from tests.diagnose.synthetic import MODEL, base_of
 from wedgesweep import config, excitation
 from wedgesweep.diagnose.diagnosis import diagnose
 from wedgesweep.diagnose.fit_data import Scenario
@@ -199,6 +199,24 @@ def test_a_diagnosis_ends_with_the_covariance_of_its_cause():
     fit = found.finding.best.fit
     assert found.data.renewed(fit.model.scenario(fit.point)) is found.data
     assert fit.model.data is found.data
+
+
+@pytest.mark.parametrize("of", ["relative", "absolute"])
+def test_one_gain_of_the_input_serves_all_tests(of):
+    """The recorded input is 3 % too small in all tests; channels that it converts are wrong as well."""
+    columns = {"displacement": {"column": "d", "unit": "m", "of": of}}
+    true = measurement(3, CAUSE, columns, noise=0.005)
+    tests = tuple(replace(each, input=each.input / 1.03) for each in true.tests)
+    wrong, told = (replace(true, tests=tests, input_gain_std=std) for std in (0.0, 0.05))
+    known = config.parse(MODEL + "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n")
+    blamed, fit = (base_of(harmonic_data(replace(each, model=known))) for each in (wrong, told))
+    assert blamed.p < 1e-6
+    assert fit.p > 0.01
+    gain, std = fit.x[0], np.sqrt(fit.covariance[0, 0])
+    assert gain == pytest.approx(1.03, abs=4.0 * std)
+    assert std < 0.01
+    fitted = fit.model.data.inputs_of(fit.model.scenario(fit.point))
+    np.testing.assert_allclose(fitted, AMPLITUDES, rtol=0.02)
 
 
 def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from tests.command import invoke
 from wedgesweep import api, excitation
@@ -57,17 +58,35 @@ def free_motion(config, effects, start, rate, samples, rtol=1e-10):
     return -x[::fine][:samples]
 
 
-def write(folder, model=OSCILLATOR, effects=None, starts=STARTS, noise=2e-5, rate=500.0, samples=600):
+def coloured(rng, size, pole):
+    """Noise (size,) of unit variance, correlated by ``pole`` from one sample to the next."""
+    return lfilter([(1.0 - pole**2) ** 0.5], [1.0, -pole], rng.standard_normal(size + 200))[200:]
+
+
+def write(
+    folder,
+    model=OSCILLATOR,
+    effects=None,
+    starts=STARTS,
+    noise=2e-5,
+    rate=500.0,
+    samples=600,
+    seed=0,
+    pole=0.0,
+    repeats=1,
+):
     """Files of releases from some starts; returns the path of measured.toml."""
-    rng = np.random.default_rng(0)
+    rng = np.random.default_rng(seed)
     text = MEASURED
     (folder / "model.toml").write_text(model)
-    for i, start in enumerate(starts):
-        x = free_motion(parse(model, "model"), effects or {}, start, rate, samples)
-        x = x + ZERO * start[0] / starts[0][0] + noise * rng.standard_normal(x.size)
+    for i, start in enumerate(start for start in starts for _ in range(repeats)):
+        varied = np.array(start) * (1.0 + 0.02 * (i % repeats))
+        x = free_motion(parse(model, "model"), effects or {}, varied, rate, samples)
+        x = x + ZERO * start[0] / starts[0][0] + noise * coloured(rng, x.size, pole)
         table = np.column_stack([np.arange(samples) / rate, 1e3 * x])
         np.savetxt(folder / f"drop{i}.csv", table, "%.12g", ",", header="t,x", comments="")
         text += TEST.format(f"drop{i}")
+        text += f'repeat_of = "drop{i - i % repeats}.csv"\n' if i % repeats else ""
     (folder / "measured.toml").write_text(text)
     return folder / "measured.toml"
 

@@ -2,13 +2,14 @@
 
 import time
 from dataclasses import replace
+from itertools import combinations
 
 import pytest
 
 from tests.diagnose.synthetic import drawn
 from wedgesweep.diagnose import diagnosis, pairs, work
 from wedgesweep.diagnose.search import Search, base_fit, single_fits
-from wedgesweep.diagnose.work import Budget, Untried
+from wedgesweep.diagnose.work import Budget
 
 # More preload and less friction: no single effect explains both.
 PAIR = {"preload": {"force": 0.3}, "friction_level": {"scale": 0.85}}
@@ -24,12 +25,18 @@ def test_what_is_affordable_does_not_depend_on_which_thread_is_faster(threads):
 
     search = Search(None, (), threads=threads, budget=Budget(25.0))
     begun = work.done()
-    assert search.each_affordable(worked, range(8), "numbers") == [0, 1, 2]
+
+    def named(item):
+        return f"effect {item}", "another"
+
+    assert search.each_affordable(worked, range(8), "numbers", named) == [0, 1, 2]
     assert work.done() - begun == 30.0
     assert search.budget.left == -5.0
-    assert search.each_affordable(worked, range(2), "more numbers") == []
+    assert search.each_affordable(worked, range(2), "more numbers", named) == []
     assert search.each(worked, range(2)) == [0, 1]
-    assert search.budget.untried == [Untried("numbers", 5, 8), Untried("more numbers", 2, 2)]
+    assert [each[:3] for each in search.budget.untried] == [("numbers", 5, 8), ("more numbers", 2, 2)]
+    # What was left out once and tried another time was tried.
+    assert search.budget.never_tried == tuple(map(named, range(3, 8)))
 
 
 def test_a_grant_adds_what_is_missing_and_no_more():
@@ -56,6 +63,8 @@ def test_without_work_left_singles_are_fitted_and_the_rest_is_told():
     assert {each.effects for each in found.explanations} == {(name,) for name in CANDIDATES}
     left_out = {each.what: each.left_out for each in search.budget.untried}
     assert left_out == {pairs.PAIRS: 6, "single effects from all starting points": 3}
+    never = search.budget.never_tried
+    assert set(map(frozenset, never)) == set(map(frozenset, combinations(CANDIDATES, 2)))
 
 
 def test_a_budget_ends_the_search_for_pairs_at_the_same_place_with_any_number_of_threads():

@@ -83,6 +83,9 @@ def test_a_finished_dataset_is_judged_as_it_is_stored(here):
     told = run(SOLVERS["fixed"], "--verify", 8, code=1)
     assert "already complete" in told
     assert "stick fraction: 0.02, at coulomb, beta 1.1, amplitude 1 mm" in told
+    ds["amplitude_ratio"].loc["exponential", 0.4, 1e-3] = np.nan
+    ds.to_netcdf("c.nc")
+    assert "2 of 8 cases differ by more than" in run(SOLVERS["fixed"], "--verify", 8, code=1)
     assert "1 of 8 cases differ by more than 0.001 of the amplitude ratio" in told
 
 

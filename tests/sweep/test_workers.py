@@ -84,9 +84,8 @@ def test_a_sweep_goes_on_with_the_same_bits(tmp_path):
 
 def test_what_a_lost_worker_leaves_is_solved_by_the_next_run(tmp_path, monkeypatch):
     sweep = small_sweep.sweep(tmp_path)
-    records = solve_cases(
-        sweep.config.records(np.arange(2)), np.arange(2), sweep.settings, np.inf, sweep.dtype
-    )
+    few = np.arange(2)
+    records = solve_cases(sweep.config.records(few), few, sweep.settings, np.inf, sweep.dtype)
     records["status"][1] = Outcome.WORKER_LOST
     with Journal(sweep.journal_path, sweep.dtype, sweep.journal_header) as kept:
         kept.append(records)

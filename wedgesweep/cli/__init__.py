@@ -9,6 +9,7 @@ from wedgesweep import __version__
 from wedgesweep.cli.case import case
 from wedgesweep.cli.configs import check, init, schema
 from wedgesweep.cli.diagnose import diagnose
+from wedgesweep.cli.export import export
 from wedgesweep.cli.failure import Commands
 from wedgesweep.cli.messages import with_verbosity
 from wedgesweep.cli.plot import plot
@@ -30,7 +31,7 @@ fish_source for the other shells).
     cls=Commands,
     commands=[
         with_verbosity(command)
-        for command in (init, schema, check, run, status, case, plot, reproduce, synthesize, diagnose)
+        for command in (init, schema, check, run, status, case, plot, export, reproduce, synthesize, diagnose)
     ],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=EPILOG,

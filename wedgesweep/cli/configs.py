@@ -10,9 +10,11 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
-from wedgesweep.cli.options import CONFIG, OutputPath
+from wedgesweep.cli.options import CONFIG, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
 from wedgesweep.files import write_text
+from wedgesweep.kinds import CONFIG as CONFIG_FILE
+from wedgesweep.kinds import DIAGNOSIS, SWEEP, kind_of
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
@@ -54,6 +56,8 @@ def check(config_path: Path) -> None:
     """
     from wedgesweep import config, measured
 
+    if kind_of(config_path) in (SWEEP, DIAGNOSIS):
+        require_kind(config_path, CONFIG_FILE)
     if measured.is_measured(config_path):
         print_measurement(measured.read(config_path))
         return
@@ -73,6 +77,8 @@ def _grid(settings: "Config") -> str:
     sweep, count = settings.sweep, settings.sweep.count
     if sweep.cases is not None:
         return f"{count}, listed individually"
+    if settings.transient:
+        return f"{count} = {len(sweep.friction_law)} friction laws x {sweep.amplitude.size} scales"
     laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
     return f"{count} = {laws} friction laws x {betas} frequencies x {amplitudes} amplitudes"
 

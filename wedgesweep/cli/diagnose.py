@@ -10,18 +10,20 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import N_JOBS, require_place_for
+from wedgesweep.cli.options import N_JOBS, require_kind, require_place_for
 from wedgesweep.cli.steps import StepReport
 from wedgesweep.files import beside
+from wedgesweep.kinds import MEASURED
 
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-FIGURE_FILES = {kind: f"{kind}.png" for kind in ("misfit", "loops", "decays", "candidates", "ladder", "gain")}
+DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain")
+FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
 # A file that is in the directory of a result while an earlier one gives way to it.
 MOVING = ".unfinished-diagnosis"
 # Figures of one kind of test only.
-OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient"}
+OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"}
 
 
 @click.command()
@@ -63,6 +65,7 @@ def diagnose(
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
 
+    require_kind(measured, MEASURED)
     measurement = api.read_measurement(measured, model)
     print_warnings(measurement)
     log.debug(f"{measured}: {len(measurement.tests)} tests, model {measurement.model.title}")
@@ -113,7 +116,7 @@ def _result_files() -> tuple[str, ...]:
     from wedgesweep import diagnosis_result, report
 
     data = (diagnosis_result.JSON, diagnosis_result.DATASET, diagnosis_result.EXTENDED)
-    return (*data, report.PAGE, *FIGURE_FILES.values())
+    return (*data, *diagnosis_result.PARTS.values(), report.PAGE, *FIGURE_FILES.values())
 
 
 def _move(made: Path, directory: Path) -> None:
@@ -136,10 +139,11 @@ def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:
     from wedgesweep.figures import parallel
 
     kind_of_tests = found.document["kind"]
+    kinds = (kind_of_tests, *found.parts)
     wanted = [
         (kind, directory / file)
         for kind, file in FIGURE_FILES.items()
-        if OF_KIND.get(kind, kind_of_tests) == kind_of_tests
+        if OF_KIND.get(kind, kind_of_tests) in kinds
     ]
     save = partial(_save, found)
     for problem in filter(None, parallel.map_forked(save, wanted, n_jobs)):
@@ -152,7 +156,7 @@ def _save(found: "DiagnosisResult", wanted: tuple[str, Path]) -> str | None:
 
     kind, file = wanted
     try:
-        figures.save(figures.draw(found, kind), file)
+        figures.save(figures.draw(found.of_kind(OF_KIND.get(kind, "")), kind), file)
     except ValueError as error:
         return str(error)
     return None

@@ -1,6 +1,10 @@
 """Expected errors print one message on stderr and exit with code 2; no traceback."""
 
+import os
 import signal
+import socket
+import threading
+import time
 from types import FrameType
 from typing import Any
 
@@ -9,6 +13,8 @@ import click
 from wedgesweep.cli import messages
 from wedgesweep.errors import InputError, SweepError
 
+# Time (s) that a command has to end by itself after a signal.
+GRACE = 30.0
 SOME_FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 # Signals that end a command as ctrl-C does; Windows has no SIGHUP.
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -23,10 +29,30 @@ class Terminated(KeyboardInterrupt):
 
 
 def end_on_signals() -> None:
-    """Let SIGTERM and SIGHUP end this process as ctrl-C does, unless they are ignored (nohup)."""
+    """Let SIGTERM and SIGHUP end this process as ctrl-C does, unless they are ignored (nohup).
+
+    Python cannot interrupt compiled code: a process that is still there after GRACE ends at once.
+    """
     for number in ENDING:
         if signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _terminate)
+    reading, writing = socket.socketpair()
+    for end in (reading, writing):
+        end.setblocking(end is reading)
+    signal.set_wakeup_fd(writing.fileno(), warn_on_full_buffer=False)
+    threading.Thread(target=_insist, args=(reading, writing), daemon=True).start()
+
+
+def _insist(reading: socket.socket, writing: socket.socket) -> None:
+    """End the process some time after a signal that should have done so; ``writing`` stays open for it."""
+    handled = (_terminate, signal.default_int_handler)
+    while number := int.from_bytes(reading.recv(1)):
+        if signal.getsignal(number) in handled:
+            time.sleep(GRACE)
+            os.write(
+                2, b"interrupted at once; what is finished is stored, rerun the same command to resume\n"
+            )
+            os._exit(128 + number)
 
 
 def _terminate(number: int, frame: FrameType | None) -> None:

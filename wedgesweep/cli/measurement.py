@@ -12,8 +12,20 @@ if TYPE_CHECKING:
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
 LOOP_HEADINGS = ("file", "duration", "samples", "low-pass", "noise", "of velocity", "blocks")
-TRANSIENT_HEADINGS = ("file", "duration", "samples", "periods", "largest", "noise")
-TRANSIENT_UNITS = ("", "s", "", "natural", "mm", "mm")
+TRANSIENT_HEADINGS = (
+    *(
+        "file",
+        "duration",
+        "samples",
+        "periods",
+        "windows",
+        "largest",
+        "noise",
+        "its correlation",
+        "taken from",
+    ),
+)
+TRANSIENT_UNITS = ("", "s", "", "natural", "", "mm", "mm", "to the next sample", "")
 LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
 
 
@@ -28,6 +40,13 @@ def print_measurement(measurement: "Measurement") -> None:
             click.echo(f"{test.file}: {'; '.join(test.remarks)}")
     derived = " (velocity derived from displacement)" if measurement.derived_velocity else ""
     click.echo(f"tests: {len(measurement.tests)}{derived}\n")
+    for kind in measurement.kinds:
+        _print_table(measurement.of_kind(kind))
+    print_warnings(measurement)
+
+
+def _print_table(measurement: "Measurement") -> None:
+    """Print the tests of one kind."""
     if measurement.kind == "loop":
         rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
     elif measurement.kind == "transient":
@@ -40,7 +59,6 @@ def print_measurement(measurement: "Measurement") -> None:
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo("  ".join(cells).rstrip())
-    print_warnings(measurement)
 
 
 def print_warnings(measurement: "Measurement") -> None:
@@ -56,17 +74,25 @@ def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each free motion."""
     from wedgesweep.diagnose.transient.from_measurement import transient_data
 
-    return [
-        (
-            test.file,
-            f"{test.duration:.4g}",
-            f"{test.time.size}",
-            f"{own.periods:.4g}",
-            f"{1e3 * own.length:.4g}",
-            f"{1e3 * own.noise[0]:.3g} ({100.0 * own.noise[0] / own.length:.2g} %)",
+    releases = transient_data(measurement).releases
+    rows: list[tuple[str, ...]] = []
+    for number, test in enumerate(measurement.tests):
+        own = [each for each in releases if each.number == number]
+        noise, length = own[0].spectra[0], max(each.length for each in own)
+        rows.append(
+            (
+                test.file,
+                f"{test.duration:.4g}",
+                f"{test.time.size}",
+                f"{sum(each.natural for each in own):.4g}",
+                f"{len(own)}",
+                f"{1e3 * length:.4g}",
+                f"{1e3 * noise.std:.3g} ({100.0 * noise.std / length:.2g} %)",
+                f"{noise.correlation:.2f}",
+                noise.source,
+            )
         )
-        for test, own in zip(measurement.tests, transient_data(measurement).releases, strict=True)
-    ]
+    return rows
 
 
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:

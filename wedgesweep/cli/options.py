@@ -3,12 +3,14 @@
 import os
 import shlex
 import sys
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import click
 
 from wedgesweep.cli.failure import Failure
+from wedgesweep.kinds import confusion
 
 CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
 DATASET = click.argument("path", metavar="OUT", type=click.Path(path_type=Path))
@@ -19,6 +21,16 @@ N_JOBS = click.option(
     default=None,
     help="Number of parallel jobs; default: one per processor.",
 )
+
+
+class FiniteRange(click.FloatRange):
+    """A number in a range; a comparison alone does not refuse nan."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        found = super().convert(value, param, ctx)
+        if not isfinite(found):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return found
 
 
 class OutputPath(click.Path):
@@ -36,6 +48,12 @@ class OutputPath(click.Path):
         if not os.access(path.parent, os.W_OK):
             self.fail(f"Directory '{path.parent}' is not writable.", param, ctx)
         return path
+
+
+def require_kind(path: Path, wanted: str) -> None:
+    """Refuse a file of this package that is of another kind."""
+    if problem := confusion(path, wanted):
+        raise Failure(problem)
 
 
 def require_place_for(directory: Path) -> None:

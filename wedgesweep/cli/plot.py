@@ -3,7 +3,7 @@
 import os
 from math import isclose, pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 from click.core import ParameterSource
@@ -11,8 +11,8 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET
-from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
+from wedgesweep.cli.options import DATASET, FiniteRange
+from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
+OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS)
 # What drawing raises where a part of a diagnosis is missing or of another kind.
 DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
@@ -37,6 +38,10 @@ For a dataset, KIND is one of
 {_table(DESCRIPTIONS)}
 
 \b
+For a dataset whose input does not repeat ([input] in its config), one of
+{_table(transient.DESCRIPTIONS)}
+
+\b
 For the directory of a diagnosis, one of
 {_table(diagnosis.DESCRIPTIONS)}
 
@@ -45,11 +50,11 @@ For both
   {ALL:<16} every figure that suits OUT
 """
 
-POSITIVE = click.FloatRange(min=0.0, min_open=True)
+POSITIVE = FiniteRange(min=0.0, min_open=True)
 
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
-@click.argument("kind", metavar="KIND", type=click.Choice([*DESCRIPTIONS, *diagnosis.DESCRIPTIONS, ALL]))
+@click.argument("kind", metavar="KIND", type=click.Choice([*OF_DATASETS, *diagnosis.DESCRIPTIONS, ALL]))
 @DATASET
 @click.option(
     "-o",
@@ -65,7 +70,7 @@ POSITIVE = click.FloatRange(min=0.0, min_open=True)
     type=POSITIVE,
     multiple=True,
     metavar="MM",
-    help="Input amplitude in mm; the nearest one in OUT is drawn; may be repeated.",
+    help="Input amplitude in mm (of a force in N); the nearest one in OUT is drawn; may be repeated.",
 )
 @click.option("--law", help="Friction law to draw; default: all.")
 @click.pass_context
@@ -106,45 +111,77 @@ def _beside(path: Path) -> Path:
 
 def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
     from wedgesweep import diagnosis_result
+
+    return diagnosis_result.read(path) if path.is_dir() else read_dataset(path)
+
+
+def read_dataset(path: Path) -> "xr.Dataset":
+    """Read the dataset of a run, also of one that has not finished."""
     from wedgesweep.sweep import dataset, run
 
-    if path.is_dir():
-        return diagnosis_result.read(path)
     unfinished = run.unfinished(path)
     if unfinished is None:
         return dataset.read_sweep(path)
     done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
-    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are drawn")
+    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are there")
     return unfinished
+
+
+class Pick(NamedTuple):
+    """An option that picks cases: the variable that it is of, and its unit, which is ``factor`` there."""
+
+    variable: str
+    factor: float
+    unit: str
 
 
 def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> dict[str, Any]:
     """The picks that were given, in the units of the dataset; tell where it holds only their neighbours."""
-    import numpy as np
     import xarray as xr
 
     given = {name: value for name, value in picks.items() if value not in (None, ())}
     if not isinstance(found, xr.Dataset):
         return given
-    if "frequency" in given:
-        given["beta"] = 2.0 * pi * given.pop("frequency") / found.attrs["omega_n"]
-    if "amplitude" in given:
-        factor = 1.0 if found.attrs.get("excitation") == "force" else 1e-3
-        given["amplitude"] = [value * factor for value in given["amplitude"]]
-    for name in ("beta", "amplitude"):
-        for value in np.atleast_1d(given.get(name, ())):
-            there = np.atleast_1d(found[name].values)
-            nearest = there[np.abs(there - value).argmin()]
-            if not isclose(nearest, value, rel_tol=1e-6):
-                unit = found[name].attrs.get("units", "1").replace("1", "")
-                told = f"{name} {value:.6g} {unit}".rstrip()
-                log.warning(f"{told}: the nearest one there is {nearest:.6g}")
+    forced = found.attrs.get("excitation") == "force"
+    units = {
+        "beta": Pick("beta", 1.0, ""),
+        "frequency": Pick("beta", 2.0 * pi / found.attrs["omega_n"], "Hz"),
+        "amplitude": Pick("amplitude", 1.0, "N") if forced else Pick("amplitude", 1e-3, "mm"),
+    }
+    for name in units.keys() & given.keys():
+        pick, values = units[name], given.pop(name)
+        if pick.variable not in found.coords:
+            message = f"--{name}: the dataset has no {pick.variable}"
+            raise Failure(message)
+        several = isinstance(values, tuple)
+        for value in values if several else (values,):
+            _tell_nearest(found, name, value, pick)
+        given[pick.variable] = [value * pick.factor for value in values] if several else values * pick.factor
     return given
+
+
+def _tell_nearest(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None:
+    """Say which value is taken for one that is not there, in its unit; refuse one that is far from all."""
+    import numpy as np
+
+    from wedgesweep.figures import cases
+
+    there = np.atleast_1d(ds[pick.variable].values) / pick.factor
+    nearest = there[np.abs(there - value).argmin()]
+    if isclose(nearest, value, rel_tol=1e-6):
+        return
+    if abs(nearest - value) > cases.FAR * value:
+        span = f"{there.min():.4g} to {there.max():.4g} {pick.unit}".rstrip()
+        message = (
+            f"--{name} {value:.6g}: no case is near; the dataset has {np.unique(there).size} from {span}"
+        )
+        raise Failure(message)
+    log.warning(f"--{name} {value:.6g}: the nearest one there is {nearest:.4g} {pick.unit}".rstrip())
 
 
 def _require_kind(kind: str, path: Path) -> None:
     """Refuse a figure of a diagnosis for a dataset, and the reverse."""
-    if path.is_dir() and kind in DESCRIPTIONS:
+    if path.is_dir() and kind in OF_DATASETS:
         valid = ", ".join(diagnosis.DESCRIPTIONS)
         message = f"{path}: a directory; {kind} draws the dataset of a run, a diagnosis has {valid}"
         raise Failure(message)
@@ -183,7 +220,11 @@ def _draw(
 ) -> None:
     import xarray as xr
 
-    picks = _accepted(kind, figures.options(figures.of(found)[kind]), options, strict)
+    kinds = figures.of(found)
+    if kind not in kinds:
+        message = f"no figure '{kind}' of these data; there are {', '.join(kinds)}"
+        raise ValueError(message)
+    picks = _accepted(kind, figures.options(kinds[kind]), options, strict)
     try:
         figures.save(figures.draw(found, kind, **picks), file)
     except DAMAGE as error:
@@ -209,6 +250,7 @@ def _accepted(kind: str, names: tuple[str, ...], options: dict[str, Any], strict
         elif name in names:
             accepted[name] = value
         elif strict:
-            message = f"{kind}: takes no --{name}"
+            asked = "--beta and no --frequency" if name == "beta" else f"--{name}"
+            message = f"{kind}: takes no {asked}"
             raise ValueError(message)
     return accepted

@@ -3,7 +3,7 @@
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,25 +12,20 @@ from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, OutputPath, command_line
+from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from wedgesweep.config import Config
     from wedgesweep.sweep.backend import Backend
     from wedgesweep.sweep.run import Sweep
 
 BACKENDS = ("threads", "loky", "dask")
-
-
-class Verify(NamedTuple):
-    """How many random cases to solve again (None: no), and the seed that draws them."""
-
-    cases: int | None
-    seed: int
 
 
 @click.command()
@@ -52,7 +47,7 @@ class Verify(NamedTuple):
 )
 @click.option(
     "--case-timeout",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=FiniteRange(min=0.0, min_open=True),
     metavar="SECONDS",
     help="Time limit per case (radau only); overrides the config's solver.case_timeout_s.",
 )
@@ -98,10 +93,14 @@ def run(
     from wedgesweep.sweep.run import CaseFailedError, Sweep
 
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"), command_line())
-    progress, check = ProgressReport(), Verify(options.pop("verify"), options.pop("seed"))
+    progress, judged, seed = ProgressReport(), options.pop("verify"), options.pop("seed")
+    jobs = count_jobs(options["n_jobs"])
+    if settings.transient and judged:
+        message = "--verify compares steady states; with an [input] run CONFIG again with --solver radau"
+        raise click.UsageError(message)
     try:
-        options |= {"n_jobs": count_jobs(options["n_jobs"]), "backend": _backend(backend, scheduler)}
-        ctx.exit(_run(sweep, progress, check, options))
+        options |= {"n_jobs": jobs, "backend": _backend(backend, scheduler)}
+        result, code = _run(sweep, progress, options)
     except KeyboardInterrupt as interrupt:
         _stopped(progress, sweep, "interrupted", "rerun the same command to resume")
         ctx.exit(exit_code(interrupt))
@@ -113,6 +112,9 @@ def run(
     except MismatchError as error:
         message = f"{error}; choose another -o to keep it, or --fresh to discard it"
         raise Failure(message) from error
+    if judged is not None:
+        code = max(code, print_verification(sweep, result, judged, seed, jobs))
+    ctx.exit(code)
 
 
 def _settings(config_path: Path, solver: str | None) -> "Config":
@@ -147,28 +149,21 @@ def _backend(name: str | None, scheduler: str | None) -> "Backend | None":
     return {None: None, "threads": backend.threads, "loky": backend.loky}[name]
 
 
-def _run(sweep: "Sweep", progress: ProgressReport, check: Verify, options: dict[str, Any]) -> int:
-    """Run the sweep unless it is complete; return the exit code."""
+def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> tuple["xr.Dataset", int]:
+    """Run the sweep unless it is complete; return its dataset and the exit code."""
     confirmed = options.pop("yes")
-    result = None if options["fresh"] else sweep.stored()
-    if result is not None:
+    announce_compiling()
+    stored = None if options["fresh"] else sweep.stored()
+    if stored is not None:
         click.echo(f"{sweep.out}: already complete; use --fresh to run it again")
-        code = print_summary(result)
-    else:
-        announce_compiling()
-        print_remark(sweep.config)
-        require_confirmed(sweep, options["n_jobs"], confirmed)
-        started = perf_counter()
-        result = sweep.run(progress=progress, tell=_remark, **options)
-        code = print_summary(result)
-        click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
-    if check.cases is not None:
-        code = max(code, print_verification(sweep, result, check.cases, check.seed, options["n_jobs"]))
-    return code
-
-
-def _remark(text: str) -> None:
-    click.echo(text, err=True)
+        return stored, print_summary(stored)
+    print_remark(sweep.config)
+    require_confirmed(sweep, options["n_jobs"], confirmed)
+    started = perf_counter()
+    result = sweep.run(progress=progress, tell=log.warning, **options)
+    code = print_summary(result)
+    click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
+    return result, code
 
 
 def print_remark(settings: "Config") -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.options import DATASET
 from wedgesweep.cli.summary import print_outcomes, print_summary
 from wedgesweep.files import json_object
@@ -21,6 +22,9 @@ VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
 @click.pass_context
 def status(ctx: click.Context, path: Path) -> None:
     """Show how far the sweep with dataset OUT is, and which cases failed."""
+    if path.is_dir():
+        message = f"{path}: a directory; give the dataset of a run"
+        raise Failure(message)
     partial = path.with_name(path.name + ".partial")
     ctx.exit(_unfinished(partial) if partial.exists() else _finished(path))
 

@@ -5,12 +5,13 @@ from typing import Any
 
 import click
 
+from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS
+from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange
 from wedgesweep.synthesize.names import NOISES, QUANTITIES
 
-SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
+SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
 
 
 @click.command()
@@ -41,14 +42,14 @@ SHARE = click.FloatRange(min=0.0, max=1.0, max_open=True)
 )
 @click.option(
     "--periods",
-    type=click.FloatRange(min=4.0),
+    type=FiniteRange(min=4.0),
     default=8.4,
     show_default=True,
     help="Length of each record in periods.",
 )
 @click.option(
     "--sampling-hz",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=FiniteRange(min=0.0, min_open=True),
     help="Sampling rate; default: about 150 times the natural frequency (2000 for the paper's bench), "
     "different in each test, so that none divides the period.",
 )
@@ -102,4 +103,4 @@ def synthesize(
     announce_compiling()
     for remark in make(settings, str(config_path), tests, Options(**options), directory, count_jobs(n_jobs)):
         log.info(remark)
-    click.echo(f"wrote {directory / 'measured.toml'}: {len(tests.tests)} tests")
+    click.echo(f"wrote {directory / 'measured.toml'}: {formatting.counted(len(tests.tests), 'test')}")

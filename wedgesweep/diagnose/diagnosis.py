@@ -1,7 +1,7 @@
 """The whole way from measured tests to a verdict."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 from wedgesweep.diagnose import cross_validation, score_test, verdict
@@ -12,6 +12,7 @@ from wedgesweep.diagnose.ladder import Rung, ladder
 from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
+from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
@@ -42,6 +43,7 @@ from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 COMPARED = 6
 # Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
 MUCH = 0.9
+Data = HarmonicData | LoopData | TransientData | MixedData
 # What a fit sees of the tests of each kind.
 DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]] = {
     STEADY: harmonic_data,
@@ -54,11 +56,12 @@ DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]
 class Diagnosis:
     """Everything that was found; ``explanations`` are sorted, the best first.
 
-    ``untried``: what the budget of the search left out.
+    ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects of which nothing
+    at all was fitted for that reason.
     """
 
     measurement: Measurement
-    data: HarmonicData | LoopData | TransientData
+    data: Data
     base: Explanation
     explanations: tuple[Explanation, ...]
     scores: tuple[Score, ...]
@@ -69,6 +72,7 @@ class Diagnosis:
     ladder: tuple[Rung, ...]
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
+    never_tried: tuple[tuple[str, ...], ...] = ()
 
     @property
     def extended(self) -> Fit:
@@ -104,7 +108,7 @@ def diagnose(
     Diagnosis
         Verdict, fits, scores, gain on held-out tests and the recommended next test.
     """
-    data = DATA[measurement.kind](measurement)
+    data = data_of(measurement)
     effects = _candidates(effects, measurement, progress)
     search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
     thresholds, calibration = verdict.thresholds_for(data), None
@@ -131,7 +135,7 @@ def diagnose(
         next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement=measurement,
-        data=cast("HarmonicData | LoopData", search.data),
+        data=cast("Data", search.data),
         base=base,
         explanations=tuple(explanations),
         scores=tuple(scores),
@@ -142,7 +146,31 @@ def diagnose(
         ladder=rungs,
         calibration=calibration,
         untried=tuple(search.budget.untried),
+        never_tried=search.budget.never_tried,
     )
+
+
+def data_of(measurement: Measurement) -> Data:
+    """What a fit sees of the tests."""
+    parts = [DATA[kind](measurement.of_kind(kind)) for kind in measurement.kinds]
+    return parts[0] if len(parts) == 1 else MixedData.of(parts)
+
+
+def of_each_kind(found: Diagnosis) -> dict[str, Diagnosis]:
+    """A diagnosis as that of the tests of each kind: their data, and both fits on them."""
+    if not isinstance(found.data, MixedData):
+        return {found.data.kind: found}
+    base, extended = found.data.fits(found.base.fit), found.data.fits(found.extended)
+    best = found.finding.best
+    return {
+        part.kind: replace(
+            found,
+            data=cast("Data", part),
+            base=replace(found.base, fit=base[part.kind]),
+            finding=replace(found.finding, best=best and replace(best, fit=extended[part.kind])),
+        )
+        for part in found.data.present
+    }
 
 
 def _candidates(
@@ -203,9 +231,15 @@ def explain(search: Search) -> Explained:
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should separate: a cause and its rivals, or without one what comes closest."""
+    """Fits that a next test should separate: those that are reported as rivals.
+
+    These are a cause and its rivals, or without a cause all that would do; where fewer than two would, those
+    that come closest.
+    """
     if finding.cause is not None:
         return [finding.cause.fit, *(each.fit for each in finding.rivals)]
-    if finding.verdict == verdict.INSUFFICIENT:
-        return [each.fit for each in verdict.ranked(explanations, thresholds.gap)[:COMPARED]]
-    return []
+    if finding.verdict != verdict.INSUFFICIENT:
+        return []
+    adequate = finding.alternatives
+    closest = adequate if len(adequate) > 1 else verdict.ranked(explanations, thresholds.gap)
+    return [each.fit for each in closest[:COMPARED]]

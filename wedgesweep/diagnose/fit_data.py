@@ -22,6 +22,9 @@ from wedgesweep.natural_units import BENCH, NaturalUnits
 if TYPE_CHECKING:
     from wedgesweep.diagnose.model import Model
 
+# An uncertain number of the measurement, not of the model: the gain of the sensor that recorded all inputs.
+INPUT_GAIN = "input_gain"
+
 
 class WarmStart(Protocol):
     """Where the simulations of T tests start from; opaque to the fit."""
@@ -137,8 +140,8 @@ class FitData(Protocol):
     ``model``: the base model with its friction ``law``; ``model_error``: relative error that it may have.
     ``eliminated``: number of nuisance parameters of each test whose best value has a closed form (start
     phase). ``known``: numbers that the records tell directly, "effect.key" to value and standard deviation
-    in key units. ``uncertain``: effects that scale parameters of the base model, with their relative
-    standard deviations.
+    in key units. ``uncertain``: effects that scale parameters of the base model, and INPUT_GAIN, with their
+    relative standard deviations.
     """
 
     kind: str

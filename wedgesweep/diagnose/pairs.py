@@ -77,6 +77,10 @@ class Combination(NamedTuple):
     first: SingleScan
     second: SingleScan
 
+    @property
+    def effects(self) -> tuple[str, ...]:
+        return (*self.first.fit.effects, *self.second.fit.effects)
+
 
 class PairSearch(NamedTuple):
     """What all stages of the search for pairs need: data, base fit, and all effects by themselves."""
@@ -139,7 +143,9 @@ def restarted_pairs(search: Search, found: Sequence[Explanation]) -> list[Explan
     and a much deeper one elsewhere.
     """
     restarts = [(pair.fit, effect) for pair in found[:RESTARTED] for effect in pair.effects]
-    fits = search.each_affordable(lambda one: _restarted(search, *one), restarts, RESTARTS)
+    fits = search.each_affordable(
+        lambda one: _restarted(search, *one), restarts, RESTARTS, lambda one: one[0].effects
+    )
     return refit_best(search, [search.explanation(fit) for fit in fits])
 
 
@@ -172,7 +178,7 @@ def _fit_combinations(
     """Fits of combinations, the best first; ``diverse``: from several starts of each."""
     search = job.search
     useful = [each for each in combinations if len(each.second.x)]
-    begun = search.each_affordable(lambda each: begin(search, each, diverse), useful, what)
+    begun = search.each_affordable(lambda each: begin(search, each, diverse), useful, what, _effects)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.chi2)]
     further = f"{what}, followed further"
     fits = _continued(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0], further)
@@ -188,8 +194,12 @@ def _fit_combinations(
 def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
     """Fits followed for some iterations, the best first; as they are where the budget is spent."""
     order = sorted(fits, key=lambda fit: fit.chi2)
-    found = search.each_affordable(lambda fit: _followed(fit, iterations), order, what)
+    found = search.each_affordable(lambda fit: _followed(fit, iterations), order, what, _effects)
     return [*found, *order[len(found) :]]
+
+
+def _effects(each: Combination | Fit) -> tuple[str, ...]:
+    return each.effects
 
 
 def _followed(fit: Fit, iterations: int) -> Fit:

@@ -1,4 +1,4 @@
-"""Tests that are compared sample by sample, in time or along a motion, under independent noise."""
+"""Tests that are compared in time or along a motion, by numbers with independent noise."""
 
 from abc import abstractmethod
 from collections.abc import Iterable, Sequence
@@ -49,7 +49,7 @@ class SampledData(FitData):
     @property
     @abstractmethod
     def shifted(self) -> np.ndarray:
-        """1 where the zero of the sensor acts, else 0, (T, m)."""
+        """What a unit of the zero of the sensor adds to each of them, (T, m)."""
 
     @abstractmethod
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
@@ -98,7 +98,7 @@ class SampledData(FitData):
     def zero(self, values: np.ndarray) -> np.ndarray:
         """Best zero of the sensor (..., T, 1) for values (..., T, m) that are left."""
         share = self.weight * self.shifted / self.std**2
-        return (values * share).sum(-1, keepdims=True) / share.sum(-1, keepdims=True)
+        return (values * share).sum(-1, keepdims=True) / (self.shifted * share).sum(-1, keepdims=True)
 
     def without_zero(self, values: np.ndarray) -> np.ndarray:
         """Values (..., T, m) less their best zero."""

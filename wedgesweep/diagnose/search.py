@@ -103,13 +103,19 @@ class Search:
         """Results of a function for all items, in their order."""
         return self._each(function, list(items), inf)
 
-    def each_affordable(self, function: Callable[[Any], Any], items: Sequence[Any], what: str) -> list[Any]:
+    def each_affordable(
+        self,
+        function: Callable[[Any], Any],
+        items: Sequence[Any],
+        what: str,
+        effects: Callable[[Any], tuple[str, ...]],
+    ) -> list[Any]:
         """Results for the first items, the most promising, until the budget is spent.
 
-        ``what``: what is reported to have been left out otherwise.
+        ``what``: what is reported to have been left out otherwise; ``effects``: of an item.
         """
         found = self._each(function, items, self.budget.left, what)
-        self.budget.leave_out(what, len(items) - len(found), len(items))
+        self.budget.ended(what, len(found), [effects(item) for item in items])
         return found
 
     def _each(
@@ -269,7 +275,8 @@ def multistart(search: Search, scans: Scans) -> list[Explanation]:
         return search.explanation(best_of(search.model(effect), evaluations, MULTISTART_SCHEDULE))
 
     order = sorted(search.effects, key=lambda effect: min(map(_chi2, scans[effect])))
-    found = search.each_affordable(fitted, order, "single effects from all starting points")
+    what = "single effects from all starting points"
+    found = search.each_affordable(fitted, order, what, lambda effect: (effect,))
     return sorted(found, key=lambda each: search.effects.index(each.effects[0]))
 
 

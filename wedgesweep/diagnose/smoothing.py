@@ -76,6 +76,13 @@ class LowPass:
         frequency, once = signal.sosfreqz(self._sections, GRID, fs=self.rate)
         return frequency, np.abs(once) ** 2
 
+    def power(self, std: float, order: int = 0) -> np.ndarray:
+        """Power (GRID + 1,) of filtered white noise, or of its derivative, from 0 to half the rate."""
+        frequency = np.linspace(0.0, pi, GRID + 1)
+        _, once = signal.sosfreqz(self._sections, frequency)
+        # As numpy.gradient differentiates.
+        return (std * (self.rate * np.sin(frequency)) ** order * np.abs(once) ** 2) ** 2
+
 
 def white_noise(values: np.ndarray, rate: float) -> float:
     """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.

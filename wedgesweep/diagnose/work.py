@@ -5,7 +5,7 @@ simulating one forcing period of the base model; each thread has a clock of its 
 """
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
@@ -46,20 +46,25 @@ def apart(function: Callable[[], Result]) -> Piece[Result]:
 
 
 class Untried(NamedTuple):
-    """What a search left out: how many of how many."""
+    """What a search left out: how many of how many, and the effects of each."""
 
     what: str
     left_out: int
     of: int
+    effects: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass
 class Budget:
-    """Work that may be spent from now on by this thread and by those that work for it."""
+    """Work that may be spent from now on by this thread and by those that work for it.
+
+    ``untried``: what there was no work left for; ``tried``: combinations of effects that were fitted.
+    """
 
     total: float = float("inf")
     begun: float = field(default_factory=done)
     untried: list[Untried] = field(default_factory=list)
+    tried: set[frozenset[str]] = field(default_factory=set)
 
     @property
     def left(self) -> float:
@@ -69,7 +74,14 @@ class Budget:
         """See to it that so much is left, whatever was spent before."""
         self.total = max(self.total, done() - self.begun + work)
 
-    def leave_out(self, what: str, left_out: int, of: int) -> None:
-        """Remember what there was no work left for."""
-        if left_out:
-            self.untried.append(Untried(what, left_out, of))
+    def ended(self, what: str, done: int, effects: Sequence[tuple[str, ...]]) -> None:
+        """Remember which of some combinations of effects were tried, the first ones, and which were not."""
+        self.tried.update(map(frozenset, effects[:done]))
+        if done < len(effects):
+            self.untried.append(Untried(what, len(effects) - done, len(effects), tuple(effects[done:])))
+
+    @property
+    def never_tried(self) -> tuple[tuple[str, ...], ...]:
+        """Pairs of effects that were left out whenever it was their turn, in that order."""
+        left_out = {frozenset(each): each for one in self.untried for each in one.effects if len(each) > 1}
+        return tuple(each for names, each in left_out.items() if names not in self.tried)

@@ -1,5 +1,7 @@
 """Equations as LaTeX, which the documentation holds."""
 
+from itertools import pairwise
+
 from wedgesweep.equations import notation
 from wedgesweep.equations.notation import Call, Fraction, Group, Name, Node, Number, Operator, Power, Row
 
@@ -17,7 +19,16 @@ def line(text: str) -> str:
 
 
 def _row(row: Row) -> str:
-    return " ".join(map(_node, row.nodes))
+    found = "".join(map(_node, row.nodes[:1]))
+    for before, node in pairwise(row.nodes):
+        factors = not (isinstance(before, Operator) or isinstance(node, Operator))
+        apart = factors and (_is_word(before) or _is_word(node))
+        found += (r"\, " if apart else " ") + _node(node)
+    return found
+
+
+def _is_word(node: Node) -> bool:
+    return isinstance(node, Name) and len(node.stem) > 1 and node.stem not in notation.GREEK
 
 
 def _node(node: Node) -> str:
@@ -37,7 +48,8 @@ def _node(node: Node) -> str:
         case Fraction():
             return rf"\frac{{{_node(node.above)}}}{{{_node(node.below)}}}"
         case Power():
-            return f"{{{_node(node.base)}}}^{{{_node(node.exponent)}}}"
+            base = _node(node.base)
+            return f"{base if len(base) == 1 else f'{{{base}}}'}^{{{_node(node.exponent)}}}"
         case _:
             return _row(node)
 
@@ -48,9 +60,11 @@ def _bracketed(opening: str, content: Row) -> str:
 
 
 def _name(name: Name) -> str:
-    if name.stem in notation.GREEK:
-        stem = rf"\{name.stem}"
-    else:
-        stem = name.stem if len(name.stem) == 1 else rf"\mathrm{{{name.stem.replace(' ', '~')}}}"
-    index = f"_{{{name.index}}}" if name.index else ""
+    stem = rf"\{name.stem}" if name.stem in notation.GREEK else _upright(name.stem)
+    index = f"_{{{_upright(name.index)}}}" if name.index else ""
     return f"{stem}{index}{name.primes * chr(39)}"
+
+
+def _upright(text: str) -> str:
+    """A letter, or words that are none of its products."""
+    return text if len(text) == 1 else rf"\mathrm{{{text.replace(' ', '~')}}}"

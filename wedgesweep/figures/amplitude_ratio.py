@@ -77,7 +77,7 @@ def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm, factor: float) -> bool:
 
 def _amplitude_norm(amplitudes: np.ndarray) -> LogNorm:
     """Scale the colours of input amplitudes (mm or N)."""
-    low, high = amplitudes.min() or 1e-9, amplitudes.max() or 1e-9
+    low, high = amplitudes.min(), amplitudes.max()
     return LogNorm(low, high) if high > low else LogNorm(0.5 * low, 2.0 * high)
 
 
@@ -85,6 +85,9 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, the input amplitude as colour, the frictionless response dashed."""
     names = cases.laws(ds)
     words = labels.of(ds)
+    if not ds["amplitude"].all():
+        message = "needs an input amplitude that the response can be compared with; there is one of 0"
+        raise ValueError(message)
     norm = _amplitude_norm(ds["amplitude"].values * words.factor)
     top = 1.5 * float(np.fmax(ds["amplitude_ratio"].max(), 1.5))
     made = panels(target, len(names), size=(3.3, 3.8))
@@ -101,8 +104,12 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     if axes[0].get_legend_handles_labels()[0]:
         axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
     style.label(axes, style.BETA, words.ratio)
-    bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), words.amplitude)
-    style.decimal_ticks(bar.ax.yaxis)
+    alone = ""
+    if ds.sizes["amplitude"] > 1:
+        bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), words.amplitude)
+        style.decimal_ticks(bar.ax.yaxis)
+    else:
+        alone = f", {words.size(ds['amplitude'].item(), 4)}"
     marks = validity.handles(ds)
     made.legend(marks, [str(mark.get_label()) for mark in marks])
     notes = (
@@ -111,7 +118,7 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
         validity.shares(ds),
     )
     made.title(
-        f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}",
+        f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}{alone}",
         "; ".join(filter(None, notes)),
     )
     return made

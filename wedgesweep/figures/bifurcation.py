@@ -27,12 +27,30 @@ def _half_swing(law: xr.Dataset) -> np.ndarray:
     return np.where(largest > 0.0, largest, np.nan)
 
 
+def _hatch_lifted(ax: Axes, law: xr.Dataset) -> None:
+    """Hatch the frequencies at which a joint lifts off."""
+    beta = law["beta"].values
+    middles = 0.5 * (beta[1:] + beta[:-1])
+    ends = np.concatenate([[beta[0]], middles, [beta[-1]]])
+    for place in np.flatnonzero(validity.lifted(law).values):
+        ax.axvspan(
+            ends[place],
+            ends[place + 1],
+            facecolor="none",
+            edgecolor="0.85",
+            hatch="///",
+            linewidth=0,
+            zorder=0,
+        )
+
+
 def _draw_law(ax: Axes, law: xr.Dataset, scale: np.ndarray) -> bool:
     middle = 0.5 * (law["displacement"].max("phase") + law["displacement"].min("phase"))
     samples = (poincare_samples(law) - middle.values[:, None]) / scale[:, None]
     periods = samples.shape[-1]
     largest = 7.5 if law.sizes["beta"] <= FEW_BETAS else 3.5
     grey = validity.unsettled(law).values
+    _hatch_lifted(ax, law)
     for period, values in enumerate(samples.T):
         # Rings that shrink from period to period keep coinciding samples visible.
         share = period / max(periods - 1, 1)
@@ -63,11 +81,12 @@ def draw(target: Target, ds: xr.Dataset, amplitude: float | None = None) -> Pane
     axes[0].set_ylim(-1.1, 1.1)
     style.label(axes, style.BETA, f"${words.motion}$ from its middle, over the largest half swing [1]")
     made.legend(*axes[0].get_legend_handles_labels(), columns=6)
-    grey = int(validity.unsettled(ds).sum())
+    grey, lifted = (int(marked.sum()) for marked in (validity.unsettled(ds), validity.lifted(ds)))
     notes = (
         words.sign,
         "$\\times$ no result or no motion" if missing else "",
         f"grey: {grey} of {ds['status'].size} cases that did not settle" if grey else "",
+        f"hatched: lift-off, outside of validity ({lifted} cases)" if lifted else "",
     )
     made.title(
         f"Displacement at forcing phase 0 (${words.input}$ = 0, rising) of each kept period, "

@@ -32,9 +32,12 @@ def curve(name: str, parameters: np.void, reach: float) -> tuple[np.ndarray, np.
     return np.concatenate([pieces[branch] for branch in order]), np.concatenate(coefficients)
 
 
-def _annotate(ax: Axes, parameters: np.void) -> None:
-    """Mark the levels of the coefficients, and say how the law behaves at rest."""
+def _annotate(ax: Axes, law: str, parameters: np.void) -> None:
+    """Mark the levels of the coefficients that a law has, and say how it behaves at rest."""
+    used = " ".join(getattr(LAWS[law], "EQUATIONS", ("mu_s, mu_d",)))
     for name, side in (("s", "bottom"), ("d", "top")):
+        if f"mu_{name}" not in used:
+            continue
         level = float(parameters["friction"][f"mu_{name}"])
         ax.axhline(level, color="0.75", linewidth=0.8, linestyle=(0, (2, 2)), zorder=0)
         place = {"va": side, "transform": ax.get_yaxis_transform(), "color": style.GREY}
@@ -61,7 +64,7 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
         velocity, coefficient = curves[law]
         ax.plot(velocity * style.MM, coefficient, color=style.law_style(law)["color"], linewidth=1.7)
         ax.set_title(law, fontsize=10)
-        _annotate(ax, parameters[law])
+        _annotate(ax, law, parameters[law])
     style.label(axes, "slip velocity [mm/s]", "friction coefficient $μ$, signed [1]")
     grey = "; grey: the other laws" if len(names) > 1 else ""
     made.title("Friction laws", "a positive coefficient opposes a positive slip velocity" + grey)

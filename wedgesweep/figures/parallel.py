@@ -2,11 +2,14 @@
 
 import gc
 import multiprocessing
+import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
 
 import matplotlib.figure  # noqa: F401 - the forks have what is loaded here
+
+from wedgesweep.processes import end_with
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -22,5 +25,10 @@ def map_forked(function: Callable[[Item], Result], items: Iterable[Item], n_jobs
     if n_jobs == 1 or multiprocessing.get_start_method() != "fork":
         return [function(item) for item in items]
     context = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(n_jobs, context, initializer=gc.disable) as pool:
+    with ProcessPoolExecutor(n_jobs, context, initializer=_prepare, initargs=(os.getpid(),)) as pool:
         return list(pool.map(function, items))
+
+
+def _prepare(parent: int) -> None:
+    gc.disable()
+    end_with(parent)

@@ -42,7 +42,7 @@ def _from_list(ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None)
 
 def _size(case: xr.Dataset) -> float:
     """Size (mm) that a motion is compared with: the input amplitude, 1 mm under a force."""
-    return 1.0 if labels.of(case).unit == "N" else case["amplitude"].item() * style.MM
+    return 1.0 if labels.of(case).forced else case["amplitude"].item() * style.MM
 
 
 def _draw_still(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
@@ -99,7 +99,7 @@ def draw(
     style.label(made.axes, words.displacement, words.velocity, columns)
     left_out = f"; first {len(shown)} of {len(found)} cases" if len(found) > len(shown) else ""
     made.title(
-        "Phase portraits; yellow: stuck (coulomb) or slip below $v_t$" + opens + left_out,
+        f"Phase portraits; yellow: {labels.sticking(cases.laws(ds))}{opens}{left_out}",
         words.sign,
     )
     return made

@@ -8,6 +8,7 @@ from math import isfinite, nan, sqrt
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from wedgesweep.figures import style
@@ -18,41 +19,45 @@ LEAST = 50.0
 # A share of fewer sets is not drawn.
 FEWEST = 3
 STRONG = 800.0
+# What the shares of the diagnosis are shares of; the other methods are baselines on the same sets.
+DIAGNOSIS = {
+    "exact": "diagnosis: the truth is named",
+    "exact or tied": "diagnosis: named, or in a tie",
+    "reported": "diagnosis: reported at all",
+}
 
 
 def draw(bins: Sequence[Any]) -> Figure:
-    """Draw the share of sets with the truth by method, with 95 % intervals for the diagnosis.
+    """Draw a panel per method: the share of sets with the truth, with 95 % intervals.
 
     ``bins`` are those of ``validation.tables.recovery``.
     """
-    made = panels(None, 1, size=(6.2, 3.6))
-    ax = made.axes[0]
-    middles = np.array([_middle(low, high) for low, high, _ in bins])
     names = list(bins[0].shares)
-    # Side by side, so that equal shares stay visible.
-    for name, x in zip(names, middles * np.geomspace(0.9, 1.1, len(names))[:, None], strict=True):
-        shares = [found[name] for *_, found in bins]
-        values = [each.value if each.n >= FEWEST else nan for each in shares]
-        if name in ("exact", "exact or tied"):
-            # Rounding may put the end of an interval beyond a share of 0 or 1.
-            low, high = np.transpose([each.wilson for each in shares])
-            errors = np.maximum([values - low, high - values], 0.0)
-            ax.errorbar(x, values, yerr=errors, marker="o", capsize=3, label=f"diagnosis: {name}")
-        elif name == "reported":
-            ax.plot(x, values, marker=".", label="diagnosis: the truth is among what is reported")
-        else:
-            ax.plot(x, values, "--", marker=".", label=name)
-    ax.set(xscale="log", ylim=(-0.03, 1.03))
-    ax.axvline(STRONG, color=style.GREY, linewidth=0.8)
-    beside = {"transform": ax.get_xaxis_transform(), "fontsize": 8, "color": style.GREY}
-    ax.text(1.03 * STRONG, 0.02, f"excess {STRONG:g}: enough to be named", **beside)
-    style.label([ax], "excess chi-squared of the base model [1]", "share of sets with the truth [1]")
+    made = panels(None, len(names), size=(2.9, 2.3), margin=(0.8, 0.8))
+    middles = np.array([_middle(low, high) for low, high, _ in bins])
+    for place, (ax, name) in enumerate(zip(made.axes, names, strict=True)):
+        _draw_method(ax, middles, [found[name] for *_, found in bins], name in DIAGNOSIS)
+        ax.set_title(DIAGNOSIS.get(name, f"baseline: {name}"), fontsize=9.5)
+        ax.axvline(STRONG, color=style.GREY, linewidth=0.8)
+        if place == 0:
+            beside = {"transform": ax.get_xaxis_transform(), "fontsize": 8, "color": style.GREY}
+            ax.text(1.1 * STRONG, 0.05, f"{STRONG:g}: strong\nenough to be\nnamed", **beside)
+    made.axes[0].set(xscale="log", ylim=(-0.03, 1.03))
+    style.label(made.axes, "excess chi-squared [1]", "share of sets [1]")
     made.title(
         "How often the hidden effect is found, over how strongly it shows",
         "excess: chi-squared of the base model over what noise leaves; bars: 95 % intervals",
     )
-    made.legend(*ax.get_legend_handles_labels(), columns=2)
     return made.figure.figure
+
+
+def _draw_method(ax: Axes, middles: np.ndarray, shares: Sequence[Any], ours: bool) -> None:
+    values = np.array([each.value if each.n >= FEWEST else nan for each in shares])
+    low, high = np.transpose([each.wilson for each in shares])
+    # Rounding may put the end of an interval beyond a share of 0 or 1.
+    errors = np.maximum([values - low, high - values], 0.0)
+    look: dict[str, Any] = {"linestyle": "-", "color": style.BLUE if ours else style.VERMILLION}
+    ax.errorbar(middles, values, yerr=errors, marker="o", markersize=4, capsize=2.5, **look)
 
 
 def _middle(low: float, high: float) -> float:

@@ -21,7 +21,7 @@ HEIGHT = 0.75  # of the largest waveform about its middle, in distances between 
 
 def _normalised(ds: xr.Dataset) -> xr.DataArray:
     """Return (x - y) / a, or a motion over what it is compared with, centred between its extremes."""
-    forced = labels.of(ds).unit == "N"
+    forced = labels.of(ds).forced
     waves = ds["displacement"] / (
         0.5 * ds["peak_to_peak"] / ds["amplitude_ratio"] if forced else ds["amplitude"]
     )
@@ -101,14 +101,13 @@ def draw(
         ax.set_title(law, fontsize=10)
     axes[0].set_yticks(range(len(rows)), [f"{a * words.factor:.3g}" for a in ds["amplitude"].values])
     axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))
-    style.label(axes, "time [s]", f"{words.amplitude}, one row each")
+    style.label(axes, "time [s]", words.amplitude)
     if largest > 0.0:
         _draw_scale(axes[-1], per_ratio, largest, words)
     frequency = style.frequency(ds["beta"].item(), ds.attrs["omega_n"])
     made.title(
         f"{words.name} ${words.motion}$ ({words.whose}) at {frequency}",
-        f"each row is divided by {words.own_reference} and centred; "
-        "yellow: stuck (coulomb) or slip below $v_t$"
-        + ("" if opened is None else "; blue: a contact is open"),
+        f"a row for each amplitude, divided by {words.own_reference} and centred; "
+        f"yellow: {labels.sticking(names)}" + ("" if opened is None else "; blue: a contact is open"),
     )
     return made

@@ -115,6 +115,5 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     made.colorbar(mesh, "stick fraction of a period [1]")
     style.label(axes, style.BETA, words.amplitude)
     _legend(made, ds)
-    face = "" if ds.attrs.get("system") == "oscillator" else "column "
-    made.title(f"Share of time stuck (coulomb) or with {face}slip below $v_t$ (other laws)")
+    made.title(f"Share of time: {labels.sticking(names)}")
     return made

@@ -1,16 +1,21 @@
 """Cases whose numbers are to be read with care, and their marks: hollow or grey."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from wedgesweep import formatting
 from wedgesweep.outcome import settled
 
 LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
 OPENS = "column_open_fraction"  # of joints that may lift off
-HOLLOW = {"linestyle": "", "marker": "o", "markerfacecolor": "white", "markersize": 4.5, "zorder": 4}
-PALE = {"linestyle": "", "marker": "o", "color": "0.6", "markersize": 4.5, "zorder": 4}
+# Hollow: lift-off; grey: unsettled; a grey ring: both.
+POINT = {"linestyle": "", "marker": "o", "markersize": 4.5, "zorder": 4}
+HOLLOW: dict[str, Any] = {**POINT, "markerfacecolor": "white"}
+PALE: dict[str, Any] = {**POINT, "color": "0.6"}
 FEW_POINTS = 60
 
 
@@ -39,8 +44,12 @@ def unsettled(ds: xr.Dataset) -> xr.DataArray:
 def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -> None:
     """Mark the points of a line of cases: hollow where a joint lifts off, grey where unsettled."""
     size = {} if len(x) <= FEW_POINTS else {"markersize": 2.5}
-    for marked, look in ((lifted(case), {"color": color, **HOLLOW}), (unsettled(case), PALE)):
-        at = marked.values
+    hollow, grey = lifted(case).values, unsettled(case).values
+    for at, look in (
+        (hollow & ~grey, {**HOLLOW, "color": color}),
+        (grey & ~hollow, PALE),
+        (hollow & grey, {**PALE, **HOLLOW}),
+    ):
         if at.any():
             ax.plot(x[at], y[at], **{**look, **size})
 
@@ -48,9 +57,9 @@ def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -
 def shares(ds: xr.Dataset) -> str:
     """How many of the cases lift off and are unsettled, in words; empty if none does."""
     told = [
-        f"{int(marked.sum())} of {marked.size} cases {words}"
+        f"{int(marked.sum())} of {formatting.counted(marked.size, 'case')} {words}"
         for marked, words in (
-            (lifted(ds), "lift off: outside of the model's validity"),
+            (lifted(ds), "with lift-off, outside of the model's validity"),
             (unsettled(ds), "did not settle"),
         )
         if marked.any()
@@ -65,6 +74,8 @@ def handles(ds: xr.Dataset) -> list[Line2D]:
         found.append(Line2D([], [], **{**HOLLOW, "color": "0.2"}, label="lift-off: outside of validity"))
     if unsettled(ds).any():
         found.append(Line2D([], [], **PALE, label="not settled"))
+    if (lifted(ds) & unsettled(ds)).any():
+        found.append(Line2D([], [], **{**PALE, **HOLLOW}, label="both"))
     return found
 
 

@@ -5,6 +5,7 @@ begins or ends and where displacement or velocity is extreme.
 """
 
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
@@ -148,3 +149,41 @@ def add(sums, t, y, weight, mode, p):
         sums.normal_force = min(sums.normal_force, first, second)
         if _pulls(first, second, p):
             sums.lifted_time += weight
+
+
+class Span(NamedTuple):
+    """Integrals over some time (s) of a mode: displacement (m s), energies (J).
+
+    ``sticks`` and ``lifted``: whether the contact sticks, and whether a normal force is negative.
+    """
+
+    time: float
+    integral: float
+    sticks: bool
+    lifted: bool
+    dissipated: float
+    supplied: float
+
+
+@inner
+def add_span(sums, span):
+    """Add a span whose integrals are known; its extremes come from ``add_extremes``."""
+    _count_onset(sums, 1.0 if span.sticks else 0.0)
+    sums.time += span.time
+    sums.integral += span.integral
+    sums.dissipated += span.dissipated
+    sums.supplied += span.supplied
+    if span.sticks:
+        sums.stuck_time += span.time
+    if span.lifted:
+        sums.lifted_time += span.time
+
+
+@inlined
+def add_extremes(sums, x, velocity, normal_force, energies):
+    """Add what may be an extreme; ``normal_force`` (N) is the smaller one."""
+    sums.lowest = min(sums.lowest, x)
+    sums.highest = max(sums.highest, x)
+    sums.peak_velocity = max(sums.peak_velocity, abs(velocity))
+    if energies:
+        sums.normal_force = min(sums.normal_force, normal_force)

@@ -162,6 +162,11 @@ def powers(t, y, mode, p):
 
 
 @declared
+def expected_event(forces, t, y, mode, p):
+    """Time (s) in which a velocity would reach the end of its branch at its present rate; inf: in none."""
+
+
+@declared
 def driving_force(t, acceleration, y, mode, p):
     """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined."""
 
@@ -207,8 +212,9 @@ def impact(y, mode, place, p):
 
 
 @declared
-def closed_form(state, stop, p, keeping, recorder):
-    """Follow a mode that has a closed form to its event or ``stop``.
+def closed_form(state, stop, p, keeping, recorder, counts):
+    """Follow a mode that has a closed form to its event or ``stop``, or several modes, one after the other.
 
-    Returns whether it has one, the time and state vector reached, and the event or NO_EVENT.
+    Returns whether it has one, the state reached, and the event or NO_EVENT; ``counts[2]`` counts the
+    events passed.
     """

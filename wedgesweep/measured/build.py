@@ -105,6 +105,7 @@ def build_record(
         force=channels.si("force"),
         cutoff=given.get("lowpass_hz"),
         recorded_s=float(np.ptp(recorded.seconds)) if cut else None,
+        repeat_of=given.get("repeat_of"),
         remarks=tuple(filter(None, (channels.told, thinned))),
     )
     problems.extend(FAULTS[test.kind](test, channels.file, at))

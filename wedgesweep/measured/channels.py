@@ -11,9 +11,11 @@ from wedgesweep.measured.declarations import (
     COLUMNS,
     FORCE_AMPLITUDE,
     INPUT,
+    LOOP,
     RELATIVE,
     RESPONSES,
     STEADY,
+    TRANSIENT,
 )
 
 # Responses that are compared at a time.
@@ -58,7 +60,7 @@ def excitation_faults(
     columns: Mapping[str, Mapping[str, Any]], model: Config, kind: str = STEADY
 ) -> list[str]:
     """Faults of the channels of a model with this excitation, as "key: fault"."""
-    if kind != STEADY:
+    if kind == LOOP or (kind == TRANSIENT and INPUT not in columns):
         return []
     faults = []
     if FORCE in columns:

@@ -1,5 +1,6 @@
 """Declaration of every key of measured.toml."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isfinite, nan
 from typing import Any
@@ -26,8 +27,17 @@ RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
 PARAMETERS = tuple(name for name in SCALES if EFFECTS[name].family == OF_THE_MODEL)
 
-# Kinds of test: a periodic response, a free motion, or a force under an imposed motion.
+# Kinds of test: a periodic response, a motion from some start with or without an input, or a force under an
+# imposed motion.
 STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
+# What tests of several kinds are together.
+MIXED = "mixed"
+# Channels of each kind where several kinds share one declaration.
+CHANNELS = {
+    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT),
+    TRANSIENT: ("time", "displacement", "velocity", INPUT),
+    LOOP: ("time", "displacement", "force"),
+}
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
 AMPLITUDE = Quantity("amplitude_mm", nan, "amplitude of the side frame; omit it if unknown", above=0.0)
@@ -46,6 +56,11 @@ FROM = Quantity("from_s", nan, "time in the file from which the record is used; 
 TO = Quantity("to_s", nan, "time in the file up to which the record is used; by default all of it")
 DETREND = Flag(
     key="detrend", meaning="whether to remove the straight line of a sensor that drifts", default=False
+)
+UNDRIVEN = Flag(
+    key="undriven",
+    meaning="transient: whether no input acts in this test, so that its file has none",
+    default=False,
 )
 MODEL_ERROR = Quantity(
     "model_error",
@@ -126,6 +141,14 @@ class Input(Inline):
         return read
 
 
+def columns_of(columns: Mapping[str, Any], kind: str, alone: bool) -> dict[str, Any]:
+    """The declared channels that the files of tests of a kind have; all of them if no other kind is there."""
+    if alone:
+        return dict(columns)
+    used = CHANNELS[kind]
+    return {name: each for name, each in columns.items() if name in used}
+
+
 def units(channel: str, quantity: str | None = None) -> dict[str, float]:
     """Units of a channel, by name, and their sizes in SI; an input has those of its quantity."""
     if channel != INPUT:
@@ -187,7 +210,7 @@ TEST = RecordTable(
         (
             Choice(
                 key="kind",
-                meaning="steady: periodic response; transient: free motion; loop: force under a motion",
+                meaning="steady: periodic response; transient: decay, sweep; loop: force under a motion",
                 choices=KINDS,
                 default=STEADY,
             ),
@@ -200,6 +223,14 @@ TEST = RecordTable(
         (Number.of(FROM, optional=True),),
         (Number.of(TO, optional=True),),
         (DETREND,),
+        (
+            Text(
+                key="repeat_of",
+                meaning="file of the test that this one repeats: what differs is noise",
+                optional=True,
+            ),
+        ),
+        (UNDRIVEN,),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )

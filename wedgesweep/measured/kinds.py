@@ -1,11 +1,11 @@
 """Checks of tests by their kind: which channels and keys they have, and what their records must show."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured.declarations import LOOP, STEADY
+from wedgesweep.measured.declarations import INPUT, LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.measurement import TestRecord
 
 # The motion of a loop must come back by this share of its range, or friction cannot be told from a spring.
@@ -18,21 +18,14 @@ HIGHEST = 0.2
 FEWEST = 64
 # Keys of a test under a sine, and of a loop.
 OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpass_hz",)
+OF_A_TRANSIENT = ("undriven",)
 # What is compared, and what else a test may have, by kind.
 NEEDED = {"transient": ("displacement",), "loop": ("displacement", "force")}
-OPTIONAL = {"transient": ("velocity",), "loop": ()}
+OPTIONAL = {"transient": ("velocity", INPUT), "loop": ()}
 MEANING = {
-    "transient": "a transient is a free motion without any input",
+    "transient": "a transient is a motion from some start, free or under a recorded input",
     "loop": "a loop is the force under a recorded displacement",
 }
-
-
-def kind_faults(kinds: Sequence[str]) -> list[str]:
-    """Faults of the kinds of the tests together, as "key: fault"."""
-    if len(set(kinds)) < 2:
-        return []
-    mixed = " and ".join(sorted(set(kinds)))
-    return [f"test.kind: {mixed} are mixed; write a measurement for each kind"]
 
 
 def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
@@ -48,6 +41,7 @@ def key_faults(given: Mapping[str, Any]) -> list[str]:
     kind = given.get("kind", STEADY)
     wrong = [] if kind == STEADY else [key for key in OF_A_SINE if key in given]
     wrong += [] if kind == LOOP else [key for key in OF_A_LOOP if key in given]
+    wrong += [] if kind == TRANSIENT else [key for key in OF_A_TRANSIENT if given.get(key)]
     return [f'{key}: not for kind = "{kind}"; omit it' for key in wrong]
 
 
@@ -69,18 +63,20 @@ def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
 
 
 def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
-    """Faults of a free motion, which must decay."""
+    """Faults of a transient; without an input the motion must decay."""
     if test.displacement is None:  # a fault of the columns
         return []
     if test.time.size < FEWEST:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a transient"]
     signal = test.displacement
+    if test.input is not None:
+        return []
     first, last = (
         float(np.ptp(part))
         for part in (signal[: int(FIRST * signal.size)], signal[-int(LAST * signal.size) :])
     )
     if first < DECAYS * last:
         told = f"the motion does not decay (it swings by {1e3 * first:.3g} mm, at last {1e3 * last:.3g} mm)"
-        better = f'a transient has no input; if it is steady write kind = "steady" ({at}.kind)'
+        better = f'add the column input if there is one; if it is steady write kind = "steady" ({at}.kind)'
         return [f"{file}: {told}; {better}"]
     return []

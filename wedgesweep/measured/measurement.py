@@ -1,7 +1,7 @@
 """What measured data consist of, in SI units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
+from wedgesweep.measured.declarations import MIXED, columns_of
 from wedgesweep.measured.frequency import refined_frequency
 from wedgesweep.measured.overrides import with_numbers
 
@@ -27,7 +28,8 @@ class TestRecord:
     samples at these times, and so are ``acceleration`` (m/s^2) and the recorded ``input`` (SI); None where
     not measured. ``model``: numbers of the base model in this test, by "section.key", in its units.
     ``kind``: of test; ``force`` (N) and ``cutoff`` (Hz, of a low-pass filter; None: chosen) are a loop's.
-    ``recorded_s``: length (s) of the file's record, None if all of it is used.
+    ``recorded_s``: length (s) of the file's record, None if all of it is used. ``repeat_of``: file of the
+    test that this one repeats.
     """
 
     __test__ = False  # not a test of pytest
@@ -47,6 +49,7 @@ class TestRecord:
     force: np.ndarray | None = None
     cutoff: float | None = None
     recorded_s: float | None = None
+    repeat_of: str | None = None
     remarks: tuple[str, ...] = ()
 
     @cached_property
@@ -103,9 +106,20 @@ class Measurement:
     model_error: float = 0.0
 
     @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of the tests, in the order of their first ones."""
+        return tuple(dict.fromkeys(test.kind for test in self.tests))
+
+    @property
     def kind(self) -> str:
-        """Kind of all tests."""
-        return self.tests[0].kind
+        """Kind of all tests, or MIXED."""
+        return self.kinds[0] if len(self.kinds) == 1 else MIXED
+
+    def of_kind(self, kind: str) -> "Measurement":
+        """The tests of one kind, with the channels that they have."""
+        tests = tuple(test for test in self.tests if test.kind == kind)
+        columns = columns_of(self.columns, kind, len(self.kinds) == 1)
+        return replace(self, tests=tests, columns=columns)
 
     @property
     def recorded_input(self) -> str | None:

@@ -12,7 +12,7 @@ of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +22,20 @@ from wedgesweep.config import Config
 from wedgesweep.config.keys import Number, hint, show
 from wedgesweep.config.tables import Table
 from wedgesweep.files import json_object, regular, written
-from wedgesweep.measured import kinds, overrides
+from wedgesweep.measured import overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
 from wedgesweep.measured.declarations import (
     DETREND,
     INPUT,
+    KINDS,
     MODEL_ERROR,
     QUANTITIES,
     STEADY,
     TEST,
+    TRANSIENT,
     UNCERTAIN,
+    UNDRIVEN,
     UNITS,
 )
 from wedgesweep.measured.declarations import units as units_of
@@ -77,6 +80,8 @@ def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
         "model": json.dumps(dict(test.model)) if test.model else None,
         "kind": test.kind,
         "lowpass_hz": test.cutoff,
+        "undriven": 1 if test.kind == TRANSIENT and test.input is None else None,
+        "repeat_of": test.repeat_of,
     }
     group.setncatts({name: value for name, value in given.items() if value is not None})
     group.createDimension("sample", test.time.size)
@@ -128,23 +133,22 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         problems.append(
             f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
         )
-    columns = [_columns(each) for each in groups]
-    if any(each != columns[0] for each in columns):
+    by_kind, different = _columns_by_kind(groups)
+    if different:
         problems.append(
             f"{path}: tests: they have different variables, units, of or quantity; make them alike"
         )
+    columns = {name: each for own in by_kind.values() for name, each in own.items()}
     gain_std = attributes.get("input_gain_std", 0.0)
     if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
         problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
         gain_std = 0.0
-    all_kinds = [test.kind for test in complete]
-    kind = (all_kinds or [STEADY])[0]
-    faults = kinds.kind_faults(all_kinds) or channel_faults(columns[0], gain_std, kind)
+    faults = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
     if config is not None and not (problems or faults):
-        faults = excitation_faults(columns[0], config, kind)
+        faults = [fault for kind, own in by_kind.items() for fault in excitation_faults(own, config, kind)]
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
-        problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns[0])]
+        problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns)]
         for test in complete:
             problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
     if problems or config is None:
@@ -157,10 +161,25 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         uncertain=uncertain,
         tests=complete,
         derived_velocity=derived == {True},
-        columns=columns[0],
+        columns=columns,
         input_gain_std=float(gain_std),
         model_error=model_error,
     )
+
+
+def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[str, str]]], bool]:
+    """Variables of the tests of each kind, and whether they differ between tests or kinds."""
+    found: dict[str, dict[str, dict[str, str]]] = {}
+    different = False
+    for group in groups:
+        own = _columns(group)
+        kind = getattr(group, "kind", STEADY)
+        known = found.setdefault(kind if kind in KINDS else STEADY, own)
+        shared = {name: each for other in found.values() for name, each in other.items()}
+        undriven = bool(getattr(group, "undriven", 0))
+        same = known == own or (undriven and {**own, INPUT: known.get(INPUT)} == known)
+        different = different or not same or any(own[name] != shared[name] for name in own)
+    return found, different
 
 
 def _columns(group: Any) -> dict[str, dict[str, str]]:
@@ -232,8 +251,9 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
 
 def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
     """Attributes of a test with its numbers of the model read from their text, and 0 or 1 as a flag."""
-    if attributes.get(DETREND.key) in (0, 1):  # an attribute cannot be a truth value
-        attributes = attributes | {DETREND.key: bool(attributes[DETREND.key])}
+    for flag in (DETREND.key, UNDRIVEN.key):
+        if attributes.get(flag) in (0, 1):  # an attribute cannot be a truth value
+            attributes = attributes | {flag: bool(attributes[flag])}
     if not isinstance(attributes.get("model"), str):
         return attributes
     try:

@@ -8,9 +8,9 @@ from typing import Any
 from wedgesweep.config import Config, toml
 from wedgesweep.config.keys import show
 from wedgesweep.files import read_text
-from wedgesweep.measured import arrays, channels, csv_columns, kinds, overrides
+from wedgesweep.measured import arrays, channels, csv_columns, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import ROOT, STEADY
+from wedgesweep.measured.declarations import INPUT, ROOT, STEADY, columns_of
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
@@ -27,17 +27,17 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     if model is None and "model" in measurement:
         model = path.parent / measurement["model"]
     columns = measurement.get("columns", {})
-    all_kinds = [each.get("kind", STEADY) for each in measurement.get("test", ())]
-    kind = (all_kinds or [STEADY])[0]
-    problems += [f"{path}: measurement.{fault}" for fault in kinds.kind_faults(all_kinds)]
+    by_kind = _columns_by_kind(measurement)
     if not problems:
-        told = channels.channel_faults(columns, measurement["input_gain_std"], kind)
-        problems += [f"{path}: {_at(fault)}" for fault in told]
+        for kind, own in by_kind.items():
+            told = channels.channel_faults(own, measurement["input_gain_std"], kind)
+            problems += [f"{path}: {_at(fault)}" for fault in told]
     config, law = load_model(model, problems) if model else (None, "")
     if config is not None:
         if not problems:
-            told = channels.excitation_faults(columns, config, kind)
-            problems += [f"{path}: {_at(fault)}" for fault in told]
+            for kind, own in by_kind.items():
+                told = channels.excitation_faults(own, config, kind)
+                problems += [f"{path}: {_at(fault)}" for fault in told]
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config.effects, columns)]
         problems += _override_faults(path, measurement, config)
     tests = _tests(path, measurement, config, problems)
@@ -58,6 +58,13 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         input_gain_std=measurement["input_gain_std"],
         model_error=measurement["model_error"],
     )
+
+
+def _columns_by_kind(measurement: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The declared channels of each kind of test that there is."""
+    columns = measurement.get("columns", {})
+    found = dict.fromkeys(each.get("kind", STEADY) for each in measurement.get("test", ())) or {STEADY: None}
+    return {kind: columns_of(columns, kind, len(found) == 1) for kind in found}
 
 
 def _at(fault: str) -> str:
@@ -105,6 +112,7 @@ def _tests(
 ) -> list[TestRecord]:
     """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
+    by_kind = _columns_by_kind(measurement)
     complete = columns.keys() > {"time"} and all(
         {"column", "unit"} <= each.keys() for each in columns.values()
     )
@@ -119,9 +127,12 @@ def _tests(
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, columns, model))
-        if complete:
-            tests += _test(path.parent / file, at, given, measurement, problems)
+        own = by_kind[given.get("kind", STEADY)]
+        if given.get("undriven"):
+            own = {name: each for name, each in own.items() if name != INPUT}
+        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, own, model))
+        if complete and own:
+            tests += _test(path.parent / file, at, given, {**measurement, "columns": own}, problems)
     return tests
 
 

@@ -20,11 +20,12 @@ PIXELS_PER_INCH = 96  # of CSS
 
 
 class Wanted(NamedTuple):
-    """A figure with its caption, of some tests or of those that it chooses itself."""
+    """A figure with its caption, of some tests (of a kind) or of those that it chooses itself."""
 
     name: str
     caption: str
     tests: Sequence[int] | None
+    kind: str | None
 
 
 class InlineFigures:
@@ -32,11 +33,18 @@ class InlineFigures:
 
     def __init__(self, result: DiagnosisResult) -> None:
         self.result = result
+        self.kind: str | None = None
         self.wanted: list[Wanted] = []
+
+    def of_kind(self, kind: str) -> "InlineFigures":
+        """The same page for figures of tests of one kind."""
+        found = InlineFigures(self.result)
+        found.kind, found.wanted = kind, self.wanted
+        return found
 
     def __call__(self, name: str, caption: str, tests: Sequence[int] | None = None) -> Markup:
         """Keep the place of a figure."""
-        self.wanted.append(Wanted(name, caption, tests))
+        self.wanted.append(Wanted(name, caption, tests, self.kind))
         return Markup(f"<!-- figure {len(self.wanted) - 1} -->")
 
     def fill(self, page: Markup, n_jobs: int) -> Markup:
@@ -51,7 +59,8 @@ def _draw(result: DiagnosisResult, numbered: tuple[int, Wanted]) -> Markup:
     place, wanted = numbered
     picks: dict[str, Any] = {} if wanted.tests is None else {"tests": wanted.tests}
     try:
-        figure = figures.draw(result, wanted.name, **picks)
+        shown = result if wanted.kind is None else result.of_kind(wanted.kind)
+        figure = figures.draw(shown, wanted.name, **picks)
     except ValueError as error:
         return html.paragraph(f"No figure ({error}).", class_="note")
     width, height = (round(PIXELS_PER_INCH * side) for side in figure.get_size_inches())

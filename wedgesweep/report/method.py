@@ -32,7 +32,7 @@ def section(result: DiagnosisResult) -> Markup:
 
 def _of_harmonics(result: DiagnosisResult) -> list[list[str]]:
     harmonics = result.document["method"].get("harmonics")
-    if harmonics is None:
+    if harmonics is None or "channel" not in result.data.coords:
         return []
     channels = phrases.listing([str(name) for name in result.data["channel"].values])
     return [["harmonics of each channel", str(harmonics)], ["channels", channels]]

@@ -27,11 +27,11 @@ CAPTIONS = {
 PEAK_TO_PEAK = "Peak-to-peak over frequency; lines join tests of about the same input amplitude."
 
 
-def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
+def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit") -> Markup:
     """Section with all that is measured against simulated."""
     order = by_misfit(result.data).tolist()
     return html.section(
-        "misfit",
+        place,
         heading(result),
         html.paragraph(_overall(result)),
         draw("misfit", _extremes(result)),
@@ -59,7 +59,7 @@ def _ratio(test: dict[str, Any], model: str) -> float:
 
 def _overall(result: DiagnosisResult) -> str:
     misfit = result.document["misfit"]
-    tests = phrases.counted(result.data.sizes["test"], "test")
+    tests = formatting.counted(result.data.sizes["test"], "test")
     q, dof = formatting.number(misfit["chi2_base"]), misfit["dof"]
     p = phrases.p_value(misfit["p_base"]).replace(" ", formatting.NO_BREAK)
     return (
@@ -84,7 +84,11 @@ def _described(test: dict[str, Any]) -> str:
 def _table(result: DiagnosisResult) -> Markup:
     unit = phrases.amplitude_unit(result.document["misfit"]["tests"][0])
     head = ["test", "frequency [Hz]", f"amplitude [{unit}]", f"fitted amplitude [{unit}]", "periods"]
-    head += ["noise x − y [mm]", "noise x′ − y′ [mm/s]", *(f"Q/dof {model}" for model in result.models)]
+    head += [
+        "noise, displacement [mm]",
+        "noise, velocity [mm/s]",
+        *(f"Q/dof {model}" for model in result.models),
+    ]
     rows = [_row(test, result.models) for test in result.document["misfit"]["tests"]]
     return html.details("Table of all tests", html.table("All tests and their misfit", head, rows))
 
@@ -130,7 +134,7 @@ def _energy(result: DiagnosisResult) -> str:
     ratio = (result.data["simulated_energy"].sel(model="base") / result.data["measured_energy"]).values
     known = ratio[np.isfinite(ratio)]
     if not known.size:
-        return "No test gives the energy, which requires a known motion of the side frame."
+        return "No test gives the energy: it follows from a known input amplitude."
     low, high = (formatting.number(each) for each in (known.min(), known.max()))
     times = low if low == high else f"{low} to {high}"
     return f"The base model dissipates {times} times the measured energy."

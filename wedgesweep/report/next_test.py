@@ -9,24 +9,26 @@ from wedgesweep.report.html import Markup
 def section(result: DiagnosisResult) -> Markup:
     """Section with the recommended test, or the reason why there is none."""
     test = result.document["next_test"]
-    content = NOTHING_TO_MEASURE[result.verdict] if test is None else _recommended(result)
-    return html.section("next", "What to measure next", html.paragraph(content))
+    content = html.paragraph(NOTHING_TO_MEASURE[result.verdict]) if test is None else _recommended(result)
+    return html.section("next", "What to measure next", content)
 
 
 def _recommended(result: DiagnosisResult) -> Markup:
     test, enough = result.document["next_test"], result.document["method"]["enough_distance"]
-    would, best = (
-        ("would distinguish", "It is the cheapest test that does.")
-        if phrases.distinguishes(result.document)
-        else ("would not reliably distinguish", "No test within reach does better.")
-    )
+    found = phrases.separated(result.document)
+    if found is None:
+        would = f"would not reliably distinguish {' from '.join(test['separates'])}"
+        best = "No test within reach does better."
+    else:
+        would, best = f"would distinguish {found.told}", "It is the cheapest test that does."
     place = html.element("strong", phrases.next_test(test))
-    outcome = (
-        f" input amplitude {would} {' from '.join(test['separates'])}: the squared distance between their "
-        f"responses is {formatting.number(test['distance'])} in units of the noise "
-        f"({formatting.number(enough)} is enough). {best}"
-    )
-    return html.join(["A test at ", place, outcome], "")
+    rows = [
+        [" from ".join(each["separates"]), formatting.number(each["distance"])]
+        for each in test.get("pairs", [test])
+    ]
+    caption = f"Squared distance of the predicted responses over the noise; {enough:g} is enough"
+    table = html.table(caption, ("this test would distinguish", "distance"), rows)
+    return html.join([html.paragraph("A test at ", place, f" {would}. {best}"), table])
 
 
 NOTHING_TO_MEASURE = {

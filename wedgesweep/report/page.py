@@ -68,9 +68,19 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
 
 
 def _measured_and_simulated(result: DiagnosisResult, draw: InlineFigures) -> Markup:
+    if result.parts:
+        parts = [(kind, result.of_kind(kind), draw.of_kind(kind)) for kind in result.parts]
+        places = ["misfit", *(f"misfit-{kind}" for kind, *_ in parts[1:])]
+        return html.join(
+            [_of_one_kind(its, own, place) for place, (_, its, own) in zip(places, parts, strict=True)]
+        )
+    return _of_one_kind(result, draw, "misfit")
+
+
+def _of_one_kind(result: DiagnosisResult, draw: InlineFigures, place: str) -> Markup:
     if result.document.get("kind", "steady") != "steady":
-        return sampled.section(result, draw, misfit.heading(result))
-    return misfit.section(result, draw)
+        return sampled.section(result, draw, misfit.heading(result), place)
+    return misfit.section(result, draw, place)
 
 
 def _answer(result: DiagnosisResult) -> Markup:

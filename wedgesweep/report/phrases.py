@@ -39,11 +39,6 @@ def listing(words: Sequence[str], last: str = "and") -> str:
     return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
-def counted(count: int, noun: str) -> str:
-    """A count with its noun: 1 test, 12 tests."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
 def split_key(key: str) -> tuple[str, str]:
     """Name and unit of a config key."""
     quantity = Quantity(key, 0.0, "")
@@ -144,9 +139,33 @@ def these_tests(result: DiagnosisResult) -> str:
     return "this test" if count == 1 else f"these {count} tests"
 
 
-def distinguishes(document: Mapping[str, Any]) -> bool:
-    """Whether the recommended test tells explanations apart, or is only the best that there is."""
-    return document["next_test"]["distance"] >= document["method"]["enough_distance"]
+class Separated(NamedTuple):
+    """What the recommended test distinguishes from the ``first`` explanation, and what it does not."""
+
+    first: str
+    others: list[str]
+    left: list[str]
+
+    @property
+    def told(self) -> str:
+        """As the end of a sentence."""
+        but = f", but not from {listing(self.left, 'or')}" if self.left else ""
+        return f"{self.first} from {listing(self.others)}{but}"
+
+
+def separated(document: Mapping[str, Any]) -> Separated | None:
+    """What the recommended test distinguishes; None if it is only the best that there is."""
+    test, enough = document["next_test"], document["method"]["enough_distance"]
+    if test["distance"] < enough:
+        return None
+    first = test["separates"][0]
+    # Results of older versions have no list of pairs.
+    pairs = [each for each in test.get("pairs", [test]) if first in each["separates"]]
+    found = Separated(first, [], [])
+    for each in pairs:
+        (other,) = set(each["separates"]) - {first}
+        (found.others if each["distance"] >= enough else found.left).append(other)
+    return found
 
 
 def next_test(test: Mapping[str, Any]) -> str:

@@ -15,10 +15,14 @@ CAPTIONS = {
     "loop": "Above, the thick line is the measured force, the dashed line the base model. Below, what the "
     "models leave: a step at zero velocity is dry friction, a slope over velocity a damper, a slope on one "
     "side only a damper that depends on the direction.",
-    "transient": "Above, the thick line is the measured motion, the dashed line the base model. Below, what "
-    "the models leave, over the grey band of the noise. Amplitudes that fall by the same step in every cycle "
-    "are dry friction, those that fall by the same share a damper.",
+    "transient": "Above, the thick line is the measured motion, the dashed line the base model. In between, "
+    "the size of each swing: on a straight line that falls, friction is dry; with a damper it falls by the "
+    "same share each time. Below, what the models leave, over the grey band of the noise.",
 }
+SPECTROGRAM = (
+    "Dark is strong. What the base model leaves along the strongest line of the measured motion is a wrong "
+    "amplitude or phase, what it leaves at multiples of it is friction, a stop or play."
+)
 # Headings of the table, and keys of diagnosis.json.
 COLUMNS = {
     "loop": {"low-pass [Hz]": "lowpass_hz", "noise [N]": "noise_force_N"},
@@ -37,16 +41,17 @@ COMPARED = {
 }
 
 
-def section(result: DiagnosisResult, draw: InlineFigures, heading: str) -> Markup:
+def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: str) -> Markup:
     """Section with the samples and a table of the tests."""
     kind, order = result.document["kind"], by_misfit(result.data).tolist()
     head = ["test", "samples", *COLUMNS[kind], *(f"error, {model}" for model in result.models)]
     rows = [_row(test, kind, result.models) for test in result.document["misfit"]["tests"]]
     return html.section(
-        "misfit",
+        place,
         heading,
         html.paragraph(_overall(result, kind)),
         draw(FIGURES[kind], CAPTIONS[kind], order[:SHOWN]),
+        draw("spectrogram", SPECTROGRAM) if kind == "transient" else Markup(),
         html.table("All tests; errors are rms over that of the response", head, rows),
     )
 
@@ -59,6 +64,6 @@ def _row(test: Mapping[str, Any], kind: str, models: tuple[str, ...]) -> list[st
 
 def _overall(result: DiagnosisResult, kind: str) -> str:
     misfit, count = result.document["misfit"], result.data.sizes["test"]
-    tests = phrases.counted(count, "block" if kind == "loop" else "test")
+    tests = formatting.counted(count, "block" if kind == "loop" else "test")
     error = phrases.times_noise(misfit["chi2_base"], misfit["dof"])
     return f"{COMPARED[kind].format(tests=tests)}, the base model leaves an error of {error}."

@@ -26,7 +26,7 @@ def _never_steady(result: DiagnosisResult) -> str:
         return ""
     which = phrases.listing(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
     them = "it is" if len(names) == 1 else "they are"
-    where = f"{phrases.counted(len(names), 'test')} ({which})"
+    where = f"{formatting.counted(len(names), 'test')} ({which})"
     return (
         f"; in {where} friction keeps ageing as the faces only creep: "
         f"{them} simulated as after 100 periods, and rate and time of ageing hold only if that is true"
@@ -34,18 +34,29 @@ def _never_steady(result: DiagnosisResult) -> str:
 
 
 def _untried(result: DiagnosisResult) -> str:
-    """How much the budget of the search left out, and the most promising of it; empty for most diagnoses."""
+    """What the budget of the search left out, the most promising first; empty for most diagnoses."""
     left_out = result.document.get("untried", [])
     if not left_out:
         return ""
     first = "{what} ({left_out} of {of})".format(**left_out[0])
     if len(left_out) > 1:
         first = f"{sum(each['left_out'] for each in left_out)} more fits, first of all {first}"
-    return f"; the search had spent its budget before it tried {first}"
+    return f"; the search had spent its budget before it tried {first}{_never_tried(result)}"
+
+
+def _never_tried(result: DiagnosisResult) -> str:
+    """The pairs of effects that the budget left out altogether."""
+    never = result.document.get("never_tried", [])
+    if not never:
+        return ""
+    singles = len({each["effects"][0] for each in result.document["candidates"] if len(each["effects"]) == 1})
+    possible = singles * (singles - 1) // 2
+    which = ", ".join(map(phrases.combination, never[:SHOWN])) + (", ..." if len(never) > SHOWN else "")
+    return f"; {len(never)} of the {possible} possible pairs of effects were never tried ({which})"
 
 
 def _nothing_missing(result: DiagnosisResult) -> str:
-    tests = phrases.counted(result.data.sizes["test"], "test")
+    tests = formatting.counted(result.data.sizes["test"], "test")
     p = phrases.p_value(result.document["misfit"]["p_base"])
     return (
         f"Nothing is missing: over {tests} the error of the simulation is {_error(result, 'base')}, which "
@@ -234,8 +245,9 @@ def _next_test(result: DiagnosisResult, rivals: str = "") -> str:
     test = result.document["next_test"]
     if test is None:
         return ""
-    rivals = rivals or " from ".join(test["separates"])
-    if not phrases.distinguishes(result.document):
-        best = phrases.next_test(test)
-        return f"; no test would reliably distinguish {rivals}, the best one is at {best}"
-    return f"; a test at {phrases.next_test(test)} would distinguish {rivals}"
+    place, found = phrases.next_test(test), phrases.separated(result.document)
+    if found is None:
+        rivals = rivals or " from ".join(test["separates"])
+        return f"; no test would reliably distinguish {rivals}, the best one is at {place}"
+    told = rivals if rivals and not found.left else found.told
+    return f"; a test at {place} would distinguish {told}"

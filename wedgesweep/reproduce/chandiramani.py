@@ -7,7 +7,6 @@ a medium one, and its best with a fine one.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 from typing import Any
 
@@ -20,7 +19,7 @@ from wedgesweep.reproduce.hypotheses import HYPOTHESES, INDEPENDENT_INPUTS, INTE
 from wedgesweep.reproduce.observations import OBSERVATIONS, Recording
 from wedgesweep.reproduce.scenarios import LOOSE, Scenario, recordings
 from wedgesweep.reproduce.search import COARSE, FINE, MEDIUM, Budget, SearchResult, search
-from wedgesweep.sweep.backend import loky
+from wedgesweep.sweep.backend import in_order
 
 # Pairs of law and lean of each hypothesis that get the medium budget.
 PROMISING = 2
@@ -93,16 +92,8 @@ def _compile(hypotheses: Sequence[Hypothesis]) -> None:
 def _search(
     searches: Iterable[tuple[Scenario, Budget, np.ndarray | None]], n_jobs: int
 ) -> list[SearchResult]:
-    """Results in the order of the searches, whichever job finishes first."""
-    tasks = [joblib.delayed(partial(_numbered, k))(*each) for k, each in enumerate(searches)]
-    with loky(n_jobs, dict) as pool:
-        return [result for _, result in sorted(pool.parallel()(tasks), key=lambda pair: pair[0])]
-
-
-def _numbered(
-    k: int, scenario: Scenario, budget: Budget, start: np.ndarray | None
-) -> tuple[int, SearchResult]:
-    return k, search(scenario, budget, start)
+    """Results in the order of the searches."""
+    return in_order((joblib.delayed(search)(*each) for each in searches), n_jobs)
 
 
 def _ordered(results: Iterable[SearchResult], hypothesis: Hypothesis) -> list[SearchResult]:

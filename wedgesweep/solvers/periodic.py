@@ -231,7 +231,7 @@ def _sample_all(cases, parameters, rows, spans, room, out):
         if outcome != OK:
             out.state[i] = np.nan
         else:
-            step = 2.0 * pi / p.input.omega / room.samples_per_period
+            step = cases.cycle[k] / room.samples_per_period
             seen, first = sensor.lagged(room.velocity, step, False, p), room.x.size - out.x.shape[1]
             for j in range(out.x.shape[1]):
                 out.x[i, j] = p.displacement_gain.scale * room.x[first + j]

@@ -268,6 +268,7 @@ class _Run:
             seen = system.sample(times, result.sol(times), mode, self.case)
             self.samples.x[here], self.samples.velocity[here] = seen[:2]
             self.samples.normal[:, here], self.samples.sticks[here] = seen[2:4], seen[4]
+            self.samples.acceleration[here] = seen[5]
 
     def _add(self, t: np.ndarray, y: np.ndarray, mode: Mode, weight: np.ndarray | None = None) -> None:
         system.add(self.sums, t, y, weight, mode, self.case)

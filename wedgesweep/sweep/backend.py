@@ -1,6 +1,7 @@
 """Backends: cases run in threads or processes of this machine; ``cluster`` adds a Dask cluster."""
 
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -8,8 +9,10 @@ from functools import partial
 from typing import Any, Protocol
 
 import joblib
+from joblib._parallel_backends import LokyBackend
 
 from wedgesweep.errors import SweepError
+from wedgesweep.processes import end_with
 
 # Tasks that a worker has, or that wait for it.
 SENT_AHEAD = 2
@@ -48,13 +51,26 @@ def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[
     yield Pool(partial(parallel, n_jobs=n_jobs, backend="threading"), n_jobs)
 
 
+class Loky(LokyBackend):
+    """joblib's processes, which end with this one also if it is killed."""
+
+    def configure(self, *arguments: Any, **options: Any) -> int:
+        own = {"initializer": end_with, "initargs": (os.getpid(),)}
+        return super().configure(*arguments, **own, **options)
+
+
 @contextmanager
 def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[Pool]:
     """Processes of this machine."""
+    yield Pool(lambda: parallel(n_jobs=n_jobs, backend=Loky()), n_jobs, (BrokenExecutor,))
+
+
+def in_order(tasks: Iterable[Any], n_jobs: int) -> list[Any]:
+    """Results of tasks (joblib.delayed) in processes of this machine; raises SweepError if one dies."""
     try:
-        yield Pool(partial(parallel, n_jobs=n_jobs), n_jobs, (BrokenExecutor,))
+        return joblib.Parallel(n_jobs=n_jobs, backend=Loky())(tasks)
     except BrokenExecutor as error:
-        message = "a job died, killed or out of memory; rerun the same command to resume"
+        message = "a job died, killed or out of memory; run the same command again, with fewer --n-jobs"
         raise SweepError(message) from error
 
 

@@ -13,7 +13,7 @@ from wedgesweep.sweep.cases import compile_once
 from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
-SECONDS = 8.0
+SECONDS = 4.0
 GOLDEN = 0.6180339887498949
 
 
@@ -44,13 +44,15 @@ def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
     sampled = np.concatenate(records)
     threads = local(sweep.settings.method) is in_threads
     processes = 1 if threads else n_jobs + 1
-    each = sweep.dtype.itemsize
+    # The records of all cases, and at the end a copy of one variable after the other.
+    largest = max(sweep.dtype[name].itemsize for name in sweep.dtype.names or ())
+    each = sweep.dtype.itemsize + largest
     return Estimate(
         sampled,
         float(sampled["wall_time"].mean() * sweep.count) / n_jobs,
         processes * _peak_memory() + sweep.count * each,
         each,
-        sweep.count * each,
+        sweep.count * sweep.dtype.itemsize,
     )
 
 

@@ -15,7 +15,7 @@ _OPEN = {
 }
 
 
-class Attributes(TypedDict):
+class Attributes(TypedDict, total=False):
     """Global attributes of an oscillator's dataset; ``reference`` is what motions are compared with."""
 
     system: str
@@ -25,12 +25,14 @@ class Attributes(TypedDict):
 
 
 def attributes(config: Config) -> Attributes:
-    """Return what tells how to read the dataset of an oscillator."""
+    """Return what tells how to read the dataset of an oscillator; nothing for the suspension."""
+    if config.system != "oscillator":
+        return {}
     return {
         "system": config.system,
         "contact": config.oscillator["contact"],
         "excitation": config.excitation,
-        "reference": _reference(config),
+        "reference": "" if config.transient else _reference(config),
     }
 
 
@@ -40,6 +42,8 @@ def of(config: Config) -> dict[str, str | None]:
         return dict(_OPEN)
     if config.system != "oscillator":
         return _OF_LIFT_OFF
+    if config.transient:
+        return _of_transients(config)
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced
     x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
@@ -64,6 +68,30 @@ def of(config: Config) -> dict[str, str | None]:
         "periodicity": f"largest change of {x} from the last period but one to the last, over {size}",
         "displacement": f"displacement {x} of the mass",
         "velocity": f"velocity {v} of the mass",
+    }
+
+
+def _of_transients(config: Config) -> dict[str, str | None]:
+    """Long names of an oscillator whose input does not repeat."""
+    contact = config.oscillator["contact"]
+    relative = contact == "base" and not config.forced
+    x = "x - u" if relative else "x"
+    rates = ("x' - u'", "x'' - u''") if relative else ("x'", "x''")
+    return {
+        "peak_displacement": f"largest magnitude of {x}",
+        "peak_to_peak": f"peak-to-peak of {x}",
+        "peak_velocity": f"largest magnitude of {rates[0]}",
+        "mean_displacement": f"mean of {x}",
+        "rms_displacement": f"rms of the stored samples of {x}",
+        "stick_fraction": "share of time stuck (set-valued laws) or slipping below the threshold velocity",
+        "supplied_energy": "energy supplied by the input" + " and the belt" * (contact == "belt") + " in all",
+        "displacement": f"displacement {x} of the mass",
+        "velocity": f"velocity {rates[0]} of the mass",
+        "acceleration": f"acceleration {rates[1]} of the mass",
+        "force": "force that spring, dampers and friction set against the motion of the mass",
+        **dict.fromkeys(
+            ("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster"), None
+        ),
     }
 
 

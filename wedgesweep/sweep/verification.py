@@ -8,7 +8,7 @@ nobody can judge it.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import nan
+from math import inf, isfinite, nan
 from typing import NamedTuple
 
 import joblib
@@ -45,9 +45,10 @@ class Numbers(NamedTuple):
         return Numbers(abs(self.ratio - other.ratio), abs(self.stick - other.stick))
 
     def over_bound(self, other: "Numbers") -> float:
-        """The larger difference, over its bound."""
+        """The larger difference, over its bound; inf where a number is missing."""
         apart = self.apart(other)
-        return max(apart.ratio / (RATIO_BOUND * max(SMALL_RATIO, other.ratio)), apart.stick / STICK_BOUND)
+        shares = apart.ratio / (RATIO_BOUND * max(SMALL_RATIO, other.ratio)), apart.stick / STICK_BOUND
+        return max(shares) if all(map(isfinite, shares)) else inf
 
 
 class Judged(NamedTuple):
@@ -158,9 +159,18 @@ def _judged(task: _Task) -> Judged:
 def _solved(task: _Task, rtol: float) -> Numbers:
     run = radau.solve(task.record, task.window, rtol, TIME_LIMIT, task.start)
     numbers = response.evaluate(run, task.record, dataset.HARMONICS).numbers
-    return Numbers(float(numbers["amplitude_ratio"]), float(numbers["stick_fraction"]))
+    found = Numbers(float(numbers["amplitude_ratio"]), float(numbers["stick_fraction"]))
+    if not all(map(isfinite, found)):
+        message = "the response is not finite"
+        raise CaseError(message, "not_finite")
+    return found
 
 
 def largest(cases: Sequence[Judged], name: str) -> Judged:
     """The case whose ``ratio`` or ``stick`` is farthest off."""
-    return max(cases, key=lambda case: getattr(case.apart, name))
+
+    def size(case: Judged) -> float:
+        apart = float(getattr(case.apart, name))
+        return apart if isfinite(apart) else inf
+
+    return max(cases, key=size)

@@ -1,6 +1,6 @@
 """Makes a directory of measured data from a config and a plan of tests."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,14 +9,15 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
-from wedgesweep.measured.declarations import UNITS
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT, UNITS
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
-from wedgesweep.synthesize import files, noise, recorded_input
+from wedgesweep.synthesize import files, noise, other_tables, recorded_input
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import RTOL, Motion, steady
-from wedgesweep.synthesize.names import FORCE
+from wedgesweep.synthesize.names import FORCE, QUANTITIES
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
 from wedgesweep.systems import kits
@@ -68,17 +69,30 @@ def synthesize(
     problems += _unit_faults(config, source, plan, options.record_input)
     if problems:
         raise SynthesisError(problems)
+    options = _with_recorded_input(config, plan, options)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
-    motions = _motions(truth, options, n_jobs, plan.source)
-    tables = [_table(truth, *each, options) for each in zip(truth.tests, motions, strict=True)]
+    steady = replace(truth, tests=tuple(test for test in truth.tests if test.plan.kind == STEADY))
+    motions = _motions(steady, options, n_jobs, plan.source) if steady.tests else []
+    found = iter([_table(steady, *each, options) for each in zip(steady.tests, motions, strict=True)])
+    tables = [
+        next(found) if test.plan.kind == STEADY else other_tables.table(truth, test, options)
+        for test in truth.tests
+    ]
     model = Config(config.document | {"effects": {}, "title": "base model"})
     measured = _measured(directory.name, config, plan, options)
-    files.write(directory, measured, model, tables, _told(truth, motions, options))
+    files.write(directory, measured, model, tables, _told(truth, steady, motions, options))
     return [
         f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
-        for i, (test, motion) in enumerate(zip(truth.tests, motions, strict=True))
+        for i, (test, motion) in enumerate(zip(steady.tests, motions, strict=True))
         if test.stray_phase_deg is None and motion.settle_periods == options.settle_periods
     ]
+
+
+def _with_recorded_input(config: Config, plan: Plan, options: Options) -> Options:
+    """The options; the input of a transient is recorded in any case."""
+    if options.record_input is not None or not any(test.driven for test in plan.tests):
+        return options
+    return replace(options, record_input=FORCE if config.forced else QUANTITIES[0])
 
 
 def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) -> list[str]:
@@ -88,7 +102,7 @@ def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) 
     faults = [
         f"{plan.source}: test[{i}].amplitude_{test.unit}: {excited}; write amplitude_{unit}"
         for i, test in enumerate(plan.tests)
-        if test.unit != unit
+        if test.unit != unit and (test.kind == STEADY or test.driven)
     ]
     if recorded is not None and (recorded == FORCE) != config.forced:
         valid = FORCE if config.forced else "displacement, velocity or acceleration"
@@ -114,7 +128,7 @@ def _motions(truth: Truth, options: Options, n_jobs: int, source: str) -> list[M
         )
         for test in truth.tests
     )
-    found = joblib.Parallel(n_jobs=n_jobs)(jobs)
+    found = in_order(jobs, n_jobs)
     faults = [_fault(truth, test, motion) for test, motion in zip(truth.tests, found, strict=True)]
     problems = [
         f"{source}: {_name(i, test)}: {fault}"
@@ -171,7 +185,12 @@ def _measured(title: str, config: Config, plan: Plan, options: Options) -> dict[
     """The document of measured.toml."""
     tests = []
     for i, test in enumerate(plan.tests):
-        told: dict[str, Any] = {"file": f"test-{i:02d}.csv", "frequency_hz": test.frequency_hz}
+        told: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
+        if test.kind != STEADY:
+            undriven = options.record_input is not None and test.kind == TRANSIENT and not test.driven
+            tests.append({**told, "kind": test.kind, **({"undriven": True} if undriven else {})})
+            continue
+        told["frequency_hz"] = test.frequency_hz
         if test.known and options.record_input is None:
             told[config.amplitude_unit.key] = test.amplitude
             told["amplitude_std"] = test.amplitude_std or options.amplitude_error
@@ -181,18 +200,22 @@ def _measured(title: str, config: Config, plan: Plan, options: Options) -> dict[
     columns: dict[str, dict[str, Any]] = {
         "time": {"column": "t", "unit": "s"},
         "displacement": {"column": "d", "unit": "mm", "of": motion},
-        "velocity": velocity,
     }
-    if options.record_input is not None:
+    kinds = {test.kind for test in plan.tests}
+    if kinds != {LOOP}:
+        columns["velocity"] = velocity
+    if LOOP in kinds:
+        columns["force"] = {"column": "F", "unit": "N"}
+    if options.record_input is not None and any(t.driven or t.kind == STEADY for t in plan.tests):
         unit = next(iter(UNITS[options.record_input]))
         columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}
     head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
     return {"measurement": {**head, "test": tests}}
 
 
-def _told(truth: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
+def _told(truth: Truth, steady: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
     """The document of truth.json: what a diagnosis should find, in the keys and units of a config."""
-    tests = [
+    tests: list[dict[str, Any]] = [
         {
             "frequency_hz": test.plan.frequency_hz,
             f"amplitude_{test.plan.unit}": test.amplitude,
@@ -202,7 +225,12 @@ def _told(truth: Truth, motions: list[Motion], options: Options) -> dict[str, An
             "sampling_hz": test.sampling_hz,
             "settle_periods": motion.settle_periods,
         }
-        for test, motion in zip(truth.tests, motions, strict=True)
+        for test, motion in zip(steady.tests, motions, strict=True)
+    ]
+    tests += [
+        {"kind": test.plan.kind, "motion": test.plan.motion, "sampling_hz": test.sampling_hz}
+        for test in truth.tests
+        if test.plan.kind != STEADY
     ]
     return {
         "effects": truth.config.document["effects"],

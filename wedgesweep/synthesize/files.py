@@ -18,13 +18,14 @@ from wedgesweep.files import beside
 class Table:
     """Content of a CSV file: time in s, displacement in mm, velocity in mm/s, shape (n,) each.
 
-    ``input``: as recorded, in its SI unit, or None.
+    ``input``: as recorded, in its SI unit; ``force`` (N); None where not measured.
     """
 
     time: np.ndarray
     displacement: np.ndarray
-    velocity: np.ndarray
+    velocity: np.ndarray | None
     input: np.ndarray | None = None
+    force: np.ndarray | None = None
 
 
 def require_free(directory: Path) -> None:
@@ -49,8 +50,14 @@ def write(
 
 
 def _write_csv(path: Path, table: Table) -> None:
-    columns, header = [table.time, table.displacement, table.velocity], "t,d,v"
-    if table.input is not None:
-        columns, header = [*columns, table.input], f"{header},u"
+    named = {
+        "t": table.time,
+        "d": table.displacement,
+        "v": table.velocity,
+        "u": table.input,
+        "F": table.force,
+    }
+    columns = {name: each for name, each in named.items() if each is not None}
     formats = ["%.7f", *["%.7g"] * (len(columns) - 1)]
-    np.savetxt(path, np.column_stack(columns), fmt=formats, delimiter=",", header=header, comments="")
+    content, header = np.column_stack(list(columns.values())), ",".join(columns)
+    np.savetxt(path, content, fmt=formats, delimiter=",", header=header, comments="")

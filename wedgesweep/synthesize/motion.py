@@ -82,7 +82,7 @@ def steady(
     shift = period * ceil(ahead * fine / period)
     offsets = shift + clock.start + fine * np.arange(-ahead, (clock.count - 1) * finer + 1)
     x, velocity, settled = _sampled(record, offsets, settle_periods, repeats)
-    seen = _lagged(-velocity, fine, lag) if lag > 0.0 else -velocity
+    seen = lagged(-velocity, fine, lag) if lag > 0.0 else -velocity
     gain = effects.get("displacement_gain", {}).get("scale", 1.0)
     return Motion(-gain * x[ahead::finer], seen[ahead::finer], settled)
 
@@ -117,7 +117,7 @@ def _steady_state(record: np.ndarray) -> Sequence[float]:
     return found.warm.state[0, : len(scales(compact(record))[0])].tolist()
 
 
-def _lagged(signal: np.ndarray, step: float, lag: float) -> np.ndarray:
+def lagged(signal: np.ndarray, step: float, lag: float) -> np.ndarray:
     """First-order lag (s), lag y' = signal - y, exact for a signal that is linear between its samples."""
     from scipy.signal import lfilter
 

@@ -2,16 +2,45 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 from typing import Any
 
 from wedgesweep.config import toml
-from wedgesweep.config.keys import Flag, Number
+from wedgesweep.config.keys import Choice, Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError
 from wedgesweep.files import read_text
-from wedgesweep.measured.declarations import AMPLITUDE, AMPLITUDE_STD, FORCE_AMPLITUDE, FREQUENCY, UNCERTAIN
+from wedgesweep.measured.declarations import (
+    AMPLITUDE,
+    AMPLITUDE_STD,
+    FORCE_AMPLITUDE,
+    FREQUENCY,
+    KINDS,
+    LOOP,
+    STEADY,
+    TRANSIENT,
+    UNCERTAIN,
+)
+from wedgesweep.quantity import Quantity
 
+MOTIONS = ("release", "sweep", "random", "bump")
+KIND = Choice(
+    key="kind",
+    meaning="steady; transient (see motion); loop: force under a motion of frequency_hz and amplitude_mm",
+    choices=KINDS,
+    default=STEADY,
+)
+MOTION = Choice(
+    key="motion",
+    meaning="transient: release; sweep or random from frequency_hz to to_hz; bump of length 1/frequency_hz",
+    choices=MOTIONS,
+    default="release",
+)
+DURATION = Quantity("duration_s", 10.0, "transient, loop: length of the record", above=0.0)
+TO = Quantity("to_hz", nan, "transient: highest frequency of a sweep or of random motion", above=0.0)
+RELEASE = Quantity("release_mm", 0.0, "transient: displacement at the start")
+THROWN = Quantity("release_mm_per_s", 0.0, "transient: velocity at the start")
 KNOWN = Flag(key="known", meaning="whether measured.toml states the amplitude", default=True)
 
 ROOT = table(
@@ -24,9 +53,16 @@ ROOT = table(
         item=table(
             "test",
             "one test",
-            Number.of(FREQUENCY, example=20.0),
-            (Number.of(AMPLITUDE, example=0.1), Number.of(FORCE_AMPLITUDE, example=1.0)),
+            KIND,
+            MOTION,
+            Number.of(FREQUENCY, optional=True, example=20.0),
+            Number.of(AMPLITUDE, optional=True, example=0.1),
+            Number.of(FORCE_AMPLITUDE, optional=True, example=1.0),
             Number.of(AMPLITUDE_STD),
+            Number.of(DURATION),
+            Number.of(TO, optional=True),
+            Number.of(RELEASE),
+            Number.of(THROWN),
             KNOWN,
         ),
     ),
@@ -35,13 +71,27 @@ ROOT = table(
 
 @dataclass(frozen=True)
 class PlannedTest:
-    """One test with its nominal amplitude in ``unit``; ``amplitude_std`` is relative, 0 if not given."""
+    """One test with its nominal amplitude in ``unit``; ``amplitude_std`` is relative, 0 if not given.
+
+    ``motion`` of a transient: a release, or the shape of its input, from ``frequency_hz`` to ``to_hz``.
+    """
 
     frequency_hz: float
     amplitude: float
     unit: str
     amplitude_std: float
     known: bool
+    kind: str = STEADY
+    motion: str = "release"
+    duration_s: float = 0.0
+    to_hz: float | None = None
+    release_mm: float = 0.0
+    release_mm_per_s: float = 0.0
+
+    @property
+    def driven(self) -> bool:
+        """Whether it is a transient under an input."""
+        return self.kind == TRANSIENT and self.motion != "release"
 
 
 @dataclass(frozen=True)
@@ -64,12 +114,41 @@ def load(path: Path) -> Plan:
         raise InputError([f"{path}: not valid TOML: {error}"]) from error
     problems: list[str] = []
     document = ROOT.read(given, "", problems)
+    for i, test in enumerate(document.get("test", ())):
+        problems += [f"test[{i}].{fault}" for fault in _faults(test)]
     if problems:
         raise InputError([f"{path}: {problem}" for problem in problems])
     return Plan(tuple(map(_planned, document["test"])), document["uncertain"], str(path))
 
 
+def _faults(given: Mapping[str, Any]) -> list[str]:
+    """Keys of a test that are missing, as "key: fault"."""
+    stated = [key for key in (AMPLITUDE.key, FORCE_AMPLITUDE.key) if key in given]
+    if given.get("kind") == TRANSIENT and given.get("motion") == "release":
+        nothing = not (given["release_mm"] or given["release_mm_per_s"])
+        return ["release_mm: 0, and so is release_mm_per_s; nothing would move"] if nothing else []
+    faults = [] if "frequency_hz" in given else ["frequency_hz: missing; write frequency_hz = 20.0"]
+    if len(stated) != 1:
+        faults.append(f"{AMPLITUDE.key}: write this, or {FORCE_AMPLITUDE.key}, and not both")
+    if given.get("motion") in ("sweep", "random") and "to_hz" not in given:
+        faults.append("to_hz: missing; write the highest frequency")
+    if given.get("kind") == LOOP and FORCE_AMPLITUDE.key in given:
+        faults.append(f"{FORCE_AMPLITUDE.key}: a loop imposes a motion; write {AMPLITUDE.key}")
+    return faults
+
+
 def _planned(given: Mapping[str, Any]) -> PlannedTest:
     unit = "N" if FORCE_AMPLITUDE.key in given else "mm"
-    amplitude = given[f"amplitude_{unit}"]
-    return PlannedTest(given["frequency_hz"], amplitude, unit, given["amplitude_std"], given["known"])
+    return PlannedTest(
+        given.get("frequency_hz", 0.0),
+        given.get(f"amplitude_{unit}", 0.0),
+        unit,
+        given["amplitude_std"],
+        given["known"],
+        given["kind"],
+        given["motion"],
+        given["duration_s"],
+        given.get("to_hz"),
+        given["release_mm"],
+        given["release_mm_per_s"],
+    )

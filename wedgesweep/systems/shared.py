@@ -1,16 +1,9 @@
 """What all systems under a periodic input write alike for the interface of hybrid systems."""
 
-from math import pi
-
+from wedgesweep import excitation
 from wedgesweep.compiled import inlined
 from wedgesweep.effects import states, stray_vibration
 from wedgesweep.hybrid import interface
-
-
-@inlined
-def cycle(p):
-    """Period of the input (s)."""
-    return 2.0 * pi / p.input.omega
 
 
 @inlined
@@ -26,7 +19,7 @@ def implement_shared(owner: str) -> None:
         (interface.error_scales, states.error_scales),
         (interface.active, states.active),
         (interface.clocks, states.clocks),
-        (interface.cycle, cycle),
+        (interface.cycle, excitation.cycle),
         (interface.repeats, repeats),
     ):
         interface.implement(declared, owner)(written)

@@ -33,6 +33,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("-o", "--output", type=Path, help="directory; default: out/validation-SEED")
     parser.add_argument("--records", type=Path, help="records (.jsonl) of sets that are not to be run again")
     parser.add_argument("--tables", action="store_true", help="run nothing; print the tables of the records")
+    parser.add_argument("--picture", type=Path, help="file for the picture of how often effects are found")
     return parser.parse_args(given)
 
 
@@ -56,6 +57,8 @@ def main(given: Sequence[str] | None = None) -> None:
     heading = f"Validation of wedgesweep {__version__}, seed {options.seed}, size {options.size:g}"
     text = tables.text(sets, heading, sum(map(len, wanted)))
     print(text, end="")
+    if options.picture:
+        _draw(sets, options.picture)
     if not options.tables:
         _write(sets, text, out)
 
@@ -105,10 +108,14 @@ def _line(record: Record) -> str:
 def _write(sets: Sets, text: str, out: Path) -> None:
     (out / f"{NAME}.txt").write_text(text)
     (out / f"{NAME}-records.jsonl").write_text("".join(json.dumps(record) + "\n" for record in sets.all))
+    _draw(sets, out / f"{NAME}-recovery.png")
+
+
+def _draw(sets: Sets, file: Path) -> None:
     if bins := tables.recovery(sets):
         from wedgesweep.figures import recovery
 
-        figures.save(recovery.draw(bins), out / f"{NAME}-recovery.png")
+        figures.save(recovery.draw(bins), file)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from wedgesweep.natural_units import NaturalUnits
 # Effects that act by how a motion comes about, or on sensors of it.
 OF_MOTION = (
     *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
-    *("displacement_gain", "velocity_lag"),
+    *("displacement_gain", "velocity_lag", "cross_slip"),
 )
 # Samples whose forces are as much work as a simulated period; see work.py.
 SAMPLES_PER_PERIOD = 400.0
@@ -60,9 +60,33 @@ class LoopData(SampledData):
     def law(self) -> str:  # type: ignore[override]
         return self.recordings[0].law
 
+    def independent(self, values: Sequence[np.ndarray]) -> np.ndarray:
+        """Values (..., k) of each recording as independent combinations of each block, (..., T, m)."""
+        parts = []
+        for number, block in self.chosen:
+            own = self.recordings[number]
+            part = values[number][..., own.blocks[block]]
+            known = np.where(own.known[own.blocks[block]], part, 0.0)
+            parts.append(known @ own.decorrelated[block].matrix.T)
+        return self._wide(parts)
+
+    def in_samples(self, values: np.ndarray) -> np.ndarray:
+        """Independent combinations (..., T, m) as forces at the compared samples."""
+        found = np.zeros_like(values)
+        for t, (number, block) in enumerate(self.chosen):
+            matrix = self.recordings[number].decorrelated[block].matrix
+            found[..., t, : len(matrix)] = values[..., t, : len(matrix)] @ matrix
+        return found
+
     def padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
         """Values (..., k) of each recording as blocks (..., T, m), zeros after the end of a block."""
-        parts = [values[number][..., self.recordings[number].blocks[block]] for number, block in self.chosen]
+        return self._wide(
+            [values[number][..., self.recordings[number].blocks[block]] for number, block in self.chosen]
+        )
+
+    @staticmethod
+    def _wide(parts: Sequence[np.ndarray]) -> np.ndarray:
+        """Values (..., k) of each test as (..., T, m), with zeros at the end."""
         found = np.zeros((*parts[0].shape[:-1], len(parts), max(part.shape[-1] for part in parts)))
         for t, part in enumerate(parts):
             found[..., t, : part.shape[-1]] = part
@@ -70,21 +94,27 @@ class LoopData(SampledData):
 
     @cached_property
     def recorded(self) -> np.ndarray:
-        return self.padded([own.force for own in self.recordings])
+        return self.independent([own.force for own in self.recordings])
 
     @cached_property
     def noise(self) -> np.ndarray:
-        return self.padded([own.noise * own.known for own in self.recordings])
+        own = [self.recordings[number].decorrelated[block].std for number, block in self.chosen]
+        return self._wide(own)
 
     @cached_property
     def size(self) -> np.ndarray:
         """Rms (T, m) of the measured force of a block about its mean, in N."""
-        force = np.where(self.noise > 0.0, self.recorded, np.nan)
+        force = np.where(self.seen, self.padded([own.force for own in self.recordings]), np.nan)
         return np.broadcast_to(np.nanstd(force, axis=-1, keepdims=True), force.shape)
 
     @cached_property
+    def seen(self) -> np.ndarray:
+        """Whether a sample (T, m) of each block is compared."""
+        return self.padded([own.known.astype(float) for own in self.recordings]) > 0.5
+
+    @cached_property
     def shifted(self) -> np.ndarray:
-        return np.ones_like(self.recorded)
+        return self.independent([np.ones(own.force.size) for own in self.recordings])
 
     @property
     def nuisance_std(self) -> np.ndarray:
@@ -121,7 +151,7 @@ class LoopData(SampledData):
         work.add(len(values) * samples / SAMPLES_PER_PERIOD)
         nothing = np.zeros((len(values), 0))
         forces = [own.simulated(values) if i in needed else nothing for i, own in enumerate(self.recordings)]
-        return self.padded(forces)
+        return self.independent(forces)
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """Each recording, or each block where there is only one."""

@@ -1,15 +1,18 @@
 """A recorded loop as it is compared: smoothed motion, force at independent samples, and blocks of cycles."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import hypot
 
 import numpy as np
 
 from wedgesweep import systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
+from wedgesweep.diagnose.loop.decorrelation import Decorrelation, decorrelation
+from wedgesweep.diagnose.loop.force_noise import InertiaNoise, of_force
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.solvers import imposed_motion
@@ -29,8 +32,9 @@ class Recording:
     """One test.
 
     ``model``: the base model with the numbers of the test; ``places`` (k,): samples of the motion at which
-    the ``force`` (k,) is compared; ``noise``: its std (N); ``blocks``: slices of the k samples, whole cycles
-    of the motion each.
+    the ``force`` (k,) is compared; ``spectrum`` of its noise there beside that of the ``inertia``; ``known``
+    (k,): whether friction is; it is not where the mass rests or turns; ``blocks``: slices of the k samples,
+    whole cycles each.
     """
 
     name: str
@@ -40,20 +44,24 @@ class Recording:
     motion: Motion
     places: np.ndarray
     force: np.ndarray
-    noise: float
+    spectrum: NoiseSpectrum
+    inertia: InertiaNoise
+    known: np.ndarray
     blocks: tuple[slice, ...]
 
-    @cached_property
-    def known(self) -> np.ndarray:
-        """Whether friction is known at each compared sample, (k,): not where the mass rests or turns.
+    @property
+    def noise(self) -> float:
+        """Standard deviation (N) of a compared force."""
+        return float(np.sqrt(self._covariance(np.zeros(1, int))[0]))
 
-        Noise shifts the time of a turn, and dry friction jumps there.
-        """
-        own = self.motion
-        within = AT_REST * own.velocity_noise + 0.5 * np.abs(own.acceleration) / self.low_pass.rate
-        slow = np.abs(own.velocity) <= within
-        near = np.convolve(slow, np.ones(2 * REACH * self.low_pass.stride + 1), mode="same") > 0.5
-        return ~near[self.places]
+    def _covariance(self, distance: np.ndarray) -> np.ndarray:
+        """Covariance (N^2) of two compared forces by their distance."""
+        return self.spectrum.covariance(distance) + self.inertia.covariance(distance)
+
+    @cached_property
+    def decorrelated(self) -> tuple[Decorrelation, ...]:
+        """Independent combinations of the compared forces of each block."""
+        return tuple(decorrelation(self.known[block], self._covariance) for block in self.blocks)
 
     def simulated(self, scenarios: list[Values]) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined."""
@@ -89,6 +97,7 @@ def recording(
     rate: float,
     samples: tuple[np.ndarray, np.ndarray],
     cutoff: float | None,
+    differences: Sequence[np.ndarray] = (),
 ) -> Recording:
     """Prepare a test.
 
@@ -102,6 +111,9 @@ def recording(
         Displacement (m) and force (N).
     cutoff : float, optional
         Cut-off frequency (Hz); by default as high as the noise of the displacement allows.
+    differences : sequence of ndarray
+        What repeats of the test leave of its force (N), which is noise; without them it is what no smooth
+        function of the motion explains.
     """
     displacement, force = samples
     mass = float(systems.moving_mass(model.record_with(model.effects, law))[0])
@@ -110,9 +122,22 @@ def recording(
     own = motion(displacement, noise, low_pass)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
-    std = hypot(low_pass.noise(white_noise(force, rate)), mass * own.acceleration_noise)
+    inertia = InertiaNoise(low_pass, mass, noise)
+    compared, clear = low_pass(force)[places], ~_slow(own, low_pass)[places]
+    if differences:
+        left = [low_pass(each)[ends : -ends : low_pass.stride] for each in differences]
+        found = of_noise(left, FROM_REPEATS, inertia.power)
+    else:
+        found = of_force(own, compared, places, clear, inertia)
     blocks = _blocks(own.velocity[places])
-    return Recording(name, model, law, low_pass, own, places, low_pass(force)[places], std, blocks)
+    return Recording(name, model, law, low_pass, own, places, compared, found, inertia, clear, blocks)
+
+
+def _slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
+    """Whether (n,) the mass rests or turns at or near a sample: noise shifts the time of a turn."""
+    within = AT_REST * motion.velocity_noise + 0.5 * np.abs(motion.acceleration) / low_pass.rate
+    slow = np.abs(motion.velocity) <= within
+    return np.convolve(slow, np.ones(2 * REACH * low_pass.stride + 1), mode="same") > 0.5
 
 
 def _blocks(velocity: np.ndarray) -> tuple[slice, ...]:

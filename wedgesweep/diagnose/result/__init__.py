@@ -3,7 +3,7 @@
 import json
 
 from wedgesweep.diagnose.diagnosis import Diagnosis
-from wedgesweep.diagnose.result.arrays import dataset
+from wedgesweep.diagnose.result.arrays import dataset, parts
 from wedgesweep.diagnose.result.document import document
 from wedgesweep.diagnose.result.extended_config import extended
 from wedgesweep.diagnosis_result import DiagnosisResult
@@ -11,4 +11,6 @@ from wedgesweep.diagnosis_result import DiagnosisResult
 
 def result_of(found: Diagnosis) -> DiagnosisResult:
     """Return the result of a diagnosis, as it would be read from its files."""
-    return DiagnosisResult(json.loads(json.dumps(document(found))), dataset(found), extended(found))
+    return DiagnosisResult(
+        json.loads(json.dumps(document(found))), dataset(found), extended(found), parts(found)
+    )

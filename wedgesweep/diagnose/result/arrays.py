@@ -6,12 +6,14 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import __version__
-from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
+from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.steady import waveforms
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.sweep import labels
 
 CHANNELS = ("displacement", "velocity")
 # Dimensions, values, unit and meaning of a variable.
@@ -39,6 +41,8 @@ def dataset(found: Diagnosis) -> xr.Dataset:
     data = found.data
     if isinstance(data, SampledData):
         return sampled.dataset(found, data)
+    if isinstance(data, MixedData):
+        return _overview(found, data)
     arrays = _arrays(found, data)
     variables = {
         **_spectra(arrays),
@@ -65,8 +69,36 @@ def dataset(found: Diagnosis) -> xr.Dataset:
         "verdict": found.finding.verdict,
         "law": data.law,
         "wedgesweep_version": __version__,
+        **labels.attributes(data.model),
     }
     return xr.Dataset(data_variables, coordinates, attributes)
+
+
+def parts(found: Diagnosis) -> dict[str, xr.Dataset]:
+    """The dataset of each kind of test where there are several."""
+    if not isinstance(found.data, MixedData):
+        return {}
+    return {kind: dataset(part) for kind, part in of_each_kind(found).items()}
+
+
+def _overview(found: Diagnosis, data: MixedData) -> xr.Dataset:
+    """Misfit of all tests of several kinds."""
+    q = np.array([fit.evaluation.chi2_by_test for fit in (found.base.fit, found.extended)])
+    kinds = [part.kind for part in data.present for _ in part.names]
+    return xr.Dataset(
+        {
+            "q": (BY_MODEL, q, {"units": "1", "long_name": "squared misfit over noise"}),
+            "dof": (BY_TEST, data.dof, {"units": "1", "long_name": "degrees of freedom"}),
+        },
+        {"test": list(data.names), "model": ["base", "extended"], "test_kind": (BY_TEST, kinds)},
+        {
+            "title": found.measurement.title,
+            "kind": data.kind,
+            "verdict": found.finding.verdict,
+            "law": data.law,
+            "wedgesweep_version": __version__,
+        },
+    )
 
 
 def _arrays(found: Diagnosis, data: HarmonicData) -> Arrays:
@@ -124,7 +156,8 @@ def _waveforms(arrays: Arrays) -> Variables:
 
 
 def _inputs(arrays: Arrays) -> Variables:
-    data, fitted = arrays.data, np.array([arrays.data.amplitudes(fit.point) for fit in arrays.fits])
+    data = arrays.data
+    fitted = np.array([data.inputs_of(fit.model.scenario(fit.point)) for fit in arrays.fits])
     unit = "N" if data.model.forced else "m"
     return {
         "frequency": (BY_TEST, data.omega / (2.0 * np.pi), "Hz", "input frequency"),
@@ -166,8 +199,9 @@ def _dwells(arrays: Arrays) -> Variables:
 def _misfit(arrays: Arrays) -> Variables:
     base = arrays.fits[0]
     force = waveforms.residual_force(arrays.data, base, waveforms.measured_from_phase_zero(arrays.data, base))
+    body = "mass" if arrays.data.model.system == "oscillator" else "bolster"
     return {
-        "leftover_force": (("test", "phase"), force, "N", "force on the bolster that the base model lacks"),
+        "leftover_force": (("test", "phase"), force, "N", f"force on the {body} that the base model lacks"),
         "q": (
             BY_MODEL,
             np.array([fit.evaluation.chi2_by_test for fit in arrays.fits]),

@@ -8,16 +8,18 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import __version__
-from wedgesweep.config import AmplitudeUnit
+from wedgesweep.config import AmplitudeUnit, Config
 from wedgesweep.diagnose.cross_validation import Gain
-from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
+from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.verdict import p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
@@ -50,15 +52,28 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
+        "never_tried": [list(each) for each in found.never_tried],
         "title": found.measurement.title,
         "kind": data.kind,
-        "model": {"system": data.model.system, "law": data.law, "title": data.model.title},
+        "model": {
+            "system": data.model.system,
+            "law": data.law,
+            "title": data.model.title,
+            **_surface(data.model),
+        },
         "uncertain": uncertain(best.fit),
         "version": __version__,
         "created": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
+
+
+def _surface(model: Config) -> dict[str, Any]:
+    """What an oscillator rubs on, and what drives it."""
+    if model.system != "oscillator":
+        return {}
+    return {"contact": model.oscillator["contact"], "excitation": model.excitation}
 
 
 def _never_steady(fit: Fit) -> list[str]:
@@ -122,10 +137,13 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
+    if isinstance(data, MixedData):
+        parts = of_each_kind(found).items()
+        return [{"kind": kind, **row} for kind, part in parts for row in _tests(part)]
     if isinstance(data, SampledData):
         return sampled.tests(found, data)
     unit, size = data.model.amplitude_unit
-    amplitude = data.amplitudes(best.point)
+    amplitude = data.inputs_of(best.model.scenario(best.point))
     rows = []
     for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
         noise = spectrum.sample_noise
@@ -182,6 +200,7 @@ def _following(following: NextTest | None, unit: AmplitudeUnit) -> dict[str, Any
         unit.key: following.amplitude / unit.factor,
         "separates": list(following.separates),
         "distance": following.distance,
+        "pairs": [{"separates": list(each.names), "distance": each.distance} for each in following.pairs],
     }
 
 
@@ -210,7 +229,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        **({} if isinstance(found.data, SampledData) else {"harmonics": found.data.shape[1]}),
+        **({"harmonics": found.data.shape[1]} if isinstance(found.data, HarmonicData) else {}),
         "calibrated": found.calibration,
     }
 

@@ -3,23 +3,25 @@
 from wedgesweep import effects
 from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.result.estimates import uncertain
-from wedgesweep.diagnose.sampled_data import SampledData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 
 def extended(found: Diagnosis) -> str:
     """The extended model as a config that runs the measured tests."""
     best, data = found.extended, found.data
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
-    nuisance = {name: {"scale": each["scale"]} for name, each in uncertain(best).items()}
+    known = uncertain(best)
+    nuisance = {name: {"scale": each["scale"]} for name, each in known.items() if name != INPUT_GAIN}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
-    if isinstance(data, SampledData):
+    if not isinstance(data, HarmonicData):
         return _heading(found) + toml.dumps(document)
     # Repeated tests are one case, and single cases do not continue one another.
-    unit = data.model.amplitude_unit
+    unit, inputs = data.model.amplitude_unit, data.inputs_of(best.model.scenario(best.point))
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{amplitude / unit.factor:.7g}"))
-        for spectrum, amplitude in zip(data.spectra, data.amplitudes(best.point), strict=True)
+        for spectrum, amplitude in zip(data.spectra, inputs, strict=True)
     )
     document["solver"] = {**document["solver"], "continuation": False}
     document["sweep"] = {

@@ -11,6 +11,7 @@ from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result.estimates import finite
 from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.sweep import labels
 
 # Dimensions, values, unit and meaning of a variable.
 Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
@@ -46,6 +47,8 @@ def _of_loops(data: LoopData) -> list[dict[str, Any]]:
         {
             "lowpass_hz": finite(own.low_pass.cutoff),
             "noise_force_N": finite(own.noise),
+            "noise_from": own.spectrum.source,
+            "noise_correlation": finite(own.spectrum.correlation),
             "noise_velocity_mm_per_s": finite(1e3 * own.motion.velocity_noise),
         }
         for own in recordings
@@ -57,12 +60,17 @@ def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
     starts = 1e3 * data.starts(fit.point)
     return [
         {
+            "begins_s": finite(own.begins),
             "duration_s": finite(own.step * own.channels.shape[1]),
-            "natural_periods": finite(own.periods),
+            "highest_hz": finite(0.5 * own.coefficients / (own.step * own.channels.shape[1])),
+            "noise_from": own.spectra[0].source,
+            "noise_correlation": finite(own.spectra[0].correlation),
+            "natural_periods": finite(own.natural),
+            "start_s": finite(own.starts_at),
             "start_mm": finite(start[0]),
             "start_mm_per_s": finite(start[1]),
-            "noise_displacement_mm": finite(1e3 * own.noise[0]),
-            "noise_velocity_mm_per_s": finite(1e3 * own.noise[1]) if own.noise.size > 1 else None,
+            "noise_displacement_mm": finite(1e3 * own.spectra[0].std),
+            "noise_velocity_mm_per_s": finite(1e3 * own.spectra[1].std) if len(own.spectra) > 1 else None,
         }
         for own, start in zip(data.releases, starts, strict=True)
     ]
@@ -91,13 +99,15 @@ def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
             "verdict": found.finding.verdict,
             "law": data.law,
             "wedgesweep_version": __version__,
+            **labels.attributes(data.model),
         },
     )
 
 
 def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     """Forces along the imposed motion."""
-    shown = np.where(data.weight > 0.0, 1.0, np.nan)
+    shown = np.where(data.seen, 1.0, np.nan)
+    measured, simulated = data.in_samples(data.measured), data.in_samples(simulated)
     position, velocity = (
         data.padded([getattr(own.motion, name)[own.places] for own in data.recordings]) * shown
         for name in ("displacement", "velocity")
@@ -105,38 +115,41 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     return {
         "displacement": (BY_SAMPLE, position, "m", "imposed displacement"),
         "velocity": (BY_SAMPLE, velocity, "m/s", "imposed velocity"),
-        "measured_force": (BY_SAMPLE, data.measured * shown, "N", "measured force"),
+        "measured_force": (BY_SAMPLE, measured * shown, "N", "measured force"),
         "simulated_force": (("model", *BY_SAMPLE), simulated * shown, "N", "simulated, with the fitted zero"),
-        "force_noise": (("test",), data.noise.max(axis=-1), "N", "noise of a compared force"),
+        "force_noise": (
+            ("test",),
+            np.array([data.recordings[number].noise for number, _ in data.chosen]),
+            "N",
+            "noise of a compared force",
+        ),
     }
 
 
 def _transients(data: TransientData, simulated: np.ndarray) -> Variables:
-    """Free motions in time."""
+    """Motions in time; simulated ones have the frequencies that are compared."""
     channels = max(len(own.channels) for own in data.releases)
     longest = max(own.channels.shape[1] for own in data.releases)
-
-    def by_channel(values: np.ndarray) -> np.ndarray:
-        """Values (..., T, m) as (..., T, C, k)."""
-        found = np.full((*values.shape[:-1], channels, longest), np.nan)
-        for t, own in enumerate(data.releases):
-            part = values[..., t, : own.channels.size].reshape(*values.shape[:-2], *own.channels.shape)
-            found[..., t, : len(own.channels), : own.channels.shape[1]] = part
-        return found
-
-    time = np.array([own.step * np.arange(longest) for own in data.releases])
+    measured = np.full((data.tests, channels, longest), np.nan)
+    in_time = np.full((len(simulated), *measured.shape), np.nan)
+    for t, own in enumerate(data.releases):
+        size, count = len(own.channels), own.channels.shape[1]
+        measured[t, :size, :count] = own.channels
+        part = simulated[:, t, : size * own.coefficients]
+        in_time[:, t, :size, :count] = own.in_time(part.reshape(-1, size, own.coefficients))
+    time = np.array([own.begins + own.step * np.arange(longest) for own in data.releases])
     return {
-        "time": (BY_SAMPLE, time, "s", "time from the first sample"),
-        "measured": (BY_CHANNEL, by_channel(data.measured), CHANNEL_UNIT, "measured motion"),
+        "time": (BY_SAMPLE, time, "s", "time from the first sample of the record"),
+        "measured": (BY_CHANNEL, measured, CHANNEL_UNIT, "measured motion"),
         "simulated": (
             ("model", *BY_CHANNEL),
-            by_channel(simulated),
+            in_time,
             CHANNEL_UNIT,
             "simulated motion, with the fitted zero",
         ),
         "sample_noise": (
             ("test", "channel"),
-            np.array([own.noise for own in data.releases]),
+            np.array([[each.std for each in own.spectra] for own in data.releases]),
             CHANNEL_UNIT,
             "noise of a sample",
         ),

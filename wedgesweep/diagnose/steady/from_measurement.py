@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from wedgesweep.config import Config
+from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.steady import tone
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.recorded_input import (
@@ -82,14 +83,15 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         )
     )
     as_measured = {name for (name, *_), (_, share) in zip(named, motions, strict=True) if share == 0.0}
+    gain = {INPUT_GAIN: measurement.input_gain_std} if measurement.input_gain_std else {}
     data = RecordedInputData(
         model=measurement.model,
         law=measurement.law,
         names=tuple(test.name for test in measurement.tests),
         spectra=spectra,
         amplitude=inputs.amplitude,
-        amplitude_std=np.full(len(spectra), measurement.input_gain_std),
-        uncertain=dict(measurement.uncertain),
+        amplitude_std=np.zeros(len(spectra)),
+        uncertain=dict(measurement.uncertain) | gain,
         models=_models(measurement),
         input_phase=inputs.phase,
         inputs=inputs,

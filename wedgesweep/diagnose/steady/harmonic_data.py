@@ -57,7 +57,7 @@ class SteadyResponse(NamedTuple):
         return (self.aliases != 0.0).any(axis=(-2, -1), keepdims=True)
 
 
-class _Simulated(NamedTuple):
+class Simulated(NamedTuple):
     """Harmonics (n, T, C, K) of n scenarios, whether they exist (n, T), and final states (n T rows)."""
 
     harmonics: np.ndarray
@@ -81,6 +81,10 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def amplitudes(self, point: Point) -> np.ndarray:
         """Input amplitudes (T,) in m, or N of a force, at a point."""
         return self.reference * np.exp(point.nuisance[:, 0])
+
+    def inputs_of(self, scenario: Scenario) -> np.ndarray:
+        """Input amplitudes (T,) in m, or N of a force, that are simulated in a scenario."""
+        return self.amplitudes(scenario.point)
 
     @property
     def dof(self) -> np.ndarray:
@@ -115,7 +119,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def records(self, scenario: Scenario) -> np.ndarray:
         """Parameter records (T,) of the tests in a scenario."""
-        amplitudes = self.amplitudes(scenario.point)
+        amplitudes = self.inputs_of(scenario)
         if self.models is None:
             return simulation.records(self.model, self.law, scenario.values, self.omega, amplitudes)
         each = [
@@ -132,7 +136,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """What ``decorrelated`` turns into some noise (..., T, m)."""
         return noise
 
-    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> _Simulated:
+    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         rows = [self.records(each) for each in scenarios]
         phase = np.concatenate([each.point.nuisance[:, 1] for each in scenarios])
         warm = joined([each.point.warm for each in scenarios])
@@ -140,7 +144,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         done = self._respond(np.concatenate(rows), phase if toned else None, warm, tolerance)
         shape = (len(scenarios), self.tests)
         harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : self.shape[0]]
-        return _Simulated(harmonics, done.found.reshape(shape), done.warm)
+        return Simulated(harmonics, done.found.reshape(shape), done.warm)
 
     def _respond(
         self, rows: np.ndarray, phase: np.ndarray | None, warm: Warm, tolerance: float

@@ -15,6 +15,7 @@ from typing import NamedTuple, cast
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
+from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.jacobian import STEP, derivatives
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.steady import simulation
@@ -42,14 +43,25 @@ AMPLITUDE_STEP, AMPLITUDE_STD = 2e-3, 0.02
 FREE_PHASE = 1e3
 
 
+class Separation(NamedTuple):
+    """Two explanations by name, the better one first, and the squared distance of their predictions."""
+
+    names: tuple[str, str]
+    distance: float
+
+
 @dataclass(frozen=True)
 class NextTest:
-    """A test to make: frequency (Hz), amplitude (m or N), the closest two explanations that it separates."""
+    """A test to make: frequency (Hz), amplitude (m or N), the closest two explanations that it separates.
+
+    ``pairs``: how far apart every two of the compared explanations are, the best one's first.
+    """
 
     frequency: float
     amplitude: float
     separates: tuple[str, str]
     distance: float
+    pairs: tuple[Separation, ...]
 
 
 class Conditions(NamedTuple):
@@ -96,9 +108,15 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     with_best = separated & [one is fits[0] for (one, _), _ in pairs]
     chosen = np.flatnonzero(with_best if with_best.any() else separated)
     closest = int(chosen[np.argmin(here[chosen])])
-    (one, _), (other, _) = pairs[closest]
-    names = (" + ".join(one.effects) or "base", " + ".join(other.effects) or "base")
-    return NextTest(float(frequency[best]), float(tests.amplitude[best]), names, float(here[closest]))
+    separations = tuple(
+        Separation((_name(one), _name(other)), float(distance))
+        for ((one, _), (other, _)), distance in zip(pairs, here, strict=True)
+    )
+    return NextTest(float(frequency[best]), float(tests.amplitude[best]), *separations[closest], separations)
+
+
+def _name(fit: Fit) -> str:
+    return " + ".join(fit.effects) or "base"
 
 
 def _data(fit: Fit) -> HarmonicData:
@@ -150,7 +168,7 @@ def _responses(
         simulation.records(
             data.model,
             data.law,
-            model.values(fit.x + step[:-1]),
+            {name: each for name, each in model.values(fit.x + step[:-1]).items() if name != INPUT_GAIN},
             tests.omega,
             tests.amplitude * (1.0 + step[-1]),
         )

@@ -17,9 +17,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from wedgesweep import excitation
-from wedgesweep.diagnose.fit_data import Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Evaluation, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.model import TIGHT
-from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData
+from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
 from wedgesweep.diagnose.steady.whitened import real
 
@@ -149,13 +149,35 @@ class RecordedInputData(HarmonicData):
         return tuple(name for name in super().candidates(effects) if name not in self.untold)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        told = {name: each for name, each in scenario.values.items() if name not in self.untold}
+        left_out = (*self.untold, INPUT_GAIN)
+        told = {name: each for name, each in scenario.values.items() if name not in left_out}
         rows = super().records(scenario._replace(values=told))
+        rows["input"]["amplitude"] = self.inputs_of(scenario)
         for sensor, number, neutral in SENSORS:
             if sensor in self.untold:
                 rows[sensor][number] = neutral
         excitation.set_series(rows, self.recorded.shape)
         return rows
+
+    def inputs_of(self, scenario: Scenario) -> np.ndarray:
+        return self.reference * self._gain(scenario)
+
+    def _gain(self, scenario: Scenario) -> np.ndarray:
+        """True input over the recorded one (T,): the gain of the sensor, and of a test by itself."""
+        common = scenario.values.get(INPUT_GAIN, {"scale": 1.0})["scale"]
+        return common * np.exp(scenario.point.nuisance[:, 0])
+
+    def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
+        """Simulated harmonics, less what the error of the gain does to channels that the input converts."""
+        done = super()._simulate(scenarios, tolerance)
+        inputs = self.recorded
+        channels, orders = done.harmonics.shape[2], inputs.displacement.shape[1]
+        from_zero = inputs.displacement * np.exp(-1j * inputs.phase[:, None] * np.arange(1, orders + 1))
+        share = inputs.absolute[:, :channels] * from_zero[:, None]
+        for found, scenario in zip(done.harmonics, scenarios, strict=True):
+            error = self._gain(scenario) - 1.0
+            found[:, :channels, :orders] -= error[:, None, None] * share
+        return done
 
     def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
         """Phase (rad) of the input at the first sample, as recorded."""

@@ -1,19 +1,75 @@
-"""Measured signals to the free motions that are fitted."""
+"""Measured signals to the windows that are fitted."""
 
 import numpy as np
 
-from wedgesweep.diagnose.transient.release import Release, release
+from wedgesweep.diagnose import repeats
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise, of_record
+from wedgesweep.diagnose.transient.driven import Driven, factors
+from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.diagnose.transient.windows import FEWEST, Recorded, windows
 from wedgesweep.measured import Measurement, TestRecord
 
 
 def transient_data(measurement: Measurement) -> TransientData:
-    """Free motions of all tests."""
-    releases = tuple(_release(measurement, test) for test in measurement.tests)
-    return TransientData(releases, dict(measurement.uncertain), measurement.model_error)
+    """Windows of all tests."""
+    tests = measurement.tests
+    channels = [_channels(measurement, test) for test in tests]
+    spectra = _spectra(tests, channels)
+    fewest = FEWEST if len(tests) == 1 else 1
+    found: list[Release] = []
+    for number, test in enumerate(tests):
+        model, driven = measurement.model_of(test), _driven(measurement, test)
+        record = Recorded(test.name, channels[number], test.sampling_rate, spectra[number], driven, number)
+        record = _as_simulated(record, measurement)
+        found += windows(record, model, measurement.law, fewest)
+    return TransientData(
+        tuple(found), dict(measurement.uncertain), measurement.model_error, measurement.input_gain_std
+    )
 
 
-def _release(measurement: Measurement, test: TestRecord) -> Release:
-    recorded = (test.displacement, None if measurement.derived_velocity else test.velocity)
-    channels = np.array([each for each in recorded if each is not None])
-    return release(test.name, measurement.model_of(test), measurement.law, test.sampling_rate, channels)
+def _names(measurement: Measurement, test: TestRecord) -> list[str]:
+    """Channels that are measurements of their own."""
+    derived = ("velocity",) if measurement.derived_velocity else ()
+    return [
+        name
+        for name in ("displacement", "velocity")
+        if getattr(test, name) is not None and name not in derived
+    ]
+
+
+def _channels(measurement: Measurement, test: TestRecord) -> np.ndarray:
+    """Channels (C, n) as recorded."""
+    return np.array([getattr(test, name) for name in _names(measurement, test)])
+
+
+def _driven(measurement: Measurement, test: TestRecord) -> Driven | None:
+    if test.input is None or measurement.recorded_input is None:
+        return None
+    return Driven(test.input, measurement.recorded_input, test.sampling_rate)
+
+
+def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
+    """The record with its channels as the motion that is simulated."""
+    test = measurement.tests[record.number]
+    model = measurement.model_of(test)
+    named = [measurement.columns[name].get("of", "relative") for name in _names(measurement, test)]
+    both = [factors(model, of) for of in named]
+    channels = record.channels * np.array([factor for factor, _ in both])[:, None]
+    if record.driven is not None and any(share for _, share in both):
+        base = record.driven.displacement
+        for place, (own, (_, share)) in enumerate(zip(channels, both, strict=True)):
+            own += share * (base if place == 0 else np.gradient(base) * record.rate)
+    return record._replace(channels=channels)
+
+
+def _spectra(tests: tuple[TestRecord, ...], channels: list[np.ndarray]) -> list[list[NoiseSpectrum]]:
+    """Noise of each channel of each test: from its repeats, or from the record itself."""
+    found: list[list[NoiseSpectrum]] = [[of_record(each) for each in own] for own in channels]
+    for rows in repeats.groups(tests):
+        for place in range(len(channels[rows[0]])):
+            left = repeats.differences([channels[row][place] for row in rows])
+            noise = of_noise(left, FROM_REPEATS)
+            for row in rows:
+                found[row][place] = noise.up_to(found[row][place].highest)
+    return found

@@ -1,92 +1,144 @@
-"""A recorded free motion as it is compared, and its simulation."""
+"""A window of a recorded motion as it is compared, and its simulation.
+
+Compared are the cosine coefficients of the window (DCT-II) up to the highest frequency that the motion may
+have: under noise whose spectrum is smooth they are all but independent.
+"""
 
 from dataclasses import dataclass
-from math import ceil, pi
+from functools import cached_property
+from math import pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
+from scipy.fft import dct, idct
 
-from wedgesweep import excitation
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.smoothing import HIGHEST, LowPass, white_noise
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.effects import merge
+from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
-# Samples that are compared of one channel, at most: others are left out evenly.
-MOST_SAMPLES = 20_000
-# Least samples in a natural period of a simulation.
-LEAST_PER_PERIOD = 16
-# Share of the record at its end whose mean is where the motion comes to rest.
-REST = 0.1
+# Error of a simulation over the rms of the motion, which counts as noise.
+SIMULATED = 1e-5
+
+
+class Grid(NamedTuple):
+    """Samples of a simulation: ``lead`` before a window, ``inside`` it; ``omega``: natural (rad/s)."""
+
+    lead: int
+    inside: int
+    omega: float
+
+    @property
+    def samples(self) -> int:
+        """Simulated samples."""
+        return self.lead + self.inside
 
 
 @dataclass(frozen=True, eq=False)
 class Release:
-    """One test.
+    """One window.
 
-    ``model``: the base model with the numbers of the test; ``step`` (s) between samples; ``channels`` (C, n):
-    displacement (m) and, where it was recorded, velocity (m/s); ``noise`` (C,): std of a sample.
+    ``model``: the base model with the numbers of the test; ``step`` (s) between samples; ``begins`` (s):
+    time of its first sample in its record, of the ``number``-th test; ``channels`` (C, n): displacement (m)
+    and, where it was recorded, velocity (m/s), as they are simulated; ``spectra``: their noise, beside that
+    of the input, ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a
+    channel are compared. ``input`` acts in the simulation, of ``size`` in what it was recorded as; ``length``
+    (m): of the motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
     """
 
     name: str
     model: Config
     law: str
     step: float
+    begins: float
+    number: int
     channels: np.ndarray
-    noise: np.ndarray
+    spectra: tuple[NoiseSpectrum, ...]
+    passed_on: np.ndarray
+    coefficients: int
+    grid: Grid
+    input: SampledInput
+    driven: bool
+    length: float
+    guess: tuple[float, float]
+
+    @cached_property
+    def compared(self) -> np.ndarray:
+        """Cosine coefficients (C, K)."""
+        return dct(self.channels, norm="ortho")[:, : self.coefficients]
 
     @property
-    def length(self) -> float:
-        """Largest displacement (m) from where the motion comes to rest."""
-        return float(np.abs(self.channels[0] - self._rest).max())
+    def rms(self) -> np.ndarray:
+        """Rms (C,) of each channel about its mean."""
+        return self.channels.std(axis=1)
 
     @property
-    def _rest(self) -> float:
-        tail = max(int(REST * self.channels.shape[1]), 1)
-        return float(self.channels[0, -tail:].mean())
+    def spread(self) -> float:
+        """Samples for each coefficient; an error that has all its power there is larger by the root of it."""
+        return self.channels.shape[1] / self.coefficients
 
-    def start(self) -> tuple[float, float]:
-        """Displacement (m) and velocity (m/s) at the first sample, roughly."""
-        smooth = LowPass(0.5 * HIGHEST / self.step, 1.0 / self.step)(self.channels[0])
-        return float(smooth[0] - self._rest), float(np.gradient(smooth)[0] / self.step)
+    @cached_property
+    def noise(self) -> np.ndarray:
+        """Standard deviation (C, K) of each coefficient."""
+        frequency = pi * np.arange(self.coefficients) / self.channels.shape[1]
+        least = SIMULATED * self.rms * sqrt(self.spread)
+        grid = np.linspace(0.0, pi, self.passed_on.shape[1])
+        passed = [np.interp(frequency, grid, each) for each in self.passed_on]
+        own = zip(self.spectra, passed, least, strict=True)
+        return np.sqrt([each(frequency) + more + low**2 for each, more, low in own])
 
-    def simulated(self, scenarios: list[Values], starts: np.ndarray, tolerance: float) -> np.ndarray:
-        """Displacements and velocities (n, C, k) of n scenarios from their starts (n, 2); NaN for none."""
-        per_sample, per_period, omega = self._grid
-        rows = np.concatenate(
-            [
-                self.model.record_with(merge(self.model.effects, each), self.law, 1.0, omega)
-                for each in scenarios
-            ]
-        )
-        excitation.set_no_motion(rows, self.length)
-        states = np.zeros((len(rows), state_count()))
-        # Channels are minus what solvers record, which the suspension has as its state.
-        states[:, :2] = starts if self.model.system == "oscillator" else -starts
-        periods = ceil(self.channels.shape[1] * per_sample / per_period)
-        x, velocity, _ = periodic.samples(rows, states, 0, periods, per_period, tolerance)
-        signals = -np.stack([x, velocity], axis=1)[:, : len(self.channels)]
-        return signals[..., : self.channels.shape[1] * per_sample : per_sample]
+    def in_time(self, coefficients: np.ndarray) -> np.ndarray:
+        """Signals (..., C, n) of coefficients (..., C, K)."""
+        return idct(coefficients, n=self.channels.shape[1], norm="ortho")
+
+    @property
+    def starts_at(self) -> float:
+        """Time (s) in the record at which the simulation starts."""
+        return self.begins - self.grid.lead * self.step
+
+    @property
+    def _natural_step(self) -> float:
+        """Time between simulated samples in natural periods of the model."""
+        return self.step * self.grid.omega / (2.0 * pi)
+
+    @property
+    def natural(self) -> float:
+        """Length of the window in natural periods of the model."""
+        return self.grid.inside * self._natural_step
 
     @property
     def periods(self) -> float:
-        """Length of the record in natural periods of the model."""
-        _, per_period, _ = self._grid
-        return self.channels.shape[1] * self._grid[0] / per_period
+        """Length of what is simulated in natural periods of the model."""
+        return self.grid.samples * self._natural_step
+
+    def simulated(
+        self, scenarios: list[Values], starts: np.ndarray, gains: np.ndarray, tolerance: float
+    ) -> np.ndarray:
+        """Coefficients (n, C, K) of n scenarios from their starts (n, 2); NaN for none.
+
+        ``gains`` (n,): of the input.
+        """
+        grid = self.grid
+        rows = np.concatenate(
+            [
+                self.model.record_with(merge(self.model.effects, each), self.law, 1.0, grid.omega)
+                for each in scenarios
+            ]
+        )
+        set_sampled(rows, self.input, self._scale, grid.omega, grid.samples * self.step, gains)
+        states = np.zeros((len(rows), state_count()))
+        # Channels are minus what solvers record, which the suspension has as its state.
+        states[:, :2] = starts if self.model.system == "oscillator" else -starts
+        x, velocity, _ = periodic.samples(rows, states, 0, 1, grid.samples, tolerance)
+        window = -np.stack([x, velocity], axis=1)[:, : len(self.channels), grid.lead :]
+        return dct(window, norm="ortho")[..., : self.coefficients]
 
     @property
-    def _grid(self) -> tuple[int, int, float]:
-        """Simulated samples for each recorded one, and in a period, and the period's angular frequency."""
-        travel = max(self.length, 1e-300)
-        period = 2.0 * pi * self.model.natural_units(travel).time
-        per_sample = max(1, ceil(LEAST_PER_PERIOD * self.step / period))
-        per_period = max(round(period * per_sample / self.step), LEAST_PER_PERIOD)
-        return per_sample, per_period, 2.0 * pi * per_sample / (per_period * self.step)
-
-
-def release(name: str, model: Config, law: str, rate: float, channels: np.ndarray) -> Release:
-    """Prepare a test from its channels (C, n), sampled at a rate (Hz)."""
-    noise = np.array([white_noise(each, rate) for each in channels])
-    stride = ceil(channels.shape[1] / MOST_SAMPLES)
-    return Release(name, model, law, stride / rate, channels[:, ::stride], noise)
+    def _scale(self) -> float:
+        """What motions are compared with: their length (m), or the force (N) that would cause it."""
+        if not self.model.forced:
+            return self.length
+        return self.length * self.model.natural_units(self.length).mass * self.grid.omega**2

@@ -1,6 +1,7 @@
-"""Free motions as data of a fit: each test starts from a state of its own, which is fitted.
+"""Transients as data of a fit: each window of a record starts from a state of its own, which is fitted.
 
-What is compared are samples in time. Their noise counts as white; the zero of the displacement is unknown.
+A window is a test: errors of phase do not add up over a long record (multiple shooting with free starts). The
+zero of the displacement is unknown in each.
 """
 
 from collections.abc import Iterable, Sequence
@@ -12,25 +13,40 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.fit_data import NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.fit_data import (
+    Evaluation,
+    NuisanceParameter,
+    Point,
+    Scenario,
+    best_evaluation_per_test,
+)
+from wedgesweep.diagnose.model import TOLERANCE, Model
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.natural_units import NaturalUnits
 
-# Effects of an input, or of a sensor whose state at the first sample is not known.
-OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "velocity_lag")
+# Effects of a sine as an input, or of what a recorded input holds already.
+OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
+# Effect of a sensor of the velocity.
+OF_VELOCITY = "velocity_lag"
+# Blocks of a record that are left out in turn, at most.
+MOST_BLOCKS = 12
 # Displacement and velocity of the start, over the largest displacement and that a natural time later.
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
+# Displacements that are tried beside the measured one, over the largest, where so few points are tried.
+OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
+# Gain of a recorded input, as its logarithm.
+GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
 
 @dataclass(frozen=True, eq=False)
 class TransientData(SampledData):
-    """T free motions; arrays (T, m) hold displacement and velocity, one after the other."""
+    """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other."""
 
     releases: tuple[Release, ...]
     uncertain: dict[str, float]
     model_error: float = 0.0
+    gain_std: float = 0.0
     resampled: np.ndarray | None = None
 
     kind = "transient"
@@ -58,28 +74,26 @@ class TransientData(SampledData):
 
     @cached_property
     def recorded(self) -> np.ndarray:
-        return self._padded([own.channels for own in self.releases])
+        return self._padded([own.compared for own in self.releases])
 
     @cached_property
     def noise(self) -> np.ndarray:
-        return self._padded([self._of_each_sample(own, own.noise) for own in self.releases])
+        return self._padded([own.noise for own in self.releases])
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Rms (T, m) of each channel about its mean."""
-        return self._padded([self._of_each_sample(own, own.channels.std(axis=1)) for own in self.releases])
-
-    @staticmethod
-    def _of_each_sample(own: Release, values: np.ndarray) -> np.ndarray:
-        """A number (C,) of each channel for every sample of it, (C, k)."""
-        return np.broadcast_to(values[:, None], own.channels.shape)
+        """Rms (T, m) that the coefficients of each channel have where they hold all its power."""
+        rms = [np.sqrt(own.spread) * own.rms for own in self.releases]
+        shapes = [(each.size, own.coefficients) for each, own in zip(rms, self.releases, strict=True)]
+        pairs = zip(rms, shapes, strict=True)
+        return self._padded([np.broadcast_to(each[:, None], shape) for each, shape in pairs])
 
     @cached_property
     def shifted(self) -> np.ndarray:
-        displacement = [np.zeros(own.channels.shape) for own in self.releases]
-        for each in displacement:
-            each[0] = 1.0
-        return self._padded(displacement)
+        """The first coefficient of the displacement is its mean."""
+        found = np.zeros_like(self.recorded)
+        found[:, 0] = [np.sqrt(own.channels.shape[1]) for own in self.releases]
+        return found
 
     @property
     def dof(self) -> np.ndarray:
@@ -88,7 +102,16 @@ class TransientData(SampledData):
 
     @property
     def nuisance_std(self) -> np.ndarray:
-        return np.full((self.tests, len(START)), np.inf)
+        start = np.full((self.tests, len(START)), np.inf)
+        if not self._gains:
+            return start
+        driven = np.array([own.driven for own in self.releases])
+        return np.column_stack([start, np.where(driven, self.gain_std, 1.0)])
+
+    @property
+    def _gains(self) -> bool:
+        """Whether gains of inputs are fitted."""
+        return self.gain_std > 0.0 and any(own.driven for own in self.releases)
 
     @cached_property
     def units(self) -> NaturalUnits:
@@ -102,13 +125,14 @@ class TransientData(SampledData):
 
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
-        return point.nuisance * self._scale
+        return point.nuisance[:, : len(START)] * self._scale
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        return START
+        return (*START, GAIN) if self._gains else START
 
     def start(self) -> tuple[np.ndarray, NoStart]:
-        return np.array([own.start() for own in self.releases]) / self._scale, NoStart()
+        start = np.array([own.guess for own in self.releases]) / self._scale
+        return np.pad(start, ((0, 0), (0, int(self._gains)))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         releases = tuple(self.releases[row] for row in np.arange(self.tests)[rows])
@@ -118,15 +142,43 @@ class TransientData(SampledData):
         return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        return tuple(name for name in effects if name not in OF_INPUT)
+        hidden = OF_INPUT if any(len(own.channels) > 1 for own in self.releases) else (*OF_INPUT, OF_VELOCITY)
+        return tuple(name for name in effects if name not in hidden)
 
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
         values = self.known_values(scenarios, OF_INPUT)
         starts = np.array([self.starts(each.point) for each in scenarios])
+        gains = np.ones((len(values), self.tests))
+        if self._gains:
+            gains = np.exp([each.point.nuisance[:, len(START)] for each in scenarios])
         work.add(len(values) * sum(own.periods for own in self.releases))
         return self._padded(
-            [own.simulated(values, starts[:, t], TOLERANCE) for t, own in enumerate(self.releases)]
+            [
+                own.simulated(values, starts[:, t], gains[:, t], TOLERANCE)
+                for t, own in enumerate(self.releases)
+            ]
         )
 
+    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+        """Evaluations from several starts: where a mass rests before it moves, friction hides its place."""
+        stated, at_rest = self.start()
+        offsets = OFFSETS if len(points) <= FEW else (0.0,)
+        tried = [points]
+        for offset in offsets:
+            moved = stated + offset * (np.arange(stated.shape[1]) == 0)
+            tried.append([replace(each, nuisance=moved, warm=at_rest) for each in points])
+        by_try = [model.evaluate_all(each) for each in tried]
+        best = []
+        for evaluations in zip(*by_try, strict=True):
+            chosen = best_evaluation_per_test(evaluations)
+            nuisance = np.array([each.point.nuisance for each in evaluations])
+            best.append(replace(evaluations[0].point, nuisance=nuisance[chosen, np.arange(chosen.size)]))
+        return model.evaluate_all(best)
+
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        return [("record", np.array([t])) for t in range(self.tests)]
+        """Each record, or where there is only one blocks of windows that follow one another."""
+        numbers = np.array([own.number for own in self.releases])
+        if np.ptp(numbers) > 0:
+            return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
+        blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))
+        return [("block", rows) for rows in blocks]

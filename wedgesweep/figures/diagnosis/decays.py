@@ -1,7 +1,9 @@
-"""Measured and simulated free motion in time, and what the models leave of it."""
+"""Measured and simulated motion in time, the size of its swings, and what the models leave of it."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from wedgesweep import formatting
@@ -12,44 +14,90 @@ from wedgesweep.figures.diagnosis.multiples import multiples
 from wedgesweep.figures.panels import Panels, Target
 
 NAME = "decays"
-DESCRIPTION = "free motion in time, measured and simulated, and what the models leave of it"
+DESCRIPTION = "motion in time and the size of its swings, measured and simulated, and what the models leave"
+
+# Of a longer motion the beginning is drawn: more would run together.
+SWINGS = 40
+# Swings below so many standard deviations of the noise are not drawn.
+CLEAR = 3.0
 
 
-def _draw_motion(ax: Axes, result: DiagnosisResult, test: int) -> None:
+def swings(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Times and sizes of the largest deflection between each two passages through zero."""
+    passed = np.flatnonzero(np.diff(np.signbit(signal)))
+    parts = [slice(a + 1, b + 1) for a, b in pairwise(passed)]
+    places = np.array([part.start + np.abs(signal[part]).argmax() for part in parts], int)
+    return time[places], np.abs(signal[places])
+
+
+def _signals(result: DiagnosisResult, test: int) -> dict[str, np.ndarray]:
+    """Times (s) and displacements (mm) of the measurement and of each model, as far as there are any."""
     data = result.data.isel(test=test, channel=0)
-    time = data["time"].values
-    ax.plot(time, data["measured"].values * style.MM, **marks.MEASURED)
+    there = np.isfinite(data["measured"].values)
+    found = {model: data["simulated"].sel(model=model).values for model in result.models}
+    found["measured"] = data["measured"].values
+    motions = {name: each[there] * style.MM for name, each in found.items()}
+    return {"time": data["time"].values[there], **motions}
+
+
+def _draw_motion(ax: Axes, result: DiagnosisResult, signals: dict[str, np.ndarray], end: float) -> None:
+    shown = signals["time"] <= end
+    time = signals["time"][shown]
+    ax.plot(time, signals["measured"][shown], **marks.MEASURED)
     for model in result.models:
-        ax.plot(time, data["simulated"].sel(model=model).values * style.MM, **marks.line(model))
+        ax.plot(time, signals[model][shown], **marks.line(model))
 
 
-def _draw_left(ax: Axes, result: DiagnosisResult, test: int) -> None:
-    data = result.data.isel(test=test, channel=0)
-    noise = float(data["sample_noise"]) * style.MM
+def _draw_swings(ax: Axes, result: DiagnosisResult, signals: dict[str, np.ndarray], noise: float) -> None:
+    time = signals["time"]
+    for name in ("measured", *result.models):
+        when, size = swings(time, signals[name])
+        clear = size > CLEAR * noise
+        look = {**marks.MEASURED_DOT, "markersize": 3.0} if name == "measured" else marks.line(name)
+        ax.plot(when[clear], size[clear], **look)
+    ax.set_ylim(bottom=0.0)
+
+
+def _draw_left(ax: Axes, result: DiagnosisResult, signals: dict[str, np.ndarray], noise: float) -> None:
     ax.axhspan(-2.0 * noise, 2.0 * noise, color="0.85", linewidth=0.0)
     for model in result.models:
-        left = (data["measured"] - data["simulated"].sel(model=model)).values * style.MM
-        ax.plot(data["time"].values, left, color=marks.COLORS[model], linewidth=0.8)
+        left = signals["measured"] - signals[model]
+        ax.plot(signals["time"], left, color=marks.COLORS[model], linewidth=0.8)
     ax.set_xlabel("time [s]", fontsize=8.5)
 
 
-def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
-    """Draw the motion of each test, and below it what the models leave (default: six tests).
+def _end(signals: dict[str, np.ndarray]) -> float:
+    """Time up to which the motion is drawn."""
+    when, _ = swings(signals["time"], signals["measured"])
+    return float(when[SWINGS] if when.size > SWINGS else signals["time"][-1])
 
-    To see: amplitudes that fall by the same step in every cycle are dry friction, those that fall by the same
-    share a damper; a difference that grows and turns over is a frequency that is off.
+
+def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
+    """Draw the motion of each test, the size of its swings, and what the models leave (default: six tests).
+
+    To see: swings that get smaller by the same step each time, on a straight line, are dry friction; those
+    that fall by the same share a damper. A difference that grows and turns over is a frequency that is off.
     """
     if "time" not in result.data:
         message = "the tests are no transients"
         raise ValueError(message)
-    made = multiples(target, result, selection.choose(result, tests), (2.9, 1.3), 2, between=0.3)
-    for test, (motion, left) in made:
-        _draw_motion(motion, result, test)
-        _draw_left(left, result, test)
+    made = multiples(target, result, selection.choose(result, tests), (2.9, 1.15), 3, between=0.42)
+    cut = False
+    for test, (motion, sizes, left) in made:
+        signals = _signals(result, test)
+        noise, end = float(result.data["sample_noise"].values[test, 0]) * style.MM, _end(signals)
+        cut |= end < signals["time"][-1]
+        _draw_motion(motion, result, signals, end)
+        _draw_swings(sizes, result, signals, noise)
+        _draw_left(left, result, signals, noise)
         row = result.document["misfit"]["tests"][test]
         errors = " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
         motion.set_title(f"{selection.label(result.data, test)}\nerror {errors}", fontsize=8.5)
-    made.label_sides("displacement [mm]", "left [mm]")
+    made.label_sides("displacement [mm]", "swings [mm]", "left [mm]")
     marks.legend(made, result, dots=False)
-    made.title("Free motion, measured and simulated", "grey: two standard deviations of the noise")
+    first = f" (first {SWINGS} swings)" if cut else ""
+    made.title(
+        f"Motion in time{first}, measured and simulated",
+        "below: size of each swing, and what is left; grey: noise (2 std)",
+    )
     return made

@@ -1,7 +1,7 @@
-"""Energy that the side frame puts in per cycle, measured and simulated."""
+"""Energy that the input puts in per cycle, measured and simulated."""
 
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures import style
+from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import marks, rows
 from wedgesweep.figures.panels import Panels, Target
 
@@ -17,9 +17,10 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     The energy follows from the fundamental of the displacement; in steady vibration friction dissipates it.
     To see: where the base model is right of 1 it dissipates more than the bench does, left of 1 less.
     """
-    order = rows.known(result, "energy")
+    order, words = rows.known(result, "energy"), labels.of(result.data)
     if not order.size:
-        message = "no test has a known motion of the side frame, from which the energy follows"
+        known = "amplitude of the force" if words.forced else f"motion of the {words.base}"
+        message = f"no test has a known {known}, from which the energy follows"
         raise ValueError(message)
     made = rows.make_panels(target, result, order, 2)
     left, right = made.axes
@@ -30,5 +31,5 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     rows.draw_ratios(right, result, order, "energy")
     right.set_xlabel("simulated over measured energy [1]", fontsize=9)
     marks.legend(made, result, dots=True)
-    made.title("Energy that the side frame puts in per cycle")
+    made.title(f"Energy that {words.driver} puts in per cycle")
     return made

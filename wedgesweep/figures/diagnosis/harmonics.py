@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures import style
+from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import marks, selection
 from wedgesweep.figures.diagnosis.multiples import multiples
 from wedgesweep.figures.panels import Panels, Target
@@ -65,8 +65,10 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
         axes[-1].set_xlabel("harmonic $h$ [1]", fontsize=8.5)
     made.label_sides(*(LABELS[channel] for channel in channels))
     marks.legend(made, result, dots=True)
+    words = labels.of(result.data)
+    symbols = {"displacement": words.motion, "velocity": words.rate}
     made.title(
-        "Harmonics of $x-y$ and $x'-y'$, measured and simulated",
+        f"Harmonics of {' and '.join(f'${symbols[name]}$' for name in channels)}, measured and simulated",
         "bars: 95 % interval; grey: noise alone reaches this height",
     )
     return made

@@ -3,7 +3,7 @@
 import numpy as np
 
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures import style
+from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import marks, selection
 from wedgesweep.figures.panels import Panels, Target, panels
 
@@ -26,7 +26,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
     To see: a measured peak at another frequency than the model's points to stiffness or mass, a lower peak to
     dissipation, and a jump that only one of them has to sticking, a stop or a coexisting response.
     """
-    data = result.data
+    data, words = result.data, labels.of(result.data)
     made = panels(target, 1, size=(6.2, 3.6), margin=(0.8, 0.8))
     ax = made.axes[0]
     frequency = data["frequency"].values
@@ -37,7 +37,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         ax.plot(frequency[rows], measured, color="black", linewidth=0.8)
         ax.plot(frequency[rows], measured, **marks.MEASURED_DOT)
         place = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "color": style.GREY}
-        text = f"$a$ = {selection.amplitude(data, amplitude[rows].mean(), 2)}"
+        text = f"${words.symbol}$ = {selection.amplitude(data, amplitude[rows].mean(), 2)}"
         ax.annotate(text, (frequency[rows[-1]], measured[-1]), (8, 0), **place)
         for model in result.models:
             values = data["simulated_peak_to_peak"].sel(model=model).values[rows] * style.MM
@@ -50,7 +50,7 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         ax.set_yscale("log")
         style.log_ticks(ax.yaxis)
     ax.margins(x=0.12)
-    style.label([ax], "frequency [Hz]", "peak-to-peak of $x-y$ [mm]")
+    style.label([ax], "frequency [Hz]", f"peak-to-peak of ${words.motion}$ [mm]")
     marks.legend(made, result, dots=True)
-    made.title("Peak-to-peak of $x-y$ over frequency, measured and simulated")
+    made.title(f"Peak-to-peak of ${words.motion}$ over frequency, measured and simulated")
     return made

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures import style
+from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import marks, selection
 from wedgesweep.figures.diagnosis.motion import closed, motion
 from wedgesweep.figures.diagnosis.multiples import multiples
@@ -23,7 +23,7 @@ def _draw(ax: Axes, result: DiagnosisResult, test: int) -> None:
         x, v = motion(data, data["simulated_waveform"].sel(model=model), test)
         ax.plot(closed(x) * style.MM, closed(v) * style.MM, **marks.line(model))
     ax.locator_params(nbins=5)
-    ax.set_xlabel("$x-y$ [mm]", fontsize=8.5)
+    ax.set_xlabel(f"${labels.of(data).motion}$ [mm]", fontsize=8.5)
 
 
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
@@ -35,10 +35,11 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     made = multiples(target, result, selection.choose(result, tests), (2.5, 1.9))
     for test, (ax,) in made:
         _draw(ax, result, test)
-    made.label_sides("$x'-y'$ [mm/s]")
+    words = labels.of(result.data)
+    made.label_sides(f"${words.rate}$ [mm/s]")
     marks.legend(made, result, dots=False)
     made.title(
         "Phase plane over one period, measured and simulated",
-        "$x-y$: side frame minus bolster, mean removed",
+        f"${words.motion}$: {words.whose}, mean removed",
     )
     return made

@@ -7,14 +7,14 @@ from matplotlib.axes import Axes
 from scipy.special import chdtrc
 
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures import style
+from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import selection
 from wedgesweep.figures.diagnosis.motion import motion
 from wedgesweep.figures.diagnosis.multiples import multiples
 from wedgesweep.figures.panels import Panels, Target
 
 NAME = "leftover-force"
-DESCRIPTION = "force on the bolster that the base model lacks, over displacement and velocity"
+DESCRIPTION = "force that the base model lacks, over displacement and velocity"
 
 PARTS = 16  # of the period, a colour each
 PALE = "0.7"
@@ -47,19 +47,20 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     available = np.isfinite(data["leftover_force"].values).all(axis=-1)
     chosen = [test for test in selection.choose(result, tests) if available[test]]
     if not chosen:
-        message = "the tests do not give the force on the bolster"
+        message = f"the tests do not give the force on the {labels.of(data).body}"
         raise ValueError(message)
+    words = labels.of(data)
     made = multiples(target, result, chosen, (2.5, 1.3), 2, between=0.46)
     for test, (upper, lower) in made:
         x, v = motion(data, data["measured_waveform"], test)
         force = data["leftover_force"].values[test]
         for ax, signal in ((upper, x), (lower, v)):
             _draw(ax, signal, force, _is_noise(result, test))
-        upper.set_xlabel("$x-y$ [mm]", fontsize=8.5)
-        lower.set_xlabel("$x'-y'$ [mm/s]", fontsize=8.5)
+        upper.set_xlabel(f"${words.motion}$ [mm]", fontsize=8.5)
+        lower.set_xlabel(f"${words.rate}$ [mm/s]", fontsize=8.5)
     made.label_sides("residual force [N]", "residual force [N]")
     made.title(
-        "Residual force on the bolster (positive upwards), which the base model lacks",
+        f"Residual force on the {words.body} ({words.positive}), which the base model lacks",
         "violet to green: through one period; grey: may be noise",
     )
     return made

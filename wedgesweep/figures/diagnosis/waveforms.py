@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.figures import style
+from wedgesweep.figures import labels, style
 from wedgesweep.figures.diagnosis import marks, selection
 from wedgesweep.figures.diagnosis.motion import closed, motion
 from wedgesweep.figures.diagnosis.multiples import multiples
@@ -60,10 +60,11 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
         for ax in (upper, middle):
             ax.tick_params(labelbottom=False)
         lower.set_xlabel("time over period [1]", fontsize=8.5)
-    made.label_sides("$x-y$ [mm]", "$x'-y'$ [mm/s]", "difference [µm]")
+    words = labels.of(result.data)
+    made.label_sides(f"${words.motion}$ [mm]", f"${words.rate}$ [mm/s]", "difference [µm]")
     marks.legend(made, result, dots=False)
     made.title(
-        "One period of $x-y$ and $x'-y'$, measured and simulated",
-        "below: simulated minus measured; grey: 95 % of the noise; time 0: $u$ = 0, rising",
+        f"One period of ${words.motion}$ and ${words.rate}$, measured and simulated",
+        f"below: simulated minus measured; grey: 95 % of the noise; time 0: ${words.input}$ = 0, rising",
     )
     return made

@@ -14,7 +14,17 @@ from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.recorder import keep_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.hybrid.vectors import replaced
-from wedgesweep.systems.suspension import closed_form, energy, events, filippov, newton, release, transitions
+from wedgesweep.systems.suspension import (
+    energy,
+    events,
+    filippov,
+    first_event,
+    linear_slip,
+    linear_slip_sums,
+    newton,
+    release,
+    transitions,
+)
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, VELOCITY, X, held, with_branch, with_segment
 from wedgesweep.systems.suspension.unilateral import contacts, impact
 from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, moved
@@ -326,24 +336,23 @@ def normal_forces(t, y, mode, p):
 
 @implement(interface.closed_form, PLAIN)
 @inner
-def follow(state, stop, p, keeping, recorder):
+def follow(state, stop, p, keeping, recorder, counts):
     """Follow a mode with both contacts closed to its event or ``stop`` if it has a closed form."""
     t, y, mode, last_event, step = state
-    nothing = (False, t, y, NO_EVENT)
     if not closed(mode):
-        return nothing
+        return False, state, NO_EVENT
     short = State(t, (y[X], y[VELOCITY]), mode, last_event, step)
     if stuck(mode, p):
         if not release.is_known(short, p):
-            return nothing
+            return False, state, NO_EVENT
         end, event_place = release.release(short, stop, p)
         if keeping:
             keep_constant(t, end, y, mode, recorder, p)
-        return True, end, y, event_place
-    free_motion = closed_form.oscillator(y, mode, p)
+        return True, State(end, y, mode, last_event, step), event_place
+    free_motion = linear_slip.oscillator(y, mode, p)
     if not free_motion.linear:
-        return nothing
-    end, x, velocity, event_place = closed_form.slide(short, stop, free_motion, p)
+        return False, state, NO_EVENT
+    end, x, velocity, event_place = first_event.slide(short, stop, free_motion, p)
     if keeping:
-        closed_form.keep(short, end, free_motion, recorder, p)
-    return True, end, (x, velocity, 0.0, 0.0, 0.0, 0.0), event_place
+        linear_slip_sums.keep(short, end, free_motion, recorder, p)
+    return True, State(end, (x, velocity, 0.0, 0.0, 0.0, 0.0), mode, last_event, step), event_place

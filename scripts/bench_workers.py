@@ -1,0 +1,93 @@
+"""What a second process costs a Radau sweep: CPU seconds in this process, in one worker and in two.
+
+CPU seconds of a case grow if workers are in each other's way (caches, memory, threads of libraries, system
+calls); what a worker spends outside of cases is its start. Wall times of a busy machine say neither. Every
+third case of configs/quick.toml; writes docs/bench_workers.txt.
+"""
+
+import os
+import resource
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import joblib
+import numpy as np
+from joblib.externals.loky import get_reusable_executor
+
+import wedgesweep as ws
+from wedgesweep.sweep.backend import loky
+from wedgesweep.sweep.cases import Chunk, compile_once, solve_chunk
+from wedgesweep.sweep.run import Sweep
+
+ROOT = Path(__file__).parent.parent
+REPORT = ROOT / "docs" / "bench_workers.txt"
+STEP = 3
+
+
+class Solved(NamedTuple):
+    """A case: process that solved it, CPU seconds, those in the kernel, page faults, CPU of the process."""
+
+    process: int
+    case: int
+    cpu: float
+    system: float
+    faults: int
+    process_cpu: float
+
+
+def solved(chunk):
+    before, began = resource.getrusage(resource.RUSAGE_SELF), time.process_time()
+    solve_chunk(chunk)
+    cpu, after = time.process_time() - began, resource.getrusage(resource.RUSAGE_SELF)
+    return Solved(
+        os.getpid(),
+        int(chunk.indices[0]),
+        cpu,
+        after.ru_stime - before.ru_stime,
+        after.ru_minflt - before.ru_minflt,
+        time.process_time(),
+    )
+
+
+def chunks(sweep):
+    for case in range(0, sweep.count, STEP):
+        index = np.array([case])
+        yield Chunk(sweep.config.records(index), index, sweep.settings, 60.0, sweep.dtype)
+
+
+def told(name, cases, own):
+    """One line: what a case takes, and what a worker takes before its first one."""
+    warm = [case for case in cases if case.case in WARM]
+    cpu, system, faults = (np.mean([getattr(case, name) for case in warm]) for name in Solved._fields[2:5])
+    workers = {case.process for case in cases}
+    start = max(
+        min(case.process_cpu - case.cpu for case in cases if case.process == each) for each in workers
+    )
+    return f"{name:>13} {cpu:13.3f} {system:14.4f} {faults:12.0f} {start:22.2f} {own:13.2f}"
+
+
+# Cases late enough that every worker has loaded its code before.
+WARM = range(12, 1000)
+
+
+def main():
+    sweep = Sweep(ws.load_config(ROOT / "configs" / "quick.toml"), Path("quick.nc"))
+    compile_once("radau")
+    lines = ["CPU s          a later case  in the kernel  page faults  before its first case  this process"]
+    began = time.process_time()
+    lines.append(told("in itself", list(map(solved, chunks(sweep))), time.process_time() - began))
+    for count in (1, 2):
+        began = time.process_time()
+        with loky(count, dict) as pool:
+            # joblib would solve in this process for one job: a pool of two, with one task at a time.
+            parallel = pool.parallel() if count > 1 else joblib.Parallel(2, pre_dispatch=1, batch_size=1)
+            cases = list(parallel(joblib.delayed(solved)(chunk) for chunk in chunks(sweep)))
+        lines.append(told(f"{count} at a time", cases, time.process_time() - began))
+        get_reusable_executor().shutdown()
+    print("\n".join(lines))
+    REPORT.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()

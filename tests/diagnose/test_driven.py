@@ -1,0 +1,125 @@
+"""Transients under a recorded input: sweeps, bumps and random motion of the base, or a force."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.test_transients import MEASURED, OSCILLATOR
+from wedgesweep import api
+from wedgesweep.config import parse
+from wedgesweep.effects import merge
+from wedgesweep.measured import MeasuredError, read
+from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.sampled_input import from_samples, set_sampled
+from wedgesweep.solvers import periodic
+from wedgesweep.systems import state_count
+
+RATE, SAMPLES, FINE = 250.0, 2500, 4
+TIMES = np.arange(SAMPLES * FINE) / (RATE * FINE)
+UNITS = {"displacement": ("mm", 1e-3), "acceleration": ("m/s^2", 1.0), "force": ("N", 1.0)}
+
+
+def chirp(low=1.0, high=6.0):
+    """A swept sine (n,), from low to high frequency (Hz)."""
+    return np.sin(2.0 * np.pi * (low * TIMES + (high - low) * TIMES**2 / (2.0 * TIMES[-1])))
+
+
+def rough(seed, highest=8.0):
+    """Random motion (n,) of unit variance up to some frequency (Hz)."""
+    frequency = np.fft.rfftfreq(TIMES.size, TIMES[1])
+    rng = np.random.default_rng(seed)
+    spectrum = (frequency < highest) * np.exp(2j * np.pi * rng.random(frequency.size))
+    found = np.fft.irfft(spectrum, TIMES.size)
+    return found / found.std()
+
+
+def bump(at=1.0, length=0.4):
+    """One half sine (n,)."""
+    inside = (at < TIMES) & (at + length > TIMES)
+    return np.where(inside, np.sin(np.pi * (TIMES - at) / length) ** 2, 0.0)
+
+
+def response(config, effects, given, quantity):
+    """Displacement and velocity (m, m/s), shape (2, n), as sensors show them, from rest."""
+    sampled = from_samples(given, float(TIMES[1]), quantity)
+    record = config.record_with(merge(config.effects, effects), config.case_list()[0].law, 1.0, 16.0)
+    set_sampled(record, sampled, 0.01 if quantity != "force" else 5.0, 16.0, SAMPLES / RATE)
+    found = periodic.samples(record, np.zeros((1, state_count())), 0, 1, SAMPLES * FINE, 1e-10)
+    return -np.array([found[0][0], found[1][0]])
+
+
+def write(folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=1e-4, more=""):
+    """Files of tests under some inputs (n,); returns the path of measured.toml."""
+    rng, (unit, size) = np.random.default_rng(1), UNITS[quantity]
+    config = parse(model, "model")
+    text = MEASURED + f'input = {{ column = "u", unit = "{unit}", quantity = "{quantity}" }}\n' + more
+    (folder / "model.toml").write_text(model)
+    for i, given in enumerate(inputs):
+        x = response(config, effects or {}, given, quantity)[0, ::FINE]
+        x = x + 1e-3 + noise * rng.standard_normal(x.size)
+        u = given[::FINE] + 1e-3 * given.std() * rng.standard_normal(x.size)
+        table = np.column_stack([TIMES[::FINE], 1e3 * x, u / size])
+        np.savetxt(folder / f"t{i}.csv", table, "%.12g", ",", header="t,x,u", comments="")
+        text += f'[[measurement.test]]\nfile = "t{i}.csv"\nkind = "transient"\n'
+    (folder / "measured.toml").write_text(text)
+    return folder / "measured.toml"
+
+
+def diagnosed(path, effects):
+    return api.diagnose_measurement(read(path), effects=effects, n_jobs=2)
+
+
+HIDDEN = {"viscous_damping": {"coefficient": 4.0}}
+CANDIDATES = ["viscous_damping", "friction_level", "cubic_stiffness"]
+INPUTS = {
+    "sweep": lambda: [4e-3 * chirp()],
+    "random": lambda: [2e-3 * rough(3)],
+    "bumps": lambda: [0.02 * bump(), 0.03 * bump(0.5, 0.2), 0.015 * bump(2.0, 0.6)],
+}
+
+
+@pytest.mark.parametrize("kind", INPUTS)
+def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind):
+    found = diagnosed(write(tmp_path, INPUTS[kind](), HIDDEN), CANDIDATES)
+    assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["viscous_damping"])
+    value = found.causes[0]["parameters"]["coefficient_N_s_per_m"]["value"]
+    assert value == pytest.approx(4.0, rel=0.05)
+
+
+@pytest.mark.parametrize("kind", INPUTS)
+def test_nothing_is_missing_where_nothing_is(tmp_path, kind):
+    assert diagnosed(write(tmp_path, INPUTS[kind]()), CANDIDATES).verdict == "nothing-missing"
+
+
+def test_a_force_that_was_recorded(tmp_path):
+    model = OSCILLATOR.replace("amplitude_mm = 1.0", 'excitation = "force"\namplitude_N = 1.0')
+    path = write(tmp_path, [4.0 * rough(5)], HIDDEN, model, "force")
+    found = diagnosed(path, CANDIDATES)
+    assert [each["effect"] for each in found.causes] == ["viscous_damping"]
+
+
+def test_motion_against_the_ground_is_the_motion_against_the_base_and_its_own(tmp_path):
+    path = write(tmp_path, [4e-3 * chirp()], HIDDEN)
+    table = np.loadtxt(tmp_path / "t0.csv", delimiter=",", skiprows=1)
+    table[:, 1] += table[:, 2]
+    np.savetxt(tmp_path / "t0.csv", table, "%.12g", ",", header="t,x,u", comments="")
+    path.write_text(path.read_text().replace('"x", unit = "mm"', '"x", unit = "mm", of = "absolute"'))
+    found = diagnosed(path, CANDIDATES)
+    assert [each["effect"] for each in found.causes] == ["viscous_damping"]
+
+
+def test_the_same_from_one_netcdf_file(tmp_path):
+    path = write(tmp_path, [4e-3 * chirp()])
+    write_netcdf(read(path), tmp_path / "all.nc")
+    again = read(tmp_path / "all.nc")
+    assert again.recorded_input == "displacement"
+    assert again.tests[0].input == pytest.approx(read(path).tests[0].input)
+
+
+def test_a_test_without_input_says_so(tmp_path):
+    path = write(tmp_path, [0.02 * bump()])
+    table = np.loadtxt(tmp_path / "t0.csv", delimiter=",", skiprows=1)
+    np.savetxt(tmp_path / "t0.csv", table[:, :2], "%.12g", ",", header="t,x", comments="")
+    with pytest.raises(MeasuredError, match="no column 'u'"):
+        read(path)
+    path.write_text(path.read_text() + "undriven = true\n")
+    assert read(path).tests[0].input is None

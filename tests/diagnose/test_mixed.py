@@ -1,0 +1,85 @@
+"""Tests of several kinds in one measurement: one model, one verdict."""
+
+import numpy as np
+import pytest
+
+from tests.command import invoke
+from tests.diagnose import test_loops, test_transients
+from wedgesweep import diagnosis_result
+from wedgesweep.diagnose.diagnosis import data_of
+from wedgesweep.diagnose.jacobian import jacobian
+from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.measured import MeasuredError, read
+from wedgesweep.measured.netcdf import write_netcdf
+
+MODEL = test_transients.OSCILLATOR
+HIDDEN = {"viscous_damping": {"coefficient": 2.0}}
+MEASURED = """
+[measurement]
+model = "model.toml"
+[measurement.columns]
+time = { column = "t", unit = "s" }
+displacement = { column = "x", unit = "mm" }
+force = { column = "F", unit = "N" }
+"""
+
+
+def write(folder, effects=None):
+    """Two releases and a loop of one rig; returns the path of measured.toml."""
+    test_transients.write(folder, MODEL, effects, test_transients.STARTS[:2])
+    test_loops.write(folder, MODEL, effects, motions=((0.01, 1.1, 8.0),))
+    kinds = {"drop0": "transient", "loop0": "loop", "drop1": "transient"}
+    tests = (f'[[measurement.test]]\nfile = "{n}.csv"\nkind = "{k}"\n' for n, k in kinds.items())
+    (folder / "measured.toml").write_text(MEASURED + "".join(tests))
+    return folder / "measured.toml"
+
+
+def test_each_kind_sees_its_own_channels(tmp_path):
+    measurement = read(write(tmp_path))
+    assert measurement.kind == "mixed"
+    assert [test.force is None for test in measurement.tests] == [True, False, True]
+    assert set(measurement.of_kind("transient").columns) == {"time", "displacement"}
+
+
+def test_subsets_and_derivatives_are_those_of_each_kind(tmp_path):
+    data = data_of(read(write(tmp_path)))
+    fit = base_fit(Search.of(data, [])).base.fit
+    releases, loops = data.parts
+    assert fit.chi2 == pytest.approx(sum(each.chi2 for each in data.fits(fit).values()))
+    rows = np.array([1, data.tests - 1])
+    part = data.subset(rows)
+    assert part.names == (releases.names[1], loops.names[-1])
+    again = fit.point.subset(rows)
+    assert np.array_equal(again.nuisance, fit.point.nuisance[rows])
+    # A kind of which no test is left does not shift the nuisance parameters of another.
+    alone = data.subset(rows[1:])
+    point = fit.point.subset(rows[1:])
+    model = Search.of(alone, []).model()
+    assert model.evaluate(point).chi2 == pytest.approx(fit.evaluation.chi2_by_test[-1], rel=1e-6)
+    columns = jacobian(fit.model, fit.evaluation).by_nuisance
+    assert (columns[: releases.tests, :, 1:] != 0.0).any(axis=1).all()
+    assert not columns[releases.tests :, :, 1:].any()
+
+
+def test_a_cause_is_named_over_all_kinds(tmp_path):
+    path, out = write(tmp_path, HIDDEN), tmp_path / "out"
+    invoke("diagnose", path, "-o", out, "--effects", "viscous_damping,cubic_stiffness,friction_level")
+    found = diagnosis_result.read(out)
+    assert found.document["kind"] == "mixed"
+    assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["viscous_damping"])
+    value = found.causes[0]["parameters"]["coefficient_N_s_per_m"]["value"]
+    assert value == pytest.approx(2.0, rel=0.02)
+    assert found.document["gain"]["scheme"] == "leave-one-record-out and leave-one-block-out"
+    assert {each["kind"] for each in found.document["misfit"]["tests"]} == {"transient", "loop"}
+    assert {"loops.png", "decays.png"} <= {each.name for each in out.iterdir()}
+    assert "No figure" not in (out / "report.html").read_text()
+    assert "natural" in invoke("check", path)
+    write_netcdf(read(path), tmp_path / "all.nc")
+    assert read(tmp_path / "all.nc").kinds == ("transient", "loop")
+
+
+def test_a_channel_that_one_of_the_kinds_needs_is_missing(tmp_path):
+    path = write(tmp_path)
+    path.write_text(path.read_text().replace('force = { column = "F", unit = "N" }\n', ""))
+    with pytest.raises(MeasuredError, match="force: missing"):
+        read(path)

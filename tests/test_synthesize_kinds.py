@@ -1,0 +1,99 @@
+"""Synthetic transients and loops, from tests.toml to a verdict."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.command import invoke
+from wedgesweep import api
+from wedgesweep.measured import read
+
+RIG = """
+[oscillator]
+mass_kg = 2.0
+spring_N_per_mm = 0.5
+damping_N_s_per_m = 1.0
+normal_force_N = 1.0
+[friction]
+static = 0.3
+dynamic = 0.3
+[sweep]
+friction_law = "coulomb"
+beta = 1.0
+amplitude_mm = 1.0
+"""
+HIDDEN = "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n"
+RELEASES = """
+[[test]]
+kind = "transient"
+release_mm = 10.0
+duration_s = 3.0
+[[test]]
+kind = "transient"
+release_mm = -6.0
+release_mm_per_s = 50.0
+duration_s = 3.0
+"""
+SWEEP = """
+[[test]]
+kind = "transient"
+motion = "sweep"
+frequency_hz = 1.0
+to_hz = 5.0
+amplitude_mm = 4.0
+duration_s = 12.0
+"""
+LOOP = """
+[[test]]
+kind = "loop"
+frequency_hz = 1.1
+amplitude_mm = 10.0
+duration_s = 8.0
+"""
+
+
+def made(folder, plan, effects="", *options):
+    """Synthetic data in a folder; returns the path of measured.toml."""
+    (folder / "rig.toml").write_text(RIG + effects)
+    (folder / "tests.toml").write_text(plan)
+    out = folder / "data"
+    invoke("synthesize", folder / "rig.toml", "--tests", folder / "tests.toml", "-o", out, *options)
+    return out / "measured.toml"
+
+
+def test_a_release_starts_where_it_is_told_to(tmp_path):
+    first, second = read(made(tmp_path, RELEASES, "", "--level", "0")).tests
+    assert [test.kind for test in (first, second)] == ["transient"] * 2
+    offset = first.displacement[-10:].mean()
+    assert first.displacement[0] - offset == pytest.approx(0.01, rel=0.15)
+    assert second.velocity[0] == pytest.approx(0.05, rel=1e-3)
+
+
+def test_releases_a_sweep_and_a_loop_in_one_measurement(tmp_path):
+    path = made(tmp_path, RELEASES + SWEEP + LOOP, HIDDEN, "--level", "0.01", "--sampling-hz", "250")
+    measurement = read(path)
+    assert [test.kind for test in measurement.tests] == ["transient"] * 3 + ["loop"]
+    assert [test.input is None for test in measurement.tests] == [True, True, False, True]
+    assert np.abs(measurement.tests[2].input).max() == pytest.approx(4e-3, rel=0.05)
+    found = api.diagnose_measurement(measurement, effects=["viscous_damping", "cubic_stiffness"], n_jobs=1)
+    assert [each["effect"] for each in found.causes] == ["viscous_damping"]
+    value = found.causes[0]["parameters"]["coefficient_N_s_per_m"]["value"]
+    assert value == pytest.approx(3.0, rel=0.05)
+    told = json.loads((path.parent / "truth.json").read_text())
+    assert [each["kind"] for each in told["tests"]] == ["transient"] * 3 + ["loop"]
+
+
+FAULTS = {
+    "to_hz: missing": SWEEP.replace("to_hz = 5.0\n", ""),
+    "release_mm: 0": '[[test]]\nkind = "transient"\n',
+    "frequency_hz: missing": LOOP.replace("frequency_hz = 1.1\n", ""),
+}
+
+
+@pytest.mark.parametrize("told", FAULTS)
+def test_a_plan_that_lacks_something_says_what(tmp_path, told):
+    (tmp_path / "rig.toml").write_text(RIG)
+    (tmp_path / "tests.toml").write_text(FAULTS[told])
+    result = invoke("synthesize", tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", code=2)
+    assert told in result

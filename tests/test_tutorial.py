@@ -1,0 +1,75 @@
+"""The tutorial's commands run as they stand, and every command line in the documentation is one."""
+
+import json
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.command import invoke
+from wedgesweep.cli import cli
+
+ROOT = Path(__file__).parents[1]
+TUTORIAL = ROOT / "docs" / "tutorial.md"
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+# Few candidates and no report, as both have tests of their own.
+SHORTENED = ("--effects", "cubic_stiffness,quadratic_drag", "--no-report")
+
+
+def command_lines(page):
+    """Lines of code blocks and quoted text that call wedgesweep, as words; comments are dropped."""
+    text = page.read_text()
+    lines = re.findall(r"^ {4}wedgesweep (.*)$", text, re.MULTILINE)
+    lines += [each.replace("\n", " ") for each in re.findall(r"`wedgesweep ([^`]+)`", text)]
+    parts = [part for line in lines for part in line.split("&& wedgesweep")]
+    return [shlex.split(part, comments=True) for part in parts if not part.startswith("COMMAND")]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_command_lines_are_understood(page, tmp_path, monkeypatch):
+    """Commands, options and choices exist; files need not, as other commands may write them."""
+    monkeypatch.chdir(tmp_path)
+    for name, *words in command_lines(page):
+        with cli.make_context("wedgesweep", [name, "--help"], resilient_parsing=True) as context:
+            command = cli.get_command(context, name)
+            assert command is not None, name
+            options = {option for each in command.params for option in (*each.opts, *each.secondary_opts)}
+            given = {word for word in words if re.match(r"--?[a-z]", word)}
+            assert given <= options | {"-h", "--help"}, (name, *words)
+            with command.make_context(name, words, parent=context, resilient_parsing=True):
+                pass
+
+
+def test_the_tutorial_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ROOT / "examples", "examples")
+    told = {}
+    for words in command_lines(TUTORIAL):
+        told[words[0]] = invoke(*words, *(SHORTENED if words[0] == "diagnose" else ()))
+    found = json.loads(Path("shaker-result/diagnosis.json").read_text())
+    truth = json.loads((ROOT / "examples/shaker/truth.json").read_text())["effects"]["cubic_stiffness"]
+    (cause,) = found["causes"]
+    low, high = cause["parameters"]["coefficient_N_per_mm3"]["ci95"]
+    assert low <= truth["coefficient_N_per_mm3"] <= high
+    assert "verified by Radau at rtol 1e-09: 3 cases out of 450" in told["run"]
+    assert len(Path("study.csv").read_text().splitlines()) == 451
+    import xarray as xr
+
+    with xr.open_dataset("study.nc") as ds:
+        table = ds[["amplitude_ratio", "stick_fraction", "status"]].to_dataframe()
+    assert table.shape[0] == 450
+
+
+def test_examples_are_small():
+    for directory in (path for path in (ROOT / "examples").iterdir() if path.is_dir()):
+        assert sum(file.stat().st_size for file in directory.iterdir()) < 300_000
+
+
+def test_examples_say_how_they_were_made():
+    names = {path.name for path in (ROOT / "examples").iterdir()}
+    for hidden in (ROOT / "examples").glob("*hidden.toml"):
+        comment = hidden.read_text().split("\n\n")[0].replace("\\\n#", " ")
+        words = shlex.split(comment[comment.index("wedgesweep synthesize") :])
+        assert {words[2], words[words.index("--tests") + 1], words[words.index("-o") + 1]} <= names

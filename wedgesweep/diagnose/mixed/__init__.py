@@ -1,0 +1,1 @@
+"""Tests of several kinds in one fit: one model, one verdict."""

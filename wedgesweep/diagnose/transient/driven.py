@@ -1,0 +1,121 @@
+"""The recorded input of a transient: what acts in a simulation, and how its noise reaches the response."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil, pi
+
+import numpy as np
+from scipy import signal
+
+from wedgesweep.config import Config
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_record
+from wedgesweep.sampled_input import SampledInput, from_samples
+
+# Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
+# acceleration would shake a mass loose that sticks. Order of the filter, which leaves the rest alone.
+KEPT, ORDER = 1.4, 8
+# Highest cut-off in cycles a sample, and samples over a period of it.
+HIGHEST, SAMPLED = 0.4, 8.0
+# Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
+SETTLING = 2.0
+# Largest share of the input at any frequency that counts as its noise: where all that moves the base looks
+# like noise, most of it is not.
+MOST_NOISE = 0.05
+# Bins over which spectra of input and response are averaged, as a share of all.
+AVERAGED = 0.01
+QUANTITIES_OF_MOTION = ("displacement", "velocity", "acceleration")
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """A recorded input: ``samples`` (n,) of a ``quantity`` (SI) at a ``rate`` (Hz), and their noise."""
+
+    samples: np.ndarray
+    quantity: str
+    rate: float
+
+    @cached_property
+    def noise(self) -> NoiseSpectrum:
+        return of_record(self.samples)
+
+    @cached_property
+    def size(self) -> float:
+        """Largest value of the input about its mean."""
+        return float(np.abs(self.samples - self.samples.mean()).max())
+
+    @property
+    def _cutoff(self) -> float:
+        """Cut-off of the input in cycles a sample."""
+        return KEPT * self.noise.highest / (2.0 * pi)
+
+    @property
+    def settling(self) -> int:
+        """Samples at either end of the record at which the filter has not settled."""
+        return ceil(SETTLING / self._cutoff) if self._cutoff < HIGHEST else 0
+
+    @cached_property
+    def acting(self) -> SampledInput:
+        """The input as it acts, from the first sample on."""
+        cutoff, smooth, stride = self._cutoff, self.samples, 1
+        if cutoff < HIGHEST:
+            sections = signal.butter(ORDER, cutoff, fs=1.0, output="sos")
+            smooth = signal.sosfiltfilt(sections, self.samples)
+            stride = max(int(1.0 / (SAMPLED * cutoff)), 1)
+        values, step = smooth[::stride], stride / self.rate
+        if self.quantity in ("displacement", "force"):
+            return from_samples(values, step, self.quantity)
+        # The base is taken to come back to where it was: its start and its mean velocity leave no trend.
+        drifting = from_samples(values, step, self.quantity)
+        times = step * np.arange(values.size)
+        slope, start = np.polyfit(times, drifting(times), 1)
+        velocity = -slope if self.quantity == "acceleration" else 0.0
+        return from_samples(values, step, self.quantity, start=(-start, velocity))
+
+    @property
+    def displacement(self) -> np.ndarray:
+        """Displacement (m) of the base at the samples."""
+        if self.quantity == "displacement":
+            return self.samples
+        return self.acting(np.arange(self.samples.size) / self.rate)
+
+    def passed_on(self, response: np.ndarray) -> np.ndarray:
+        """Power of the input's noise in a response (n,) by frequency, from 0 to half the sampling rate.
+
+        The rig passes on noise as it passes on the input: by the ratio of the spectra of the two.
+        """
+        given, seen = (_power(each) for each in (self.samples, response))
+        frequency = np.linspace(0.0, pi, given.size)
+        noise = np.minimum(self.noise(frequency), MOST_NOISE**2 * given)
+        return seen * noise / np.maximum(given, 1e-300)
+
+
+def at(given: SampledInput, start: float) -> SampledInput:
+    """The input for a simulation that starts at a time (s) of it."""
+    return replace(given, begin=given.begin - start)
+
+
+def nothing(span: float) -> SampledInput:
+    """No input for some time (s)."""
+    return from_samples(np.zeros(2), span)
+
+
+def factors(model: Config, of: str) -> tuple[float, float]:
+    """Factors of a channel and of the base's displacement in the motion that is simulated.
+
+    That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
+    where it does not rub on the base.
+    """
+    if model.system == "suspension":
+        return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
+    if of in model.simulated_motion:
+        return 1.0, 0.0
+    return 1.0, 1.0 if of == "relative" else -1.0
+
+
+def _power(samples: np.ndarray) -> np.ndarray:
+    """Periodogram (m,) of samples (n,), averaged over neighbours."""
+    window = np.hanning(samples.size)
+    power = np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 / (window**2).sum()
+    width = max(int(AVERAGED * power.size), 3)
+    kernel = np.ones(2 * width + 1)
+    return np.convolve(power, kernel, mode="same") / np.convolve(np.ones(power.size), kernel, mode="same")

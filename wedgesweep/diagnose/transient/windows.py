@@ -1,0 +1,105 @@
+"""Records cut into windows, so that errors of phase do not add up over a long one."""
+
+from collections.abc import Sequence
+from math import ceil, floor, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
+from wedgesweep.diagnose.transient.driven import Driven, at, nothing
+from wedgesweep.diagnose.transient.release import Grid, Release
+
+# Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
+WINDOW, LEAD = 10.0, 1.0
+# Windows that a single record makes at least, if each has so many natural periods.
+FEWEST, SHORTEST = 3, 3.0
+# Highest frequency that is compared, over the natural frequency and over the highest that stands out.
+HARMONICS, BEYOND = 8.0, 2.0
+# Share of the record at its end whose mean is where the motion comes to rest.
+REST = 0.1
+# Fewest coefficients that are compared, and smallest motion in a window over that in the record.
+FEWEST_COMPARED, SMALL = 8, 1e-3
+
+
+class Recorded(NamedTuple):
+    """A record: channels (C, n) at a rate (Hz), the noise of each, the input; ``number`` of its test."""
+
+    name: str
+    channels: np.ndarray
+    rate: float
+    spectra: Sequence[NoiseSpectrum]
+    driven: Driven | None = None
+    number: int = 0
+
+
+def highest_compared(record: Recorded, model: Config) -> float:
+    """Highest frequency (rad a sample) that is compared of a record."""
+    own = HARMONICS * 2.0 * pi / _period(record, model)
+    seen = [each.highest for each in record.spectra]
+    if record.driven is not None:
+        seen.append(record.driven.noise.highest)
+    return max(own, BEYOND * min(seen))
+
+
+def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Release]:
+    """Prepare the windows of a record, of which there should be so many at least."""
+    rate, skipped = record.rate, record.driven.settling if record.driven else 0
+    passed_on = _passed_on(record)
+    record = record._replace(channels=record.channels[:, skipped : record.channels.shape[1] - skipped])
+    channels = record.channels
+    rest, length = _extent(channels[0])
+    period, top = _period(record, model), highest_compared(record, model)
+    total = channels.shape[1] / period
+    count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
+    size = channels.shape[1] // count
+    smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(channels[0]) - rest
+    slope = np.gradient(smooth) * rate
+    acting = None if record.driven is None else record.driven.acting
+    found = []
+    for place in range(count):
+        first = place * size
+        grid = Grid(min(ceil(LEAD * period), first), size, 2.0 * pi * rate / period)
+        start = first - grid.lead
+        own = channels[:, first : first + size]
+        span = grid.samples / rate
+        found.append(
+            Release(
+                name=record.name if count == 1 else f"{record.name} {place + 1}",
+                model=model,
+                law=law,
+                step=1.0 / rate,
+                begins=(skipped + first) / rate,
+                number=record.number,
+                channels=own,
+                spectra=tuple(record.spectra),
+                passed_on=passed_on,
+                coefficients=min(max(ceil(top * size / pi), FEWEST_COMPARED), size),
+                grid=grid,
+                input=nothing(span) if acting is None else at(acting, (skipped + start) / rate),
+                driven=acting is not None,
+                length=max(float(np.abs(channels[0, start : first + size] - rest).max()), SMALL * length),
+                guess=(float(smooth[start]), float(slope[start])),
+            )
+        )
+    return found
+
+
+def _extent(displacement: np.ndarray) -> tuple[float, float]:
+    """Where a motion (n,) comes to rest, and its largest distance from there."""
+    rest = float(displacement[-max(int(REST * displacement.size), 1) :].mean())
+    return rest, max(float(np.abs(displacement - rest).max()), 1e-300)
+
+
+def _period(record: Recorded, model: Config) -> float:
+    """Natural period of the model in samples."""
+    return 2.0 * pi * model.natural_units(_extent(record.channels[0])[1]).time * record.rate
+
+
+def _passed_on(record: Recorded) -> np.ndarray:
+    """Power of the input's noise in each channel, (C, f)."""
+    if record.driven is None:
+        return np.zeros((len(record.channels), 2))
+    return np.array([record.driven.passed_on(each) for each in record.channels])

@@ -1,0 +1,132 @@
+"""Which frequencies a motion has at which time: measured, and in what the models leave of it."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from scipy.signal import spectrogram
+
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures.diagnosis import marks, selection
+from wedgesweep.figures.panels import Panels, Target, panels
+
+NAME = "spectrogram"
+DESCRIPTION = "frequencies over time of the measured motion, and of what the models leave"
+
+SHOWN = 4  # records
+FEWEST = 256  # samples of a record
+WINDOWS = 24  # of a record, side by side; they overlap
+OVERLAP = 0.875
+LEVELS = 60.0  # dB below the largest
+# Frequencies above those that hold this share of the power are not shown.
+SHARE = 0.9999
+COLORS = colormaps["BuPu"]
+
+
+class Record(NamedTuple):
+    """A record: index of its first test, times (n,) in s, and signals (n,) in m, the measured one first."""
+
+    test: int
+    time: np.ndarray
+    signals: list[np.ndarray]
+
+
+class Spectra(NamedTuple):
+    """Times (s), frequencies (Hz), and the power (signals, frequencies, times) in m^2/Hz."""
+
+    time: np.ndarray
+    frequency: np.ndarray
+    power: np.ndarray
+
+
+def records(result: DiagnosisResult, tests: Sequence[int]) -> list[Record]:
+    """Records of the tests; tests that follow one another without a gap are parts of one record."""
+    found: list[Record] = []
+    for test in sorted(tests):
+        part = _part(result, test)
+        if found and _follows(found[-1].time, part.time):
+            first = found.pop()
+            joined = [np.concatenate(both) for both in zip(first.signals, part.signals, strict=True)]
+            part = Record(first.test, np.concatenate([first.time, part.time]), joined)
+        found.append(part)
+    return found
+
+
+def _part(result: DiagnosisResult, test: int) -> Record:
+    data = result.data.isel(test=test, channel=0)
+    measured = data["measured"].values
+    there = np.isfinite(measured)
+    left = [_left(data, model)[there] for model in result.models]
+    return Record(test, data["time"].values[there], [measured[there], *left])
+
+
+def _left(data: xr.Dataset, model: str) -> np.ndarray:
+    return np.nan_to_num((data["measured"] - data["simulated"].sel(model=model)).values)
+
+
+def _follows(before: np.ndarray, after: np.ndarray) -> bool:
+    step = before[1] - before[0]
+    return bool(abs(after[0] - before[-1] - step) < 0.5 * step)
+
+
+def spectra(record: Record) -> Spectra:
+    """Power of the measured motion and of what each model leaves."""
+    count = record.time.size
+    # A power of two, so that a record has about so many windows.
+    size = 1 << int(np.log2(max(count / WINDOWS, FEWEST / 8)))
+    rate = (count - 1) / (record.time[-1] - record.time[0])
+    frequency, middle, power = spectrogram(
+        np.array(record.signals), rate, "hann", size, int(OVERLAP * size), detrend="linear"
+    )
+    return Spectra(record.time[0] + middle, frequency, power)
+
+
+def _highest(of: Spectra) -> float:
+    """Frequency below which nearly all of the measured power is."""
+    share = np.cumsum(of.power[0].sum(axis=-1))
+    place = int(np.searchsorted(share, SHARE * share[-1]))
+    return float(of.frequency[min(place + 2, of.frequency.size - 1)])
+
+
+def _draw(ax: Axes, of: Spectra, place: int) -> None:
+    ax.grid(visible=False)
+    largest = of.power[0].max() or 1.0
+    level = 10.0 * np.log10(np.maximum(of.power[place] / largest, 10.0 ** (-LEVELS / 10.0)))
+    ax.pcolormesh(of.time, of.frequency, level, cmap=COLORS, vmin=-LEVELS, vmax=0.0, rasterized=True)
+    ax.set_ylim(0.0, _highest(of))
+
+
+def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
+    """Draw a row per record (default: four): the measured motion, then what each model leaves of it.
+
+    To see: a line that rises is a sweep, and lines above it at two or three times its frequency are
+    harmonics. What the base model leaves along the main line is a wrong amplitude or phase, at one frequency
+    only a resonance; harmonics that are left are friction, stops or play.
+    """
+    if "measured" not in result.data:
+        message = "the tests are no transients"
+        raise ValueError(message)
+    chosen = range(result.data.sizes["test"]) if tests is None else tests
+    long = [each for each in records(result, list(chosen)) if each.time.size >= FEWEST][:SHOWN]
+    if not long:
+        message = f"no record has {FEWEST} samples or more"
+        raise ValueError(message)
+    titles = ["measured", *(f"left by {name}" for name in marks.names(result).values())]
+    columns = len(titles)
+    made = panels(target, columns * len(long), columns=columns, size=(3.0, 2.1), share=False)
+    for row, record in enumerate(long):
+        of = spectra(record)
+        for place, ax in enumerate(made.axes[row * columns : (row + 1) * columns]):
+            _draw(ax, of, place)
+            ax.set_xlabel("time [s]", fontsize=8.5)
+            name = f"{selection.label(result.data, record.test)}\n" if not place else ""
+            ax.set_title(f"{name}{titles[place]}", fontsize=8.5)
+        made.axes[row * columns].set_ylabel("frequency [Hz]", fontsize=8.5)
+    made.colorbar(ScalarMappable(Normalize(-LEVELS, 0.0), COLORS), "power below the largest [dB]")
+    made.title("Frequencies of the motion over time, and of what the models leave")
+    return made

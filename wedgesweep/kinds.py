@@ -1,0 +1,60 @@
+"""What kind of file a user gave: one of another kind than is wanted is told as what it is."""
+
+import re
+from pathlib import Path
+
+from wedgesweep.files import regular
+
+CONFIG, MEASURED, SWEEP, DIAGNOSIS, DATASET = "config", "measured", "sweep", "diagnosis", "dataset"
+# What each is, and what it is good for.
+WORDS = {
+    CONFIG: ("a config", "'wedgesweep run' runs it, and a measured.toml names it as its model"),
+    MEASURED: ("measured data", "'wedgesweep check' and 'wedgesweep diagnose' read them"),
+    SWEEP: ("the dataset of a run", "'wedgesweep status', 'plot' and 'export' read it"),
+    DATASET: ("a dataset", "'wedgesweep status' tells whether a run wrote it"),
+    DIAGNOSIS: ("the result of a diagnosis", "'wedgesweep plot' draws it, and its extended.toml is a config"),
+}
+WANTED = {CONFIG: "a config (TOML)", MEASURED: "a measurement", SWEEP: "the dataset of a run"}
+# netCDF 4 is HDF5.
+NETCDF = (b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
+TABLES = {MEASURED: rb"^\s*\[\[?measurement\b", CONFIG: rb"^\s*\[\[?sweep\b"}
+
+
+def confusion(path: Path, wanted: str) -> str | None:
+    """A message if a file is one of this package, but of another kind than is wanted."""
+    found = kind_of(path)
+    readable = found == DATASET and wanted != CONFIG
+    if found is None or found == wanted or readable:
+        return None
+    what, use = WORDS[found]
+    return f"{path}: {what}, where {WANTED[wanted]} is wanted; {use}"
+
+
+def kind_of(path: Path) -> str | None:
+    """Kind of a file or directory of this package; None for everything else."""
+    if (path / "diagnosis.json").is_file():
+        return DIAGNOSIS
+    try:
+        content = regular(path).open("rb")
+    except OSError:
+        return None
+    with content:
+        start = content.read(8)
+        if start.startswith(NETCDF):
+            return _kind_of_netcdf(path)
+        if path.suffix != ".toml":
+            return None
+        text = start + content.read()
+    return next((kind for kind, table in TABLES.items() if re.search(table, text, re.MULTILINE)), None)
+
+
+def _kind_of_netcdf(path: Path) -> str | None:
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as found:
+            if "tests" in found.groups:
+                return MEASURED
+            return SWEEP if "beta" in found.variables else DATASET
+    except (OSError, RuntimeError):
+        return DATASET

@@ -1,0 +1,80 @@
+"""A dataset as a table of text: a row for each case."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep.errors import SweepError
+
+# Units of coordinates where a dataset that passed through other hands does not state them.
+UNITS = {"frequency": "Hz", "amplitude": "m"}
+COORDINATES = ("friction_law", "beta", "frequency", "amplitude")
+# So many cases are turned into text at a time.
+AT_A_TIME = 10_000
+
+
+def variables_of(ds: xr.Dataset, chosen: Sequence[str] | None) -> list[str]:
+    """Names of the variables to write: those chosen, or all that are a number or word for each case.
+
+    Raises SweepError for one that is not there, or that holds a waveform.
+    """
+    dims = ds["status"].dims
+    scalar = [str(name) for name in ds.data_vars if ds[name].dims == dims]
+    if chosen is None:
+        return scalar
+    spectra = [str(name) for name in ds.data_vars if "harmonic" in ds[name].dims]
+    for name in chosen:
+        if name in ds.data_vars and "phase" in ds[name].dims:
+            message = f"{name}: a waveform of {ds.sizes['phase']} samples a case; read it with xarray"
+            raise SweepError(message)
+        if name not in (*scalar, *spectra, *COORDINATES):
+            message = f"{name}: no such variable; valid here: {', '.join((*scalar, *spectra))}"
+            raise SweepError(message)
+    return [name for name in dict.fromkeys(chosen) if name not in COORDINATES]
+
+
+def rows(ds: xr.Dataset, variables: Sequence[str]) -> Iterator[list[list[str]]]:
+    """The header, then rows of cells, some at a time; numbers in full precision.
+
+    The first columns are the case: law, beta, frequency and amplitude. A column's name ends with its unit in
+    brackets; the parts of a variable that has several a case are columns of their own.
+    """
+    columns = [column for name in (*COORDINATES, *variables) for column in _columns(ds, name)]
+    yield [[header for header, _ in columns]]
+    count = ds["status"].size
+    for first in range(0, count, AT_A_TIME):
+        part = slice(first, first + AT_A_TIME)
+        yield [list(row) for row in zip(*(_texts(values[part]) for _, values in columns), strict=True)]
+
+
+def _columns(ds: xr.Dataset, name: str) -> Iterator[tuple[str, np.ndarray]]:
+    """Header and values, shape (cases,), of the columns of a variable."""
+    dims = ds["status"].dims
+    given = ds[name]
+    unit = given.attrs.get("units", UNITS.get(name, "1"))
+    bracket = "" if unit in ("", "1") else f" [{unit}]"
+    inner = [dim for dim in given.dims if dim not in dims]
+    worded = _worded(given)
+    whole = worded if inner else worded.broadcast_like(ds["status"])
+    values = whole.transpose(*dims, *inner).values.reshape(ds["status"].size, -1)
+    labels = [""]
+    for dim in inner:
+        labels = [f"{label}_{part}" for label in labels for part in ds[dim].values.tolist()]
+    for label, column in zip(labels, values.T, strict=True):
+        yield f"{name}{label}{bracket}", column
+
+
+def _worded(given: xr.DataArray) -> xr.DataArray:
+    """Flags as the words that they stand for."""
+    if "flag_meanings" not in given.attrs:
+        return given
+    words = dict(zip(given.attrs["flag_values"].tolist(), given.attrs["flag_meanings"].split(), strict=True))
+    return given.copy(data=np.vectorize(words.get, otypes=[object])(given.values))
+
+
+def _texts(values: np.ndarray) -> list[str]:
+    """Values as text; numbers that are not there are empty."""
+    if values.dtype.kind == "f":
+        return ["" if value != value else repr(value) for value in values.tolist()]
+    return [str(value) for value in values.tolist()]

@@ -1,0 +1,40 @@
+"""Hysteresis loops of the true system: the force under a motion that is imposed on the mass."""
+
+from collections.abc import Mapping
+from math import pi
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.solvers import imposed_motion
+from wedgesweep.synthesize.plan import PlannedTest
+
+# Steps of the motion for each sample, over which force and displacement are averaged.
+CELLS = 10
+# A slower part of the motion, so that it turns at many places: its frequency, size and phase (rad).
+SLOWER, SMALLER, LATER = 0.37, 0.3, 1.0
+
+
+def loop(
+    config: Config,
+    law: str,
+    effects: Mapping[str, Mapping[str, float]],
+    test: PlannedTest,
+    sampling_hz: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement (m) and force (N), shape (n,) each, of a test; ``effects`` in SI units."""
+    count, step = round(test.duration_s * sampling_hz), 1.0 / sampling_hz / CELLS
+    time = step * (np.arange(count * CELLS) + 0.5)
+    record = config.record_with(effects, law, 0.0)
+    motion = np.array([_derivative(test, time, order) for order in range(3)])
+    sign = 1.0 if config.system == "oscillator" else -1.0
+    force = imposed_motion.forces(record, sign * motion[0], sign * motion[1], sign * motion[2], step)[0]
+    displacement, mean = (each.reshape(count, CELLS).mean(axis=1) for each in (motion[0], force))
+    return displacement, mean
+
+
+def _derivative(test: PlannedTest, time: np.ndarray, order: int) -> np.ndarray:
+    """A derivative of the imposed motion (SI) at some times (s)."""
+    size, rate = 1e-3 * test.amplitude, 2.0 * pi * test.frequency_hz
+    parts = ((size, rate, 0.0), (SMALLER * size, SLOWER * rate, LATER))
+    return np.sum([a * w**order * np.sin(w * time + p + 0.5 * pi * order) for a, w, p in parts], axis=0)
