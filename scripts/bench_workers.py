@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import joblib
 import numpy as np
+from joblib.externals.loky import get_reusable_executor
 
 import wedgesweep as ws
 from wedgesweep.sweep.backend import loky
@@ -56,13 +57,14 @@ def chunks(sweep):
 
 
 def told(name, cases, own):
-    """One line: what is spent in cases, and beyond them in workers and in this process."""
+    """One line: what a case takes, and what a worker takes before its first one."""
     warm = [case for case in cases if case.case in WARM]
-    workers = {case.process for case in cases}
-    whole = sum(max(case.process_cpu for case in cases if case.process == each) for each in workers)
-    beyond = (whole - sum(case.cpu for case in cases)) / len(workers)
     cpu, system, faults = (np.mean([getattr(case, name) for case in warm]) for name in Solved._fields[2:5])
-    return f"{name:>13} {cpu:13.3f} {system:14.4f} {faults:12.0f} {beyond:13.2f} {own:13.2f}"
+    workers = {case.process for case in cases}
+    start = max(
+        min(case.process_cpu - case.cpu for case in cases if case.process == each) for each in workers
+    )
+    return f"{name:>13} {cpu:13.3f} {system:14.4f} {faults:12.0f} {start:22.2f} {own:13.2f}"
 
 
 # Cases late enough that every worker has loaded its code before.
@@ -72,7 +74,7 @@ WARM = range(12, 1000)
 def main():
     sweep = Sweep(ws.load_config(ROOT / "configs" / "quick.toml"), Path("quick.nc"))
     compile_once("radau")
-    lines = ["CPU s          a later case  in the kernel  page faults  beyond cases  this process"]
+    lines = ["CPU s          a later case  in the kernel  page faults  before its first case  this process"]
     began = time.process_time()
     lines.append(told("in itself", list(map(solved, chunks(sweep))), time.process_time() - began))
     for count in (1, 2):
@@ -82,6 +84,7 @@ def main():
             parallel = pool.parallel() if count > 1 else joblib.Parallel(2, pre_dispatch=1, batch_size=1)
             cases = list(parallel(joblib.delayed(solved)(chunk) for chunk in chunks(sweep)))
         lines.append(told(f"{count} at a time", cases, time.process_time() - began))
+        get_reusable_executor().shutdown()
     print("\n".join(lines))
     REPORT.write_text("\n".join(lines) + "\n")
 

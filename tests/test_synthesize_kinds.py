@@ -95,5 +95,5 @@ FAULTS = {
 def test_a_plan_that_lacks_something_says_what(tmp_path, told):
     (tmp_path / "rig.toml").write_text(RIG)
     (tmp_path / "tests.toml").write_text(FAULTS[told])
-    result = invoke("synthesize", tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", exit_code=2)
+    result = invoke("synthesize", tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", code=2)
     assert told in result

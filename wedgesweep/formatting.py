@@ -9,6 +9,11 @@ SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SMALL, LARGE = 1e-3, 1e6
 
 
+def counted(count: int, noun: str, plural: str = "") -> str:
+    """A count with its noun: 1 test, 12 tests."""
+    return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
+
+
 def number(value: float | None, digits: int = 3) -> str:
     """Write a number with significant digits and thousands apart; one that is not finite becomes a dash."""
     if value is None or not isfinite(value):

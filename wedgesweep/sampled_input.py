@@ -1,4 +1,4 @@
-"""An input that is known by samples at even times: one piecewise polynomial, of which u' and u'' are the slopes.
+"""An input that is known by samples at even times: a piecewise polynomial, with u' and u'' as its slopes.
 
 Between two samples the input is a polynomial of degree 5, so that u, u' and u'' agree exactly:
 
@@ -181,9 +181,7 @@ def value(t, p):
     found = number_at(a, first + 5)
     for k in range(4, -1, -1):
         found = found * s + number_at(a, first + k)
-    if beyond != 0.0:
-        found += beyond * p.series.step * slope(t, p) / p.series.gain
-    return p.series.gain * found
+    return p.series.gain * found + beyond * p.series.step * slope(t, p)
 
 
 @inlined

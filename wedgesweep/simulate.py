@@ -1,14 +1,33 @@
 """One case from its parameters to its numbers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from math import pi
+from typing import Any
 
 import numpy as np
 
 from wedgesweep import response
 from wedgesweep.response import Response
-from wedgesweep.solvers.trajectory import Trajectory, Window
+from wedgesweep.sampled_input import SampledInput, set_sampled
+from wedgesweep.solvers.trajectory import Span, Trajectory, Window
+
+
+@dataclass(frozen=True, eq=False)
+class Transient:
+    """A motion under an input that does not repeat, from t = 0 to ``span`` (s).
+
+    ``sampled``: the input at scale 1; ``length``: what its motions are compared with (m; under a force N);
+    ``omega`` (rad/s): the natural frequency or so; ``start``: state of the mass at scale 1 (m, m/s);
+    ``samples``: how many are stored.
+    """
+
+    sampled: SampledInput
+    length: float
+    omega: float
+    span: float
+    samples: int
+    start: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -27,6 +46,7 @@ class Settings:
     max_periods: int = 5000
     keep_waveforms: bool = True
     continuation: bool = False
+    transient: Transient | None = field(default=None, compare=False)
 
     def window(self, omega: float) -> Window:
         """Time span of a case: whole forcing periods, at least one more than are kept.
@@ -47,9 +67,21 @@ class Settings:
 def trajectory(parameters: np.ndarray, settings: Settings) -> Trajectory:
     """Run one case; parameters as from systems.suspension.parameters.record. Raises CaseError."""
     window = settings.window(float(parameters["input"]["omega"][0]))
+    return _solver(settings).solve(parameters, window, settings.rtol, settings.case_timeout)
+
+
+def _solver(settings: Settings) -> Any:
     # Only the one that is asked for: scipy takes a quarter of a second to load.
-    solver = import_module(f"wedgesweep.solvers.{settings.method.replace('-', '_')}")
-    return solver.solve(parameters, window, settings.rtol, settings.case_timeout)
+    return import_module(f"wedgesweep.solvers.{settings.method.replace('-', '_')}")
+
+
+def transient(parameters: np.ndarray, given: Transient, scale: float, settings: Settings) -> Trajectory:
+    """Run a case under an input times ``scale``; parameters: a full record, shape (1,). Raises CaseError."""
+    case = parameters.copy()
+    set_sampled(case, given.sampled, scale * given.length, given.omega, given.span, scale)
+    window = Span(given.omega, 0, 1, given.samples, given.span)
+    start = (scale * given.start[0], scale * given.start[1])
+    return _solver(settings).solve(case, window, settings.rtol, settings.case_timeout, start)
 
 
 def respond(parameters: np.ndarray, settings: Settings, harmonics: int) -> tuple[Response, dict[str, int]]:

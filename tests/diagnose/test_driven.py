@@ -47,9 +47,7 @@ def response(config, effects, given, quantity):
     return -np.array([found[0][0], found[1][0]])
 
 
-def write(
-    folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=2e-5, more="", unoise=2e-3
-):
+def write(folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=1e-4, more=""):
     """Files of tests under some inputs (n,); returns the path of measured.toml."""
     rng, (unit, size) = np.random.default_rng(1), UNITS[quantity]
     config = parse(model, "model")
@@ -58,7 +56,7 @@ def write(
     for i, given in enumerate(inputs):
         x = response(config, effects or {}, given, quantity)[0, ::FINE]
         x = x + 1e-3 + noise * rng.standard_normal(x.size)
-        u = given[::FINE] + unoise * given.std() * rng.standard_normal(x.size)
+        u = given[::FINE] + 1e-3 * given.std() * rng.standard_normal(x.size)
         table = np.column_stack([TIMES[::FINE], 1e3 * x, u / size])
         np.savetxt(folder / f"t{i}.csv", table, "%.12g", ",", header="t,x,u", comments="")
         text += f'[[measurement.test]]\nfile = "t{i}.csv"\nkind = "transient"\n'
@@ -121,7 +119,7 @@ def test_a_test_without_input_says_so(tmp_path):
     path = write(tmp_path, [0.02 * bump()])
     table = np.loadtxt(tmp_path / "t0.csv", delimiter=",", skiprows=1)
     np.savetxt(tmp_path / "t0.csv", table[:, :2], "%.12g", ",", header="t,x", comments="")
-    with pytest.raises(MeasuredError, match="no column 'u'"):
+    with pytest.raises(MeasuredError, match='no column "u"'):
         read(path)
     path.write_text(path.read_text() + "undriven = true\n")
     assert read(path).tests[0].input is None

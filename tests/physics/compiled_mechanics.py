@@ -9,7 +9,15 @@ from wedgesweep.effects import states
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.solvers import explicit, implicit, period_detection
 from wedgesweep.solvers.step import inside
-from wedgesweep.systems.suspension import closed_form, filippov, newton, set_valued, stiffness, transitions
+from wedgesweep.systems.suspension import (
+    filippov,
+    first_event,
+    linear_slip,
+    newton,
+    set_valued,
+    stiffness,
+    transitions,
+)
 
 
 def initial_state(p, values=()):
@@ -112,6 +120,6 @@ def detected_period(distances, tolerance):
 @compiled
 def slid(t, stop, y, mode, p):
     """Oscillator of a mode, and where it ends: time and event."""
-    o = closed_form.oscillator(y, mode, p)
-    end, _, _, event = closed_form.slide(State(t, y, mode, NO_EVENT, 0.0), stop, o, p)
+    o = linear_slip.oscillator(y, mode, p)
+    end, _, _, event = first_event.slide(State(t, y, mode, NO_EVENT, 0.0), stop, o, p)
     return o, end, event

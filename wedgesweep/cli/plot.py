@@ -12,7 +12,7 @@ from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import DATASET, FiniteRange
-from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis
+from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
+OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS)
 # What drawing raises where a part of a diagnosis is missing or of another kind.
 DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
@@ -37,6 +38,10 @@ For a dataset, KIND is one of
 {_table(DESCRIPTIONS)}
 
 \b
+For a dataset whose input does not repeat ([input] in its config), one of
+{_table(transient.DESCRIPTIONS)}
+
+\b
 For the directory of a diagnosis, one of
 {_table(diagnosis.DESCRIPTIONS)}
 
@@ -49,7 +54,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
 
 
 @click.command(help=HELP, short_help="Draw a figure of a dataset or a diagnosis.")
-@click.argument("kind", metavar="KIND", type=click.Choice([*DESCRIPTIONS, *diagnosis.DESCRIPTIONS, ALL]))
+@click.argument("kind", metavar="KIND", type=click.Choice([*OF_DATASETS, *diagnosis.DESCRIPTIONS, ALL]))
 @DATASET
 @click.option(
     "-o",
@@ -145,6 +150,9 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
     }
     for name in units.keys() & given.keys():
         pick, values = units[name], given.pop(name)
+        if pick.variable not in found.coords:
+            message = f"--{name}: the dataset has no {pick.variable}"
+            raise Failure(message)
         several = isinstance(values, tuple)
         for value in values if several else (values,):
             _tell_nearest(found, name, value, pick)
@@ -173,7 +181,7 @@ def _tell_nearest(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None
 
 def _require_kind(kind: str, path: Path) -> None:
     """Refuse a figure of a diagnosis for a dataset, and the reverse."""
-    if path.is_dir() and kind in DESCRIPTIONS:
+    if path.is_dir() and kind in OF_DATASETS:
         valid = ", ".join(diagnosis.DESCRIPTIONS)
         message = f"{path}: a directory; {kind} draws the dataset of a run, a diagnosis has {valid}"
         raise Failure(message)
@@ -212,7 +220,11 @@ def _draw(
 ) -> None:
     import xarray as xr
 
-    picks = _accepted(kind, figures.options(figures.of(found)[kind]), options, strict)
+    kinds = figures.of(found)
+    if kind not in kinds:
+        message = f"no figure '{kind}' of these data; there are {', '.join(kinds)}"
+        raise ValueError(message)
+    picks = _accepted(kind, figures.options(kinds[kind]), options, strict)
     try:
         figures.save(figures.draw(found, kind, **picks), file)
     except DAMAGE as error:

@@ -95,6 +95,9 @@ def run(
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"), command_line())
     progress, judged, seed = ProgressReport(), options.pop("verify"), options.pop("seed")
     jobs = count_jobs(options["n_jobs"])
+    if settings.transient and judged:
+        message = "--verify compares steady states; with an [input] run CONFIG again with --solver radau"
+        raise click.UsageError(message)
     try:
         options |= {"n_jobs": jobs, "backend": _backend(backend, scheduler)}
         result, code = _run(sweep, progress, options)

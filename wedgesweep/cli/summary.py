@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep import formatting
 from wedgesweep.cli.failure import SOME_FAILED
 
 if TYPE_CHECKING:
@@ -25,12 +26,13 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
     """Print the summary of the finished cases out of ``total``; return the exit code."""
     counts = ", ".join(f"{count} {status}" for status, count in found.counts.items())
     remaining = "" if total is None else f", {total - len(found)} remaining"
-    click.echo(f"{total or len(found)} cases: {counts or 'none finished'}{remaining}")
+    click.echo(f"{formatting.counted(total or len(found), 'case')}: {counts or 'none finished'}{remaining}")
     _print_share(found.unsettled, len(found), "did not reach steady state (variables period, periodicity)")
     _print_share(
         found.lifted,
         len(found),
-        "lift off, which the model leaves out: outside of its validity (variable lift_off_fraction)",
+        f"{'lifts' if found.lifted == 1 else 'lift'} off, which the model leaves out: "
+        "outside of its validity (variable lift_off_fraction)",
     )
     failed = found.failures
     for place in failed[:LISTED].tolist():
@@ -42,4 +44,4 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
 
 def _print_share(count: int, total: int, what: str) -> None:
     if count:
-        click.echo(f"  {count} of {total} cases {what}: {100.0 * count / total:.3g} %")
+        click.echo(f"  {count} of {formatting.counted(total, 'case')} {what}: {100.0 * count / total:.3g} %")

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange
@@ -102,4 +103,4 @@ def synthesize(
     announce_compiling()
     for remark in make(settings, str(config_path), tests, Options(**options), directory, count_jobs(n_jobs)):
         log.info(remark)
-    click.echo(f"wrote {directory / 'measured.toml'}: {len(tests.tests)} tests")
+    click.echo(f"wrote {directory / 'measured.toml'}: {formatting.counted(len(tests.tests), 'test')}")

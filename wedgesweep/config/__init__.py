@@ -14,6 +14,7 @@ import numpy as np
 from wedgesweep import __version__
 from wedgesweep.config import toml
 from wedgesweep.config.contradictions import contradictions
+from wedgesweep.config.input_contradictions import is_force
 from wedgesweep.errors import InputError
 from wedgesweep.files import read_text
 from wedgesweep.kinds import CONFIG, confusion
@@ -29,9 +30,10 @@ UNIT_FREQUENCY = 2.0 * pi
 
 # Imports that load numba or scipy come late, so that `wedgesweep --help` does not wait for them.
 if TYPE_CHECKING:
+    from wedgesweep.inputs.sampled import Input
     from wedgesweep.natural_units import NaturalUnits
     from wedgesweep.quantity import Quantity
-    from wedgesweep.simulate import Settings
+    from wedgesweep.simulate import Settings, Transient
 
 
 class ConfigError(InputError):
@@ -51,7 +53,7 @@ class Cases:
     """The cases: a grid, or a list in ``cases`` (the grid is then empty).
 
     ``beta`` and ``amplitude`` (m; under a force N) have shapes (n,) and (m,); beta refers to ``omega_n``
-    (rad/s).
+    (rad/s). Under an [input] beta is 1, and ``amplitude`` is the scale.
     """
 
     friction_law: tuple[str, ...]
@@ -125,10 +127,20 @@ class Config:
         return self.document["title"]
 
     @cached_property
-    def suspension(self) -> dict[str, float]:
-        from wedgesweep.systems.suspension.parameters import SUSPENSION
+    def suspension(self) -> dict[str, Any]:
+        """SI numbers of the suspension; ``joints`` and ``restitution`` where they are unilateral."""
+        from wedgesweep.systems.suspension.parameters import RESTITUTION, SUSPENSION
 
-        return _si(SUSPENSION, self.document["suspension"])
+        given = self.document["suspension"]
+        if not self.opens:
+            return _si(SUSPENSION, given)
+        restitution = given.get(RESTITUTION.key, RESTITUTION.default)
+        return {**_si(SUSPENSION, given), "joints": given["joints"], "restitution": restitution}
+
+    @property
+    def opens(self) -> bool:
+        """Whether the joints of a suspension are unilateral, so that wedges may lift off."""
+        return self.document.get("suspension", {}).get("joints") == "unilateral"
 
     def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
         """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
@@ -147,12 +159,12 @@ class Config:
     @cached_property
     def oscillator(self) -> dict[str, Any]:
         """SI numbers of the oscillator, and its contact."""
-        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY
+        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY, BRISTLES
         from wedgesweep.systems.oscillator.parameters import OSCILLATOR as QUANTITIES
 
         given = self.document[OSCILLATOR]
-        belt = (BELT_VELOCITY,) if BELT_VELOCITY.key in given else ()
-        return {**_si((*QUANTITIES, *belt), given), "contact": given["contact"]}
+        more = [each for each in (BELT_VELOCITY, *BRISTLES) if each.key in given]
+        return {**_si((*QUANTITIES, *more), given), "contact": given["contact"]}
 
     @property
     def possible_effects(self) -> tuple[str, ...]:
@@ -178,6 +190,8 @@ class Config:
     @property
     def excitation(self) -> str:
         """What the input is: "base" (its motion) or "force"."""
+        if self.transient:
+            return "force" if is_force(self.document["input"]) else "base"
         return self.document["sweep"].get("excitation", "base")
 
     @cached_property
@@ -197,6 +211,9 @@ class Config:
     def sweep(self) -> Cases:
         given = self.document["sweep"]
         omega_n = given["omega_n_rad_per_s"]
+        if self.transient:
+            laws, scale = tuple(given["friction_law"]), np.array(given["scale"])
+            return Cases(laws, np.ones(1), scale, omega_n, None)
         cases = tuple(
             Case(each["friction_law"], *_betas(each, omega_n), *_amplitudes(each))
             for each in given.get("case", ())
@@ -227,7 +244,28 @@ class Config:
             max_periods=given["max_periods"],
             keep_waveforms=given["keep_waveforms"],
             continuation=given["continuation"],
+            transient=self._transient() if self.transient else None,
         )
+
+    @property
+    def transient(self) -> bool:
+        """Whether the config has an [input], which does not repeat."""
+        return "input" in self.document
+
+    @cached_property
+    def input(self) -> "Input":
+        """The input at scale 1; raises ConfigError if a recording cannot be read."""
+        from wedgesweep.inputs.sampled import made
+
+        return made(self.document["input"], self.sweep.omega_n)
+
+    def _transient(self) -> "Transient":
+        """How the input is run."""
+        from wedgesweep.inputs.transient import transient
+
+        absolute = self.system == OSCILLATOR and self.oscillator["contact"] != "base"
+        rate = self.document["input"].get("sampling_hz")
+        return transient(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR)
 
     def with_method(self, method: str) -> "Config":
         """The same config with another solver; raises ConfigError if its settings do not allow it."""
@@ -259,6 +297,9 @@ class Config:
             "omega_n_rad_per_s": None if self.has_no_spring else self.sweep.omega_n,
         }
         grid = {key: value for key, value in given.items() if value is not None}
+        if self.transient:
+            problem = "input: a single case is of a sine; remove [input], or use 'wedgesweep run'"
+            raise ConfigError([problem])
         solver = self.document["solver"] | {"keep_waveforms": True, "continuation": False}
         return from_document(self.document | {"sweep": grid, "solver": solver}, "case")
 
@@ -272,6 +313,12 @@ class Config:
     ) -> tuple[tuple[int, ...], dict[str, tuple[str, Any, dict[str, str]]]]:
         """Shape of the cases; dimension, values and attributes of their coordinates."""
         sweep = self.sweep
+        if self.transient:
+            about = "what multiplies the input, or the start of a release"
+            return (len(sweep.friction_law), sweep.amplitude.size), {
+                "friction_law": ("friction_law", list(sweep.friction_law), {"long_name": "friction law"}),
+                "scale": ("scale", sweep.amplitude, {"units": "1", "long_name": about}),
+            }
         if sweep.cases is None:
             dims = ["friction_law", "beta", "amplitude"]
             laws, betas, amplitudes = list(sweep.friction_law), sweep.beta, sweep.amplitude
@@ -405,27 +452,33 @@ def load(path: str | Path) -> Config:
     except OSError as error:
         problem = f"{path}: {error.strerror}; give the path of a TOML file"
         raise ConfigError([problem]) from error
-    found = parse(text, str(path))
+    found = parse(text, str(path), Path(path).parent)
     log.debug("%s: %d cases, %s", path, found.sweep.count, found.document["solver"]["method"])
     return found
 
 
-def parse(text: str, source: str = "<config>") -> Config:
-    """Read a config from TOML text; raises ConfigError with everything that is wrong with it."""
+def parse(text: str, source: str = "<config>", directory: Path = Path()) -> Config:
+    """Read a config from TOML text; raises ConfigError with everything that is wrong with it.
+
+    ``directory``: where the path of a recorded input begins.
+    """
     try:
         given = toml.loads(text)
     except ValueError as error:
         raise ConfigError([f"{source}: not valid TOML: {error}"]) from error
-    return from_document(given, source)
+    return from_document(given, source, directory)
 
 
-def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
+def from_document(given: Mapping[str, Any], source: str = "<config>", directory: Path = Path()) -> Config:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
     from wedgesweep.config.declarations import root
 
     problems: list[str] = []
-    document = root().read(given, "", problems)
+    document = root("input" in given).read(given, "", problems)
     problems += contradictions(document)
+    recorded = document.get("input", {})
+    if not problems and recorded.get("kind") == "record" and "sha256" not in recorded:
+        problems += _located(recorded, directory)
     if problems:
         raise ConfigError([f"{source}: {problem}" for problem in problems])
     document["sweep"].setdefault("omega_n_rad_per_s", _natural_frequency(document))
@@ -435,6 +488,19 @@ def from_document(given: Mapping[str, Any], source: str = "<config>") -> Config:
     if SOFTENING in found.effects and found.system != OSCILLATOR:
         _require_rest(found, source)
     return found
+
+
+def _located(recorded: dict[str, Any], directory: Path) -> list[str]:
+    """Fill in the full path and the digest of a recorded input; what is wrong with its file."""
+    from wedgesweep.inputs import record
+
+    recorded["file"] = str((directory / recorded["file"]).resolve())
+    try:
+        recorded["sha256"] = record.digest(Path(recorded["file"]))
+        record.columns(recorded)
+    except ConfigError as error:
+        return error.problems
+    return []
 
 
 def _natural_frequency(document: Mapping[str, Any]) -> float:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from wedgesweep.config import toml
+from wedgesweep.config import inputs, toml
 from wedgesweep.config.keys import Key
 from wedgesweep.config.tables import GridOrList, Table, TableList
 
@@ -44,6 +44,8 @@ def _entry(key: Key, path: str, mark: str) -> str:
         only_listed = (each for each in key.listed.keys.values() if each.key not in key.grid.keys)
         lists = "".join(_entry(each, f"{at}.", "# ") for each in only_listed)
         return f"{_entry(key.grid, path, mark)}\n# Instead of a grid, cases one by one:\n{lists}"
+    if isinstance(key, inputs.ByKind):
+        return inputs.template()
     if isinstance(key, TableList):
         return f"{mark}[[{at}]]\n{_body(key.item, f'{at}.', mark)}"
     if not isinstance(key, Table):

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from math import inf, nan
 from typing import Any
 
+from wedgesweep.config.input_contradictions import input_contradictions
+
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield all contradictions, each as a line that names the key and a valid setting."""
@@ -12,7 +14,11 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     yield from _excitation(document)
     if "oscillator" in document:
         yield from _oscillator(document)
+    else:
+        yield from _joints(document)
     yield from _settling(document)
+    if "input" in document:
+        yield from input_contradictions(document)
 
 
 def _geometry(document: Mapping[str, Any]) -> Iterator[str]:
@@ -78,6 +84,7 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
         yield 'oscillator.belt_velocity_mm_per_s: missing; contact = "belt" needs it, as in 200.0'
     if not on_belt and "belt_velocity_mm_per_s" in own:
         yield f'oscillator.belt_velocity_mm_per_s: contact is "{own.get("contact")}"; write contact = "belt"'
+    yield from _bristles(document)
     forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
     if not on_belt and 0.0 in forces:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
@@ -88,6 +95,51 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     for name in document.get("effects", {}):
         if name not in effect_names():
             yield f"effects.{name}: an oscillator has no such part; valid here: {', '.join(effect_names())}"
+
+
+def _joints(document: Mapping[str, Any]) -> Iterator[str]:
+    """What unilateral joints need, or do not go with."""
+    from wedgesweep.systems.suspension.parameters import UNILATERAL, effects_with_lift_off
+
+    suspension, friction = document.get("suspension", {}), document.get("friction", {})
+    if suspension.get("joints") != UNILATERAL:
+        if "restitution" in suspension:
+            yield 'suspension.restitution: held joints do not hit; write joints = "unilateral", or remove it'
+        return
+    if "input" in document:
+        yield 'suspension.joints: inputs that do not repeat need held joints; write "bilateral"'
+    if suspension.get("wedge_mass_kg") == 0.0:
+        yield "suspension.wedge_mass_kg: a wedge that lifts off needs a mass; it must be greater than 0"
+    if suspension.get("column_angle_deg") == 0.0:
+        yield (
+            "suspension.column_angle_deg: at 0 the bolster face does not slip, and an impact does not "
+            'determine its friction; use another angle, or joints = "bilateral"'
+        )
+    static, dynamic = friction.get("static", inf), friction.get("dynamic", 0.0)
+    if static < dynamic and set(_named_laws(document.get("sweep", {}))) - {"coulomb"}:
+        yield (
+            f"friction.static: {static:g} is below friction.dynamic, which unilateral joints do not go with; "
+            f'it must be at least {dynamic:g}, or joints = "bilateral"'
+        )
+    for name in document.get("effects", {}):
+        if name not in effects_with_lift_off():
+            yield (
+                f"effects.{name}: does not go with unilateral joints; "
+                f"valid here: {', '.join(effects_with_lift_off())}"
+            )
+
+
+def _bristles(document: Mapping[str, Any]) -> Iterator[str]:
+    """What the law of bristles needs, and what it replaces."""
+    own, lugre = document["oscillator"], "lugre" in _named_laws(document.get("sweep", {}))
+    given = [key for key in own if key.startswith("bristle_")]
+    if not lugre:
+        yield from (f'oscillator.{key}: belongs to friction_law = "lugre"; remove it' for key in given)
+        return
+    if "bristle_stiffness_N_per_mm" not in own:
+        yield "oscillator.bristle_stiffness_N_per_mm: missing; lugre needs it, as in 100.0"
+    for name in {"presliding", "guide_friction", "ageing"}.intersection(document.get("effects", {})):
+        yield f"effects.{name}: lugre has bristles of its own; remove it, or choose another law"
 
 
 def _listed(value: Any) -> list[Any]:

@@ -3,6 +3,7 @@
 from math import nan, sqrt
 from typing import Any
 
+from wedgesweep.config.inputs import INPUT, SCALE
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
 from wedgesweep.config.series import Series, Several
 from wedgesweep.config.tables import GridOrList, Table, TableList, table
@@ -13,8 +14,15 @@ from wedgesweep.friction.names import LAW_NAMES
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
 from wedgesweep.solvers.names import SOLVERS
-from wedgesweep.systems.oscillator.parameters import BASE, BELT_VELOCITY, CONTACTS, EXCITATIONS, OSCILLATOR
-from wedgesweep.systems.suspension.parameters import SUSPENSION
+from wedgesweep.systems.oscillator.parameters import (
+    BASE,
+    BELT_VELOCITY,
+    BRISTLES,
+    CONTACTS,
+    EXCITATIONS,
+    OSCILLATOR,
+)
+from wedgesweep.systems.suspension.parameters import JOINTS, RESTITUTION, SUSPENSION, UNILATERAL
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
@@ -67,10 +75,12 @@ def _typical(quantity: Quantity) -> float | None:
 
 OMEGA_N_KEY = Number.of(OMEGA_N, optional=True, example=85.3565)
 
+LAWS_KEY = Several(key="friction_law", meaning="friction laws", item=LAW, example=list(LAW_NAMES))
+
 GRID = table(
     "sweep",
     "the cases: every law at every frequency and amplitude",
-    Several(key="friction_law", meaning="friction laws", item=LAW, example=list(LAW_NAMES)),
+    LAWS_KEY,
     (
         _series(BETA, {"start": 0.1, "stop": 3.0, "num": 30}),
         _series(FREQUENCY, [20.0, 30.0]),
@@ -100,6 +110,8 @@ LISTED = table(
         ),
     ),
 )
+
+SCALED = table("sweep", "the cases under [input]: every law at every scale", LAWS_KEY, SCALE, OMEGA_N_KEY)
 
 SOLVER = table(
     "solver",
@@ -176,11 +188,16 @@ OSCILLATOR_TABLE = table(
         default=BASE,
     ),
     Number.of(BELT_VELOCITY, optional=True, example=200.0),
+    *(
+        Number.of(quantity, optional=True, example=example)
+        for quantity, example in zip(BRISTLES, (100.0, 300.0, 0.4), strict=True)
+    ),
 )
 
 
-def root() -> Table:
-    """The whole config, with the effects that are registered by now."""
+def root(transient: bool = False) -> Table:
+    """The whole config, with the effects that are registered by now; ``transient``: it has an [input]."""
+    cases = GridOrList(key="sweep", meaning="the cases", grid=GRID, listed=LISTED, scaled=SCALED)
     return table(
         "",
         "Config of wedgesweep",
@@ -190,6 +207,20 @@ def root() -> Table:
                 "suspension",
                 "the suspension; defaults: Table 1 of the paper",
                 *map(Number.of, SUSPENSION),
+                Choice(
+                    key="joints",
+                    meaning="whether both faces of a wedge are held, or may lift off, fall back and hit",
+                    choices=JOINTS,
+                    optional=True,
+                    example=UNILATERAL,
+                ),
+                Number(
+                    key=RESTITUTION.key,
+                    meaning='coefficient of restitution of impacts, for joints = "unilateral" (0 if absent)',
+                    quantity=RESTITUTION,
+                    optional=True,
+                    example=RESTITUTION.default,
+                ),
                 default={},
             ),
             OSCILLATOR_TABLE,
@@ -201,6 +232,7 @@ def root() -> Table:
             *map(_effect, EFFECTS.values()),
             default={},
         ),
-        GridOrList(key="sweep", meaning="the cases", grid=GRID, listed=LISTED),
+        INPUT,
+        SCALED if transient else cases,
         SOLVER,
     )

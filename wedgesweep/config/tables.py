@@ -102,10 +102,14 @@ class TableList(Key):
 
 @dataclass(frozen=True, kw_only=True)
 class GridOrList(Key):
-    """A table that is a grid of cases or, if it has the key that only ``listed`` has, a list of them."""
+    """A table that is a grid of cases or, if it has the key that only ``listed`` has, a list of them.
+
+    ``scaled`` is its form beside a table [input], which reads it instead.
+    """
 
     grid: Table
     listed: Table
+    scaled: Table
 
     @property
     def written(self) -> str:
@@ -125,4 +129,4 @@ class GridOrList(Key):
         return self.listed.read(rest, path, problems)
 
     def shape(self) -> dict[str, Any]:
-        return {"oneOf": [self.grid.shape(), self.listed.shape()]}
+        return {"oneOf": [self.grid.shape(), self.listed.shape(), self.scaled.shape()]}

@@ -7,7 +7,7 @@ from wedgesweep.equations.notation import Call, Fraction, Group, Name, Node, Num
 
 LETTERS = {
     **{"alpha": "α", "beta": "β", "gamma": "γ", "mu": "μ", "omega": "ω"},
-    **{"pi": "π", "phi": "φ", "tau": "τ", "zeta": "ζ"},
+    **{"pi": "π", "phi": "φ", "sigma": "σ", "tau": "τ", "zeta": "ζ"},
 }
 SIGNS = {"->": "→", "<=": "≤", ">=": "≥", "!=": "≠", "-": "−", "+-": "±", ".": "⋅"}
 PRIMES = ("", "′", "″")

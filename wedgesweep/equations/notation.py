@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-GREEK = ("alpha", "beta", "gamma", "mu", "omega", "pi", "phi", "tau", "zeta")
+GREEK = ("alpha", "beta", "gamma", "mu", "omega", "pi", "phi", "sigma", "tau", "zeta")
 FUNCTIONS = ("sign", "exp", "ln", "sin", "cos")
 ROOT = "sqrt"
 RELATIONS = ("->", "<=", ">=", "!=", "=", "<", ">")

@@ -1,8 +1,9 @@
 """Figures of a sweep's dataset and of a diagnosis, one figure per file.
 
-A file here (or in ``diagnosis/``) that defines ``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)``
-is a figure; no list names it. ``NEEDS`` names the variables and attributes that it needs of a dataset. The
-keywords of ``draw`` are the figure's options, in SI units as the dataset is; mm exist on axes only.
+A file here (in ``transient/`` where the input does not repeat, in ``diagnosis/`` of a diagnosis) that defines
+``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)`` is a figure; no list names it. ``NEEDS`` names
+the variables and attributes that it needs of a dataset. The keywords of ``draw`` are the figure's options, in
+SI units as the dataset is; mm exist on axes only.
 """
 
 import io
@@ -10,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wedgesweep.figures import catalogue, diagnosis
+from wedgesweep.figures import catalogue, diagnosis, transient
 from wedgesweep.files import written
 
 if TYPE_CHECKING:
@@ -106,7 +107,9 @@ def of(data: "xr.Dataset | DiagnosisResult") -> dict[str, catalogue.FigureKind]:
     """Return the figures that draw such data, by name."""
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-    return diagnosis.FIGURES if isinstance(data, DiagnosisResult) else FIGURES
+    if isinstance(data, DiagnosisResult):
+        return diagnosis.FIGURES
+    return transient.FIGURES if "scale" in data.coords else FIGURES
 
 
 def save(figure: "Figure", path: str | Path) -> None:

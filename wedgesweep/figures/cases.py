@@ -31,6 +31,8 @@ def checked(ds: xr.Dataset, needs: Sequence[str], case_lists: bool) -> xr.Datase
         hint = "; run the sweep again with keep_waveforms = true" if waveforms else ""
         message = f"the dataset has no {', '.join(missing)}{hint}"
         raise ValueError(message)
+    if "scale" in ds.coords:
+        return ds.expand_dims([name for name in ("scale", "friction_law") if ds[name].ndim == 0])
     single = [name for name in ("amplitude", "beta", "friction_law") if ds[name].ndim == 0]
     ds = ds.expand_dims(single)
     if "beta" in single and "frequency" in ds.coords:

@@ -7,9 +7,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from wedgesweep import formatting
 from wedgesweep.outcome import settled
 
 LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
+OPENS = "column_open_fraction"  # of joints that may lift off
 # Hollow: lift-off; grey: unsettled; a grey ring: both.
 POINT = {"linestyle": "", "marker": "o", "markersize": 4.5, "zorder": 4}
 HOLLOW: dict[str, Any] = {**POINT, "markerfacecolor": "white"}
@@ -18,10 +20,18 @@ FEW_POINTS = 60
 
 
 def lifted(ds: xr.Dataset) -> xr.DataArray:
-    """Whether a normal force turned negative in each case: the model does not hold there."""
-    if LIFT_OFF not in ds:
+    """Whether a held joint pulls in each case, where a real one would lift off: the model does not hold."""
+    if LIFT_OFF not in ds or OPENS in ds:
         return xr.zeros_like(ds["status"], bool)
     return ds[LIFT_OFF] > 0.0
+
+
+def opened(ds: xr.Dataset) -> xr.DataArray | None:
+    """Whether a contact is open at each phase; None without waveforms, or where joints are held."""
+    faces = ("normal_force_column", "normal_force_bolster")
+    if OPENS not in ds or any(name not in ds for name in faces):
+        return None
+    return (ds[faces[0]] == 0.0) | (ds[faces[1]] == 0.0)
 
 
 def unsettled(ds: xr.Dataset) -> xr.DataArray:
@@ -47,9 +57,9 @@ def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -
 def shares(ds: xr.Dataset) -> str:
     """How many of the cases lift off and are unsettled, in words; empty if none does."""
     told = [
-        f"{int(marked.sum())} of {marked.size} cases {words}"
+        f"{int(marked.sum())} of {formatting.counted(marked.size, 'case')} {words}"
         for marked, words in (
-            (lifted(ds), "lift off: outside of the model's validity"),
+            (lifted(ds), "with lift-off, outside of the model's validity"),
             (unsettled(ds), "did not settle"),
         )
         if marked.any()

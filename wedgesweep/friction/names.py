@@ -2,4 +2,4 @@
 
 LAW_NAMES = ("coulomb", "static-dynamic", "exponential")
 # Laws that only oscillators have.
-OSCILLATOR_LAWS = ("hyperbolic",)
+OSCILLATOR_LAWS = ("hyperbolic", "lugre")

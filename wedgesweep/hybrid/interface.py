@@ -6,8 +6,8 @@ mode holds, all its event functions are positive; where one reaches zero the sys
 follows (``transition``).
 
 Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a
-system, which are known by the name of one of their fields. Times in s, all else in the units of
-``scales``.
+system, which are known by the name of one of their fields; of several the first in the record counts. Times
+in s, all else in the units of ``scales``.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,9 +26,9 @@ def declared(function: Function) -> Function:
     _IMPLEMENTED[function] = {}
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        for owner, written in _IMPLEMENTED[function].items():
-            if owner in fields:
-                return written
+        for field in fields:
+            if field in _IMPLEMENTED[function]:
+                return _IMPLEMENTED[function][field]
         message = f"no system with these records has {function.__name__}: {', '.join(fields)}"
         raise NotImplementedError(message)
 
@@ -162,6 +162,11 @@ def powers(t, y, mode, p):
 
 
 @declared
+def expected_event(forces, t, y, mode, p):
+    """Time (s) in which a velocity would reach the end of its branch at its present rate; inf: in none."""
+
+
+@declared
 def driving_force(t, acceleration, y, mode, p):
     """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined."""
 
@@ -197,8 +202,19 @@ def stiff_error(error, mode, p):
 
 
 @declared
-def closed_form(state, stop, p, keeping, recorder):
-    """Follow a mode that has a closed form to its event or ``stop``.
+def opened(mode, p):
+    """Whether the first contact and the second one are open."""
 
-    Returns whether it has one, the time and state vector reached, and the event or NO_EVENT.
+
+@declared
+def impact(y, mode, place, p):
+    """Whether an event is an impact, its largest impulse (N s), and the energy (J) that it takes."""
+
+
+@declared
+def closed_form(state, stop, p, keeping, recorder, counts):
+    """Follow a mode that has a closed form to its event or ``stop``, or several modes, one after the other.
+
+    Returns whether it has one, the state reached, and the event or NO_EVENT; ``counts[2]`` counts the
+    events passed.
     """

@@ -6,7 +6,7 @@ import numpy as np
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid import accumulators
-from wedgesweep.hybrid.interface import contact_forces, observed, sticks
+from wedgesweep.hybrid.interface import contact_forces, observed, rate, sticks
 
 # Four-point Gauss-Legendre rule on [0, 1].
 NODES = tuple(float(0.5 + 0.5 * node) for node in np.polynomial.legendre.leggauss(4)[0])
@@ -18,8 +18,8 @@ class Recorder(NamedTuple):
 
     ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks.
     ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), or has shape (2, 0):
-    then none are kept. Without ``energies`` the sums leave out forces and energies, which saves half of
-    the time.
+    then none are kept; so does ``acceleration`` (n,), the rate of the velocity. Without ``energies`` the sums
+    leave out forces and energies, which saves half of the time.
     """
 
     start: float
@@ -30,6 +30,7 @@ class Recorder(NamedTuple):
     velocity: Any
     normal: Any
     sticks: Any
+    acceleration: Any
 
 
 @inlined
@@ -57,6 +58,9 @@ def put_sample(i, y, mode, recorder, p):
     if recorder.normal.shape[1] > 0:
         t = recorder.start + i * recorder.step
         recorder.normal[0, i], recorder.normal[1, i] = contact_forces(t, y, mode, p)
+    if recorder.acceleration.size > 0:
+        t = recorder.start + i * recorder.step
+        recorder.acceleration[i] = observed(rate(t, y, mode, p)[0], p)[1]
 
 
 @inner

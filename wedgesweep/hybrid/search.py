@@ -11,12 +11,13 @@ from typing import NamedTuple, TypeVar
 from numba.core import types
 from numba.extending import overload
 
-from wedgesweep.compiled import INNER, forward, inner
+from wedgesweep.compiled import INNER, forward, inlined, inner
 
 GOLDEN = 0.6180339887498949
 MOST_ITERATIONS = 100
-# Share of a bracket: after a smaller change by Newton's or the secant method only rounding errors are left.
-LAST_CHANGE = 1e-10
+# Share of a bracket: after a smaller change by the secant method only rounding errors are left, and by
+# Newton's, which squares the error.
+LAST_CHANGE, LAST_CHANGE_BY_SLOPE = 1e-10, 1e-7
 
 Function = TypeVar("Function", bound=Callable)
 _FUNCTIONS: dict[type, Callable] = {}
@@ -55,16 +56,22 @@ class Bracket(NamedTuple):
     at_high: float
 
 
-@inner
+@inlined
 def zero(context, bracket, close):
-    """Place in a bracket at which a function is zero, to within ``close``.
+    """Place in a bracket at which a function is zero, to within ``close``."""
+    low, at_low, high, at_high = bracket
+    return zero_near(context, bracket, high - at_high * (high - low) / (at_high - at_low), close)
+
+
+@inner
+def zero_near(context, bracket, place, close):
+    """As ``zero``, from a first estimate of the place.
 
     Newton's method, or the secant method where the slope is unknown. The Illinois method replaces a step
     that leaves the bracket.
     """
     low, at_low, high, at_high = bracket
-    negligible = max(close, LAST_CHANGE * (high - low))
-    place = high - at_high * (high - low) / (at_high - at_low)
+    width = high - low
     before, at_before = (low, at_low) if at_low < -at_high else (high, at_high)
     for _ in range(MOST_ITERATIONS):
         if not low < place < high:
@@ -72,8 +79,10 @@ def zero(context, bracket, close):
         value, slope = _value(place, context)
         if value == 0.0 or high - low < close:
             return place
+        negligible = max(close, LAST_CHANGE_BY_SLOPE * width)
         if slope != slope:  # NaN: not known
             slope = (value - at_before) / (place - before)
+            negligible = max(close, LAST_CHANGE * width)
         before, at_before = place, value
         newton = place - value / slope
         if value > 0.0:

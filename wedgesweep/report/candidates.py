@@ -62,7 +62,7 @@ def _best(candidates: list[dict[str, Any]]) -> float | None:
 def _summary(result: DiagnosisResult) -> str:
     sizes = [len(each["effects"]) for each in result.document["candidates"]]
     singles, pairs = sizes.count(1), sum(size > 1 for size in sizes)
-    fitted = f"Besides the base model, {phrases.counted(singles, 'single candidate')} "
+    fitted = f"Besides the base model, {formatting.counted(singles, 'single candidate')} "
     fitted += "was fitted" if singles == 1 else "were fitted"
     if pairs:
         best = "the pair" if pairs == 1 else f"the {pairs} pairs"
@@ -73,8 +73,8 @@ def _summary(result: DiagnosisResult) -> str:
 def _without_parameters(result: DiagnosisResult) -> str:
     status = [each["status"] for each in result.document["candidates"]]
     failed, no_better = status.count(FAILED), status.count(NO_BETTER)
-    return (f" {phrases.counted(failed, 'fit')} failed." if failed else "") + (
-        f" {phrases.counted(no_better, 'fit')} ended no better than the base model." if no_better else ""
+    return (f" {formatting.counted(failed, 'fit')} failed." if failed else "") + (
+        f" {formatting.counted(no_better, 'fit')} ended no better than the base model." if no_better else ""
     )
 
 

@@ -59,7 +59,7 @@ def _ratio(test: dict[str, Any], model: str) -> float:
 
 def _overall(result: DiagnosisResult) -> str:
     misfit = result.document["misfit"]
-    tests = phrases.counted(result.data.sizes["test"], "test")
+    tests = formatting.counted(result.data.sizes["test"], "test")
     q, dof = formatting.number(misfit["chi2_base"]), misfit["dof"]
     p = phrases.p_value(misfit["p_base"]).replace(" ", formatting.NO_BREAK)
     return (

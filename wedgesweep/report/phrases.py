@@ -39,11 +39,6 @@ def listing(words: Sequence[str], last: str = "and") -> str:
     return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
-def counted(count: int, noun: str) -> str:
-    """A count with its noun: 1 test, 12 tests."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
 def split_key(key: str) -> tuple[str, str]:
     """Name and unit of a config key."""
     quantity = Quantity(key, 0.0, "")

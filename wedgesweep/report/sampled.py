@@ -5,6 +5,7 @@ from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures.diagnosis import spectrogram
 from wedgesweep.figures.diagnosis.selection import SHOWN, by_misfit
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
@@ -51,7 +52,7 @@ def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: s
         heading,
         html.paragraph(_overall(result, kind)),
         draw(FIGURES[kind], CAPTIONS[kind], order[:SHOWN]),
-        draw("spectrogram", SPECTROGRAM) if kind == "transient" else Markup(),
+        draw("spectrogram", SPECTROGRAM) if spectrogram.possible(result) else Markup(),
         html.table("All tests; errors are rms over that of the response", head, rows),
     )
 
@@ -64,6 +65,6 @@ def _row(test: Mapping[str, Any], kind: str, models: tuple[str, ...]) -> list[st
 
 def _overall(result: DiagnosisResult, kind: str) -> str:
     misfit, count = result.document["misfit"], result.data.sizes["test"]
-    tests = phrases.counted(count, "block" if kind == "loop" else "test")
+    tests = formatting.counted(count, "block" if kind == "loop" else "test")
     error = phrases.times_noise(misfit["chi2_base"], misfit["dof"])
     return f"{COMPARED[kind].format(tests=tests)}, the base model leaves an error of {error}."

@@ -26,7 +26,7 @@ def _never_steady(result: DiagnosisResult) -> str:
         return ""
     which = phrases.listing(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
     them = "it is" if len(names) == 1 else "they are"
-    where = f"{phrases.counted(len(names), 'test')} ({which})"
+    where = f"{formatting.counted(len(names), 'test')} ({which})"
     return (
         f"; in {where} friction keeps ageing as the faces only creep: "
         f"{them} simulated as after 100 periods, and rate and time of ageing hold only if that is true"
@@ -56,7 +56,7 @@ def _never_tried(result: DiagnosisResult) -> str:
 
 
 def _nothing_missing(result: DiagnosisResult) -> str:
-    tests = phrases.counted(result.data.sizes["test"], "test")
+    tests = formatting.counted(result.data.sizes["test"], "test")
     p = phrases.p_value(result.document["misfit"]["p_base"])
     return (
         f"Nothing is missing: over {tests} the error of the simulation is {_error(result, 'base')}, which "

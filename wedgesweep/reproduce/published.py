@@ -1,7 +1,7 @@
 """Published numbers of oscillators with friction, which the same solver must give."""
 
 from itertools import product
-from math import cos, pi, sin, sqrt
+from math import cos, exp, pi, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -23,15 +23,19 @@ BELT = {
     "highest": (1.1339447, 1e-6),
     "lowest": (-0.5554327, 1e-6),
 }
+# The mass of Exudyn's test of LuGre friction, at a time (s): displacement and deflection of the bristles
+# (m), and their allowed errors.
+PULLED_AT = 25.0
+PULLED = {"displacement": (1.9088391992, 1e-7), "bristles": (1.18167955e-5, 1e-11)}
 
 
 def check(configs: Path) -> tuple[Check, ...]:
-    """Run the configs of both oscillators in a directory, and compare."""
-    force, belt = (
+    """Run the configs of these oscillators in a directory, and compare."""
+    force, belt, pulled = (
         Sweep(config.load(configs / f"{name}.toml"), Path(f"{name}.nc")).run_here()
-        for name in ("den-hartog", "belt")
+        for name in ("den-hartog", "belt", "lugre")
     )
-    return *den_hartog(force), *block_on_belt(belt)
+    return *den_hartog(force), *block_on_belt(belt), *pulled_mass(pulled)
 
 
 def den_hartog(ds: xr.Dataset) -> tuple[Check, ...]:
@@ -65,6 +69,24 @@ def block_on_belt(ds: xr.Dataset) -> tuple[Check, ...]:
     return tuple(
         _within(f"block on a belt: {name.replace('_', ' ')}", getattr(cycle, name), *expected)
         for name, expected in BELT.items()
+    )
+
+
+def pulled_mass(ds: xr.Dataset) -> tuple[Check, ...]:
+    """Compare a dataset of the pulled mass with the published state."""
+    case = ds.squeeze().sel(time=PULLED_AT, method="nearest")
+    x, v, a = (case[name].item() for name in ("displacement", "velocity", "acceleration"))
+    model = config.parse(ds.attrs["config"])
+    own, friction = model.oscillator, model.friction
+    stiffness, damping, viscous = (own[f"bristle_{name}"] for name in ("stiffness", "damping", "viscous"))
+    fading = exp(-((v / friction["threshold_velocity"]) ** 2))
+    level = own["normal_force"] * (friction["dynamic"] + (friction["static"] - friction["dynamic"]) * fading)
+    # sigma_0 z + sigma_1 (v - sigma_0 |v| z / g) + sigma_2 v = k (u - x) - m a
+    friction_force = own["spring"] * (case["input"].item() - x) - own["mass"] * a
+    bent = (friction_force - (damping + viscous) * v) / (stiffness * (1.0 - damping * abs(v) / level))
+    return tuple(
+        _within(f"LuGre friction, pulled: {name}", here, *PULLED[name])
+        for name, here in (("displacement", x), ("bristles", bent))
     )
 
 

@@ -16,7 +16,7 @@ from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.shooting import copy, run_map, settle, shooting
-from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, Window
+from wedgesweep.solvers.trajectory import CaseError, Samples, Span, TimedWindow, Trajectory, Window
 from wedgesweep.systems import compact, state_count
 
 MESSAGES = {
@@ -43,7 +43,7 @@ def solve(
         message = "sample times of one's own are for radau.solve; this solver samples even phases"
         raise TypeError(message)
     case = prepared(compact(parameters))
-    room = memory(rtol, window.samples_per_period, window.periods)
+    room = memory(rtol, window.samples_per_period, window.periods, acceleration=isinstance(window, Span))
     y, settle_periods, outcome = np.zeros(case.scales.shape[1]), window.settle_periods, OK
     y[:2] = start
     if settle_periods:
@@ -54,7 +54,7 @@ def solve(
         status, message = MESSAGES[outcome]
         message = f"{message} (at t = {room.reached[0]:.6g} s)"
         raise CaseError(message, status)
-    samples = Samples(window.sample_times, room.x, room.velocity, room.sticks, room.normal)
+    samples = Samples(window.sample_times, room.x, room.velocity, room.sticks, room.normal, room.acceleration)
     counts = dict(zip(STATISTICS, room.work.counts.tolist(), strict=True))
     return Trajectory(samples, room.sums, window.periods, counts)
 

@@ -13,11 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.compiled import by_record, inlined, inner
+from wedgesweep.hybrid.accumulators import add_impact
 from wedgesweep.hybrid.interface import (
     closed_form,
     event,
     event_count,
     events,
+    expected_event,
     fastest,
     holds,
     initial_mode,
@@ -58,6 +60,10 @@ SUSPECT = 0.3
 CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
 # Error of a place at which a step is only to be cut, and how far beyond it the step then goes.
 ROUGHLY, PAST_EVENT = 1e-3, 2e-2
+# How far a step goes beyond an event that is expected, as a share of the time to it; the least share of a
+# step that it then has; and the share of the step before which an event must not lie: stages would see too
+# much of the friction beyond it.
+PAST_EXPECTED, LEAST_SHARE, NEAR_END = 0.15, 0.02, 0.75
 
 
 class Workspace(NamedTuple):
@@ -255,16 +261,34 @@ by_record(_becomes_stiff, _if_stiff(lambda h, y, p: outruns(h, y, p), lambda h, 
 by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda h, p: h))
 
 
-def _closed_form(state, stop, p, keeping, recorder):
+def _expected(forces, t, y, mode, p):
+    """Time (s) after which the system expects an event; inf where it does not say."""
+
+
+by_record(
+    _expected,
+    lambda fields: (
+        (lambda forces, t, y, mode, p: expected_event(forces, t, y, mode, p))
+        if provided(expected_event, fields)
+        else (lambda forces, t, y, mode, p: inf)
+    ),
+)
+
+
+def _closed_form(state, stop, p, keeping, recorder, counts):
     """The closed form of a mode, if the system has one."""
 
 
 by_record(
     _closed_form,
     lambda fields: (
-        (lambda state, stop, p, keeping, recorder: closed_form(state, stop, p, keeping, recorder))
+        (
+            lambda state, stop, p, keeping, recorder, counts: closed_form(
+                state, stop, p, keeping, recorder, counts
+            )
+        )
         if provided(closed_form, fields)
-        else (lambda state, stop, p, keeping, recorder: (False, state.t, state.y, NO_EVENT))
+        else (lambda state, stop, p, keeping, recorder, counts: (False, state, NO_EVENT))
     ),
 )
 
@@ -281,18 +305,20 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     to_event = inf
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
+    expected = _expected(forces, t, y, mode, p)
     most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
     implicitly = _begins_stiff(mode, p)
     if implicitly and last_event >= 0:
         h = _after_event(h, p)
     while t < stop:
         h = min(h, longest)
-        taken = min(h, stop - t, to_event)
+        aim = max((1.0 + PAST_EXPECTED) * expected, LEAST_SHARE * h)
+        taken = min(h, stop - t, to_event, aim)
         if implicitly:
-            step, within, forces, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
+            step, within, ahead, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / implicit.ORDER, implicit.STAGES
         else:
-            step, within, forces, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
+            step, within, ahead, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / explicit.ORDER, explicit.STAGES - 1
         work.counts[0] += evaluations
         if not error <= 1.0:
@@ -300,9 +326,9 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             if h < SHORTEST * period:
                 return State(t, y, mode, last_event, h), FAILED
             continue
-        close = ROUGHLY if to_event == inf else CLOSE
-        share, number = first_event(step, mode, last_event, (within, forces), close, p, work)
-        if number >= 0 and to_event == inf:
+        close = CLOSE if taken in (aim, to_event) else ROUGHLY
+        share, number = first_event(step, mode, last_event, (within, ahead), close, p, work)
+        if number >= 0 and to_event == inf and (taken != aim or share < NEAR_END):
             to_event = (share + PAST_EVENT) * taken
             continue
         to_event = inf
@@ -320,6 +346,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         y, k1, last_event = step.end, step.end_rate, NO_EVENT
         for i in range(event_count(p)):
             work.at_start[i] = work.at_end[i]
+        expected = _expected(ahead, t, y, mode, p)
         implicitly = implicitly or _becomes_stiff(taken, y, p)
         if taken < longest or error > NOT_GROWING:
             grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
@@ -347,15 +374,17 @@ def integrate(state, keep_from, stop, p, recorder, work):
     while state.t < stop:
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        done, t, y, number = _closed_form(state, end, p, keeping, recorder)
-        if done:
-            state = State(t, y, state.mode, state.last_event, state.step)
-        else:
+        done, state, number = _closed_form(state, end, p, keeping, recorder, work.counts)
+        if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
-        if number == NO_EVENT:
+        if number == NO_EVENT and work.counts[2] <= limit:
             continue
+        if number == NO_EVENT:
+            return CHATTERING, state
         if number < NO_EVENT:
             return number, state
+        if keeping:
+            add_impact(recorder.sums[0], state.y, state.mode, number, p)
         y, mode, unique = transition(state.t, state.y, state.mode, number, p)
         state = State(state.t, y, mode, number, state.step)
         work.counts[2] += 1

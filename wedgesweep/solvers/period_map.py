@@ -37,6 +37,7 @@ class Memory(NamedTuple):
     sticks: Any
     reached: Any
     free: Any
+    acceleration: Any
     samples_per_period: int
     energies: bool
 
@@ -47,10 +48,11 @@ def memory(
     periods: int = LONGEST_PERIOD,
     energies: bool = True,
     forces: bool = True,
+    acceleration: bool = False,
 ) -> Memory:
     """Room for runs that keep at most this many periods.
 
-    ``energies``: of forces and energies the sums tell; ``forces``: normal forces are sampled.
+    ``energies``: of forces and energies the sums tell; ``forces``, ``acceleration``: they are sampled.
     """
     n = periods * samples_per_period
     return Memory(
@@ -62,6 +64,7 @@ def memory(
         np.zeros(n, np.bool_),
         np.zeros(1),
         np.zeros(MOST_STATES, np.bool_),
+        np.zeros(n if acceleration else 0),
         samples_per_period,
         energies,
     )
@@ -79,6 +82,7 @@ def _run_periods(first, periods, y, p, keeping, memory):
         memory.velocity,
         memory.normal,
         memory.sticks,
+        memory.acceleration,
     )
     keep_from = start if keeping else stop
     outcome, state = run(start, vector(y, scales(p)), keep_from, stop, p, recorder, memory.work)

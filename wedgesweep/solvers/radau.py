@@ -236,7 +236,8 @@ class _Run:
         if self.statistics["switches"] > EVENTS_PER_PERIOD * (1.0 + t / self.period):
             message = f"more than {EVENTS_PER_PERIOD} switches per period at t = {t:.6g} s"
             raise CaseError(message, "solver_failure")
-        y, mode, unique = system.transition(t, y, mode, event, self.case)
+        sums = self.sums if t >= self.window.keep else None
+        y, mode, unique = system.transition(t, y, mode, event, self.case, sums)
         self._require(unique, t)
         return y, mode
 
@@ -267,6 +268,7 @@ class _Run:
             seen = system.sample(times, result.sol(times), mode, self.case)
             self.samples.x[here], self.samples.velocity[here] = seen[:2]
             self.samples.normal[:, here], self.samples.sticks[here] = seen[2:4], seen[4]
+            self.samples.acceleration[here] = seen[5]
 
     def _add(self, t: np.ndarray, y: np.ndarray, mode: Mode, weight: np.ndarray | None = None) -> None:
         system.add(self.sums, t, y, weight, mode, self.case)

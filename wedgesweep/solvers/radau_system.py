@@ -41,17 +41,25 @@ def holds(mode, case):
 
 
 @compiled
-def _transition(t, y, mode, place, case):
+def _transition(t, y, mode, place, case, keeping, sums):
     p = case[0]
-    after, following, unique = interface.transition(t, vector(y, interface.scales(p)), mode, place, p)
+    now = vector(y, interface.scales(p))
+    if keeping:
+        accumulators.add_impact(sums[0], now, mode, place, p)
+    after, following, unique = interface.transition(t, now, mode, place, p)
     store(after, y)
     return following, unique
 
 
-def transition(t: float, y: np.ndarray, mode: Any, place: int, case: np.ndarray) -> tuple:
-    """State, shape (n,), and mode after an event, and whether they are well-posed."""
-    after = y.copy()
-    return after, *_transition(t, after, mode, place, case)
+def transition(
+    t: float, y: np.ndarray, mode: Any, place: int, case: np.ndarray, sums: np.ndarray | None = None
+) -> tuple:
+    """State, shape (n,), and mode after an event, and whether they are well-posed.
+
+    An impact is added to the running sums, if these are given.
+    """
+    after, keeping = y.copy(), sums is not None
+    return after, *_transition(t, after, mode, place, case, keeping, _NO_SUMS if sums is None else sums)
 
 
 @inner
@@ -120,6 +128,7 @@ def _sample(i, t, y, mode, p, out):
     out[0, i], out[1, i] = interface.observed(y, p)
     out[2, i], out[3, i] = interface.contact_forces(t, y, mode, p)
     out[4, i] = 1.0 if interface.sticks(y, mode, p) else 0.0
+    out[5, i] = interface.observed(interface.rate(t, y, mode, p)[0], p)[1]
 
 
 @inner
@@ -156,7 +165,7 @@ def _points(t: np.ndarray, y: np.ndarray, weight: np.ndarray | None = None) -> n
     return np.ascontiguousarray(np.vstack([t, np.zeros(t.size) if weight is None else weight, y]))
 
 
-_NO_SUMS, _NO_SAMPLES = accumulators.empty(), np.empty((5, 0))
+_NO_SUMS, _NO_SAMPLES = accumulators.empty(), np.empty((6, 0))
 
 
 def add(
@@ -167,11 +176,11 @@ def add(
 
 
 def sample(t: np.ndarray, y: np.ndarray, mode: Any, case: np.ndarray) -> np.ndarray:
-    """What is recorded of states (n, k), shape (5, k).
+    """What is recorded of states (n, k), shape (6, k).
 
-    Displacement, velocity, both normal forces, and whether the observed contact sticks (0 or 1).
+    Displacement, velocity, both normal forces, whether the observed contact sticks (0 or 1), acceleration.
     """
-    out = np.empty((5, t.size))
+    out = np.empty((6, t.size))
     _along(SAMPLE, _points(t, y), mode, case, _NO_SUMS, out)
     return out
 

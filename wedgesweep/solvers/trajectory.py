@@ -45,12 +45,31 @@ class TimedWindow(Window):
 
 
 @dataclass(frozen=True)
+class Span(Window):
+    """A window that is one period of length ``span`` (s): that of an input which does not repeat."""
+
+    span: float
+
+    @property
+    def keep(self) -> float:
+        return 0.0
+
+    @property
+    def end(self) -> float:
+        return self.span
+
+    @property
+    def sample_times(self) -> np.ndarray:
+        return np.arange(self.samples_per_period) * (self.span / self.samples_per_period)
+
+
+@dataclass(frozen=True)
 class Samples:
     """States at the sample times of the kept window.
 
     ``t`` (s), ``x`` (m, displacement from rest) and ``velocity`` (m/s) have shape (n,), ``sticks`` (n,)
     says whether the observed contact sticks, ``normal`` (2, n) holds the normal forces of both contacts
-    (N; NaN while not determined).
+    (N; NaN while not determined), ``acceleration`` (n,) the rate of the velocity (m/s^2), or has shape (0,).
     """
 
     t: np.ndarray
@@ -58,12 +77,13 @@ class Samples:
     velocity: np.ndarray
     sticks: np.ndarray
     normal: np.ndarray
+    acceleration: np.ndarray
 
 
 def empty_samples(times: np.ndarray) -> Samples:
     """Room for samples at some times (s)."""
     n = times.size
-    return Samples(times, np.empty(n), np.empty(n), np.zeros(n, np.bool_), np.empty((2, n)))
+    return Samples(times, np.empty(n), np.empty(n), np.zeros(n, np.bool_), np.empty((2, n)), np.empty(n))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from wedgesweep.compiled import CACHE_DIR
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import dataset, transients
 from wedgesweep.sweep.batch import solve_batch
 from wedgesweep.sweep.continuation import solve_lines
 from wedgesweep.systems import example
@@ -22,7 +22,9 @@ SUSPENSION = "suspension"
 
 
 def describe(law: str, beta: float, amplitude: float, unit: str = "m") -> str:
-    """Describe a case in words; amplitude in m or N."""
+    """Describe a case in words; amplitude in m or N, or without a unit the scale of an input."""
+    if not unit:
+        return f"{law}, scale {amplitude:.6g}"
     size = f"{amplitude * 1e3:.6g} mm" if unit == "m" else f"{amplitude:.6g} {unit}"
     return f"{law}, beta {beta:.6g}, amplitude {size}"
 
@@ -97,9 +99,9 @@ def solve_cases(
     structured array, shape (n,)
         Records of the cases.
     """
-    if settings.continuation:
+    if settings.transient is None and settings.continuation:
         return solve_lines(cases, indices, settings, dtype)
-    if settings.method == "event-driven":
+    if settings.transient is None and settings.method == "event-driven":
         return solve_batch(cases, indices, settings, dtype)[0]
     records = dataset.blank(dtype, indices)
     for case in range(len(indices)):
@@ -123,6 +125,9 @@ def solve_cases(
 
 def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, record: np.void) -> None:
     limited = replace(settings, case_timeout=case_timeout)
+    if settings.transient is not None:
+        transients.solve_case(case, limited, record)
+        return
     result, statistics = simulate.respond(case, limited, dataset.HARMONICS)
     if not np.isfinite(result.numbers["amplitude_ratio"]):
         status, message = "not_finite", "the response is not finite"

@@ -89,6 +89,41 @@ VARIABLES = (
 
 WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
 
+# Additional variables of unilateral joints.
+OF_LIFT_OFF = (
+    Variable("column_open_fraction", "1", "share of time with the column contact open"),
+    Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
+    Variable("impacts", "1", "impacts of a wedge per forcing period"),
+    Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
+    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
+)
+
+# Within a case of a motion that does not repeat.
+TIME = ("time",)
+_SHARED = ("status", "message", "rate_evaluations", "steps", "switches", "wall_time")
+_NAMED = {variable.name: variable for variable in VARIABLES}
+# Variables of a dataset whose input does not repeat, after those that are the same.
+TRANSIENT = (
+    Variable("peak_displacement", "m", "largest magnitude of x - y"),
+    Variable("peak_to_peak", "m", "peak-to-peak of x - y"),
+    Variable("peak_velocity", "m s-1", "largest magnitude of x' - y'"),
+    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
+    Variable("rms_displacement", "m", "rms of the stored samples of x - y"),
+    _NAMED["stick_fraction"],
+    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers in all"),
+    Variable("supplied_energy", "J", "energy supplied by the base in all"),
+    _NAMED["minimum_normal_force"],
+    _NAMED["lift_off_fraction"],
+    *(_NAMED[name] for name in _SHARED),
+    Variable("displacement", "m", _NAMED["displacement"].long_name, TIME),
+    Variable("velocity", "m s-1", "relative velocity x' - y'", TIME),
+    Variable("acceleration", "m s-2", "relative acceleration x'' - y''", TIME),
+    Variable("force", "N", "force that springs, dampers and friction set against x - y", TIME),
+    Variable("normal_force_column", "N", "normal force on the column face", TIME, "f4"),
+    Variable("normal_force_bolster", "N", "normal force on the bolster face", TIME, "f4"),
+    Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", TIME, "i1"),
+)
+
 # Additional variables of a continuation; all others belong to its sweep up in beta. Two responses are
 # distinct if their amplitude ratios differ by more than DISTINCT times steady_tolerance, or their periods.
 DISTINCT = 1000.0
@@ -107,6 +142,8 @@ CONTINUED = (
 FLAGS = {"status": (0, STATUSES), "coexisting": (-1, ("not_told", "no", "yes"))}
 
 GRID = ("friction_law", "beta", "amplitude")
+# Case dimensions where the input does not repeat.
+SCALED = ("friction_law", "scale")
 REQUIRED = ("status", "message", "period", "periodicity")
 MESSAGE_BYTES = 200
 
@@ -114,11 +151,11 @@ MESSAGE_BYTES = 200
 def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
     """Layout of the record of a case: its index and every variable, with dimensions from ``sizes``.
 
-    Without samples (``sizes["phase"]`` = 0) there are no waveforms; ``continued`` adds CONTINUED.
+    Without samples (``sizes`` of "phase" or "time" 0) there are no waveforms; ``continued`` adds CONTINUED.
     """
     fields: list[tuple[Any, ...]] = [("index", "i8")]
-    for variable in VARIABLES + CONTINUED * continued:
-        if variable.dims == PHASE and not sizes["phase"]:
+    for variable in TRANSIENT if "time" in sizes else VARIABLES + OF_LIFT_OFF + CONTINUED * continued:
+        if variable.dims in (PHASE, TIME) and not sizes[variable.dims[0]]:
             continue
         dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
         fields.append((variable.name, dtype, tuple(sizes[dim] for dim in variable.dims)))
@@ -147,16 +184,17 @@ def assemble(
 ) -> "xr.Dataset":
     """Assemble the dataset from the records of all cases, in any order.
 
-    ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), one
-    for a list (case). ``long_names``: those of another system, by variable; None: it does not have it.
+    ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), two
+    where the input does not repeat (friction_law, scale), one for a list (case). ``long_names``: those of
+    another system, by variable; None: it does not have it.
     """
     import xarray as xr
 
-    case_dims = GRID if len(shape) == 3 else ("case",)
+    case_dims: tuple[str, ...] = {3: GRID, 2: SCALED, 1: ("case",)}[len(shape)]
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
-    for variable in VARIABLES + CONTINUED:
+    for variable in TRANSIENT if case_dims == SCALED else VARIABLES + OF_LIFT_OFF + CONTINUED:
         long_name = long_names.get(variable.name, variable.long_name)
         if variable.name not in (records.dtype.names or ()) or long_name is None:
             continue
@@ -170,6 +208,8 @@ def assemble(
 
 def coordinates(case_coords: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, Any]:
     """Return all coordinates: those of the cases (see ``assemble``) and those within a case."""
+    if "time" in sizes:
+        return dict(case_coords)
     coords = {
         **case_coords,
         "harmonic": ("harmonic", np.arange(1, sizes["harmonic"] + 1), {"long_name": "harmonic h"}),
@@ -188,10 +228,15 @@ def _attributes(variable: Variable, long_name: str) -> dict[str, Any]:
     if variable.units:
         attributes["units"] = variable.units
     if variable.name in FLAGS:
-        first, meanings = FLAGS[variable.name]
-        attributes["flag_values"] = np.arange(first, first + len(meanings), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(meanings)
+        attributes["flag_values"] = _flag_values(variable.name)
+        attributes["flag_meanings"] = " ".join(FLAGS[variable.name][1])
     return attributes
+
+
+def _flag_values(name: str) -> np.ndarray:
+    """Values that a flag variable may have."""
+    first, meanings = FLAGS[name]
+    return np.arange(first, first + len(meanings), dtype=np.int8)
 
 
 def write(dataset: "xr.Dataset", path: Path) -> None:
@@ -244,13 +289,26 @@ def read_sweep(path: Path) -> "xr.Dataset":
 
 def _faults(ds: "xr.Dataset") -> Iterator[str]:
     """What tells a dataset from that of a sweep: coordinates, dimensions, and the kinds of its variables."""
+    if "scale" in ds.coords:
+        yield from (f"no coordinate {name}" for name in SCALED if name not in ds.coords)
+        yield from (f"no variable {name}" for name in ("status", "message") if name not in ds)
+        known = {variable.name: variable for variable in TRANSIENT}
+        yield from _shape_faults(ds, known, SCALED, SCALED)
+        return
     yield from (f"no coordinate {name}" for name in (*GRID, "frequency") if name not in ds.coords)
     yield from (f"no variable {name}" for name in REQUIRED if name not in ds)
     if "beta" not in ds.coords:
         return
     case_dims = ("case",) if ds["beta"].dims == ("case",) else GRID
-    known = {variable.name: variable for variable in VARIABLES + CONTINUED}
-    for name in [each for each in ds.variables if each in known or each in (*GRID, "frequency")]:
+    known = {variable.name: variable for variable in VARIABLES + OF_LIFT_OFF + CONTINUED}
+    yield from _shape_faults(ds, known, case_dims, (*GRID, "frequency"))
+
+
+def _shape_faults(
+    ds: "xr.Dataset", known: Mapping[str, Variable], case_dims: tuple[str, ...], coords: tuple[str, ...]
+) -> Iterator[str]:
+    """What is wrong with dimensions and types of known variables and of coordinates."""
+    for name in [each for each in ds.variables if each in known or each in coords]:
         found = ds[name]
         dims, kinds = _expected(str(name), known.get(str(name)), case_dims)
         if found.dims != dims:
@@ -272,7 +330,7 @@ def _expected(
     """Dimensions of a variable or coordinate, and the kinds of numpy types that it may have."""
     if variable is None:
         own = {"frequency": "beta"}.get(name, name)
-        return (own if len(case_dims) == 3 else "case",), "OUT" if name == "friction_law" else "bfiu"
+        return (own if len(case_dims) > 1 else "case",), "OUT" if name == "friction_law" else "bfiu"
     return case_dims + variable.dims, "OUT" if variable.dtype == "str" else "bfiu"
 
 

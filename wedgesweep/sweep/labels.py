@@ -3,6 +3,16 @@
 from typing import TypedDict
 
 from wedgesweep.config import Config
+from wedgesweep.sweep.dataset import OF_LIFT_OFF
+
+# What only datasets of unilateral joints have, and what other variables mean there.
+_OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)
+_OPEN = {
+    "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
+    "lift_off_fraction": "share of time with at least one contact open",
+    "stick_fraction": "share of time stuck (coulomb) or with the column face closed and below the "
+    "threshold velocity",
+}
 
 
 class Attributes(TypedDict, total=False):
@@ -22,19 +32,23 @@ def attributes(config: Config) -> Attributes:
         "system": config.system,
         "contact": config.oscillator["contact"],
         "excitation": config.excitation,
-        "reference": _reference(config),
+        "reference": "" if config.transient else _reference(config),
     }
 
 
 def of(config: Config) -> dict[str, str | None]:
     """Return the long names of variables by name, None for those that the system does not have."""
+    if config.opens:
+        return dict(_OPEN)
     if config.system != "oscillator":
-        return {}
+        return _OF_LIFT_OFF
+    if config.transient:
+        return _of_transients(config)
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced
     x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
     size = _reference(config)
-    return {
+    return _OF_LIFT_OFF | {
         "amplitude_ratio": f"half peak-to-peak of {x} over {size}",
         "peak_to_peak": f"peak-to-peak of the displacement {x}",
         "peak_velocity": f"largest magnitude of the velocity {v}",
@@ -54,6 +68,30 @@ def of(config: Config) -> dict[str, str | None]:
         "periodicity": f"largest change of {x} from the last period but one to the last, over {size}",
         "displacement": f"displacement {x} of the mass",
         "velocity": f"velocity {v} of the mass",
+    }
+
+
+def _of_transients(config: Config) -> dict[str, str | None]:
+    """Long names of an oscillator whose input does not repeat."""
+    contact = config.oscillator["contact"]
+    relative = contact == "base" and not config.forced
+    x = "x - u" if relative else "x"
+    rates = ("x' - u'", "x'' - u''") if relative else ("x'", "x''")
+    return {
+        "peak_displacement": f"largest magnitude of {x}",
+        "peak_to_peak": f"peak-to-peak of {x}",
+        "peak_velocity": f"largest magnitude of {rates[0]}",
+        "mean_displacement": f"mean of {x}",
+        "rms_displacement": f"rms of the stored samples of {x}",
+        "stick_fraction": "share of time stuck (set-valued laws) or slipping below the threshold velocity",
+        "supplied_energy": "energy supplied by the input" + " and the belt" * (contact == "belt") + " in all",
+        "displacement": f"displacement {x} of the mass",
+        "velocity": f"velocity {rates[0]} of the mass",
+        "acceleration": f"acceleration {rates[1]} of the mass",
+        "force": "force that spring, dampers and friction set against the motion of the mass",
+        **dict.fromkeys(
+            ("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster"), None
+        ),
     }
 
 

@@ -17,12 +17,14 @@ from wedgesweep.sweep.cases import describe
 from wedgesweep.sweep.run import Sweep
 
 LIFT_OFF = "lift_off_fraction"
+# A variable of unilateral joints.
+OPENS = "column_open_fraction"
 # Variables of the dataset that Outcomes holds.
 COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
 
 class CaseResult(NamedTuple):
-    """How one case ended; amplitude in ``unit``, m or N.
+    """How one case ended; amplitude in ``unit``, m or N, or "" for the scale of an input.
 
     ``period``, ``periodicity`` and ``lift_off_fraction`` are the dataset's variables of these names.
     """
@@ -107,7 +109,9 @@ class Outcomes:
 
 def of_dataset(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended."""
-    if LIFT_OFF not in ds:  # of an oscillator, whose normal force is given
+    if "scale" in ds.coords:
+        return _of_transients(ds)
+    if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
     unit = ds["amplitude"].attrs.get("units", "m")
     shape, dims = ds["status"].shape, ds["status"].dims
@@ -124,6 +128,20 @@ def of_dataset(ds: xr.Dataset) -> Outcomes:
     return Outcomes(**columns, describe_case=described)
 
 
+def _of_transients(ds: xr.Dataset) -> Outcomes:
+    """How each case of a dataset ended whose input does not repeat."""
+    shape, nothing = ds["status"].shape, np.zeros(ds["status"].size)
+
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        law, scale = np.unravel_index(place, shape)
+        case = ds[["friction_law", "scale", "message"]].isel(friction_law=int(law), scale=int(scale))
+        return case["friction_law"].item(), 1.0, case["scale"].item(), "", case["message"].item()
+
+    lifted = ds[LIFT_OFF].values.ravel() if LIFT_OFF in ds else nothing
+    # Nothing has to settle.
+    return Outcomes(ds["status"].values.ravel(), nothing + 1.0, nothing, lifted, described)
+
+
 def of_journal(path: Path) -> Outcomes:
     """How the finished cases of an unfinished sweep ended."""
     header = journal.header(path)
@@ -132,9 +150,16 @@ def of_journal(path: Path) -> Outcomes:
         message = f"{path}: damaged in its first line, whose config is not that of the records"
         raise SweepError(message)
     records = journal.read(path, Sweep(settings, path).dtype)
+    unit = "" if settings.transient else "N" if settings.forced else "m"
 
     def described(place: int) -> tuple[str, float, float, str, str]:
         case = settings.sweep.case(records["index"][place])
-        return (*case, "N" if settings.forced else "m", records["message"][place].decode())
+        return (*case, unit, records["message"][place].decode())
 
-    return Outcomes(**{name: records[name] for name in COLUMNS}, describe_case=described)
+    if settings.transient:
+        nothing = np.zeros(len(records))
+        return Outcomes(records["status"], nothing + 1.0, nothing, records[LIFT_OFF], described)
+    columns = {name: records[name] for name in COLUMNS}
+    if settings.opens:
+        columns[LIFT_OFF] = np.zeros(len(records))
+    return Outcomes(**columns, describe_case=described)

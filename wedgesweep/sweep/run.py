@@ -18,7 +18,7 @@ from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset, journal, labels, provenance
+from wedgesweep.sweep import dataset, journal, labels, provenance, transients
 from wedgesweep.sweep.backend import Backend, Pool, local
 from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases
 from wedgesweep.sweep.chunks import Rows
@@ -62,6 +62,9 @@ class Sweep:
     def sizes(self) -> dict[str, int]:
         """Sizes of the dataset's dimensions within a case."""
         samples = self.settings.samples_per_period
+        transient = self.settings.transient
+        if transient is not None:
+            return {"time": transient.samples if self.settings.keep_waveforms else 0}
         return {
             "phase": self.settings.kept_periods * samples if self.settings.keep_waveforms else 0,
             "samples_per_period": samples,
@@ -90,7 +93,9 @@ class Sweep:
     @property
     def kit(self) -> int:
         """The largest kit of parts that the cases need."""
-        return int(kits(self.config.records_of_laws).max(initial=0))
+        own = int(kits(self.config.records_of_laws).max(initial=0))
+        # A kit of odd number has room for an input that is not a sine.
+        return own | 1 if self.config.transient else own
 
     @property
     def fingerprint(self) -> dict[str, str]:
@@ -244,14 +249,14 @@ class Sweep:
         if failed.size:
             case = self.config.sweep.case(failed[0]["index"])
             unit = "N" if self.config.forced else "m"
-            message = (
-                f"{describe(case.law, case.beta, case.amplitude, unit)}: {failed[0]['message'].decode()}"
-            )
+            where = describe(case.law, case.beta, case.amplitude, "" if self.config.transient else unit)
+            message = f"{where}: {failed[0]['message'].decode()}"
             raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:
         """Assemble the dataset from the records of all cases."""
         shape, coords = self.config.case_coordinates()
+        coords |= self._time()
         return dataset.assemble(
             records,
             dataset.coordinates(coords, self.sizes),
@@ -259,6 +264,13 @@ class Sweep:
             {**self._physics(), **provenance.attributes(self.config, started, self.command)},
             labels.of(self.config),
         )
+
+    def _time(self) -> dict[str, Any]:
+        """Coordinates of the stored waveforms of an input that does not repeat: time, and the input."""
+        transient = self.settings.transient
+        if transient is None or not self.settings.keep_waveforms:
+            return {}
+        return transients.coordinates(self.config.input, transient, self.config.document["input"])
 
     def _physics(self) -> dict[str, Any]:
         """Properties of the system that figures refer to (SI)."""
@@ -268,6 +280,7 @@ class Sweep:
                 "omega_n": self.config.sweep.omega_n,
                 "frictionless_resonance": oscillator.resonance(p) or nan,
                 "breakaway_acceleration": oscillator.breakaway_acceleration(p),
+                **({"friction_decay_per_cycle": _decay(p)} if self.config.transient else {}),
                 **labels.attributes(self.config),
             }
         numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
@@ -278,6 +291,13 @@ class Sweep:
             "frictionless_resonance": resonance(p),
             "breakaway_acceleration": breakaway_acceleration(coulomb),
         }
+
+
+def _decay(p: np.void) -> float:
+    """What a free motion of an oscillator loses a cycle by dry friction, 4F/k (m); NaN without a spring."""
+    own = p["oscillator"]
+    force = p["friction"]["mu_d"] * own["normal_force"] + p["guide_friction"]["force"]
+    return float(4.0 * force / own["spring"]) if own["spring"] > 0.0 else nan
 
 
 def unfinished(out: Path) -> xr.Dataset | None:

@@ -8,6 +8,7 @@ from wedgesweep.effects import EFFECTS
 from wedgesweep.validation import judge
 from wedgesweep.validation.judge import Record
 from wedgesweep.validation.shares import Share, share
+from wedgesweep.validation.time_records import TIME_KINDS
 
 # Excess chi-squared from which an effect is strong, and from which it shows at all.
 STRONG, WEAK = 800.0, 100.0
@@ -117,8 +118,21 @@ def goals(sets: Sets) -> list[Goal]:
             "rig of any size: exact or in a tie", share(sets.of("random-rig"), judge.exact_or_tied), 0.95
         ),
         _at_least("oscillator: exact or in a tie", share(sets.of("oscillator"), judge.exact_or_tied), 0.95),
+        *(line for kind in TIME_KINDS for line in _of_time_records(kind, sets.of(kind))),
         _coverage(sets.exact_singles),
         *_gain(sets.exact_singles),
+    ]
+
+
+def _of_time_records(kind: str, records: Sequence[Record]) -> list[Goal]:
+    """Lines for sets of one kind of test, some of which hide nothing."""
+    clean = [record for record in records if not record["truth"]]
+    hidden = [record for record in records if record["truth"]]
+    strong = [record for record in hidden if (record["excess"] or 0.0) >= STRONG]
+    return [
+        _at_least(f"{kind}, excess >= 800: exact or in a tie", share(strong, judge.exact_or_tied), 0.95),
+        _at_most("  wrong `named`", share(hidden, judge.wrongly_named), 0.03),
+        _at_most("  nothing hidden: a cause", share(clean, lambda record: bool(record["causes"])), 0.0),
     ]
 
 

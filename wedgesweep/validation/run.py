@@ -15,13 +15,14 @@ from wedgesweep import __version__
 from wedgesweep.config import toml
 from wedgesweep.effects import EFFECTS
 from wedgesweep.sweep.provenance import git_commit
-from wedgesweep.validation import unmodelled
+from wedgesweep.validation import time_records, unmodelled
 from wedgesweep.validation.baselines import BASELINES
 from wedgesweep.validation.draft import Draft, draw
 from wedgesweep.validation.judge import Record
 from wedgesweep.validation.response import TONE, Test
 from wedgesweep.validation.sets import DataSet
 from wedgesweep.validation.strength import LEVEL
+from wedgesweep.validation.time_records import TIME_KINDS
 
 # What is kept of how a set was drawn, and the kinds that simpler methods are tried on.
 KEPT = ("law", "lean", "noise", "spread", "uncertain", "expected", "record_input", "size")
@@ -93,6 +94,8 @@ def _cpu_time() -> float:
 
 
 def _run(one: DataSet, out: Path) -> Record:
+    if one.kind in TIME_KINDS:
+        return _run_time_records(one, out / one.name)
     directory, clock = out / one.name, _Clock()
     draft = draw(one.original)
     spreads = [draft.spread] * len(draft.tests)
@@ -122,6 +125,42 @@ def _run(one: DataSet, out: Path) -> Record:
     clock.lap("baselines")
     found = json.loads((directory / RESULT / "diagnosis.json").read_text())
     return {**_record(one, draft, found), "baselines": named_by, "seconds": clock.seconds}
+
+
+def _run_time_records(one: DataSet, directory: Path) -> Record:
+    """A set of tests that are not all steady."""
+    clock, drawn = _Clock(), time_records.draw(one)
+    write(directory / DRAFT, drawn)
+    (directory / "true.toml").write_text(toml.dumps(drawn["document"]))
+    (directory / "tests.toml").write_text(toml.dumps({"test": drawn["tests"]}))
+    files = [directory / "true.toml", "--tests", directory / "tests.toml", "-o", directory / DATA]
+    noise = ["--noise", drawn["noise"], "--level", drawn["level"], "--input-level", 0.5 * drawn["level"]]
+    more = ["--sampling-hz", drawn["sampling_hz"], "--seed", one.noise_seed, "--n-jobs", 1]
+    wedgesweep("synthesize", *files, *noise, *more, "--settle-periods", SETTLE_PERIODS)
+    (directory / DATA / TRUTH).rename(directory / TRUTH)
+    clock.lap("synthesize")
+    files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
+    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1)
+    clock.lap("diagnose")
+    found = json.loads((directory / RESULT / "diagnosis.json").read_text())
+    if found["gain"]:
+        del found["gain"]["held_out"]
+    return {
+        **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
+        "code": git_commit() or __version__,
+        "truth": sorted(drawn["hidden"]),
+        "numbers": drawn["hidden"],
+        **{key: drawn[key] for key in ("law", "noise", "level")},
+        **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
+        "ladder": [
+            {key: rung[key] for key in ("effects", "accuracy", "distinct")} for rung in found["ladder"]
+        ],
+        "excess": found["misfit"]["excess_base"],
+        **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
+        "gain_in_truth": None,
+        "baselines": {},
+        "seconds": clock.seconds,
+    }
 
 
 def _record(one: DataSet, draft: Draft, found: dict[str, Any]) -> Record:

@@ -15,9 +15,13 @@ import numpy as np
 #   errors-only     small errors of everything, and no effect
 #   random-rig      one effect on a rig of any size
 #   oscillator      one effect on a mass on a spring, whose input is recorded
+#   transient       one effect, or none, in releases and a sweep; see time_records.py
+#   loop            the same in hysteresis loops
+#   mixed           the same in steady tests, releases and a loop together
 SIZES = {
     **{"clean": 60, "strong": 84, "weak": 42, "pair": 30, "unknown": 30, "poor": 20, "added": 20},
     **{"imperfect": 60, "errors-only": 20, "random-rig": 40, "oscillator": 40},
+    **{"transient": 40, "loop": 40, "mixed": 20},
 }
 KINDS = tuple(SIZES)
 # Range of the excess chi-squared of the base model that a set is drawn for, log-uniformly. The excess that

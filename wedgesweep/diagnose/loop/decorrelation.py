@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 
+# Least variance of a combination over the mean: what noise is free of, errors at reversals are not.
+LEAST = 0.5
 # Samples in a row whose correlation is known; farther ones count as independent.
 MOST = 400
 
@@ -30,8 +32,7 @@ def decorrelation(known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarr
     for part in parts:
         distance = np.abs(part[:, None] - part)
         variance, vectors = np.linalg.eigh(covariance(distance))
-        # An eigenvalue that rounding makes tiny would count for too much.
-        done.append((np.sqrt(np.maximum(variance, 1e-9 * variance[-1])), vectors.T))
+        done.append((np.sqrt(np.maximum(variance, LEAST * variance.mean())), vectors.T))
     if done:
         std[: rows.size] = np.concatenate([each[0] for each in done])
         matrix[: rows.size, rows] = block_diag(*[each[1] for each in done])

@@ -13,8 +13,14 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.fit_data import NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.fit_data import (
+    Evaluation,
+    NuisanceParameter,
+    Point,
+    Scenario,
+    best_evaluation_per_test,
+)
+from wedgesweep.diagnose.model import TOLERANCE, Model
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.natural_units import NaturalUnits
@@ -27,6 +33,8 @@ OF_VELOCITY = "velocity_lag"
 MOST_BLOCKS = 12
 # Displacement and velocity of the start, over the largest displacement and that a natural time later.
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
+# Displacements that are tried beside the measured one, over the largest, where so few points are tried.
+OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
@@ -150,6 +158,22 @@ class TransientData(SampledData):
                 for t, own in enumerate(self.releases)
             ]
         )
+
+    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+        """Evaluations from several starts: where a mass rests before it moves, friction hides its place."""
+        stated, at_rest = self.start()
+        offsets = OFFSETS if len(points) <= FEW else (0.0,)
+        tried = [points]
+        for offset in offsets:
+            moved = stated + offset * (np.arange(stated.shape[1]) == 0)
+            tried.append([replace(each, nuisance=moved, warm=at_rest) for each in points])
+        by_try = [model.evaluate_all(each) for each in tried]
+        best = []
+        for evaluations in zip(*by_try, strict=True):
+            chosen = best_evaluation_per_test(evaluations)
+            nuisance = np.array([each.point.nuisance for each in evaluations])
+            best.append(replace(evaluations[0].point, nuisance=nuisance[chosen, np.arange(chosen.size)]))
+        return model.evaluate_all(best)
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """Each record, or where there is only one blocks of windows that follow one another."""

@@ -11,6 +11,7 @@ from wedgesweep import friction
 from wedgesweep.compiled import inlined
 from wedgesweep.effects import directional_friction, guide_friction, hooks, presliding, states, travel
 from wedgesweep.excitation import acceleration, displacement, force, velocity
+from wedgesweep.friction import lugre_bristles as bristles
 from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, X, slip, stuck
 
 
@@ -77,6 +78,8 @@ def friction_force(y, mode, p):
     """Friction T (N) on a branch that no jump and no sticking holds, positive against positive slip."""
     rubbing, normal = slip(y, p), p.oscillator.normal_force
     factor = directional_friction.factor(mode.direction, p)
+    if bristles.acts(p):
+        return factor * bristles.force(rubbing, y, p)
     if presliding.acts(p):
         most = p.friction.mu_d * normal + guide_friction.acts(p) * p.guide_friction.force
         return factor * most * presliding.bristle(y, p)

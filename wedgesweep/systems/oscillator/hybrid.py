@@ -8,7 +8,6 @@ from wedgesweep.effects import (
     ageing,
     directional_friction,
     hooks,
-    presliding,
     states,
     travel,
 )
@@ -22,7 +21,7 @@ from wedgesweep.systems.oscillator.forces import (
     powers,
     resistance,
 )
-from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, Mode, X, slip, stuck
+from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, Mode, X, creeps, slip, stuck
 from wedgesweep.systems.oscillator.parameters import PLAIN
 from wedgesweep.systems.shared import implement_shared
 
@@ -100,7 +99,7 @@ def observed(y, p):
 @inlined
 def sticks(y, mode, p):
     """Whether the mass sticks, or slips below the threshold velocity."""
-    if presliding.acts(p):
+    if creeps(p):
         return abs(slip(y, p)) <= p.friction.v_t
     return abs(mode.column) != 1
 
@@ -154,7 +153,7 @@ def _slip_events(now, y, mode, p, out):
     if stuck(mode, p):
         out[SLIP] = _breakaway(now, y, -1, p)
         out[SLIP + 1] = -_breakaway(now, y, 1, p)
-    elif p.friction.set_valued or presliding.acts(p):
+    elif p.friction.set_valued or creeps(p):
         out[SLIP if branch > 0 else SLIP + 1] = branch * value
     elif abs(branch) == HELD:
         out[SLIP] = now - friction_force(y, _beside(mode, 0), p)
@@ -170,7 +169,7 @@ def _effect_events(t, y, mode, p, out):
         travel.write_events(elongation(t, y, p), mode.segment, p, TRAVEL, out)
     if mode.direction != 0 and mode.column == 0 and not p.friction.set_valued:
         out[DIRECTION if mode.direction > 0 else DIRECTION + 1] = mode.direction * slip(y, p)
-    if ageing.acts(p) and presliding.acts(p):
+    if ageing.acts(p) and creeps(p):
         inside = p.friction.v_t - abs(slip(y, p))
         out[CLOCK] = inside if mode.clock else -inside
 
@@ -249,13 +248,13 @@ def initial_mode(t, y, p):
         return _slipping(sign, segment, 0, p), True
     branch = friction.branch_at(rubbing, p)
     clock = 1 if branch == 0 else 0
-    return Mode(sign if presliding.acts(p) else branch, direction, segment, clock), True
+    return Mode(sign if creeps(p) else branch, direction, segment, clock), True
 
 
 @inner
 def _cross(t, y, mode, upward, p):
     """Mode on the next branch of a regularised law, or held where the next branch points back."""
-    if presliding.acts(p):
+    if creeps(p):
         direction = -mode.column if directional_friction.acts(p) else 0
         return Mode(-mode.column, direction, mode.segment, mode.clock)
     if abs(mode.column) == HELD:

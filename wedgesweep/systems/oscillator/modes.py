@@ -3,6 +3,8 @@
 from typing import NamedTuple
 
 from wedgesweep.compiled import inlined
+from wedgesweep.effects import presliding
+from wedgesweep.friction import lugre_bristles as bristles
 
 # Displacement (m), against the base or the ground, and its rate: the first two states.
 X, VELOCITY = 0, 1
@@ -22,6 +24,12 @@ class Mode(NamedTuple):
     direction: int
     segment: int
     clock: int
+
+
+@inlined
+def creeps(p):
+    """Whether bristles bend before the mass slips, so that it never sticks for good."""
+    return presliding.acts(p) or bristles.acts(p)
 
 
 @inlined

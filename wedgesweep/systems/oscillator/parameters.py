@@ -9,11 +9,13 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from math import nan, sqrt
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from wedgesweep import effects as known
 from wedgesweep.excitation import has_series
+from wedgesweep.friction import lugre_bristles as bristles
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
 
@@ -25,6 +27,16 @@ OSCILLATOR = (
     Quantity("normal_force_N", 0.0, "normal force on the rubbing surface, N", minimum=0.0),
 )
 BELT_VELOCITY = Quantity("belt_velocity_mm_per_s", nan, 'velocity of the belt, for contact = "belt"')
+# Numbers of the bristles of the law "lugre".
+BRISTLES = (
+    Quantity("bristle_stiffness_N_per_mm", nan, 'stiffness of bristles, sigma_0, for "lugre"', above=0.0),
+    Quantity("bristle_damping_N_s_per_m", nan, "damping of bristles, sigma_1; default: 0", minimum=0.0),
+    Quantity(
+        "bristle_viscous_N_s_per_m", nan, "viscous friction beside them, sigma_2; default: 0", minimum=0.0
+    ),
+)
+# The bristles are a state, as effects have them.
+known.REGISTERED[bristles.NAME] = bristles
 # What the rubbing surface moves with, and what the input moves.
 BASE, GROUND, BELT = CONTACTS = ("base", "ground", "belt")
 FORCE = "force"
@@ -60,7 +72,8 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype]:
     """Record types by kit, with or without the Fourier series of an input."""
     simple = [name for name in names if not known.EFFECTS[name].extends]
     part = records.SERIES if series else []
-    return _dtype([(PLAIN, np.int64), *part], simple), _dtype(part, names)
+    bent = (bristles.NAME, [(name, np.float64) for name in bristles.NUMBERS])
+    return _dtype([(PLAIN, np.int64), *part], simple), _dtype([*part, bent], names)
 
 
 def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -94,8 +107,8 @@ def record(
     amplitude, omega : float
         Of the input: m, or N under a force; rad/s.
     oscillator : mapping
-        SI numbers by the names of their quantities; ``contact`` is one of CONTACTS (default: base), and
-        ``belt_velocity`` (m/s) goes with a belt.
+        SI numbers by the names of their quantities; ``contact`` is one of CONTACTS (default: base),
+        ``belt_velocity`` (m/s) goes with a belt, and those of BRISTLES with the law "lugre".
     friction, effects : mapping
         SI numbers by the names of their quantities; what is not given has its default.
     input_kind : str
@@ -120,10 +133,20 @@ def record(
             own[SCALED[name]] *= numbers["scale"]
         else:
             records.set_effect(p, name, numbers)
-    own["kit"] = bool(records.acting(p, effect_names()))
+    own["kit"] = bool(records.acting(p, effect_names())) or law == bristles.NAME
+    if law == bristles.NAME:
+        _set_bristles(p, oscillator)
     if p["presliding"]["length"] > 0.0:
         p["friction"]["set_valued"] = 0  # bristles yield before they slip
     return case
+
+
+def _set_bristles(p: np.void, oscillator: Mapping[str, Any]) -> None:
+    """Fill in the bristles of a record, in place."""
+    for quantity in BRISTLES:
+        name = quantity.name.removeprefix("bristle_")
+        p[bristles.NAME][name] = oscillator.get(quantity.name, 0.0)
+    p[bristles.NAME]["coulomb"] = p["friction"]["mu_d"] * p["oscillator"]["normal_force"]
 
 
 def compact(rows: np.ndarray) -> np.ndarray:

@@ -102,6 +102,30 @@ def events(now, t, y, mode, p, out):
 
 
 @inlined
+def _time_to_end(slip, rate, branch, threshold):
+    """Time (s) in which a slip velocity reaches the end of its branch at a constant rate; inf: never."""
+    if branch == 0:
+        return (threshold - slip if rate > 0.0 else -threshold - slip) / rate if rate != 0.0 else inf
+    return (branch * threshold - slip) / rate if branch * rate < 0.0 else inf
+
+
+@inlined
+def expected_event(now, t, y, mode, p):
+    """Time (s) in which the column or bolster face would reach the end of its branch at constant rates."""
+    if stuck(mode, p) or held(mode) or presliding.acts(p):
+        return inf
+    column, bolster = slip_measure(COLUMN, t, y, p), slip_measure(BOLSTER, t, y, p)
+    of_column = slip_rate(COLUMN, t, y, now.acceleration, now.column_acceleration, p)
+    if p.friction.set_valued:
+        return _time_to_end(column, of_column, mode.column, 0.0)
+    of_bolster = slip_rate(BOLSTER, t, y, now.acceleration, now.column_acceleration, p)
+    return min(
+        _time_to_end(column, of_column, mode.column, p.friction.v_t),
+        _time_to_end(bolster, of_bolster, mode.bolster, p.friction.v_t),
+    )
+
+
+@inlined
 def _is_kinematic(place, mode, p):
     if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         return False

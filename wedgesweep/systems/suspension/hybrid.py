@@ -25,6 +25,7 @@ for _declared, _written in (
     (interface.well_posed, transitions.well_posed),
     (interface.events, events.events),
     (interface.event, events.event),
+    (interface.expected_event, events.expected_event),
     (interface.holds, stuck),
     (interface.fastest, excitation.fastest),
 ):

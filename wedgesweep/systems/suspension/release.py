@@ -67,6 +67,13 @@ def _breakaway_input(state, direction, p):
     return limit if min(there.column, there.bolster) > 0.0 else nan
 
 
+@inlined
+def is_known(state, p):
+    """Whether both faces keep their load until the bolster breaks away, in either direction."""
+    forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
+    return p.geometry.always_well_posed != 0 and forward < backward
+
+
 @inner
 def release(state, stop, p):
     """Time at which a stuck bolster breaks away, and the event.
@@ -78,14 +85,20 @@ def release(state, stop, p):
     forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
     if not (p.geometry.always_well_posed and forward < backward):
         return scanned_release(state, stop, p)
+    return release_between(forward, backward, state.t, stop, p)
+
+
+@inner
+def release_between(forward, backward, t, stop, p):
+    """As ``release``, at known base accelerations: below the first it slips up, above the second down."""
     omega = p.input.omega
     most = p.input.amplitude * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
-    phase = omega * state.t
+    phase = omega * t
     if sine(phase) > upper:
-        return state.t, UP
+        return t, UP
     if sine(phase) < lower:
-        return state.t, DOWN
+        return t, DOWN
     turn = 2.0 * pi
     rising = falling = inf
     if upper < 1.0:

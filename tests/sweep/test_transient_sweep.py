@@ -1,0 +1,254 @@
+"""Sweeps whose input does not repeat: config, dataset, resuming, figures."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.command import invoke
+from wedgesweep import config, figures
+from wedgesweep.figures.transient import loop, ring_down
+from wedgesweep.sweep import outcomes
+from wedgesweep.sweep.journal import Journal
+from wedgesweep.sweep.run import Sweep, unfinished
+
+HEAD = """\
+[oscillator]
+mass_kg = 2.0
+spring_N_per_mm = 0.8
+normal_force_N = 4.0
+"""
+TAIL = """
+[friction]
+dynamic = 0.5
+static = 0.6
+[sweep]
+friction_law = ["coulomb", "static-dynamic"]
+scale = [0.5, 1.0, 2.0]
+[solver]
+method = "event-driven"
+rtol = 1e-8
+"""
+RELEASE = """
+[input]
+kind = "release"
+displacement_mm = 30.0
+duration_s = 1.5
+"""
+RECORD = """
+[input]
+kind = "record"
+file = "bump.csv"
+column = "base"
+unit = "mm"
+time = "t"
+"""
+SWEPT = """
+[input]
+kind = "sine-sweep"
+amplitude_m_per_s2 = 4.0
+start_hz = 1.0
+stop_hz = 6.0
+duration_s = 4.0
+fade_s = 0.2
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A working directory with configs of some kinds, and a recorded bump."""
+    monkeypatch.chdir(tmp_path)
+    t = np.arange(200) * 0.005
+    rows = "".join(f"{a:.3f},{5.0 + 3.0 * np.sin(np.pi * min(a / 0.3, 1.0)) ** 2:.9f}\n" for a in t)
+    (tmp_path / "bump.csv").write_text("t,base\n" + rows)
+    for name, given in (("release", RELEASE), ("record", RECORD), ("swept", SWEPT)):
+        (tmp_path / f"{name}.toml").write_text(HEAD + given + TAIL)
+    return tmp_path
+
+
+def test_a_recorded_input_is_found_beside_its_config_and_counts_from_its_first_sample(folder, monkeypatch):
+    (folder / "elsewhere").mkdir()
+    monkeypatch.chdir(folder / "elsewhere")
+    assert "6 ok" in invoke("run", "../record.toml")
+    ds = xr.load_dataset("record.nc")
+    assert ds.sizes == {"friction_law": 2, "scale": 3, "time": 199}
+    assert ds["time"].values == pytest.approx(np.arange(199) * 0.005)
+    assert ds["input"].values[:60] == pytest.approx(3e-3 * np.sin(np.pi * np.arange(60) / 60) ** 2, abs=1e-10)
+    assert ds["input"].attrs["units"] == "m"
+    peaks = ds["peak_displacement"].values
+    assert np.abs(ds["displacement"]).max("time").values == pytest.approx(peaks, rel=1e-2)
+    # Friction of 2 N holds 2 kg on all but the largest bump.
+    assert peaks[0, :2] == pytest.approx(0.0, abs=1e-15)
+    assert (peaks[:, 2] > 1e-4).all()
+
+
+def test_a_file_that_changed_is_another_sweep(folder):
+    invoke("run", "record.toml")
+    assert "already complete" in invoke("run", "record.toml")
+    text = (folder / "bump.csv").read_text()
+    (folder / "bump.csv").write_text(text.replace("0.995,5.0", "0.995,5.1"))
+    assert "input.sha256" in invoke("run", "record.toml", code=2)
+    found = config.parse(xr.load_dataset("record.nc").attrs["config"])
+    with pytest.raises(config.ConfigError, match="has changed"):
+        _ = found.input
+
+
+def test_an_interrupted_sweep_is_resumed(folder):
+    whole = Sweep(config.load("release.toml"), folder / "whole.nc")
+    expected = whole.run(n_jobs=1)
+    records = whole.solve(np.array([0, 4]))
+    part = Sweep(config.load("release.toml"), folder / "part.nc")
+    with Journal(part.journal_path, part.dtype, part.journal_header) as journal:
+        journal.append(records)
+    assert outcomes.of_journal(part.journal_path)[1].amplitude == 1.0
+    drawn = unfinished(folder / "part.nc")
+    assert (drawn["status"] == 0).sum() == 2
+    assert "2 ok, 4 remaining" in invoke("status", "part.nc")
+    resumed = part.run(n_jobs=1)
+    for name in ("displacement", "force", "dissipated_energy"):
+        assert np.array_equal(resumed[name], expected[name])
+
+
+def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
+    ds = Sweep(config.load("release.toml"), folder / "a.nc").run_here()
+    start = 0.5 * 800.0 * (0.03 * ds["scale"]) ** 2
+    left = 0.5 * 800.0 * ds["displacement"][..., -1] ** 2 + 0.5 * 2.0 * ds["velocity"][..., -1] ** 2
+    assert ds["dissipated_energy"].values == pytest.approx(
+        (start - left).transpose(*ds["dissipated_energy"].dims).values, rel=0.02
+    )
+    x, force = ds["displacement"].sel(scale=2.0), ds["force"].sel(scale=2.0)
+    for law in ("coulomb", "static-dynamic"):
+        motion, resistance = x.sel(friction_law=law).values, force.sel(friction_law=law).values
+        cycle = loop.largest_cycle(motion)
+        travel = np.abs(np.diff(motion[cycle])).sum()
+        # Friction is 2 N; the cycle is not closed, as the motion decays.
+        work = loop.area(motion[cycle], resistance[cycle])
+        assert work == pytest.approx(2.0 * travel, rel=0.15)
+
+
+def test_peaks_of_a_decay_fall_by_four_friction_over_stiffness(folder):
+    ds = Sweep(config.load("release.toml"), folder / "a.nc").run_here()
+    assert ds.attrs["friction_decay_per_cycle"] == pytest.approx(4.0 * 2.0 / 800.0)
+    case = ds.sel(friction_law="coulomb", scale=2.0)
+    _, peaks = ring_down.peaks(case["time"].values, case["displacement"].values)
+    assert np.abs(peaks[:5]) == pytest.approx(0.06 - 0.005 * np.arange(1, 6), abs=2e-5)
+    assert ring_down.decrement(np.array([4.0, -3.0, 2.0]))[0] == pytest.approx(np.log(2.0))
+
+
+@pytest.mark.parametrize("kind", sorted(figures.transient.FIGURES))
+@pytest.mark.parametrize("name", ["release", "swept"])
+def test_every_figure_draws_and_has_units(folder, kind, name):
+    ds = Sweep(config.load(f"{name}.toml"), folder / "a.nc").run_here()
+    figure = figures.draw(ds, kind)
+    figure.draw_without_rendering()
+    labels = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
+    assert figure.get_suptitle()
+    assert len(labels) >= 2
+    assert all("[" in text for text in labels)
+    figures.draw(ds.sel(scale=1.0, friction_law="coulomb"), kind).draw_without_rendering()
+
+
+def test_figures_of_sines_are_not_offered(folder):
+    invoke("run", "swept.toml")
+    told = invoke("plot", "all", "swept.nc", "-o", "drawn")
+    assert told.count("wrote") == 3
+    assert "there are envelope, loop, ring-down" in invoke("plot", "stick-map", "swept.nc", code=2)
+    assert "takes no --beta" in invoke("plot", "loop", "swept.nc", "--beta", "1", code=2)
+    assert "6 = 2 friction laws x 3 scales" in invoke("check", "swept.toml")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('kind = "sine-sweep"', 'kind = "chirp"', 'input.kind: unknown name "chirp"'),
+        ('kind = "sine-sweep"', "", "input.kind: missing; valid here: sine-sweep, random, record"),
+        ("start_hz = 1.0", "start_hz = -1.0", "input.start_hz: -1.0 is out of range"),
+        ("start_hz = 1.0", "start = 1.0", 'input.start: unknown key; did you mean "start_hz"?'),
+        ("fade_s = 0.2", "fade_s = 3.0", "input.fade_s: 3 is more than half of duration_s"),
+        ("duration_s = 4.0", "duration_s = 1e8", "input.duration_s: 1e+08 s with frequencies up to 6 Hz"),
+        ("fade_s = 0.2", "sampling_hz = 1e9", "input.sampling_hz: more than 2e+07 samples"),
+        ("amplitude_m_per_s2 = 4.0", "", "input.amplitude_mm: missing; write amplitude_mm"),
+        ("scale = [0.5, 1.0, 2.0]", "beta = 1.0", "sweep.beta: unknown key"),
+        ("scale = [0.5, 1.0, 2.0]", "scale = 0.0", "sweep.scale: 0.0 is out of range"),
+        ("rtol = 1e-8", 'settle = "steady"', "solver.settle: an [input] does not repeat; remove it"),
+        (HEAD, "", None),
+        ("[friction]", "[effects.input_distortion]\nsecond = 0.1\n[friction]", "belongs to a sine"),
+    ],
+)
+def test_faults_of_a_swept_sine_are_told(old, new, told):
+    text = (HEAD + SWEPT + TAIL).replace(old, new)
+    if told is None:
+        assert config.parse(text).transient
+        return
+    with pytest.raises(config.ConfigError) as caught:
+        config.parse(text)
+    assert told in str(caught.value)
+
+
+RANDOM = '[input]\nkind = "random"\nrms_N = 1.0\nduration_s = 2.0\n'
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (RANDOM, "input.start_hz: missing; write start_hz and stop_hz, or frequency_hz and level"),
+        (RANDOM + "start_hz = 5.0\nstop_hz = 2.0", "input.stop_hz: 2 is not above 5"),
+        (RANDOM + "start_hz = 1.1\nstop_hz = 1.2", "holds no multiple of 1/duration_s"),
+        (RANDOM + "start_hz = 1\nstop_hz = 2\nlevel = [1.0]", "a band and a table exclude each other"),
+        (RANDOM + "frequency_hz = [1.0, 2.0]\nlevel = [1.0]", "input.level: 1 levels for 2 frequencies"),
+        (RELEASE.replace("30.0", "0.0"), "0 without a velocity is rest"),
+        (
+            '[input]\nkind = "ramp"\nvelocity_mm_per_s = 1.0\nduration_s = 1.0',
+            "moves nothing that rubs on it",
+        ),
+        (RECORD.replace('"mm"', '"N"'), "input.unit: N is no unit of displacement; valid here: m, mm, um"),
+    ],
+)
+def test_faults_of_other_kinds_are_told(given, told):
+    with pytest.raises(config.ConfigError) as caught:
+        config.parse(HEAD + given + TAIL)
+    assert told in str(caught.value)
+
+
+def test_a_force_is_for_oscillators():
+    with pytest.raises(config.ConfigError, match="driven by its side frame"):
+        config.parse(RANDOM + "start_hz = 1.0\nstop_hz = 4.0\n" + TAIL)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("missing.csv", None, "missing.csv: No such file"),
+        ("one.csv", "t,base\n0.0,1.0\n", "holds 1 samples"),
+        ("uneven.csv", "t,base\n0.0,1.0\n0.1,2.0\n0.3,1.0\n", "not sampled at an even rate"),
+        ("other.csv", "t,table\n0.0,1.0\n0.1,2.0\n", "base"),
+        ("words.csv", "t,base\n0.0,one\n0.1,2.0\n", "words.csv:2"),
+    ],
+)
+def test_faults_of_a_recorded_input_are_told(tmp_path, name, text, told):
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    (tmp_path / "a.toml").write_text(HEAD + RECORD.replace("bump.csv", name) + TAIL)
+    with pytest.raises(config.ConfigError) as caught:
+        config.load(tmp_path / "a.toml")
+    assert told in str(caught.value)
+
+
+def test_a_case_of_a_sine_and_a_check_by_radau_are_refused(folder):
+    told = invoke("case", "swept.toml", "--beta", "1", "--amplitude", "1", code=2)
+    assert "remove [input]" in told
+    assert "--verify" in invoke("run", "swept.toml", "--verify", "2", code=2)
+
+
+def test_the_template_shows_all_kinds_and_each_is_valid():
+    text = config.template()
+    for name, kind in config.inputs.KINDS.items():
+        assert f'kind = "{name}"' in text
+        for key in kind.keys:
+            assert f"# {key} = " in text
+    assert config.inputs.SCALE.key in text
+
+
+def test_a_config_with_an_input_reads_back(folder):
+    for name in ("release", "record", "swept"):
+        read = config.load(f"{name}.toml")
+        assert config.parse(read.to_toml()) == read

@@ -1,0 +1,194 @@
+"""Declaration of the table [input], whose keys depend on its kind, and of [sweep] beside it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import nan
+from typing import Any
+
+from wedgesweep.config import toml
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole, hint, show
+from wedgesweep.config.series import Series
+from wedgesweep.config.tables import Table, table
+from wedgesweep.inputs.units import RECORDED, UNITS
+from wedgesweep.quantity import Quantity
+
+KIND = "kind"
+
+
+def _positive(key: str, meaning: str, default: float = nan, **more: Any) -> Number:
+    return Number.of(Quantity(key, default, meaning, above=0.0), **more)
+
+
+def _any(key: str, meaning: str, default: float = nan, **more: Any) -> Number:
+    return Number.of(Quantity(key, default, meaning), **more)
+
+
+def _size(key: str, meaning: str, example: float) -> tuple[Key, ...]:
+    """A number whose unit tells the quantity: motion of the base, or a force on the mass."""
+    return tuple(
+        _positive(f"{key}_{unit}", f"{meaning}: {own.quantity}", example=example)
+        for unit, own in UNITS.items()
+    )
+
+
+DURATION = _positive("duration_s", "length of the input", example=30.0)
+SAMPLING = _positive("sampling_hz", "rate of the stored waveforms", optional=True, example=500.0)
+FADE = Number.of(
+    Quantity("fade_s", 0.0, "time in which it rises at its start and falls at its end", minimum=0.0)
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Levels(Key):
+    """Levels of a density, one for each of its frequencies."""
+
+    item: Number
+
+    def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
+        given = value if isinstance(value, list) else [value]
+        read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
+        return [each for each in read if each is not None]
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": "array", "items": self.item.shape(), "minItems": 1}
+
+
+def _kind(name: str, meaning: str, *keys: Key | tuple[Key, ...]) -> Table:
+    kind = Choice(key=KIND, meaning=meaning, choices=(name,), example=name)
+    return table("input", meaning, kind, *keys, optional=True)
+
+
+SINE_SWEEP = _kind(
+    "sine-sweep",
+    "a sine whose frequency moves through a band",
+    _size("amplitude", "amplitude", 1.0),
+    _positive("start_hz", "frequency at the start", example=2.0),
+    _positive("stop_hz", "frequency at the end", example=30.0),
+    Choice(
+        key="rate",
+        meaning="how the frequency moves: equal ratios, or equal steps, in equal times",
+        choices=("logarithmic", "linear"),
+        default="logarithmic",
+    ),
+    DURATION,
+    FADE,
+    SAMPLING,
+)
+RANDOM = _kind(
+    "random",
+    "random motion with a given power spectral density",
+    _size("rms", "rms of all", 1.0),
+    _positive("start_hz", "lowest frequency of a band of even density", optional=True, example=2.0),
+    _positive("stop_hz", "highest frequency of it", optional=True, example=30.0),
+    Series(
+        key="frequency_hz",
+        meaning="instead of a band: frequencies of a table of the density",
+        item=_positive("frequency_hz", "frequency"),
+        optional=True,
+        example=[1.0, 10.0, 30.0],
+    ),
+    Levels(
+        key="level",
+        meaning="the density at each of them, in any unit",
+        item=_positive("level", "level"),
+        optional=True,
+        example=[1.0, 1.0, 0.1],
+    ),
+    Whole.of(Quantity("seed", 0, "seed of the random numbers", minimum=0, maximum=2**31 - 1)),
+    Flag(key="periodic", meaning="whether it would repeat: then its spectrum is exact", default=True),
+    DURATION,
+    FADE,
+    SAMPLING,
+)
+RELEASE = _kind(
+    "release",
+    "no input: the mass is released and rings down",
+    _any("displacement_mm", "displacement at the start, as the dataset counts it", 0.0),
+    _any("velocity_mm_per_s", "velocity at the start", 0.0),
+    DURATION,
+    SAMPLING,
+)
+RAMP = _kind(
+    "ramp",
+    "a base that moves at a constant velocity",
+    _any("velocity_mm_per_s", "velocity of the base", example=10.0),
+    DURATION,
+    SAMPLING,
+)
+
+
+RECORD = _kind(
+    "record",
+    "a recorded input",
+    Text(key="file", meaning="CSV file, relative to this config", example="bump.csv"),
+    Text(key="sha256", meaning="digest of the file; filled in when the config is read", optional=True),
+    Text(key="column", meaning="header of the input's column", example="base"),
+    Choice(key="quantity", meaning="what it is", choices=tuple(RECORDED), default="displacement"),
+    Choice(
+        key="unit",
+        meaning="its unit",
+        choices=tuple(dict.fromkeys(unit for units in RECORDED.values() for unit in units)),
+        example="mm",
+    ),
+    (
+        Text(key="time", meaning="header of the time's column (s)", example="time"),
+        _positive("sampling_hz", "sampling rate, where there is no such column", example=500.0),
+    ),
+    Flag(key="detrend", meaning="take off its mean", default=False),
+)
+KINDS = {
+    "sine-sweep": SINE_SWEEP,
+    "random": RANDOM,
+    "record": RECORD,
+    "ramp": RAMP,
+    "release": RELEASE,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ByKind(Key):
+    """A table whose keys depend on its key ``kind``."""
+
+    kinds: Mapping[str, Table]
+
+    def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            problems.append(f"{path}: {show(value)} is not a table; write [{path}], its keys below")
+            return {}
+        if value.get(KIND) not in list(self.kinds):
+            told = f"unknown name {show(value[KIND])}" if KIND in value else "missing"
+            problems.append(f"{path}.{KIND}: {told}; {hint(str(value.get(KIND, '')), self.kinds)}")
+            return {}
+        return self.kinds[value[KIND]].read(value, path, problems)
+
+    def shape(self) -> dict[str, Any]:
+        return {"oneOf": [each.shape() for each in self.kinds.values()]}
+
+
+INPUT = ByKind(
+    key="input",
+    meaning="an input that does not repeat, instead of frequencies and amplitudes in [sweep]",
+    kinds=KINDS,
+    optional=True,
+)
+SCALE = Series(
+    key="scale",
+    meaning="what multiplies the input, or the displacement and velocity of a release",
+    item=_positive("scale", "scale"),
+    default=[1.0],
+)
+
+
+def template(mark: str = "# ") -> str:
+    """TOML text of all kinds, commented out."""
+    lines = [
+        f"\n# {INPUT.meaning}:\n# then [sweep] holds only friction_law and scale, and [solver] no settle\n"
+    ]
+    lines.append(f"{mark}sweep.{SCALE.written}  # {SCALE.meaning}\n")
+    for name, kind in KINDS.items():
+        lines.append(f"# kind {name}: {kind.meaning}\n{mark}[input]\n{mark}{KIND} = {toml.inline(name)}\n")
+        for group in kind.groups[1:]:
+            for key in group:
+                about = "; ".join(filter(None, (key.meaning, key.limits)))
+                lines.append(f"{mark}{key.written}  # {about}\n")
+    return "".join(lines)

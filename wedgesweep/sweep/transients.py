@@ -1,0 +1,84 @@
+"""Cases whose input does not repeat: a whole motion becomes a record, and its times coordinates."""
+
+from collections.abc import Mapping
+from math import inf, nan
+from typing import Any
+
+import numpy as np
+
+from wedgesweep import response, simulate
+from wedgesweep.inputs import sine_sweep
+from wedgesweep.inputs.sampled import Input
+from wedgesweep.simulate import Settings, Transient
+from wedgesweep.solvers.trajectory import CaseError, Trajectory
+from wedgesweep.systems import driven_mass, is_oscillator, moving_mass
+
+
+def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
+    """Run a case, shape (1,), whose input amplitude is the scale, into a record. Raises CaseError."""
+    given = settings.transient
+    if given is None:
+        message = "settings without an input"
+        raise ValueError(message)
+    run = simulate.transient(case, given, float(case["input"]["amplitude"][0]), settings)
+    if not np.isfinite(run.samples.x).all():
+        message = "the motion is not finite"
+        raise CaseError(message, "not_finite")
+    x, velocity = response.sensed(run.samples.x, run.samples.velocity, given.span / given.samples, case)
+    waveforms = {
+        "displacement": -x,
+        "velocity": -velocity,
+        "acceleration": -run.samples.acceleration,
+        "normal_force_column": run.samples.normal[0],
+        "normal_force_bolster": run.samples.normal[1],
+        "force": _force(case, given, run),
+        "stuck": run.samples.sticks,
+    }
+    variables = {**_numbers(run, case[0], x, velocity), **run.statistics, **waveforms}
+    for name in variables.keys() & set(record.dtype.names or ()):
+        record[name] = variables[name]
+
+
+def _force(case: np.ndarray, given: Transient, run: Trajectory) -> np.ndarray:
+    """Force (N) of springs, dampers and friction against the displacement: what is left of inertia."""
+    scale, inertia = float(case["input"]["amplitude"][0]), moving_mass(case)[0] * run.samples.acceleration
+    if is_oscillator(case) and case["oscillator"]["forced"][0]:
+        return inertia + scale * given.sampled(run.samples.t)
+    if is_oscillator(case) and case["oscillator"]["absolute"][0]:
+        return inertia
+    driven = driven_mass(case)[0] * scale * given.sampled(run.samples.t, 2)
+    # The displacement of a suspension is that of the side frame against the bolster.
+    return inertia - driven if is_oscillator(case) else inertia + driven
+
+
+def _numbers(run: Trajectory, p: np.void, x: np.ndarray, velocity: np.ndarray) -> dict[str, float]:
+    """Numbers of a motion; samples ``x`` and ``velocity`` as the sensors show them."""
+    one, gain = run.sums[0], float(p["displacement_gain"]["scale"])
+    slipping = one["time"] - (one["stuck_time"] if p["friction"]["set_valued"] else 0.0)
+    lagged = p["velocity_lag"]["time"] > 0.0
+    return {
+        "peak_displacement": gain * max(abs(one["highest"]), abs(one["lowest"])),
+        "peak_to_peak": gain * (one["highest"] - one["lowest"]),
+        "peak_velocity": float(np.abs(velocity).max()) if lagged else one["peak_velocity"],
+        "mean_displacement": -gain * one["integral"] / one["time"],
+        "rms_displacement": float(np.sqrt(np.mean(x**2))),
+        "stick_fraction": one["stuck_time"] / one["time"],
+        "dissipated_energy": one["dissipated"],
+        "supplied_energy": one["supplied"],
+        "minimum_normal_force": one["normal_force"] if one["normal_force"] < inf else nan,
+        "lift_off_fraction": one["lifted_time"] / slipping if slipping > 0.0 else nan,
+    }
+
+
+def coordinates(given: Input, transient: Transient, table: Mapping[str, Any]) -> dict[str, Any]:
+    """Times of the stored samples, the input there at scale 1, and the frequency of a sine sweep."""
+    t = np.arange(transient.samples) * (transient.span / transient.samples)
+    about = {"units": given.units, "long_name": f"input at scale 1 ({given.quantity})"}
+    found = {
+        "time": ("time", t, {"units": "s", "long_name": "time"}),
+        "input": ("time", given.at(t, transient.sampled), about),
+    }
+    if table["kind"] == "sine-sweep":
+        words = {"units": "Hz", "long_name": "frequency of the input"}
+        found["input_frequency"] = ("time", sine_sweep.frequency(table, t), words)
+    return found

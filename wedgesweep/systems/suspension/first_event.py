@@ -1,0 +1,184 @@
+"""The first event of linear slip.
+
+A scan with rotation matrices (no trigonometry) finds the interval of the first event, a safeguarded Newton
+iteration the event itself, to rounding error. Normal forces are watched only where the amplitudes of both
+parts of the motion allow them to vanish. The oscillator is in ``linear_slip.py``.
+"""
+
+from math import inf, pi, sqrt
+from typing import Any, NamedTuple
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.hybrid.search import Bracket, minimum, searched, zero_after_start, zero_near
+from wedgesweep.hybrid.state import NO_EVENT
+from wedgesweep.systems.suspension.events import COLUMN_NORMAL
+from wedgesweep.systems.suspension.linear_slip import (
+    Oscillator,
+    Phase,
+    acceleration,
+    jolt,
+    motion,
+    normal_forces,
+    phase_at,
+    rotated,
+    small_angles,
+    soon,
+)
+
+# Scanned intervals per period of input or free vibration, whichever is shorter.
+SCAN = 16
+# The event functions of an oscillator: slip velocity, and the normal forces on column and bolster.
+SLIP, COLUMN_FORCE, BOLSTER_FORCE = 0, 1, 2
+# Error of an event's phase (rad), and of that of a minimum as a share of the interval.
+ROUNDING, GRAZING = 1e-15, 1e-9
+
+
+class _Sample(NamedTuple):
+    """An event function at a phase, and its time derivative."""
+
+    value: float
+    slope: float
+
+
+class _Piece(NamedTuple):
+    """One of the event functions from a phase on."""
+
+    which: int
+    phase: Phase
+    oscillator: Oscillator
+    mode: tuple
+    p: Any
+
+
+@inlined
+def _slip(phase, o, mode, p):
+    """How far the slip velocity is from the end of the mode."""
+    return _Sample(
+        mode.column * motion(phase, o, p)[1] - o.threshold, mode.column * acceleration(phase, o, p)
+    )
+
+
+@inlined
+def _force(which, phase, o, mode, p):
+    """The normal force on a face, with the sign that it has on the mode."""
+    values, slopes = normal_forces(phase, o, p), jolt(phase, o, p)
+    if which == COLUMN_FORCE:
+        return _Sample(mode.column_sign * values[0], mode.column_sign * slopes[0])
+    return _Sample(mode.bolster_sign * values[1], mode.bolster_sign * slopes[1])
+
+
+@inlined
+def _sample(piece, phase):
+    """The event function of a piece at another phase."""
+    if piece.which == SLIP:
+        return _slip(phase, piece.oscillator, piece.mode, piece.p)
+    return _force(piece.which, phase, piece.oscillator, piece.mode, piece.p)
+
+
+@searched(_Piece)
+@inlined
+def _value(time, piece):
+    """An event function some time (s) after the phase of a piece, and its slope."""
+    return _sample(piece, soon(piece.phase, time, piece.oscillator, piece.p))
+
+
+@inlined
+def _least(sign, offset, by_x, by_u, amplitude, o, p):
+    """Lower bound of a normal force while the mode lasts; ``amplitude`` (m) of the free part."""
+    driven = by_x * o.forced - by_u * p.input.amplitude * p.input.omega**2
+    return sign * (offset + by_x * o.centre) - abs(driven) - abs(by_x) * amplitude
+
+
+@inlined
+def _forces_may_vanish(phase, o, mode, p):
+    """Whether a normal force may become zero on the mode."""
+    amplitude = sqrt(phase.free**2 + phase.quadrature**2)
+    column = _least(mode.column_sign, o.column, o.column_x, o.column_u, amplitude, o, p)
+    bolster = _least(mode.bolster_sign, o.bolster, o.bolster_x, o.bolster_u, amplitude, o, p)
+    return min(column, bolster) <= 0.0
+
+
+@inlined
+def _may_graze(before, after, span):
+    """Whether an event function may be negative between two positive samples.
+
+    It may if its tangents meet near zero or below: between samples this close a function with a minimum is
+    convex, and lies above its tangents.
+    """
+    falling, rising = before.slope, after.slope
+    if not falling < 0.0 < rising:
+        return False
+    lowest = (rising * before.value - falling * after.value + falling * rising * span) / (rising - falling)
+    return lowest < 0.1 * before.value
+
+
+@inlined
+def _crossing(before, after, span):
+    """Estimate of the time at which an event function that falls over an interval is zero.
+
+    Hermite's cubic for time as a function of the value; between samples this close it is good to 1e-4.
+    """
+    rise, start, end = after.value - before.value, before.slope, after.slope
+    share = -before.value / rise
+    if not (start < 0.0 and end < 0.0):
+        return share * span
+    rest = 1.0 - share
+    return share * (share * (3.0 - 2.0 * share) * span + rest * rise * (rest / start - share / end))
+
+
+@inner
+def _first_zero(piece, before, after, span, from_zero):
+    """Time at which an event function is first zero in an interval between two samples; inf: nowhere."""
+    omega, high, value = piece.p.input.omega, span, after.value
+    if value > 0.0 and not from_zero and _may_graze(before, after, span):
+        high = minimum(piece, 0.0, span, GRAZING * span)
+        value = _value(high, piece)[0]
+    if value > 0.0:
+        return inf
+    bracket = Bracket(0.0, before.value, high, value)
+    if from_zero or before.value <= 0.0:
+        return zero_after_start(piece, bracket, 1e-12 / omega, ROUNDING / omega)
+    return zero_near(piece, bracket, _crossing(before, after, span), ROUNDING / omega)
+
+
+@inlined
+def _earlier(found, piece, later, span, at_zero):
+    """The first event so far, (time, number), or that of one more event function if it is earlier."""
+    before, after = _sample(piece, piece.phase), _sample(piece, later)
+    if after.value > 0.0 and not _may_graze(before, after, span):
+        return found
+    time = _first_zero(piece, before, after, span, piece.which == at_zero)
+    return (time, piece.which) if time < found[0] else found
+
+
+@inlined
+def _begins_at(state, o):
+    """Event function that is zero where a mode begins; -1 if none is."""
+    if state.y[1] == 0.0 or state.last_event == o.event:
+        return SLIP
+    return state.last_event - COLUMN_NORMAL + COLUMN_FORCE if state.last_event >= COLUMN_NORMAL else -1
+
+
+@inner
+def slide(state, stop, o, p):
+    """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
+    t, mode, at_zero = state.t, state.mode, _begins_at(state, o)
+    step = 2.0 * pi / max(p.input.omega, o.frequency) / SCAN
+    turn = small_angles(step, o, p)
+    phase = phase_at(t, state.y[0], state.y[1], o, p)
+    forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, o, mode, p)
+    while t < stop:
+        span = min(step, stop - t)
+        later = rotated(phase, *turn) if span == step else soon(phase, span, o, p)
+        found = _earlier((inf, -1), _Piece(SLIP, phase, o, mode, p), later, span, at_zero)
+        if forces:
+            found = _earlier(found, _Piece(COLUMN_FORCE, phase, o, mode, p), later, span, at_zero)
+            found = _earlier(found, _Piece(BOLSTER_FORCE, phase, o, mode, p), later, span, at_zero)
+        time, which = found
+        if which >= 0:
+            x, velocity = motion(soon(phase, time, o, p), o, p)
+            return t + time, x, velocity, o.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which
+        t += span
+        phase, at_zero = later, -1
+    x, velocity = motion(phase, o, p)
+    return stop, x, velocity, NO_EVENT

@@ -1,0 +1,201 @@
+"""Slip under constant friction as a linear oscillator: its equations, solved.
+
+    x'' = c0 + cx x + cu u''      N = n0 + nx x + nu u''  on either face
+    x(t) = centre + forced sin(omega t) + A cos(Omega s) + B sin(Omega s),   s = t - start
+
+Where the motion is, a ``Phase`` says; it moves on by rotations.
+"""
+
+from math import inf, sqrt
+from typing import NamedTuple
+
+from wedgesweep import friction
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import guide_friction
+from wedgesweep.systems.suspension.faces import coefficients
+from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, GUIDE
+from wedgesweep.systems.suspension.newton import Coefficients, Loads, loads, reactions
+from wedgesweep.trigonometry import cosine, sine, small_turn
+
+# Relative distance of both squared frequencies below which the forced and the free part nearly cancel.
+RESONANT = 1e-4
+
+
+class Oscillator(NamedTuple):
+    """One mode's linear equations, solved: see the module's docstring; the coefficients of friction."""
+
+    linear: bool
+    frequency: float  # Omega, rad/s
+    centre: float  # m
+    forced: float  # m
+    driven: float  # cu
+    column: float
+    column_x: float
+    column_u: float
+    bolster: float
+    bolster_x: float
+    bolster_u: float
+    column_mu: float  # signed, for T = mu N: with the sign of the normal force
+    bolster_mu: float
+    threshold: float  # of |z'|, below which the mode ends
+    event: int  # which event function that is
+
+
+@inlined
+def _threshold(mode, p):
+    """Smallest |z'| of a mode whose faces all slip, and the event that ends it there."""
+    ratio, place, branch = p.geometry.column_ratio, COLUMN, mode.column
+    if p.friction.set_valued:
+        return 0.0, 2 * COLUMN if branch > 0 else 2 * COLUMN + 1
+    v_t, across = p.friction.v_t, abs(p.geometry.bolster_ratio)
+    if across != 0.0 and across < ratio:
+        ratio, place, branch = across, BOLSTER, mode.bolster
+    if guide_friction.acts(p) and ratio > 1.0:
+        ratio, place, branch = 1.0, GUIDE, mode.guide
+    return v_t / ratio, 2 * place if branch > 0 else 2 * place + 1
+
+
+@inlined
+def _constant_friction(mode, p):
+    """Whether no coefficient of friction depends on velocity on this mode."""
+    if p.friction.set_valued:
+        return True
+    bolster = abs(mode.bolster) == 1 or p.geometry.bolster_ratio == 0.0
+    guide = abs(mode.guide) == 1 or not guide_friction.acts(p)
+    return friction.constant(p) and abs(mode.column) == 1 and bolster and guide
+
+
+@inner
+def oscillator(y, mode, p):
+    """Closed form of a mode with constant friction; ``linear`` is False where there is none."""
+    if not (p.geometry.always_well_posed and _constant_friction(mode, p)):
+        return Oscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
+    s, g, omega = p.suspension, p.geometry, p.input.omega
+    column_mu, bolster_mu = coefficients(0.0, y, mode, p)
+    mu = Coefficients(mode.column_sign * column_mu, mode.bolster_sign * bolster_mu, 0.0, 0.0)
+    at_rest = reactions(loads(0.0, (0.0, 0.0), mode, p), mu, p)[0]
+    driven = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0]
+    wedge = -s.wedge_spring * g.column_ratio * g.cos_column
+    by_x = reactions(
+        Loads(wedge * g.cos_column, wedge * g.sin_column, -s.bolster_spring, 0.0, 0.0, 0.0), mu, p
+    )[0]
+    square = -by_x.acceleration
+    linear = square > 0.0 and abs(square - omega**2) > RESONANT * omega**2
+    if not linear:
+        square = inf
+    threshold, event = _threshold(mode, p)
+    return Oscillator(
+        linear,
+        sqrt(square),
+        at_rest.acceleration / square,
+        driven.acceleration * p.input.amplitude * omega**2 / (omega**2 - square),
+        driven.acceleration,
+        at_rest.column,
+        by_x.column,
+        driven.column,
+        at_rest.bolster,
+        by_x.bolster,
+        driven.bolster,
+        mu.column,
+        mu.bolster,
+        threshold,
+        event,
+    )
+
+
+class Phase(NamedTuple):
+    """Where the oscillator is: input (cos, sin) and the free part (m) with its quadrature."""
+
+    cosine: float
+    sine: float
+    free: float
+    quadrature: float
+
+
+@inlined
+def phase_at(t, x, velocity, free_motion, p):
+    """Phase of a state at time t."""
+    c, s = cosine(p.input.omega * t), sine(p.input.omega * t)
+    free = x - free_motion.centre - free_motion.forced * s
+    quadrature = (velocity - free_motion.forced * p.input.omega * c) / free_motion.frequency
+    return Phase(c, s, free, quadrature)
+
+
+@inlined
+def rotated(phase, input_cos, input_sin, free_cos, free_sin):
+    """Phase after both parts have turned by the given angles."""
+    return Phase(
+        phase.cosine * input_cos - phase.sine * input_sin,
+        phase.sine * input_cos + phase.cosine * input_sin,
+        phase.free * free_cos + phase.quadrature * free_sin,
+        phase.quadrature * free_cos - phase.free * free_sin,
+    )
+
+
+@inlined
+def angles(time, o, p):
+    """Cosine and sine of the angles by which input and free vibration turn in some time (s)."""
+    a, b = p.input.omega * time, o.frequency * time
+    return cosine(a), sine(a), cosine(b), sine(b)
+
+
+@inner
+def advanced(phase, time, o, p):
+    """Phase some time (s) later."""
+    return rotated(phase, *angles(time, o, p))
+
+
+@inlined
+def small_angles(time, o, p):
+    """As ``_angles``, for at most an interval of the scan."""
+    input_cos, input_sin = small_turn(p.input.omega * time)
+    free_cos, free_sin = small_turn(o.frequency * time)
+    return input_cos, input_sin, free_cos, free_sin
+
+
+@inlined
+def soon(phase, time, o, p):
+    """As ``advanced``, for at most an interval of the scan."""
+    return rotated(phase, *small_angles(time, o, p))
+
+
+@inlined
+def motion(phase, o, p):
+    """Displacement (m) and velocity (m/s)."""
+    x = o.centre + o.forced * phase.sine + phase.free
+    return x, o.forced * p.input.omega * phase.cosine + o.frequency * phase.quadrature
+
+
+@inlined
+def acceleration(phase, o, p):
+    """X'' in m/s^2."""
+    return -o.forced * p.input.omega**2 * phase.sine - o.frequency**2 * phase.free
+
+
+@inlined
+def normal_forces(phase, o, p):
+    """Normal forces (N) on column and bolster face."""
+    x, u2 = motion(phase, o, p)[0], base_acceleration(phase, p)
+    return o.column + o.column_x * x + o.column_u * u2, o.bolster + o.bolster_x * x + o.bolster_u * u2
+
+
+@inlined
+def jolt(phase, o, p):
+    """Rates of the ``normal_forces`` (N/s)."""
+    velocity = motion(phase, o, p)[1]
+    u3 = -p.input.amplitude * p.input.omega**3 * phase.cosine
+    return o.column_x * velocity + o.column_u * u3, o.bolster_x * velocity + o.bolster_u * u3
+
+
+@inlined
+def base_acceleration(phase, p):
+    """U'' in m/s^2."""
+    return -p.input.amplitude * p.input.omega**2 * phase.sine
+
+
+@inlined
+def forces_at(x, u2, o):
+    """Acceleration z'' (m/s^2) and the smaller normal force (N) at a displacement and base acceleration."""
+    column = o.column + o.column_x * x + o.column_u * u2
+    bolster = o.bolster + o.bolster_x * x + o.bolster_u * u2
+    return o.driven * u2 - o.frequency**2 * (x - o.centre), min(column, bolster)

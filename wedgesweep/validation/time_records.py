@@ -1,0 +1,117 @@
+"""Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
+
+An oscillator hides one effect, or none in every fifth set. How strongly it shows is drawn and not aimed at:
+sets whose excess is too small for a name count as weak.
+"""
+
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.effects import EFFECTS
+from wedgesweep.synthesize.names import NOISES
+from wedgesweep.validation import ranges, rigs
+from wedgesweep.validation.rigs import Rig
+from wedgesweep.validation.sets import DataSet
+
+TRANSIENT, LOOP, MIXED = TIME_KINDS = ("transient", "loop", "mixed")
+LAWS = ("coulomb", "static-dynamic")
+# Effects of a sine as an input, and those that a loop cannot show.
+OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
+NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_lag")
+# Every so many sets one hides nothing.
+CLEAN_EACH = 5
+# Natural frequency (Hz), damping ratio, and friction over the spring's force at the largest motion.
+FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
+# Largest motion (mm) of a mass (kg), noise over the rms of a channel, strength of an effect from 0 to 1.
+TRAVEL_MM, MASS_KG, LEVEL, STRENGTH = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02), (0.35, 0.9)
+# Sampling rate, lengths of a release, a sweep and a loop in natural periods.
+SAMPLED, RELEASE, SWEEP, LOOPS = 60.0, 8.0, 24.0, 20.0
+# Frequencies of steady tests beside the others, over the natural one.
+STEADY = (0.7, 0.9, 1.15, 1.4)
+
+
+def draw(one: DataSet) -> dict[str, Any]:
+    """Rig, tests, effect and noise of a set, as documents."""
+    random = one.random()
+    frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
+    law = LAWS[one.index % len(LAWS)]
+    rig = _rig(frequency, travel, random)
+    hidden: dict[str, dict[str, float]] = {}
+    if one.index % CLEAN_EACH != CLEAN_EACH - 1:
+        left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
+        possible = [name for name in EFFECTS if name in rig.possible_effects and name not in left_out]
+        order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
+        effect = possible[order[one.index % len(possible)]]
+        strength = float(random.uniform(*STRENGTH))
+        numbers = ranges.path(effect, random, rig.units)(strength)
+        hidden[effect] = {key: float(f"{value:.6g}") for key, value in numbers.items()}
+    return {
+        "law": law,
+        "document": rig.document(law, hidden),
+        "hidden": hidden,
+        "tests": TESTS[one.kind](frequency, travel),
+        "sampling_hz": round(SAMPLED * frequency, 3),
+        "level": round(rigs.logarithmic(LEVEL, random), 5),
+        "noise": NOISES[one.index % 3],
+    }
+
+
+def _rig(frequency: float, travel: float, random: np.random.Generator) -> Rig:
+    mass, omega = rigs.logarithmic(MASS_KG, random), 2.0 * pi * frequency
+    stiffness = mass * omega**2
+    own = {
+        "mass_kg": mass,
+        "spring_N_per_mm": 1e-3 * stiffness,
+        "damping_N_s_per_m": 2.0 * rigs.logarithmic(DAMPING, random) * mass * omega,
+        "normal_force_N": rigs.logarithmic(FRICTION, random) * 1e-3 * travel * stiffness / 0.3,
+    }
+    rounded = {key: float(f"{value:.6g}") for key, value in own.items()}
+    threshold = float(f"{rigs.THRESHOLD * travel * omega:.6g}")
+    sections: rigs.Sections = {
+        "oscillator": {**rounded, "contact": "base"},
+        "friction": {"static": 0.36, "dynamic": 0.3, "threshold_velocity_mm_per_s": threshold},
+    }
+    return Rig(sections)
+
+
+def _releases(frequency: float, travel: float) -> list[dict[str, Any]]:
+    length = {"kind": "transient", "duration_s": RELEASE / frequency}
+    speed = 2.0 * pi * frequency * travel
+    return [
+        {**length, "release_mm": travel},
+        {**length, "release_mm": -0.7 * travel, "release_mm_per_s": 0.2 * speed},
+        {**length, "release_mm": 0.5 * travel, "release_mm_per_s": -0.3 * speed},
+    ]
+
+
+def _transients(frequency: float, travel: float) -> list[dict[str, Any]]:
+    sweep = {
+        "kind": "transient",
+        "motion": "sweep",
+        "frequency_hz": 0.5 * frequency,
+        "to_hz": 2.0 * frequency,
+        "amplitude_mm": 0.25 * travel,
+        "duration_s": SWEEP / frequency,
+    }
+    return [*_releases(frequency, travel), sweep]
+
+
+def _loops(frequency: float, travel: float) -> list[dict[str, Any]]:
+    length = {"kind": "loop", "duration_s": LOOPS / frequency}
+    return [
+        {**length, "frequency_hz": 0.4 * frequency, "amplitude_mm": travel},
+        {**length, "frequency_hz": 0.7 * frequency, "amplitude_mm": 0.5 * travel},
+    ]
+
+
+def _mixed(frequency: float, travel: float) -> list[dict[str, Any]]:
+    steady = [
+        {"frequency_hz": share * frequency, "amplitude_mm": 0.25 * travel, "amplitude_std": 0.005}
+        for share in STEADY
+    ]
+    return [*steady, *_releases(frequency, travel), _loops(frequency, travel)[0]]
+
+
+TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed}
