@@ -15,7 +15,10 @@ ROOT = Path(__file__).parents[1]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 # Few candidates and no report, as both have tests of their own.
-SHORTENED = ("--effects", "cubic_stiffness,quadratic_drag", "--no-report")
+SHORTENED = {
+    "diagnose": ("--effects", "cubic_stiffness,quadratic_drag", "--no-report"),
+    "run": ("--n-jobs", "1"),
+}
 
 
 def command_lines(page):
@@ -47,7 +50,7 @@ def test_the_tutorial_runs(tmp_path, monkeypatch):
     shutil.copytree(ROOT / "examples", "examples")
     told = {}
     for words in command_lines(TUTORIAL):
-        told[words[0]] = invoke(*words, *(SHORTENED if words[0] == "diagnose" else ()))
+        told[words[0]] = invoke(*words, *SHORTENED.get(words[0], ()))
     found = json.loads(Path("shaker-result/diagnosis.json").read_text())
     truth = json.loads((ROOT / "examples/shaker/truth.json").read_text())["effects"]["cubic_stiffness"]
     (cause,) = found["causes"]

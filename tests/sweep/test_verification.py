@@ -119,3 +119,9 @@ def test_very_many_cases_must_be_confirmed(here, monkeypatch):
     assert not list(here.glob("c.nc*"))
     assert "8 ok" in run(SOLVERS["fixed"], "--yes")
     assert "already complete" in run(SOLVERS["fixed"])
+
+
+def test_an_input_that_does_not_repeat_is_refused(here):
+    config = Path(__file__).parents[2] / "configs" / "lugre.toml"
+    assert "this input does not repeat" in invoke("run", config, "--verify", 2, code=2)
+    assert not list(here.iterdir())

@@ -88,6 +88,9 @@ def run(
     """
     _require_consistent(backend, scheduler, options["n_jobs"])
     settings = _settings(config_path, solver)
+    if options["verify"] is not None and settings.transient:
+        message = f"{config_path}: --verify compares responses to a sine; this input does not repeat"
+        raise Failure(message)
     from wedgesweep.errors import MismatchError
     from wedgesweep.sweep.backend import count_jobs
     from wedgesweep.sweep.run import CaseFailedError, Sweep

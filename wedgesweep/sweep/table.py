@@ -40,7 +40,8 @@ def rows(ds: xr.Dataset, variables: Sequence[str]) -> Iterator[list[list[str]]]:
     The first columns are the case: law, beta, frequency and amplitude. A column's name ends with its unit in
     brackets; the parts of a variable that has several a case are columns of their own.
     """
-    columns = [column for name in (*COORDINATES, *variables) for column in _columns(ds, name)]
+    names = [name for name in COORDINATES if name in ds.coords]
+    columns = [column for name in (*names, *variables) for column in _columns(ds, name)]
     yield [[header for header, _ in columns]]
     count = ds["status"].size
     for first in range(0, count, AT_A_TIME):
