@@ -65,7 +65,7 @@ def test_mathml_is_well_formed_and_holds_every_symbol():
             shown = "".join(tree.itertext())
             for name in notation.names(line):
                 stem = notation.Name(name).stem
-                assert mathml.LETTERS.get(stem, stem) in shown
+                assert notation.GREEK.get(stem, stem) in shown
         ET.fromstring(f"<p>{mathml.prose(each.remark)}</p>")
 
 
@@ -78,6 +78,7 @@ def test_structure():
     assert "<msubsup><mi>x</mi><mi>f</mi><mo>″</mo></msubsup>" in mathml.display("x_f''")
     assert "<msqrt>" in mathml.display("sqrt(k m)")
     assert "damping ratio" in mathml.display("2 damping_ratio")
+    assert "<msub><mi>σ</mi><mi>0</mi></msub>" in mathml.display("sigma_0")
     assert mathml.prose("a < $v_t$").startswith("a &lt; <math")
 
 

@@ -5,10 +5,6 @@ from html import escape
 from wedgesweep.equations import notation
 from wedgesweep.equations.notation import Call, Fraction, Group, Name, Node, Number, Operator, Power, Row
 
-LETTERS = {
-    **{"alpha": "α", "beta": "β", "gamma": "γ", "mu": "μ", "omega": "ω"},
-    **{"pi": "π", "phi": "φ", "sigma": "σ", "tau": "τ", "zeta": "ζ"},
-}
 SIGNS = {"->": "→", "<=": "≤", ">=": "≥", "!=": "≠", "-": "−", "+-": "±", ".": "⋅"}
 PRIMES = ("", "′", "″")
 # Invisible, but read aloud: a product, and a function of what follows.
@@ -58,7 +54,9 @@ def _row(row: Row) -> str:
 
 def _is_word(node: Node) -> bool:
     """Whether a node is written as a word, which a factor beside it must not run into."""
-    return isinstance(node, Call) or (isinstance(node, Name) and len(LETTERS.get(node.stem, node.stem)) > 1)
+    return isinstance(node, Call) or (
+        isinstance(node, Name) and len(notation.GREEK.get(node.stem, node.stem)) > 1
+    )
 
 
 def _node(node: Node) -> str:
@@ -94,7 +92,7 @@ def _bracketed(opening: str, content: Row) -> str:
 
 
 def _name(name: Name) -> str:
-    stem = f"<mi>{LETTERS.get(name.stem, name.stem)}</mi>"
+    stem = f"<mi>{notation.GREEK.get(name.stem, name.stem)}</mi>"
     index = f"<mi>{name.index}</mi>"
     primes = f"<mo>{PRIMES[name.primes]}</mo>"
     if name.index and name.primes:

@@ -11,7 +11,10 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-GREEK = ("alpha", "beta", "gamma", "mu", "omega", "pi", "phi", "sigma", "tau", "zeta")
+GREEK = {
+    **{"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "zeta": "ζ", "theta": "θ", "mu": "μ"},
+    **{"pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "omega": "ω"},
+}
 FUNCTIONS = ("sign", "exp", "ln", "sin", "cos")
 ROOT = "sqrt"
 RELATIONS = ("->", "<=", ">=", "!=", "=", "<", ">")
