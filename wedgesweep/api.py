@@ -144,8 +144,8 @@ def run_sweep(
     Returns
     -------
     xarray.Dataset
-        One value or waveform per case in SI units, over friction_law, beta and amplitude, or over case if
-        the config lists its cases.
+        One value or waveform per case in SI units, over friction_law, beta and amplitude, over case if the
+        config lists its cases, or over friction_law and scale if it has an [input].
 
     Raises
     ------

@@ -165,6 +165,7 @@ def test_figures_of_sines_are_not_offered(folder):
         ("start_hz = 1.0", "start = 1.0", 'input.start: unknown key; did you mean "start_hz"?'),
         ("fade_s = 0.2", "fade_s = 3.0", "input.fade_s: 3 is more than half of duration_s"),
         ("duration_s = 4.0", "duration_s = 1e8", "input.duration_s: 1e+08 s with frequencies up to 6 Hz"),
+        ("fade_s = 0.2", "sampling_hz = 1e9", "input.sampling_hz: more than 2e+07 samples"),
         ("amplitude_m_per_s2 = 4.0", "", "input.amplitude_mm: missing; write amplitude_mm"),
         ("scale = [0.5, 1.0, 2.0]", "beta = 1.0", "sweep.beta: unknown key"),
         ("scale = [0.5, 1.0, 2.0]", "scale = 0.0", "sweep.scale: 0.0 is out of range"),

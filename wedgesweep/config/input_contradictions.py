@@ -40,6 +40,8 @@ def _of_kind(given: Mapping[str, Any]) -> Iterator[str]:
             yield f"input.unit: {told}"
     if given.get("kind") == "random":
         yield from _density(given)
+    if given.get("sampling_hz", 0.0) * given.get("duration_s", 0.0) > MOST_SAMPLES:
+        yield f"input.sampling_hz: more than {MOST_SAMPLES:g} samples in duration_s; lower it"
     highest = max([given.get("start_hz", 0.0), given.get("stop_hz", 0.0), *given.get("frequency_hz", ())])
     if 64.0 * highest * given.get("duration_s", 0.0) > MOST_SAMPLES:
         yield (

@@ -12,6 +12,8 @@ NAME = "ring-down"
 DESCRIPTION = "decay of a release with its logarithmic decrement and the lines of 4F/k, a panel per law"
 NEEDS = ("displacement", "time", "scale", "stuck")
 
+# Extremes below this share of the largest have no decrement worth showing.
+FAINT = 0.05
 LOSS = "friction_decay_per_cycle"
 
 
@@ -28,8 +30,8 @@ def peaks(time: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def decrement(values: np.ndarray) -> np.ndarray:
     """Logarithmic decrement of a cycle, from each extreme to the next but one on the same side."""
     size = np.abs(values)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.log(size[:-2] / size[2:])
+    seen = (size[2:] > FAINT * size.max()) & (size[:-2] > 0.0)
+    return np.log(np.where(seen, size[:-2], np.nan) / np.where(seen, size[2:], np.nan))
 
 
 def _draw_lines(ax: Axes, time: np.ndarray, start: tuple[float, float], loss: float, period: float) -> None:
@@ -37,6 +39,16 @@ def _draw_lines(ax: Axes, time: np.ndarray, start: tuple[float, float], loss: fl
     size = np.maximum(start[1] - loss * (time - start[0]) / period, 0.0)
     for side in (1.0, -1.0):
         ax.plot(time, side * size, color=style.GREY, linestyle="--", linewidth=1.0, zorder=1)
+
+
+def _draw_decrement(ax: Axes, at: np.ndarray, values: np.ndarray) -> None:
+    """Draw the decrement of each cycle on an axis of its own."""
+    second, found = ax.twinx(), decrement(values)
+    second.plot(at[: found.size], found, "x:", color=style.GREY, markersize=4, linewidth=0.8)
+    second.set_ylim(0.0, 1.15 * float(np.nanmax(found, initial=0.1)))
+    second.tick_params(labelsize=8, color=style.GREY, labelcolor=style.GREY)
+    second.set_ylabel("log decrement per cycle [1] (crosses)", fontsize=8, color=style.GREY)
+    second.spines[:].set_visible(False)
 
 
 def _draw_decay(ax: Axes, case: xr.Dataset, color: str, ds: xr.Dataset) -> None:
@@ -52,15 +64,8 @@ def _draw_decay(ax: Axes, case: xr.Dataset, color: str, ds: xr.Dataset) -> None:
     if np.isfinite(loss) and abs(x[0]) > 0.0 and loss > 0.0:
         period = 2.0 * np.pi / ds.attrs["omega_n"]
         _draw_lines(ax, time, (0.0, abs(x[0]) * style.MM), loss * style.MM, period)
-    if values.size < 3:
-        return
-    second = ax.twinx()
-    found = decrement(values)
-    second.plot(at[: found.size], found, "x:", color=style.GREY, markersize=4, linewidth=0.8)
-    second.set_ylim(0.0, 1.15 * float(np.nanmax(np.where(np.isfinite(found), found, np.nan), initial=0.1)))
-    second.tick_params(labelsize=8, color=style.GREY, labelcolor=style.GREY)
-    second.set_ylabel("log decrement per cycle [1] (crosses)", fontsize=8, color=style.GREY)
-    second.spines["top"].set_visible(False)
+    if values.size >= 3:
+        _draw_decrement(ax, at, values)
 
 
 def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
