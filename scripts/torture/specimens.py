@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+# Name of a config without anything unusual.
+PLAIN = "quick"
 CONFIGS = Path(__file__).parents[2] / "configs"
 # Few and short cases, so that what is accepted does not cost time.
 SHORT = {"method": "event-driven", "settle_periods": 3, "kept_periods": 2, "samples_per_period": 32}
@@ -87,17 +89,20 @@ class Specimens:
 
 
 def configs() -> list[dict[str, Any]]:
-    """Return the configs of the repository, shortened."""
-    found = []
-    for path in sorted(CONFIGS.glob("*.toml")):
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-        sweep = {key: AXES.get(key, each) for key, each in document["sweep"].items() if key != "case"}
-        amplitude = "amplitude_N" if sweep.get("excitation") == "force" else "amplitude_mm"
-        sweep = {"friction_law": "coulomb", "beta": [1.0], amplitude: AXES[amplitude], **sweep}
-        if "frequency_hz" in sweep:
-            sweep.pop("beta")
-        found.append({**document, "sweep": sweep, "solver": {**SHORT}})
-    return found
+    """Return the configs of the repository, shortened, that of the plain sweep last."""
+    paths = sorted(CONFIGS.glob("*.toml"), key=lambda path: path.stem == PLAIN)
+    return [_shortened(tomllib.loads(path.read_text(encoding="utf-8"))) for path in paths]
+
+
+def _shortened(document: dict[str, Any]) -> dict[str, Any]:
+    if "input" in document:  # a single motion for each law
+        return document
+    sweep = {key: AXES.get(key, each) for key, each in document["sweep"].items() if key != "case"}
+    amplitude = "amplitude_N" if sweep.get("excitation") == "force" else "amplitude_mm"
+    sweep = {"friction_law": "coulomb", "beta": [1.0], amplitude: AXES[amplitude], **sweep}
+    if "frequency_hz" in sweep:
+        sweep.pop("beta")
+    return {**document, "sweep": sweep, "solver": {**SHORT}}
 
 
 def vibration(seed: int = 0) -> np.ndarray:

@@ -5,7 +5,7 @@ from scipy.special import stdtrit
 
 from wedgesweep.measured.cycles import Cycles, cut
 from wedgesweep.measured.declarations import STEADY
-from wedgesweep.measured.frequency import IMPROBABLE
+from wedgesweep.measured.frequency import IMPROBABLE, stands_out
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
 from wedgesweep.measured.stationarity import MEND
@@ -54,6 +54,8 @@ def _of_channel(test: TestRecord, samples: np.ndarray) -> list[str]:
 def trend_faults(test: TestRecord, file: str) -> list[str]:
     """Responses that grow or decay all along; one fault at most."""
     for name, samples in test.channels.items():
+        if not stands_out(test.time, samples, test.refined_frequency):
+            continue  # it sticks
         change = _growth(cut(test.time, samples, test.refined_frequency), test.duration)
         if abs(change) > MOST_TREND:
             told = f"the amplitude of {name} changes by {100.0 * change:+.2g} % over the record"
