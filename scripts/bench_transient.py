@@ -26,7 +26,7 @@ from wedgesweep.diagnose.search import Search
 from wedgesweep.effects import EFFECTS
 from wedgesweep.measured import Measurement, read
 from wedgesweep.synthesize.campaign import Options, synthesize
-from wedgesweep.synthesize.plan import PlannedTest, Plan
+from wedgesweep.synthesize.plan import Plan, PlannedTest
 
 MASS, STIFFNESS, DAMPING, FRICTION = 2.0, 500.0, 0.4, 0.3
 RIG = {
@@ -106,9 +106,7 @@ def main() -> None:
         short = measured(Path(folder), given.scipy_seconds, given.rate)
         names = list(EFFECTS)
         found, spent = timed(lambda: api.diagnose_measurement(long, effects=names, n_jobs=1))
-        print(
-            f"{given.seconds:g} s at {given.rate:g} Hz, all effects: {found.verdict}, {spent:.1f} s of CPU time"
-        )
+        print(f"{given.seconds:g} s at {given.rate:g} Hz, all effects: {found.verdict}, {spent:.1f} s of CPU")
         own, mine = timed(lambda: own_fit(short))
         other, its = timed(lambda: scipy_fit(short))
         print(f"one fit of {given.scipy_seconds:g} s ({'damping':>8} {'friction':>8})")

@@ -119,7 +119,7 @@ def test_a_test_without_input_says_so(tmp_path):
     path = write(tmp_path, [0.02 * bump()])
     table = np.loadtxt(tmp_path / "t0.csv", delimiter=",", skiprows=1)
     np.savetxt(tmp_path / "t0.csv", table[:, :2], "%.12g", ",", header="t,x", comments="")
-    with pytest.raises(MeasuredError, match="no column 'u'"):
+    with pytest.raises(MeasuredError, match='no column "u"'):
         read(path)
     path.write_text(path.read_text() + "undriven = true\n")
     assert read(path).tests[0].input is None

@@ -18,7 +18,7 @@ HIGHEST = 0.2
 FEWEST = 64
 # Keys of a test under a sine, and of a loop.
 OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpass_hz",)
-OF_A_TRANSIENT = ("undriven",)
+OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
 # What is compared, and what else a test may have, by kind.
 NEEDED = {"transient": ("displacement",), "loop": ("displacement", "force")}
 OPTIONAL = {"transient": ("velocity", INPUT), "loop": ()}
@@ -42,6 +42,7 @@ def key_faults(given: Mapping[str, Any]) -> list[str]:
     wrong = [] if kind == STEADY else [key for key in OF_A_SINE if key in given]
     wrong += [] if kind == LOOP else [key for key in OF_A_LOOP if key in given]
     wrong += [] if kind == TRANSIENT else [key for key in OF_A_TRANSIENT if given.get(key)]
+    wrong += [key for key in NOT_OF_A_SINE if key in given] if kind == STEADY else []
     return [f'{key}: not for kind = "{kind}"; omit it' for key in wrong]
 
 

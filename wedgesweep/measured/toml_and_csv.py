@@ -1,7 +1,7 @@
 """measured.toml and its CSV files."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -127,6 +127,7 @@ def _tests(
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
+        problems.extend(f"{at}.{fault}" for fault in _repeat_faults(given, measurement["test"][:i]))
         own = by_kind[given.get("kind", STEADY)]
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
@@ -134,6 +135,19 @@ def _tests(
         if complete and own:
             tests += _test(path.parent / file, at, given, {**measurement, "columns": own}, problems)
     return tests
+
+
+def _repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Faults of the key that names the test which this one repeats, as "key: fault"."""
+    first = given.get("repeat_of")
+    if first is None:
+        return []
+    for other in before:
+        if other.get("file") == first and "repeat_of" not in other:
+            same = other.get("kind", STEADY) == given.get("kind", STEADY)
+            return [] if same else [f"repeat_of: {show(first)} is of another kind; a repeat is of the same"]
+    told = "is not the file of an earlier test that repeats none; name that one"
+    return [f"repeat_of: {show(first)} {told}"]
 
 
 def _test(

@@ -69,7 +69,7 @@ def _rig(frequency: float, travel: float, random: np.random.Generator) -> Rig:
     }
     rounded = {key: float(f"{value:.6g}") for key, value in own.items()}
     threshold = float(f"{rigs.THRESHOLD * travel * omega:.6g}")
-    sections = {
+    sections: rigs.Sections = {
         "oscillator": {**rounded, "contact": "base"},
         "friction": {"static": 0.36, "dynamic": 0.3, "threshold_velocity_mm_per_s": threshold},
     }

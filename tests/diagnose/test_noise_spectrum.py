@@ -1,0 +1,65 @@
+"""Noise of transients: its spectrum from the record, or from repeats; coloured noise is no cause."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
+from wedgesweep.diagnose import repeats
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, of_noise, of_record
+from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.measured import MeasuredError, read
+
+RATE, SIZE, STD = 500.0, 4000, 2e-3
+TIME = np.arange(SIZE) / RATE
+# A decay of 20 cycles, and where its noise matters (rad a sample).
+DECAY = np.exp(-0.4 * TIME) * np.cos(2.0 * np.pi * 2.5 * TIME)
+AT = 2.0 * np.pi * np.array([2.5, 10.0]) / RATE
+
+
+def true_power(pole):
+    return STD**2 * (1.0 - pole**2) / (1.0 + pole**2 - 2.0 * pole * np.cos(AT))
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.5, 0.9])
+def test_noise_below_a_decay_is_told_from_what_lies_above(pole):
+    ratios = []
+    for seed in range(6):
+        record = DECAY + STD * coloured(np.random.default_rng(seed), SIZE, pole)
+        ratios.append(of_record(record)(AT) / true_power(pole))
+    # Too low an estimate would look like a misfit, so that it errs to the other side.
+    assert np.min(ratios) > 0.4
+    assert np.median(ratios) < 3.0
+
+
+def test_what_does_not_repeat_is_noise():
+    rng = np.random.default_rng(0)
+    records = []
+    for gain, lag in ((1.0, 0), (1.03, 4), (0.98, -3)):
+        later = np.exp(-0.4 * (TIME - lag / RATE)) * np.cos(2.0 * np.pi * 2.5 * (TIME - lag / RATE))
+        records.append(gain * later + 0.1 * gain + STD * coloured(rng, SIZE, 0.9))
+    found = of_noise(repeats.differences(records), FROM_REPEATS)
+    assert found.std == pytest.approx(STD, rel=0.3)
+    assert found.correlation == pytest.approx(0.9, abs=0.08)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_coloured_noise_is_no_cause(tmp_path, seed):
+    path = write(tmp_path, pole=0.9, seed=seed)
+    found = diagnosed(path, [*HIDDEN, "friction_level", "quadratic_drag"])
+    assert (found.verdict, found.causes) == ("nothing-missing", [])
+
+
+def test_repeats_tell_the_noise_and_do_not_hide_the_cause(tmp_path):
+    path = write(tmp_path, effects={"viscous_damping": HIDDEN["viscous_damping"]}, pole=0.9, repeats=2)
+    data = transient_data(read(path))
+    assert {each.spectra[0].source for each in data.releases} == {FROM_REPEATS}
+    found = diagnosed(path, ["viscous_damping", "friction_level"])
+    assert [each["effect"] for each in found.causes] == ["viscous_damping"]
+    assert found.document["misfit"]["tests"][0]["noise_from"] == FROM_REPEATS
+
+
+def test_a_repeat_of_nothing_is_told(tmp_path):
+    path = write(tmp_path)
+    path.write_text(path.read_text() + 'repeat_of = "drop9.csv"\n')
+    with pytest.raises(MeasuredError, match="not the file of an earlier test"):
+        read(path)
