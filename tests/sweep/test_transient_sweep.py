@@ -152,7 +152,7 @@ def test_figures_of_sines_are_not_offered(folder):
     told = invoke("plot", "all", "swept.nc", "-o", "drawn")
     assert told.count("wrote") == 3
     assert "there are envelope, loop, ring-down" in invoke("plot", "stick-map", "swept.nc", code=2)
-    assert "takes no --beta" in invoke("plot", "loop", "swept.nc", "--beta", "1", code=2)
+    assert "the dataset has no beta" in invoke("plot", "loop", "swept.nc", "--beta", "1", code=2)
     assert "6 = 2 friction laws x 3 scales" in invoke("check", "swept.toml")
 
 
