@@ -10,9 +10,11 @@ import contextlib
 import os
 import pickle
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import traceback
 from collections import Counter
@@ -122,18 +124,22 @@ def work(given: specimens.Specimens, options: argparse.Namespace, base: Path) ->
 
 def campaign(options: argparse.Namespace, base: Path) -> int:
     """Try all inputs in worker processes; return the exit code."""
-    import threading
-
     found: list[tuple] = []
-    threads = [
-        threading.Thread(target=lambda job=job: found.extend(_shard(options, base, job)))
-        for job in range(options.jobs)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return report(found, options)
+
+    def collect(job: int) -> None:
+        for each in _shard(options, base, job):
+            found.append(each)
+
+    threads = [threading.Thread(target=collect, args=(job,), daemon=True) for job in range(options.jobs)]
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    except KeyboardInterrupt:
+        print("stopped early", file=sys.stderr)
+    return report(list(found), options)
 
 
 def _shard(options: argparse.Namespace, base: Path, job: int) -> Iterator[tuple]:
@@ -168,8 +174,6 @@ def _command(options: argparse.Namespace, base: Path, first: int) -> list[str]:
 
 def _lines(process: subprocess.Popen) -> Iterator[str]:
     """Lines of a process, which is killed if it is silent for long."""
-    import threading
-
     last = [time.monotonic()]
 
     def watch() -> None:

@@ -6,9 +6,11 @@ and its directory holds the same files. Prints a table and the first faults; exi
 
 import argparse
 import os
+import signal
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from random import Random
 
@@ -63,19 +65,32 @@ def main() -> int:
     options = _options()
     chosen = [each for each in scenarios() if options.only in (None, each.name)]
     counts: Counter = Counter()
-    faults = []
-    with tempfile.TemporaryDirectory(prefix="kills-") as made:
-        base = Path(made)
-        expected = {each.name: kills.reference(each, base / "expected" / each.name) for each in chosen}
-        for number in range(options.kills):
-            scenario, draw = chosen[number % len(chosen)], Random(f"{options.seed}/{number}")
-            moment, ended, found = kills.kill(scenario, expected[scenario.name], base / "run", draw)
-            counts[scenario.name, ended] += 1
-            counts[scenario.name, "faults"] += bool(found)
-            told = f"kill {number}: {scenario.name}, {moment}, {ended}: {'; '.join(found) or 'all held'}"
+    faults: list[str] = []
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        for number, scenario, moment, ended, found in campaign(chosen, options):
+            counts[scenario, ended] += 1
+            counts[scenario, "faults"] += bool(found)
+            told = f"kill {number}: {scenario}, {moment}, {ended}: {'; '.join(found) or 'all held'}"
             faults += [told] if found else []
             print(told, file=sys.stderr, flush=True)
+    except KeyboardInterrupt:
+        print("stopped early", file=sys.stderr)
     return report(options, [each.name for each in chosen], counts, faults)
+
+
+def campaign(
+    chosen: list[Scenario], options: argparse.Namespace
+) -> Iterator[tuple[int, str, str, str, list[str]]]:
+    """Number, scenario, moment and signal of each kill, and what did not hold."""
+    with tempfile.TemporaryDirectory(prefix="kills-") as made:
+        base, expected = Path(made), {}
+        for number in range(options.kills):
+            scenario, draw = chosen[number % len(chosen)], Random(f"{options.seed}/{number}")
+            if scenario.name not in expected:
+                expected[scenario.name] = kills.reference(scenario, base / "expected" / scenario.name)
+            found = kills.kill(scenario, expected[scenario.name], base / "run", draw)
+            yield number, scenario.name, *found
 
 
 def _options() -> argparse.Namespace:
@@ -91,7 +106,8 @@ def _options() -> argparse.Namespace:
 def report(options: argparse.Namespace, names: list[str], counts: Counter, faults: list[str]) -> int:
     """Print the table and the faults; return the exit code."""
     columns = [*(each.name for each in kills.SIGNALS), "too late", "faults"]
-    print(f"{options.kills} kills, seed {options.seed}, {os.cpu_count()} processors\n")
+    done = sum(count for (_, column), count in counts.items() if column != "faults")
+    print(f"{done} kills, seed {options.seed}, {os.cpu_count()} processors\n")
     print(" ".join([f"{'scenario':<14}", *(f"{each:>9}" for each in columns)]))
     for name in [*names, "all"]:
         row = [sum(counts[each, column] for each in names if name in (each, "all")) for column in columns]

@@ -339,11 +339,20 @@ def test_marked_points_are_those_of_the_variables(dataset):
     case = dataset.isel(friction_law=0, amplitude=5)
     ax = Figure().subplots()
     validity.mark(ax, case["beta"].values, case["amplitude_ratio"].values, case, "black")
-    hollow, grey = ax.lines
-    assert hollow.get_xdata().tolist() == case["beta"].values[case["lift_off_fraction"] > 0.0].tolist()
-    assert grey.get_xdata().tolist() == [0.6]
+    *hollow, both = ax.lines  # hollow ones, and a grey ring where nothing settled either
+    marked = sorted(x for line in ax.lines for x in line.get_xdata())
+    lifted = case["beta"].values[case["lift_off_fraction"] > 0.0].tolist()
+    assert marked == lifted
+    assert both.get_xdata().tolist() == [0.6]
+    assert (both.get_markerfacecolor(), both.get_color()) == ("white", "0.6")
+    assert [line.get_color() for line in hollow] == ["black"]
     assert "24 of" not in validity.shares(case)
-    assert f"{len(hollow.get_xdata())} of 20 cases with lift-off" in validity.shares(case)
+    assert f"{len(lifted)} of 20 cases with lift-off" in validity.shares(case)
+    plain = case.assign(lift_off_fraction=0.0 * case["lift_off_fraction"])
+    ax = Figure().subplots()
+    validity.mark(ax, case["beta"].values, case["amplitude_ratio"].values, plain, "black")
+    (grey,) = ax.lines
+    assert (grey.get_xdata().tolist(), grey.get_color()) == ([0.6], "0.6")
 
 
 @pytest.mark.parametrize("law", ["Coulomb", "EXPONENTIAL"])

@@ -220,7 +220,9 @@ def test_parts_of_one_record_are_one_spectrogram():
         assert np.array_equal(one.signals, other.signals)
     assert [each.test for each in spectrogram.records(cut, [0, 2])] == [0, 2]
     short = fixture_transient.build(parts=20)
-    with pytest.raises(ValueError, match="no record has 256 samples or more"):
+    assert spectrogram.possible(short)  # the whole record is long enough
+    assert not spectrogram.possible(build())
+    with pytest.raises(ValueError, match="no record has 1024 samples or more"):
         figures.draw(short, "spectrogram", tests=[0, 2])
 
 

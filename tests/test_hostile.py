@@ -4,6 +4,7 @@ import os
 import resource
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -117,6 +118,68 @@ def test_other_signals_end_a_run_as_ctrl_c_does(here, number):
     assert process.returncode == 128 + number, told
     assert "finished cases are stored in long.nc.partial; rerun the same command" in told
     assert "Traceback" not in told
+
+
+def test_a_signal_ends_also_what_python_cannot_interrupt(here):
+    """A command in compiled code does not hear of it; the loop stands for that."""
+    code = (
+        "import os, signal, time; from wedgesweep.cli import failure; failure.GRACE = 0.2;"
+        "failure.end_on_signals()"
+    )
+    loop = """
+began = time.monotonic()
+while time.monotonic() < began + 60.0:
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(60.0)
+    except KeyboardInterrupt:
+        pass
+"""
+    ended = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{loop}"],
+        env=small_sweep.environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 143
+    assert "interrupted at once; rerun the same command to resume" in ended.stderr
+
+
+def test_umlauts_where_the_locale_has_none(here):
+    """The locale C knows ASCII only; files are UTF-8 all the same."""
+    (here / "prüfstand.toml").write_text(CONFIG.replace('"small"', '"Prüfstand µ"'), encoding="utf-8")
+    environment = small_sweep.environment(LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0")
+    for command in (("status", "prüfstand.nc"), ("check", "prüfstand.toml")):
+        ended = subprocess.run(
+            small_sweep.command(*command),
+            env=environment,
+            capture_output=True,
+            check=False,
+        )
+        told = ended.stdout + ended.stderr
+        assert ended.returncode == (2 if "status" in command else 0), told
+        assert b"Traceback" not in told
+        assert b"pr" in told
+
+
+def test_a_cache_that_cannot_be_written_is_told_and_does_without(here):
+    """A file stands where the folder should be: also root cannot make it."""
+    (here / "file").write_text("")
+    code = (
+        "from wedgesweep import compiled; from wedgesweep.cli.compiling import announce_compiling;"
+        "import logging, os; logging.basicConfig(level='INFO'); announce_compiling(); announce_compiling();"
+        "print(compiled.CACHE_DIR.is_dir(), os.environ['NUMBA_CACHE_DIR'] == str(compiled.CACHE_DIR))"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code],
+        env=small_sweep.environment(NUMBA_CACHE_DIR=str(here / "file" / "cache")),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert ended.stdout == "True True\n"
+    assert ended.stderr.count("cannot be written to: what is compiled is not kept") == 1
 
 
 def test_a_hangup_that_is_ignored_stays_ignored():

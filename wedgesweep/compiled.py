@@ -4,11 +4,14 @@ numba's own cache looks only at the file of the function itself, so that an edit
 a stale caller behind. A cache folder per state of the compiled sources rules that out.
 """
 
+import atexit
 import inspect
 import os
 from collections.abc import Callable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
+from tempfile import TemporaryFile, mkdtemp
 from typing import Any, TypeVar, cast
 
 import numba
@@ -38,7 +41,26 @@ def _cache_home() -> Path:
     return Path(os.environ.get("NUMBA_CACHE_DIR") or Path(default) / "wedgesweep")
 
 
-CACHE_DIR = _cache_home() / source_digest(containing=b"from wedgesweep.compiled")[:16]
+def _usable(home: Path) -> tuple[Path, Path | None]:
+    """A cache folder that can be written to, and the wanted one if that cannot.
+
+    The folder in its place ends with this process; the jobs that it starts use it as well.
+    """
+    # numba's entries hold for one place of the sources only.
+    sources = source_digest(containing=b"from wedgesweep.compiled") + str(PACKAGE)
+    wanted = home / sha256(sources.encode()).hexdigest()[:16]
+    try:
+        wanted.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=wanted):
+            return wanted, None
+    except OSError:
+        place = mkdtemp(prefix="wedgesweep-")
+        atexit.register(rmtree, place, ignore_errors=True)
+        os.environ["NUMBA_CACHE_DIR"] = place
+        return Path(place), wanted
+
+
+CACHE_DIR, UNWRITABLE = _usable(_cache_home())
 numba.config.CACHE_DIR = str(CACHE_DIR)  # type: ignore[attr-defined]
 
 Function = TypeVar("Function", bound=Callable)

@@ -1,9 +1,14 @@
-"""Processes that must not outlive the one that started them."""
+"""Processes that must not outlive the one that started them, and work that may end its process."""
 
+import multiprocessing
 import os
 import signal
 import threading
 import time
+import warnings
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Any
 
 KILL = getattr(signal, "SIGKILL", signal.SIGTERM)  # Windows has the latter only
 # Time (s) between two looks at the parent.
@@ -13,6 +18,42 @@ INTERVAL = 1.0
 def end_with(parent: int) -> None:
     """Let this process end soon after its parent, a process id, however that has ended."""
     threading.Thread(target=_watch, args=(parent,), daemon=True).start()
+
+
+def apart(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a function in a fork of this process; raises OSError if that dies of it.
+
+    Libraries that read damaged files may end the process they run in. Where processes cannot fork, the
+    function is called here.
+    """
+    if not hasattr(os, "fork"):
+        return function(*arguments)
+    context = multiprocessing.get_context("fork")
+    receiving, sending = context.Pipe(duplex=False)
+    with warnings.catch_warnings():
+        # Python warns of forks beside threads; this one takes no lock and starts none.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        process = context.Process(target=_answer, args=(sending, function, arguments))
+        process.start()
+    sending.close()
+    try:
+        found = receiving.recv()
+    except EOFError as error:
+        message = "damaged: the library that reads it gave up"
+        raise OSError(message) from error
+    finally:
+        process.join()
+    if isinstance(found, Exception):
+        raise found
+    return found
+
+
+def _answer(sending: Connection, function: Callable[..., Any], arguments: tuple) -> None:
+    try:
+        found = function(*arguments)
+    except Exception as error:  # goes to the process that asked
+        found = error
+    sending.send(found)
 
 
 def _watch(parent: int) -> None:

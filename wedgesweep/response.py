@@ -1,12 +1,12 @@
 """Numbers from the kept window of one run, with the paper's sign: displacement x - y = -z."""
 
 from dataclasses import dataclass
-from math import atan2, cos, inf, nan, pi, sin
+from math import atan2, cos, inf, isfinite, nan, pi, sin
 
 import numpy as np
 
 from wedgesweep import sensor
-from wedgesweep.compiled import compiled, inner
+from wedgesweep.compiled import compiled, inner, term
 from wedgesweep.effects.states import input_length
 from wedgesweep.solvers.trajectory import Trajectory
 
@@ -27,6 +27,11 @@ NUMBERS = np.dtype(
             "supplied_energy",
             "phase_lag",
             "periodicity",
+            "column_open_fraction",
+            "bolster_open_fraction",
+            "impacts",
+            "largest_impulse",
+            "impact_energy",
         )
     ]
 )
@@ -83,6 +88,12 @@ def _change(signal, periods):
     return largest
 
 
+@term("unilateral", off="False")
+def _opens(p):
+    """Whether joints may lift off."""
+    return isfinite(p.unilateral.restitution)
+
+
 @inner
 def reduce(sums, x, velocity, periods, p, numbers, spectra):
     """Write the numbers, a record of ``NUMBERS``, and the spectra of displacement and velocity.
@@ -106,10 +117,17 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
     numbers.stick_phases = onsets / periods
     numbers.minimum_normal_force = sums.normal_force if sums.normal_force < inf else nan
     numbers.lift_off_fraction = sums.lifted_time / slipping_time if slipping_time > 0.0 else nan
+    if _opens(p):
+        numbers.lift_off_fraction = sums.either_open / sums.time
     numbers.dissipated_energy = sums.dissipated / periods
     numbers.supplied_energy = sums.supplied / periods
     numbers.phase_lag = _phase_lag(spectra[0, 0, 0], spectra[0, 0, 1], amplitude)
     numbers.periodicity = _change(x, periods) / amplitude
+    numbers.column_open_fraction = sums.first_open / sums.time
+    numbers.bolster_open_fraction = sums.second_open / sums.time
+    numbers.impacts = sums.impacts / periods
+    numbers.largest_impulse = sums.impulse
+    numbers.impact_energy = sums.struck / periods
     sensor.apply_to_spectra(spectra, p)
     if p.velocity_lag.time > 0.0:
         numbers.peak_velocity = 0.0

@@ -181,9 +181,7 @@ def value(t, p):
     found = number_at(a, first + 5)
     for k in range(4, -1, -1):
         found = found * s + number_at(a, first + k)
-    if beyond != 0.0:
-        found += beyond * p.series.step * slope(t, p) / p.series.gain
-    return p.series.gain * found
+    return p.series.gain * found + beyond * p.series.step * slope(t, p)
 
 
 @inlined

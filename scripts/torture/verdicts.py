@@ -3,7 +3,6 @@
 import os
 import re
 import signal
-import sys
 import traceback
 import warnings
 from collections.abc import Iterator, Sequence
@@ -46,12 +45,13 @@ def judge(command: Sequence[str], limit: float = LIMIT) -> Verdict:
     """Run a command in this process, in the current directory."""
     from wedgesweep.cli import cli
 
-    with warnings.catch_warnings(record=True) as warned, _limited(limit):
-        warnings.simplefilter("always")
-        result = CliRunner().invoke(cli, list(command))
+    try:
+        with warnings.catch_warnings(record=True) as warned, _limited(limit):
+            warnings.simplefilter("always")
+            result = CliRunner().invoke(cli, list(command))
+    except Hanging as error:
+        return Verdict(HANG, _trace(error))
     found = result.exception
-    if isinstance(found, Hanging):
-        return Verdict(HANG, _trace(found))
     if found is not None and not isinstance(found, SystemExit):
         return Verdict(TRACEBACK, _trace(found))
     if warned:
@@ -95,9 +95,3 @@ def _limited(limit: float) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, before)
-
-
-def leaks(descriptor: int) -> int:
-    """Number of bytes that libraries wrote to a file in place of the standard error."""
-    sys.stderr.flush()
-    return os.fstat(descriptor).st_size

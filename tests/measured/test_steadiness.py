@@ -45,6 +45,10 @@ def swept(t, d, v):
 UNSTEADY = {
     "ring-down": (scaled(lambda t: np.exp(-3.0 * t)), "% of its largest in the four quarters"),
     "ramp-up": (scaled(lambda t: t / t[-1]), "% of its largest in the four quarters"),
+    "slow ring-down": (
+        scaled(lambda t: np.exp(-0.5 * t)),
+        "the amplitude of displacement changes by -5",
+    ),
     "late start": (scaled(lambda t: (t > 0.3 * t[-1]) + 0.0), "% of its largest in the four quarters"),
     "swept sine": (swept, "moves to other frequencies (median 1"),
 }

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import transients
 
-from wedgesweep import config, sampled_input
+from wedgesweep import config, excitation, sampled_input
+from wedgesweep.compiled import compiled
 from wedgesweep.sweep.run import Sweep
 from wedgesweep.systems import oscillator
 
@@ -105,6 +106,26 @@ def test_beyond_its_ends_the_base_keeps_its_velocity():
     assert made(np.array([-1.0, 4.0, 6.0])) == pytest.approx([0.0, 16.0, 32.0], abs=1e-12)
     assert made(np.array([-1.0, 6.0]), 1) == pytest.approx([0.0, 8.0], abs=1e-12)
     assert made(np.array([-1.0, 2.0, 6.0]), 2) == pytest.approx([0.0, 2.0, 0.0], abs=1e-12)
+
+
+@compiled
+def _compiled_input(t, cases, out):
+    p = cases[0]
+    for i in range(t.size):
+        out[0, i], out[1, i] = excitation.displacement(t[i], p), excitation.velocity(t[i], p)
+        out[2, i] = excitation.acceleration(t[i], p)
+
+
+def test_compiled_code_sees_the_same_input():
+    values = np.random.default_rng(1).normal(size=40)
+    made = sampled_input.from_samples(values, 0.02, begin=0.1)
+    case = oscillator.record("coulomb", 1.0, 1.0, {"mass": 1.0, "spring": 100.0})
+    sampled_input.set_sampled(case, made, 0.7, 30.0, 1.0, gain=-1.5)
+    t = np.sort(np.random.default_rng(2).uniform(0.0, 1.0, 500))
+    found = np.empty((3, t.size))
+    _compiled_input(t, oscillator.compact(case), found)
+    for k in range(3):
+        assert found[k] == pytest.approx(-1.5 * made(t, k), abs=1e-10 * 50.0**k)
 
 
 def test_a_slow_sine_sweep_follows_the_transfer_function():

@@ -1,5 +1,7 @@
 """The journal keeps what was whole when a run was killed, and nothing that belongs to another."""
 
+import errno
+
 import numpy as np
 import pytest
 
@@ -132,3 +134,12 @@ def test_one_run_at_a_time(path):
     journal.discard(path)
     assert not path.exists()
     journal.discard(path)
+
+
+def test_a_file_system_without_locks_will_do(path, monkeypatch):
+    def fails(*arguments):
+        raise OSError(errno.ENOLCK, "no locks available")
+
+    monkeypatch.setattr(journal.fcntl, "flock", fails)
+    with Journal(path, DTYPE, HEADER) as kept:
+        assert kept.records.size == 4

@@ -62,9 +62,19 @@ def test_check_answers_at_once(tmp_path, text):
     invoke("check", tmp_path / "many.toml")  # compiles
     began, peak = time.process_time(), _peak()
     told = invoke("check", tmp_path / "many.toml")
-    assert time.process_time() - began < 2.0
+    assert time.process_time() - began < 2.0  # with Python's start a second more
     assert _peak() - peak < 20e6
-    assert f"{config.parse(text).sweep.count} = 1 friction laws x" in told
+    assert f"{config.parse(text).sweep.count} = 1 friction law x" in told
+
+
+def test_a_list_of_many_numbers_is_read_in_a_moment():
+    betas = ", ".join(map(repr, np.linspace(0.1, 3.0, 300_000).tolist()))
+    text = f'[sweep]\nfriction_law = "coulomb"\nbeta = [{betas}]\namplitude_mm = 1.0\n'
+    began = time.process_time()
+    read = config.parse(text)
+    assert time.process_time() - began < 6.0  # 1.5 s, two thirds of it in tomllib
+    assert read.sweep.count == 300_000
+    assert read.sweep.case(299_999) == Case("coulomb", 3.0, 1e-3)
 
 
 def _peak():

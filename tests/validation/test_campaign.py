@@ -12,6 +12,8 @@ from wedgesweep.validation.shares import Share
 
 DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
+RIGS_RECORDS = DOCS / "validation-rigs-records.jsonl"
+RIGS = ("imperfect", "errors-only", "random-rig", "oscillator")
 
 
 def test_every_effect_is_hidden_within_the_range_of_the_fit():
@@ -126,8 +128,12 @@ def test_coverage_allows_for_full_turns_of_angles():
     ]
 
 
-def test_the_results_page_is_what_the_records_say(capsys):
-    main(["--seed", "13", "--records", str(RECORDS), "--tables"])
+@pytest.mark.parametrize(
+    ("seed", "records", "kinds"), [(13, RECORDS, ()), (41, RIGS_RECORDS, RIGS)], ids=["bench", "rigs"]
+)
+def test_the_results_page_is_what_the_records_say(seed, records, kinds, capsys):
+    only = [word for kind in kinds for word in ("--only", kind)]
+    main(["--seed", str(seed), *only, "--records", str(records), "--tables"])
     printed = capsys.readouterr().out
     assert f"```text\n{printed}```\n" in RESULTS.read_text()
 

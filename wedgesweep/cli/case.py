@@ -114,12 +114,12 @@ def _require_no_sweep(path: Path) -> None:
 
 def _print_numbers(ds: "xr.Dataset") -> None:
     from wedgesweep.sweep.cases import describe
-    from wedgesweep.sweep.dataset import VARIABLES
+    from wedgesweep.sweep.dataset import OF_LIFT_OFF, VARIABLES
 
     law, beta, amplitude = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
     where = describe(law, beta, amplitude, ds["amplitude"].attrs["units"])
     click.echo(f"{where}, {ds['frequency'].item():.6g} Hz")
-    for variable in VARIABLES:
+    for variable in VARIABLES + OF_LIFT_OFF:
         if variable.dims or variable.name in ("status", "message") or variable.name not in ds:
             continue
         factor, unit = DISPLAY_UNITS.get(variable.units, (1.0, variable.units))

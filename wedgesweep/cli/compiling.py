@@ -19,6 +19,10 @@ def announce_compiling() -> None:
     if _listener is None:
         from numba.core import event
 
+        from wedgesweep.compiled import UNWRITABLE
+
+        if UNWRITABLE:
+            log.info("%s cannot be written to: what is compiled is not kept for later runs", UNWRITABLE)
         _listener = listener(event.Listener)
         event.register("numba:compile", _listener)
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
@@ -80,7 +81,12 @@ def _grid(settings: "Config") -> str:
     if settings.transient:
         return f"{count} = {len(sweep.friction_law)} friction laws x {sweep.amplitude.size} scales"
     laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
-    return f"{count} = {laws} friction laws x {betas} frequencies x {amplitudes} amplitudes"
+    parts = (
+        formatting.counted(laws, "friction law"),
+        formatting.counted(betas, "frequency", "frequencies"),
+        formatting.counted(amplitudes, "amplitude"),
+    )
+    return f"{count} = {' x '.join(parts)}"
 
 
 def _put(text: str, path: Path) -> None:

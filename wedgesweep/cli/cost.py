@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep import formatting
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.humanize import duration, size
 
@@ -18,16 +19,17 @@ def print_cost(sweep: "Sweep", n_jobs: int) -> None:
     """Time some cases of a sweep, and print what all of them need; no more is kept of those that fail."""
     from wedgesweep.sweep.estimate import estimate
 
-    cost = estimate(sweep, n_jobs)
+    cost, jobs = estimate(sweep, n_jobs), formatting.counted(n_jobs, "job")
+    cases = formatting.counted(cost.sampled.size, "case")
     click.echo(
-        f"time: about {duration(cost.seconds)} on {n_jobs} jobs (from {cost.sampled.size} cases run now)\n"
-        f"memory: about {size(cost.memory)} on {n_jobs} jobs, {size(cost.bytes_per_case)} a case of it\n"
+        f"time: about {duration(cost.seconds)} on {jobs} (from {cases} run now)\n"
+        f"memory: about {size(cost.memory)} on {jobs}, {size(cost.bytes_per_case)} a case of it\n"
         f"dataset: at most {size(cost.dataset_bytes)}, less after compression"
     )
     failed = cost.sampled[cost.sampled["status"] != 0]
     if failed.size:
         reason = failed[0]["message"].decode()
-        click.echo(f"{failed.size} of the {cost.sampled.size} cases failed, the first by: {reason}")
+        click.echo(f"{failed.size} of the {cases} failed, the first by: {reason}")
 
 
 def require_confirmed(sweep: "Sweep", n_jobs: int, confirmed: bool) -> None:

@@ -49,9 +49,7 @@ def _insist(reading: socket.socket, writing: socket.socket) -> None:
     while number := int.from_bytes(reading.recv(1)):
         if signal.getsignal(number) in handled:
             time.sleep(GRACE)
-            os.write(
-                2, b"interrupted at once; what is finished is stored, rerun the same command to resume\n"
-            )
+            os.write(2, b"interrupted at once; rerun the same command to resume\n")
             os._exit(128 + number)
 
 

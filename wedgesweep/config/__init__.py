@@ -127,10 +127,20 @@ class Config:
         return self.document["title"]
 
     @cached_property
-    def suspension(self) -> dict[str, float]:
-        from wedgesweep.systems.suspension.parameters import SUSPENSION
+    def suspension(self) -> dict[str, Any]:
+        """SI numbers of the suspension; ``joints`` and ``restitution`` where they are unilateral."""
+        from wedgesweep.systems.suspension.parameters import RESTITUTION, SUSPENSION
 
-        return _si(SUSPENSION, self.document["suspension"])
+        given = self.document["suspension"]
+        if not self.opens:
+            return _si(SUSPENSION, given)
+        restitution = given.get(RESTITUTION.key, RESTITUTION.default)
+        return {**_si(SUSPENSION, given), "joints": given["joints"], "restitution": restitution}
+
+    @property
+    def opens(self) -> bool:
+        """Whether the joints of a suspension are unilateral, so that wedges may lift off."""
+        return self.document.get("suspension", {}).get("joints") == "unilateral"
 
     def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
         """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""

@@ -14,6 +14,8 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     yield from _excitation(document)
     if "oscillator" in document:
         yield from _oscillator(document)
+    else:
+        yield from _joints(document)
     yield from _settling(document)
     if "input" in document:
         yield from input_contradictions(document)
@@ -93,6 +95,38 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     for name in document.get("effects", {}):
         if name not in effect_names():
             yield f"effects.{name}: an oscillator has no such part; valid here: {', '.join(effect_names())}"
+
+
+def _joints(document: Mapping[str, Any]) -> Iterator[str]:
+    """What unilateral joints need, or do not go with."""
+    from wedgesweep.systems.suspension.parameters import UNILATERAL, effects_with_lift_off
+
+    suspension, friction = document.get("suspension", {}), document.get("friction", {})
+    if suspension.get("joints") != UNILATERAL:
+        if "restitution" in suspension:
+            yield 'suspension.restitution: held joints do not hit; write joints = "unilateral", or remove it'
+        return
+    if "input" in document:
+        yield 'suspension.joints: inputs that do not repeat need held joints; write "bilateral"'
+    if suspension.get("wedge_mass_kg") == 0.0:
+        yield "suspension.wedge_mass_kg: a wedge that lifts off needs a mass; it must be greater than 0"
+    if suspension.get("column_angle_deg") == 0.0:
+        yield (
+            "suspension.column_angle_deg: at 0 the bolster face does not slip, and an impact does not "
+            'determine its friction; use another angle, or joints = "bilateral"'
+        )
+    static, dynamic = friction.get("static", inf), friction.get("dynamic", 0.0)
+    if static < dynamic and set(_named_laws(document.get("sweep", {}))) - {"coulomb"}:
+        yield (
+            f"friction.static: {static:g} is below friction.dynamic, which unilateral joints do not go with; "
+            f'it must be at least {dynamic:g}, or joints = "bilateral"'
+        )
+    for name in document.get("effects", {}):
+        if name not in effects_with_lift_off():
+            yield (
+                f"effects.{name}: does not go with unilateral joints; "
+                f"valid here: {', '.join(effects_with_lift_off())}"
+            )
 
 
 def _bristles(document: Mapping[str, Any]) -> Iterator[str]:

@@ -22,7 +22,7 @@ from wedgesweep.systems.oscillator.parameters import (
     EXCITATIONS,
     OSCILLATOR,
 )
-from wedgesweep.systems.suspension.parameters import SUSPENSION
+from wedgesweep.systems.suspension.parameters import JOINTS, RESTITUTION, SUSPENSION, UNILATERAL
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
@@ -207,6 +207,20 @@ def root(transient: bool = False) -> Table:
                 "suspension",
                 "the suspension; defaults: Table 1 of the paper",
                 *map(Number.of, SUSPENSION),
+                Choice(
+                    key="joints",
+                    meaning="whether both faces of a wedge are held, or may lift off, fall back and hit",
+                    choices=JOINTS,
+                    optional=True,
+                    example=UNILATERAL,
+                ),
+                Number(
+                    key=RESTITUTION.key,
+                    meaning='coefficient of restitution of impacts, for joints = "unilateral" (0 if absent)',
+                    quantity=RESTITUTION,
+                    optional=True,
+                    example=RESTITUTION.default,
+                ),
                 default={},
             ),
             OSCILLATOR_TABLE,

@@ -23,6 +23,15 @@ SIZES = {
 MASS = (LENGTH, VELOCITY)
 
 
+# States that systems have beyond these, by the field that marks their records.
+_OF_SYSTEMS: dict[str, tuple[str, ...]] = {}
+
+
+def add_to_mass(owner: str, kinds: tuple[str, ...]) -> None:
+    """Let records that have a field ``owner`` have states of these kinds after those of the mass."""
+    _OF_SYSTEMS[owner] = kinds
+
+
 # How systems measure a motion whose input is no displacement, by the field that marks their records.
 _LENGTHS: dict[str, Callable] = {}
 
@@ -56,6 +65,7 @@ def kinds(fields: Mapping[str, Any]) -> list[tuple[str, str]]:
     from wedgesweep.effects import REGISTERED
 
     found = [("", kind) for kind in MASS]
+    found += [("", kind) for owner, more in _OF_SYSTEMS.items() if owner in fields for kind in more]
     for name, module in REGISTERED.items():
         if name in fields:
             found += [(name, kind) for kind in getattr(module, "STATES", ())]

@@ -33,11 +33,14 @@ def _even_rows(count: int) -> np.ndarray:
     return np.arange(count)[:: -math.ceil(count / ROWS)][::-1]
 
 
-def _draw_row(ax: Axes, time: np.ndarray, wave: np.ndarray, stuck: np.ndarray, row: int, color: str) -> None:
+def _draw_row(
+    ax: Axes, time: np.ndarray, wave: np.ndarray, marks: dict[str, np.ndarray], row: int, color: str
+) -> None:
     if np.isnan(wave).all():
         ax.text(time.mean(), row, "no result", fontsize=7, color=style.GREY, ha="center", va="center")
         return
-    ax.plot(time, row + np.where(stuck == 1, wave, np.nan), color=style.STUCK, linewidth=5)
+    for shade, marked in marks.items():
+        ax.plot(time, row + np.where(marked, wave, np.nan), color=shade, linewidth=5)
     ax.plot(time, row + wave, color=color, linewidth=1.2)
 
 
@@ -83,14 +86,16 @@ def draw(
     largest = float(np.nan_to_num(np.abs(waves).max()))
     per_ratio = HEIGHT / largest if largest > 0.0 else 1.0
     time = ds["phase"].values / (ds["beta"].item() * ds.attrs["omega_n"])
-    names, words = cases.laws(ds), labels.of(ds)
+    names, words, opened = cases.laws(ds), labels.of(ds), validity.opened(ds)
     made = panels(target, len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
     axes = made.axes
     for ax, law in zip(axes, names, strict=True):
         for row in range(len(rows)):
             case = {"friction_law": law, "amplitude": ds["amplitude"].values[row]}
-            wave, stuck = waves.sel(case).values * per_ratio, ds["stuck"].sel(case).values
-            _draw_row(ax, time, wave, stuck, row, style.law_style(law)["color"])
+            wave, marks = waves.sel(case).values * per_ratio, {style.STUCK: ds["stuck"].sel(case).values == 1}
+            if opened is not None:
+                marks[style.OPEN] = opened.sel(case).values
+            _draw_row(ax, time, wave, marks, row, style.law_style(law)["color"])
             if remark := validity.remark(ds.sel(case)):
                 ax.text(time[-1], row + 0.3, remark.strip(), fontsize=6.5, color=style.GREY, ha="right")
         ax.set_title(law, fontsize=10)
@@ -103,6 +108,6 @@ def draw(
     made.title(
         f"{words.name} ${words.motion}$ ({words.whose}) at {frequency}",
         f"a row for each amplitude, divided by {words.own_reference} and centred; "
-        f"yellow: {labels.sticking(names)}",
+        f"yellow: {labels.sticking(names)}" + ("" if opened is None else "; blue: a contact is open"),
     )
     return made

@@ -24,7 +24,7 @@ LAW_STYLES = (
     {"color": GREEN, "linestyle": "-.", "marker": "^"},
     {"color": PURPLE, "linestyle": ":", "marker": "D"},
 )
-STUCK = YELLOW  # as a highlighter behind the curve
+STUCK, OPEN = YELLOW, "#56B4E9"  # as highlighters behind the curve
 GREY = "0.45"
 # The light end of viridis is left out: yellow lines vanish on white.
 SEQUENTIAL = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))

@@ -11,6 +11,7 @@ from wedgesweep import formatting
 from wedgesweep.outcome import settled
 
 LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
+OPENS = "column_open_fraction"  # of joints that may lift off
 # Hollow: lift-off; grey: unsettled; a grey ring: both.
 POINT = {"linestyle": "", "marker": "o", "markersize": 4.5, "zorder": 4}
 HOLLOW: dict[str, Any] = {**POINT, "markerfacecolor": "white"}
@@ -19,10 +20,18 @@ FEW_POINTS = 60
 
 
 def lifted(ds: xr.Dataset) -> xr.DataArray:
-    """Whether a normal force turned negative in each case: the model does not hold there."""
-    if LIFT_OFF not in ds:
+    """Whether a held joint pulls in each case, where a real one would lift off: the model does not hold."""
+    if LIFT_OFF not in ds or OPENS in ds:
         return xr.zeros_like(ds["status"], bool)
     return ds[LIFT_OFF] > 0.0
+
+
+def opened(ds: xr.Dataset) -> xr.DataArray | None:
+    """Whether a contact is open at each phase; None without waveforms, or where joints are held."""
+    faces = ("normal_force_column", "normal_force_bolster")
+    if OPENS not in ds or any(name not in ds for name in faces):
+        return None
+    return (ds[faces[0]] == 0.0) | (ds[faces[1]] == 0.0)
 
 
 def unsettled(ds: xr.Dataset) -> xr.DataArray:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import compiled, inlined, inner
-from wedgesweep.hybrid.interface import observed, powers, sticks
+from wedgesweep.compiled import by_record, compiled, inlined, inner
+from wedgesweep.hybrid.interface import impact, observed, opened, powers, provided, sticks
 
 SUMS = np.dtype(
     [
@@ -29,6 +29,12 @@ SUMS = np.dtype(
             "onsets",  # of sticking
             "began_stuck",
             "is_stuck",
+            "first_open",  # s with the first contact open
+            "second_open",
+            "either_open",
+            "impacts",
+            "impulse",  # largest (N s)
+            "struck",  # energy that impacts took (J)
         )
     ]
 )
@@ -49,6 +55,8 @@ def clear(sums):
     one.peak_velocity = one.time = one.integral = 0.0
     one.stuck_time = one.lifted_time = one.dissipated = one.supplied = 0.0
     one.onsets = one.began_stuck = one.is_stuck = 0.0
+    one.first_open = one.second_open = one.either_open = 0.0
+    one.impacts = one.impulse = one.struck = 0.0
 
 
 @inner
@@ -59,6 +67,58 @@ def _count_onset(sums, is_stuck):
     if is_stuck and not sums.is_stuck:
         sums.onsets += 1.0
     sums.is_stuck = is_stuck
+
+
+def _add_open(sums, weight, mode, p):
+    """Add the time for which contacts are open, if those of the system can be."""
+
+
+def add_impact(sums, y, mode, place, p):
+    """Add an event that is an impact, before the state changes, if the system has any."""
+
+
+@inlined
+def _of_contacts(sums, weight, mode, p):
+    first, second = opened(mode, p)
+    if first:
+        sums.first_open += weight
+    if second:
+        sums.second_open += weight
+    if first or second:
+        sums.either_open += weight
+
+
+@inner
+def _of_impact(sums, y, mode, place, p):
+    strikes, impulse, energy = impact(y, mode, place, p)
+    if strikes:
+        sums.impacts += 1.0
+        sums.impulse = max(sums.impulse, impulse)
+        sums.struck += energy
+
+
+def _nothing_open(sums, weight, mode, p):
+    return None
+
+
+def _no_impact(sums, y, mode, place, p):
+    return None
+
+
+def _pulls(first, second, p):
+    """Whether a contact pulls where a real one would open."""
+
+
+by_record(_add_open, lambda fields: _of_contacts if provided(opened, fields) else _nothing_open)
+by_record(
+    _pulls,
+    lambda fields: (
+        (lambda first, second, p: False)
+        if provided(opened, fields)
+        else (lambda first, second, p: first < 0.0 or second < 0.0)
+    ),
+)
+by_record(add_impact, lambda fields: _of_impact if provided(impact, fields) else _no_impact)
 
 
 @inner
@@ -75,6 +135,7 @@ def add_motion(sums, y, weight, mode, p):
     sums.integral += weight * x
     if stuck:
         sums.stuck_time += weight
+    _add_open(sums, weight, mode, p)
 
 
 @inner
@@ -86,7 +147,7 @@ def add(sums, t, y, weight, mode, p):
     sums.supplied += weight * supplied
     if first == first:  # NaN: not determined
         sums.normal_force = min(sums.normal_force, first, second)
-        if first < 0.0 or second < 0.0:
+        if _pulls(first, second, p):
             sums.lifted_time += weight
 
 

@@ -6,8 +6,8 @@ mode holds, all its event functions are positive; where one reaches zero the sys
 follows (``transition``).
 
 Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a
-system, which are known by the name of one of their fields. Times in s, all else in the units of
-``scales``.
+system, which are known by the name of one of their fields; of several the first in the record counts. Times
+in s, all else in the units of ``scales``.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,9 +26,9 @@ def declared(function: Function) -> Function:
     _IMPLEMENTED[function] = {}
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        for owner, written in _IMPLEMENTED[function].items():
-            if owner in fields:
-                return written
+        for field in fields:
+            if field in _IMPLEMENTED[function]:
+                return _IMPLEMENTED[function][field]
         message = f"no system with these records has {function.__name__}: {', '.join(fields)}"
         raise NotImplementedError(message)
 
@@ -199,6 +199,16 @@ def growth(by_state, p):
 @declared
 def stiff_error(error, mode, p):
     """Largest error of a velocity on which the mode is stiff, over the width of the stiff range."""
+
+
+@declared
+def opened(mode, p):
+    """Whether the first contact and the second one are open."""
+
+
+@declared
+def impact(y, mode, place, p):
+    """Whether an event is an impact, its largest impulse (N s), and the energy (J) that it takes."""
 
 
 @declared

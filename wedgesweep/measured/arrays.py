@@ -10,6 +10,7 @@ import numpy as np
 from wedgesweep.config.keys import hint, show
 from wedgesweep.files import regular
 from wedgesweep.measured.csv_columns import NOTHING, Content
+from wedgesweep.processes import apart
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 # A v7.3 file of MATLAB is HDF5 behind a header of this length.
@@ -78,6 +79,10 @@ def _matlab(file: Path, names: list[str]) -> Mapping[str, Any]:
         beginning = opened.read(MATLAB_HEADER + len(HDF5_MARK))
     if beginning.startswith(HDF5_MARK) or beginning.endswith(HDF5_MARK):
         return _hdf5(file, names)
+    return apart(_matlab_5, file, names)
+
+
+def _matlab_5(file: Path, names: list[str]) -> Mapping[str, Any]:
     from scipy.io import loadmat, whosmat
 
     classes = {name: kind for name, _, kind in whosmat(file)}

@@ -23,6 +23,7 @@ from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
 from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
+from wedgesweep.measured.quality import trend_faults
 from wedgesweep.measured.stationarity import stationarity_faults, without_trend
 from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
 
@@ -113,7 +114,12 @@ def build_record(
 
 
 def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
-    return stationarity_faults(test, file) or frequency_faults(test, file, at) or channel_faults(test, file)
+    return (
+        stationarity_faults(test, file)
+        or frequency_faults(test, file, at)
+        or trend_faults(test, file)
+        or channel_faults(test, file)
+    )
 
 
 # Faults of a record (test, file, place of its keys) by its kind.

@@ -8,9 +8,11 @@ from wedgesweep.measured.declarations import STEADY
 from wedgesweep.measured.frequency import IMPROBABLE
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
+from wedgesweep.measured.stationarity import MEND
 
-# Changes over the record that are worth a warning: of the amplitude, relative; of the mean, over the rms.
-TREND, DRIFT = 0.02, 0.1
+# Changes over the record that are worth a warning: of the amplitude, relative; of the mean, over the rms. A
+# response whose amplitude changes by more than MOST_TREND is not steady.
+TREND, DRIFT, MOST_TREND = 0.02, 0.1, 0.3
 # Distance of an outlier from the periodic part, over the robust standard deviation of the noise. What
 # occurs as often as once in two periods is a part of the response.
 FAR, RARE = 10.0, 0.5
@@ -49,10 +51,26 @@ def _of_channel(test: TestRecord, samples: np.ndarray) -> list[str]:
     return told
 
 
+def trend_faults(test: TestRecord, file: str) -> list[str]:
+    """Responses that grow or decay all along; one fault at most."""
+    for name, samples in test.channels.items():
+        change = _growth(cut(test.time, samples, test.refined_frequency), test.duration)
+        if abs(change) > MOST_TREND:
+            told = f"the amplitude of {name} changes by {100.0 * change:+.2g} % over the record"
+            other = ', or write kind = "transient" if it is a ring-down' if change < 0.0 else ""
+            return [f"{file}: not steady: {told}; {MEND}{other}"]
+    return []
+
+
+def _growth(cycles: Cycles, duration: float) -> float:
+    """Change of the fundamental over a record, relative to its mean; 0 where chance explains it."""
+    fundamental = cycles.harmonics[:, 0]
+    return _change(cycles.times, (fundamental / fundamental.mean()).real, duration)
+
+
 def _trend(cycles: Cycles, duration: float) -> str | None:
     """Amplitude of the fundamental that changes from period to period."""
-    fundamental = cycles.harmonics[:, 0]
-    change = _change(cycles.times, (fundamental / fundamental.mean()).real, duration)
+    change = _growth(cycles, duration)
     if abs(change) < TREND:
         return None
     return f"its amplitude changes by {100.0 * change:+.2g} % over the record; cut it (from_s, to_s)"

@@ -5,6 +5,7 @@ from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures.diagnosis import spectrogram
 from wedgesweep.figures.diagnosis.selection import SHOWN, by_misfit
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
@@ -51,7 +52,7 @@ def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: s
         heading,
         html.paragraph(_overall(result, kind)),
         draw(FIGURES[kind], CAPTIONS[kind], order[:SHOWN]),
-        draw("spectrogram", SPECTROGRAM) if kind == "transient" else Markup(),
+        draw("spectrogram", SPECTROGRAM) if spectrogram.possible(result) else Markup(),
         html.table("All tests; errors are rms over that of the response", head, rows),
     )
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.compiled import by_record, inlined, inner
+from wedgesweep.hybrid.accumulators import add_impact
 from wedgesweep.hybrid.interface import (
     closed_form,
     event,
@@ -382,6 +383,8 @@ def integrate(state, keep_from, stop, p, recorder, work):
             return CHATTERING, state
         if number < NO_EVENT:
             return number, state
+        if keeping:
+            add_impact(recorder.sums[0], state.y, state.mode, number, p)
         y, mode, unique = transition(state.t, state.y, state.mode, number, p)
         state = State(state.t, y, mode, number, state.step)
         work.counts[2] += 1

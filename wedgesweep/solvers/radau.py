@@ -236,7 +236,8 @@ class _Run:
         if self.statistics["switches"] > EVENTS_PER_PERIOD * (1.0 + t / self.period):
             message = f"more than {EVENTS_PER_PERIOD} switches per period at t = {t:.6g} s"
             raise CaseError(message, "solver_failure")
-        y, mode, unique = system.transition(t, y, mode, event, self.case)
+        sums = self.sums if t >= self.window.keep else None
+        y, mode, unique = system.transition(t, y, mode, event, self.case, sums)
         self._require(unique, t)
         return y, mode
 

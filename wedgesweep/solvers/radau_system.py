@@ -41,17 +41,25 @@ def holds(mode, case):
 
 
 @compiled
-def _transition(t, y, mode, place, case):
+def _transition(t, y, mode, place, case, keeping, sums):
     p = case[0]
-    after, following, unique = interface.transition(t, vector(y, interface.scales(p)), mode, place, p)
+    now = vector(y, interface.scales(p))
+    if keeping:
+        accumulators.add_impact(sums[0], now, mode, place, p)
+    after, following, unique = interface.transition(t, now, mode, place, p)
     store(after, y)
     return following, unique
 
 
-def transition(t: float, y: np.ndarray, mode: Any, place: int, case: np.ndarray) -> tuple:
-    """State, shape (n,), and mode after an event, and whether they are well-posed."""
-    after = y.copy()
-    return after, *_transition(t, after, mode, place, case)
+def transition(
+    t: float, y: np.ndarray, mode: Any, place: int, case: np.ndarray, sums: np.ndarray | None = None
+) -> tuple:
+    """State, shape (n,), and mode after an event, and whether they are well-posed.
+
+    An impact is added to the running sums, if these are given.
+    """
+    after, keeping = y.copy(), sums is not None
+    return after, *_transition(t, after, mode, place, case, keeping, _NO_SUMS if sums is None else sums)
 
 
 @inner

@@ -89,6 +89,15 @@ VARIABLES = (
 
 WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
 
+# Additional variables of unilateral joints.
+OF_LIFT_OFF = (
+    Variable("column_open_fraction", "1", "share of time with the column contact open"),
+    Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
+    Variable("impacts", "1", "impacts of a wedge per forcing period"),
+    Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
+    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
+)
+
 # Within a case of a motion that does not repeat.
 TIME = ("time",)
 _SHARED = ("status", "message", "rate_evaluations", "steps", "switches", "wall_time")
@@ -145,7 +154,7 @@ def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
     Without samples (``sizes`` of "phase" or "time" 0) there are no waveforms; ``continued`` adds CONTINUED.
     """
     fields: list[tuple[Any, ...]] = [("index", "i8")]
-    for variable in TRANSIENT if "time" in sizes else VARIABLES + CONTINUED * continued:
+    for variable in TRANSIENT if "time" in sizes else VARIABLES + OF_LIFT_OFF + CONTINUED * continued:
         if variable.dims in (PHASE, TIME) and not sizes[variable.dims[0]]:
             continue
         dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
@@ -185,7 +194,7 @@ def assemble(
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
-    for variable in TRANSIENT if case_dims == SCALED else VARIABLES + CONTINUED:
+    for variable in TRANSIENT if case_dims == SCALED else VARIABLES + OF_LIFT_OFF + CONTINUED:
         long_name = long_names.get(variable.name, variable.long_name)
         if variable.name not in (records.dtype.names or ()) or long_name is None:
             continue
@@ -219,10 +228,15 @@ def _attributes(variable: Variable, long_name: str) -> dict[str, Any]:
     if variable.units:
         attributes["units"] = variable.units
     if variable.name in FLAGS:
-        first, meanings = FLAGS[variable.name]
-        attributes["flag_values"] = np.arange(first, first + len(meanings), dtype=np.int8)
-        attributes["flag_meanings"] = " ".join(meanings)
+        attributes["flag_values"] = _flag_values(variable.name)
+        attributes["flag_meanings"] = " ".join(FLAGS[variable.name][1])
     return attributes
+
+
+def _flag_values(name: str) -> np.ndarray:
+    """Values that a flag variable may have."""
+    first, meanings = FLAGS[name]
+    return np.arange(first, first + len(meanings), dtype=np.int8)
 
 
 def write(dataset: "xr.Dataset", path: Path) -> None:
@@ -286,7 +300,7 @@ def _faults(ds: "xr.Dataset") -> Iterator[str]:
     if "beta" not in ds.coords:
         return
     case_dims = ("case",) if ds["beta"].dims == ("case",) else GRID
-    known = {variable.name: variable for variable in VARIABLES + CONTINUED}
+    known = {variable.name: variable for variable in VARIABLES + OF_LIFT_OFF + CONTINUED}
     yield from _shape_faults(ds, known, case_dims, (*GRID, "frequency"))
 
 

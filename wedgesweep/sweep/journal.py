@@ -4,8 +4,11 @@ The first line holds the fingerprint and the config. Records of fixed size follo
 that a record that was cut off by a kill is recognised and dropped.
 """
 
+import errno
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from zlib import crc32
@@ -25,6 +28,10 @@ except ImportError:  # Windows: two runs at once are not detected
 # A header holds at least these; with the first one every journal begins.
 _REQUIRED = {"config", "config_sha256"}
 _BEGINNING = b'{"config": "'
+
+
+# What a file system says that has no locks.
+NO_LOCKS = (errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.ENOLCK, errno.EINVAL)
 
 
 class Journal:
@@ -97,13 +104,17 @@ def read(path: Path, dtype: np.dtype) -> np.ndarray:
 
 
 def _locked(path: Path) -> int:
-    """Open a file and lock it, until it is closed or the process ends."""
+    """Open a file and lock it, until it is closed or the process ends.
+
+    On NFS the lock holds between hosts. A file system without locks does not tell two runs apart.
+    """
     if path.exists():
         regular(path)
     file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     try:
         if fcntl:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with _suppressed(NO_LOCKS):
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         # The run that had the lock until now may have finished, and deleted the file.
         replaced = not (path.exists() and os.path.samestat(os.fstat(file), path.stat()))
     except BlockingIOError as error:
@@ -114,6 +125,16 @@ def _locked(path: Path) -> int:
         os.close(file)
         return _locked(path)
     return file
+
+
+@contextmanager
+def _suppressed(numbers: tuple[int, ...]) -> Iterator[None]:
+    """Suppress errors of the operating system with these numbers."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in numbers:
+            raise
 
 
 def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:

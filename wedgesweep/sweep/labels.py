@@ -3,6 +3,16 @@
 from typing import TypedDict
 
 from wedgesweep.config import Config
+from wedgesweep.sweep.dataset import OF_LIFT_OFF
+
+# What only datasets of unilateral joints have, and what other variables mean there.
+_OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)
+_OPEN = {
+    "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
+    "lift_off_fraction": "share of time with at least one contact open",
+    "stick_fraction": "share of time stuck (coulomb) or with the column face closed and below the "
+    "threshold velocity",
+}
 
 
 class Attributes(TypedDict, total=False):
@@ -28,15 +38,17 @@ def attributes(config: Config) -> Attributes:
 
 def of(config: Config) -> dict[str, str | None]:
     """Return the long names of variables by name, None for those that the system does not have."""
+    if config.opens:
+        return dict(_OPEN)
     if config.system != "oscillator":
-        return {}
+        return _OF_LIFT_OFF
     if config.transient:
         return _of_transients(config)
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced
     x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
     size = _reference(config)
-    return {
+    return _OF_LIFT_OFF | {
         "amplitude_ratio": f"half peak-to-peak of {x} over {size}",
         "peak_to_peak": f"peak-to-peak of the displacement {x}",
         "peak_velocity": f"largest magnitude of the velocity {v}",

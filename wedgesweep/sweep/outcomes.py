@@ -17,6 +17,8 @@ from wedgesweep.sweep.cases import describe
 from wedgesweep.sweep.run import Sweep
 
 LIFT_OFF = "lift_off_fraction"
+# A variable of unilateral joints.
+OPENS = "column_open_fraction"
 # Variables of the dataset that Outcomes holds.
 COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
@@ -109,7 +111,7 @@ def of_dataset(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended."""
     if "scale" in ds.coords:
         return _of_transients(ds)
-    if LIFT_OFF not in ds:  # of an oscillator, whose normal force is given
+    if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
     unit = ds["amplitude"].attrs.get("units", "m")
     shape, dims = ds["status"].shape, ds["status"].dims
@@ -157,4 +159,7 @@ def of_journal(path: Path) -> Outcomes:
     if settings.transient:
         nothing = np.zeros(len(records))
         return Outcomes(records["status"], nothing + 1.0, nothing, records[LIFT_OFF], described)
-    return Outcomes(**{name: records[name] for name in COLUMNS}, describe_case=described)
+    columns = {name: records[name] for name in COLUMNS}
+    if settings.opens:
+        columns[LIFT_OFF] = np.zeros(len(records))
+    return Outcomes(**columns, describe_case=described)

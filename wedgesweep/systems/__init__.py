@@ -10,6 +10,7 @@ from wedgesweep.systems.oscillator import hybrid as _oscillator_hybrid  # noqa: 
 from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension import hybrid as _suspension_hybrid  # noqa: F401
 from wedgesweep.systems.suspension import parameters as suspension
+from wedgesweep.systems.suspension.unilateral import hybrid as _unilateral_hybrid  # noqa: F401
 
 # Systems that configs know: the module of the records, by the field that marks them.
 SYSTEMS = {"suspension": suspension, "oscillator": oscillator}

@@ -15,6 +15,7 @@ from wedgesweep.diagnose.loop.force_noise import InertiaNoise, of_force
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
+from wedgesweep.errors import InputError
 from wedgesweep.solvers import imposed_motion
 
 # Below so many standard deviations of its noise the velocity has no sign, and friction is not known.
@@ -123,6 +124,9 @@ def recording(
     own = motion(displacement, noise, low_pass)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
+    if not places.size:
+        told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
+        raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
     inertia = InertiaNoise(low_pass, mass, noise)
     compared, clear = low_pass(force)[places], ~_slow(own, low_pass)[places]
     if differences:

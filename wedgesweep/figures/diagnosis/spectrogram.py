@@ -19,29 +19,51 @@ NAME = "spectrogram"
 DESCRIPTION = "frequencies over time of the measured motion, and of what the models leave"
 
 SHOWN = 4  # records
-FEWEST = 256  # samples of a record
+FEWEST = 1024  # samples of a record
 WINDOWS = 24  # of a record, side by side; they overlap
 OVERLAP = 0.875
-LEVELS = 60.0  # dB below the largest
-# Frequencies above those that hold this share of the power are not shown.
-SHARE = 0.9999
+LEVELS = 60.0  # dB below the largest, unless the noise is above that
+# What exceeds the noise so many times stands out of it; higher frequencies are not shown.
+CLEAR = 20.0
 COLORS = colormaps["BuPu"]
 
 
 class Record(NamedTuple):
-    """A record: index of its first test, times (n,) in s, and signals (n,) in m, the measured one first."""
+    """A record: index of its first test, times (n,) in s, and signals (n,) in m, the measured one first.
+
+    ``noise``: of a sample (m).
+    """
 
     test: int
     time: np.ndarray
     signals: list[np.ndarray]
+    noise: float
 
 
 class Spectra(NamedTuple):
-    """Times (s), frequencies (Hz), and the power (signals, frequencies, times) in m^2/Hz."""
+    """Times (s), frequencies (Hz), power (signals, frequencies, times), power of the noise (m^2/Hz)."""
 
     time: np.ndarray
     frequency: np.ndarray
     power: np.ndarray
+    noise: float
+
+    @property
+    def largest(self) -> float:
+        """Largest power of the measured motion."""
+        return float(self.power[0].max()) or 1.0
+
+    @property
+    def lowest(self) -> float:
+        """Level (dB below the largest) up to which all is pale: noise."""
+        return max(-LEVELS, 10.0 * np.log10(max(CLEAR / 4.0 * self.noise / self.largest, 1e-30)))
+
+    @property
+    def highest(self) -> float:
+        """Frequency (Hz) above which nothing stands out."""
+        least = max(CLEAR * self.noise, 10.0 ** (-LEVELS / 10.0) * self.largest)
+        places = np.flatnonzero((self.power > least).any(axis=(0, 2)))
+        return float(self.frequency[min(1 + (places[-1] if places.size else 0), self.frequency.size - 1)])
 
 
 def records(result: DiagnosisResult, tests: Sequence[int]) -> list[Record]:
@@ -52,9 +74,20 @@ def records(result: DiagnosisResult, tests: Sequence[int]) -> list[Record]:
         if found and _follows(found[-1].time, part.time):
             first = found.pop()
             joined = [np.concatenate(both) for both in zip(first.signals, part.signals, strict=True)]
-            part = Record(first.test, np.concatenate([first.time, part.time]), joined)
+            part = Record(first.test, np.concatenate([first.time, part.time]), joined, first.noise)
         found.append(part)
     return found
+
+
+def _long(result: DiagnosisResult, tests: Sequence[int] | None) -> list[Record]:
+    """Records of the tests that are long enough."""
+    chosen = list(range(result.data.sizes["test"]) if tests is None else tests)
+    return [each for each in records(result, chosen) if each.time.size >= FEWEST]
+
+
+def possible(result: DiagnosisResult) -> bool:
+    """Whether a record of transients is long enough to be drawn."""
+    return "measured" in result.data and bool(_long(result, None))
 
 
 def _part(result: DiagnosisResult, test: int) -> Record:
@@ -62,7 +95,8 @@ def _part(result: DiagnosisResult, test: int) -> Record:
     measured = data["measured"].values
     there = np.isfinite(measured)
     left = [_left(data, model)[there] for model in result.models]
-    return Record(test, data["time"].values[there], [measured[there], *left])
+    noise = float(data["sample_noise"])
+    return Record(test, data["time"].values[there], [measured[there], *left], noise)
 
 
 def _left(data: xr.Dataset, model: str) -> np.ndarray:
@@ -78,27 +112,19 @@ def spectra(record: Record) -> Spectra:
     """Power of the measured motion and of what each model leaves."""
     count = record.time.size
     # A power of two, so that a record has about so many windows.
-    size = 1 << int(np.log2(max(count / WINDOWS, FEWEST / 8)))
+    size = 1 << int(np.log2(count / WINDOWS))
     rate = (count - 1) / (record.time[-1] - record.time[0])
     frequency, middle, power = spectrogram(
         np.array(record.signals), rate, "hann", size, int(OVERLAP * size), detrend="linear"
     )
-    return Spectra(record.time[0] + middle, frequency, power)
+    return Spectra(record.time[0] + middle, frequency, power, 2.0 * record.noise**2 / rate)
 
 
-def _highest(of: Spectra) -> float:
-    """Frequency below which nearly all of the measured power is."""
-    share = np.cumsum(of.power[0].sum(axis=-1))
-    place = int(np.searchsorted(share, SHARE * share[-1]))
-    return float(of.frequency[min(place + 2, of.frequency.size - 1)])
-
-
-def _draw(ax: Axes, of: Spectra, place: int) -> None:
+def _draw(ax: Axes, of: Spectra, place: int, lowest: float) -> None:
     ax.grid(visible=False)
-    largest = of.power[0].max() or 1.0
-    level = 10.0 * np.log10(np.maximum(of.power[place] / largest, 10.0 ** (-LEVELS / 10.0)))
-    ax.pcolormesh(of.time, of.frequency, level, cmap=COLORS, vmin=-LEVELS, vmax=0.0, rasterized=True)
-    ax.set_ylim(0.0, _highest(of))
+    level = 10.0 * np.log10(np.maximum(of.power[place] / of.largest, 1e-30))
+    ax.pcolormesh(of.time, of.frequency, level, cmap=COLORS, vmin=lowest, vmax=0.0, rasterized=True)
+    ax.set_ylim(0.0, of.highest)
 
 
 def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = None) -> Panels:
@@ -111,22 +137,22 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     if "measured" not in result.data:
         message = "the tests are no transients"
         raise ValueError(message)
-    chosen = range(result.data.sizes["test"]) if tests is None else tests
-    long = [each for each in records(result, list(chosen)) if each.time.size >= FEWEST][:SHOWN]
+    long = _long(result, tests)[:SHOWN]
     if not long:
         message = f"no record has {FEWEST} samples or more"
         raise ValueError(message)
     titles = ["measured", *(f"left by {name}" for name in marks.names(result).values())]
     columns = len(titles)
     made = panels(target, columns * len(long), columns=columns, size=(3.0, 2.1), share=False)
-    for row, record in enumerate(long):
-        of = spectra(record)
+    drawn = [spectra(record) for record in long]
+    lowest = min(of.lowest for of in drawn)
+    for row, (record, of) in enumerate(zip(long, drawn, strict=True)):
         for place, ax in enumerate(made.axes[row * columns : (row + 1) * columns]):
-            _draw(ax, of, place)
+            _draw(ax, of, place, lowest)
             ax.set_xlabel("time [s]", fontsize=8.5)
             name = f"{selection.label(result.data, record.test)}\n" if not place else ""
             ax.set_title(f"{name}{titles[place]}", fontsize=8.5)
         made.axes[row * columns].set_ylabel("frequency [Hz]", fontsize=8.5)
-    made.colorbar(ScalarMappable(Normalize(-LEVELS, 0.0), COLORS), "power below the largest [dB]")
+    made.colorbar(ScalarMappable(Normalize(lowest, 0.0), COLORS), "power below the largest [dB]")
     made.title("Frequencies of the motion over time, and of what the models leave")
     return made

@@ -37,6 +37,7 @@ from wedgesweep.systems.suspension.linear_slip import (
 # Scanned intervals per period, in which a rate changes its sign at most once; error of an extreme's place as
 # a share of an interval, which is squared in the extreme.
 INTERVALS, CLOSE = 13.0, 1e-6
+LEAST_PARTS = 3
 # What has extremes in a piece.
 VELOCITY, COLUMN, BOLSTER = 0, 1, 2
 
@@ -87,6 +88,8 @@ def _put_turning(which, phase, later, span, o, recorder, p):
 def _put_extremes(phase, duration, o, recorder, p):
     """Add the ends of a piece and all extremes within it."""
     parts = int(duration * max(p.input.omega, o.frequency) / (2.0 * pi) * INTERVALS) + 1
+    # A bolster breaks away at a rate of zero, whose sign is noise; a short slip peaks after a third of it.
+    parts = max(parts, LEAST_PARTS)
     span = duration / parts
     turn = small_angles(span, o, p)
     _put_point(phase, o, recorder, p)

@@ -8,8 +8,9 @@ off cost nothing, nor does the Fourier series of a recorded input (part ``series
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from math import cos, isfinite, sin
+from math import cos, isfinite, nan, sin
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -61,14 +62,30 @@ GEOMETRY = (
     "rest",  # z of the frictionless equilibrium (m)
 )
 
-# Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects.
-BASE, OWN, ALL = 0, 1, 2
+# Whether a contact between wedge and column or bolster can pull, or opens.
+BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
+RESTITUTION = Quantity(
+    "restitution", 0.0, "coefficient of restitution of unilateral joints", minimum=0.0, below=1.0
+)
+# Marks of records with unilateral joints, and of those without effects that have mechanics of their own.
+OPENS: list[tuple] = [(UNILATERAL, [("restitution", np.float64)])]
+PLAIN: list[tuple] = [("plain_unilateral", np.int64)]
+# Effects with mechanics of their own that unilateral joints go with, and one without that they do not.
+GO_WITH_LIFT_OFF = (
+    *("viscous_damping", "directional_damping", "quadratic_drag", "cubic_stiffness", "end_stop", "backlash"),
+    *("stribeck", "input_distortion", "stray_vibration"),
+)
+NOT_WITH_LIFT_OFF = "guide_friction"
+
+# Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects;
+# unilateral joints without effects that have mechanics of their own, and with those that go with them.
+BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS = range(5)
 # Coulomb friction that is regularised reaches mu_d at this velocity (m/s) on the bench; see natural_units.
 REGULARISED_VELOCITY = 1e-6
 
 
 @cache
-def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.dtype]:
+def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
     """Record types by kit, with or without the Fourier series of an input.
 
     No type is the beginning of another: numba would mistake one for the other.
@@ -76,11 +93,14 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype, np.
     simple = [name for name in names if not known.EFFECTS[name].extends]
     own = [name for name in names if name not in known.NAMES]
     plain = [name for name in simple if name not in own]
+    some = [*plain, *(name for name in names if name in GO_WITH_LIFT_OFF)]
     if series:
         # There is no closed form, so that ``base`` marks nothing here.
         part = records.SERIES
-        return _dtype(part, plain), _dtype(part, own + plain), _dtype(part, names)
-    return _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], names)
+        bilateral = _dtype(part, plain), _dtype(part, own + plain), _dtype(part, names)
+        return *bilateral, _dtype(OPENS + part, plain), _dtype(OPENS + part, some)
+    bilateral = _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], names)
+    return *bilateral, _dtype(PLAIN + OPENS, plain), _dtype(OPENS, some)
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -96,14 +116,19 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
 
 def record_type() -> np.dtype:
     """Type of the full record, with all effects that are known now."""
-    return _kits(tuple(known.EFFECTS), True)[ALL]
+    return _full_type(tuple(known.EFFECTS))
+
+
+@cache
+def _full_type(names: tuple[str, ...]) -> np.dtype:
+    return _dtype(records.SERIES + OPENS, names)
 
 
 def record(
     law: str,
     amplitude: float,
     omega: float,
-    suspension: Mapping[str, float] = MappingProxyType({}),
+    suspension: Mapping[str, Any] = MappingProxyType({}),
     friction: Mapping[str, float] = MappingProxyType({}),
     effects: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
 ) -> np.ndarray:
@@ -116,7 +141,8 @@ def record(
     amplitude, omega : float
         Of the input: m, rad/s.
     suspension, friction, effects : mapping
-        SI numbers by the names of their quantities.
+        SI numbers by the names of their quantities; ``joints`` of the suspension is one of JOINTS, and
+        ``restitution`` goes with unilateral ones.
 
     Returns
     -------
@@ -127,6 +153,8 @@ def record(
     p = case[0]
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
+    opens = suspension.get("joints", BILATERAL) == UNILATERAL
+    p[UNILATERAL]["restitution"] = suspension.get("restitution", RESTITUTION.default) if opens else nan
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
     for name in known.EFFECTS:
@@ -143,8 +171,28 @@ def _acting(p: np.void) -> list[str]:
     return records.acting(p, known.EFFECTS)
 
 
+def effects_with_lift_off() -> tuple[str, ...]:
+    """Names of the effects that unilateral joints go with."""
+    return tuple(
+        name
+        for name, effect in known.EFFECTS.items()
+        if name in GO_WITH_LIFT_OFF or not (effect.extends or name == NOT_WITH_LIFT_OFF)
+    )
+
+
+def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
+    """Whether the joints of full records can open, of records of any shape."""
+    return np.isfinite(rows[UNILATERAL]["restitution"])
+
+
 def _kit_of(p: np.void) -> int:
     acting = _acting(p)
+    if has_unilateral_joints(p):
+        lateral = [NOT_WITH_LIFT_OFF] if p[NOT_WITH_LIFT_OFF]["force"] > 0.0 else []
+        if refused := {*acting, *lateral} - set(effects_with_lift_off()):
+            message = f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}"
+            raise ValueError(message)
+        return JOINTS_OPEN_WITH_EFFECTS if acting else JOINTS_OPEN
     if not acting:
         return BASE
     return ALL if any(name in known.NAMES for name in acting) else OWN
@@ -223,7 +271,20 @@ def _always_well_posed(p: np.void, small: np.void) -> bool:
     if not isfinite(most):
         return False
     corners = ((most, most), (most, -most), (-most, most), (-most, -most))
+    if has_unilateral_joints(p) and not _bolster_face_never_locks(most, p):
+        return False
     return all(determinant(column, bolster, small) > 0.0 for column, bolster in corners)
+
+
+def _bolster_face_never_locks(most: float, p: np.void) -> bool:
+    """Whether the bolster face alone has exactly one force under any load, whatever its friction.
+
+    With the four determinants of both faces, and as the column face alone always has one, this is what a
+    linear complementarity problem needs to have exactly one solution: positive principal minors.
+    """
+    s, g = p["suspension"], p["geometry"]
+    lift = g["sin_wedge"] * (g["sin_wedge"] - most * abs(g["cos_wedge"]))
+    return bool(s["bolster_mass"] + 2.0 * s["wedge_mass"] * lift > 0.0)
 
 
 def compact(rows: np.ndarray) -> np.ndarray:

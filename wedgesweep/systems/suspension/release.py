@@ -67,6 +67,13 @@ def _breakaway_input(state, direction, p):
     return limit if min(there.column, there.bolster) > 0.0 else nan
 
 
+@inlined
+def is_known(state, p):
+    """Whether both faces keep their load until the bolster breaks away, in either direction."""
+    forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
+    return p.geometry.always_well_posed != 0 and forward < backward
+
+
 @inner
 def release(state, stop, p):
     """Time at which a stuck bolster breaks away, and the event.

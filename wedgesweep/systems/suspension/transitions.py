@@ -142,7 +142,7 @@ def _continuous(axis, y, p):
 
 
 @inner
-def _cross_discontinuity(t, y, mode, place, p):
+def cross_discontinuity(t, y, mode, place, p):
     """Mode on the next branch, or held at the jump where the next branch points back to it."""
     axis = place // 2
     was_held = abs(branch(mode, axis)) == HELD
@@ -167,7 +167,7 @@ def _transition(t, y, mode, place, p):
         found, _, certain = resolve_mode(t, y, mode, p)
         return y, found, certain
     if not p.friction.set_valued:
-        found, certain = _cross_discontinuity(t, y, mode, place, p)
+        found, certain = cross_discontinuity(t, y, mode, place, p)
         return y, found, certain
     y = replaced(y, VELOCITY, 0.0)
     if not stuck(mode, p):

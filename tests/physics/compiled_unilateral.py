@@ -1,0 +1,50 @@
+"""Compiled functions of unilateral joints as Python calls them."""
+
+import numpy as np
+
+from wedgesweep.compiled import compiled
+from wedgesweep.systems.suspension.unilateral import contacts, impact, modes, motion
+
+
+@compiled
+def struck(y, column, bolster, restitution, case):
+    """Impact of a state in which the given contacts touch."""
+    return impact.struck(y, column, bolster, restitution, case[0])
+
+
+@compiled
+def velocities(y, case):
+    """Velocities of the wedge along and off the column, and of the bolster."""
+    return motion.velocities(y, case[0])
+
+
+@compiled
+def solve(free, faces, case):
+    """Reactions of a contact problem, and how many solutions it has."""
+    return contacts.solve(free, faces, case[0])
+
+
+@compiled
+def resolve(t, y, case):
+    """Mode of the contacts that touch in a state, and whether it is unique."""
+    return modes.resolve(t, y, modes.touching(y, case[0]), 0, case[0])
+
+
+@compiled
+def largest_gain(number, case):
+    """Largest gain of energy, over the energy before, in impacts of random states; inf if one has none."""
+    np.random.seed(1)  # noqa: NPY002
+    worst, p = -1.0, case[0]
+    for i in range(number):
+        v = np.random.uniform(-1.0, 1.0, 5)  # noqa: NPY002
+        column, bolster = i % 3 != 1, i % 3 != 0
+        y = (0.0, v[0], 0.0, -abs(v[1]), 0.0 if bolster else 1.0, v[2])
+        if i % 3 == 1:
+            y = (0.0, v[0], 1.0, v[1], 0.0, -abs(v[2]))
+        elif i % 2 == 0:
+            y = (0.0, v[0], 0.0, -abs(v[1]), y[4], 0.0)
+        now = impact.struck(y, column, bolster, 0.45 * (1.0 + v[3]), p)
+        before = motion.kinetic_energy(motion.velocities(y, p), p)
+        after = motion.kinetic_energy(motion.velocities(now.y, p), p)
+        worst = max(worst, after / before - 1.0 if now.unique else np.inf)
+    return worst

@@ -1,0 +1,310 @@
+"""Joints that may lift off: contacts, impacts, flight, and the bilateral model where nothing opens."""
+
+from math import cos, inf, sin, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.physics import compiled_unilateral as mechanics
+from tests.physics.cases import OMEGA_N
+from wedgesweep import excitation, response
+from wedgesweep.friction import LAW_NAMES
+from wedgesweep.simulate import Settings, respond
+from wedgesweep.solvers import event_driven, radau
+from wedgesweep.solvers.period_map import memory, prepared, run_periods
+from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.systems import compact
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.unilateral.contacts import Faces, Motion, Reactions
+
+X, VELOCITY, COLUMN_GAP, COLUMN_RATE, BOLSTER_GAP, BOLSTER_RATE = range(6)
+AMPLITUDE = 1e-3
+MARGIN = 1e-10
+
+
+def record(law="coulomb", amplitude=AMPLITUDE, beta=1.2, restitution=0.0, friction=None, **suspension):
+    joints = {"joints": "unilateral", "restitution": restitution}
+    return parameters.record(law, amplitude, beta * OMEGA_N, joints | suspension, friction or {})
+
+
+def vectors(p):
+    """Unit vectors along and into the column, along the bolster face and into the wedge."""
+    wedge, column = p["suspension"]["wedge_angle"], p["suspension"]["column_angle"]
+    return (
+        np.array([-sin(column), cos(column)]),
+        np.array([cos(column), sin(column)]),
+        np.array([sin(wedge), cos(wedge)]),
+        np.array([cos(wedge), -sin(wedge)]),
+    )
+
+
+class Body:
+    """Velocities of wedge and bolster in the plane, from a state vector."""
+
+    def __init__(self, y, case):
+        self.p = case[0]
+        along, gap, self.rise = mechanics.velocities(y, compact(case))
+        t_c, n_c, t_b, p_b = vectors(self.p)
+        self.wedge = along * t_c - gap * n_c
+        against = self.wedge - np.array([0.0, self.rise])
+        self.gap_rates = -self.wedge @ n_c, against @ p_b
+        self.slips = self.wedge @ t_c, against @ t_b
+
+    @property
+    def energy(self):
+        s = self.p["suspension"]
+        return 0.5 * s["bolster_mass"] * self.rise**2 + s["wedge_mass"] * self.wedge @ self.wedge
+
+
+SPEED = st.floats(-1.0, 1.0)
+
+
+@st.composite
+def impacts(draw):
+    """A case, a state in which a gap closes, the contacts that touch, and the restitution."""
+    case = record(
+        friction={"dynamic": draw(st.floats(0.0, 0.32))},
+        column_angle=draw(st.sampled_from((-0.07, 0.07, 0.3))),
+        wedge_mass=draw(st.floats(0.02, 1.0)),
+    )
+    touches = draw(st.sampled_from(((True, False), (False, True), (True, True))))
+    rates = [draw(SPEED) for _ in range(2)]
+    closing = draw(st.sampled_from([i for i in range(2) if touches[i]]))
+    for i in range(2):
+        if touches[i]:
+            rates[i] = -abs(rates[i]) - 1e-3 if i == closing else 0.0
+    gaps = [0.0 if touch else 1e-3 for touch in touches]
+    y = (draw(st.floats(-2e-3, 2e-3)), draw(SPEED), gaps[0], rates[0], gaps[1], rates[1])
+    return case, y, touches, draw(st.floats(0.0, 0.9))
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(impacts())
+def test_an_impact_keeps_momentum_obeys_coulomb_and_never_gains_energy(given_impact):
+    case, y, touches, restitution = given_impact
+    after, impulses, unique = mechanics.struck(y, *touches, restitution, compact(case))
+    assert unique
+    old, new = Body(y, case), Body(after, case)
+    s, (t_c, n_c, t_b, p_b) = case[0]["suspension"], vectors(case[0])
+    on_bolster = impulses.bolster * p_b - impulses.bolster_friction * t_b
+    on_wedge = on_bolster - impulses.column * n_c - impulses.column_friction * t_c
+    assert s["wedge_mass"] * (new.wedge - old.wedge) == pytest.approx(on_wedge, abs=MARGIN)
+    assert s["bolster_mass"] * (new.rise - old.rise) == pytest.approx(-2.0 * on_bolster[1], abs=MARGIN)
+    assert new.energy <= old.energy * (1.0 + MARGIN)
+    mu, reactions = case[0]["friction"]["mu_d"], ((impulses[0], impulses[1]), (impulses[2], impulses[3]))
+    for i, (normal, friction) in enumerate(reactions):
+        gap = new.gap_rates[i] + restitution * old.gap_rates[i]
+        slip = new.slips[i] + restitution * old.slips[i]
+        assert normal >= -MARGIN
+        assert abs(friction) <= mu * normal + MARGIN
+        assert abs(normal * gap) < MARGIN
+        if touches[i]:
+            assert gap >= -MARGIN
+        if abs(slip) > 1e-6:
+            assert friction == pytest.approx(mu * normal * np.sign(slip), abs=MARGIN)
+
+
+def test_closed_contacts_under_load_are_those_of_bilateral_joints():
+    """With N > 0 the contact problem gives what the three equations of bilateral joints give."""
+    from tests.physics.compiled_mechanics import reactions
+    from wedgesweep.systems.suspension.newton import Coefficients, Loads
+
+    generator, found = np.random.default_rng(3), 0
+    bilateral = compact(parameters.record("static-dynamic", AMPLITUDE, OMEGA_N))[0]
+    case = record("static-dynamic")
+    s, g = case[0]["suspension"], case[0]["geometry"]
+    for _ in range(200):
+        wedge, bolster = generator.uniform(-5.0, 20.0), generator.uniform(-20.0, 5.0)
+        mu = generator.uniform(-0.32, 0.32, 2)
+        now, _ = reactions(
+            Loads(wedge * g["cos_column"], wedge * g["sin_column"], bolster, 0.0, 0.0, 0.0),
+            Coefficients(*mu, 0.0, 0.0),
+            bilateral,
+        )
+        free = Motion(
+            wedge * g["cos_column"] / s["wedge_mass"],
+            -wedge * g["sin_column"] / s["wedge_mass"],
+            bolster / s["bolster_mass"],
+        )
+        solution, count = mechanics.solve(free, Faces(True, True, True, *mu), compact(case))
+        assert count == 1
+        assert (min(now.column, now.bolster) > 0.0) == (min(solution.column, solution.bolster) > 0)
+        if min(now.column, now.bolster) > 0.0:
+            found += 1
+            expected = Reactions(now.column, mu[0] * now.column, now.bolster, mu[1] * now.bolster)
+            assert solution.reactions == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert found > 30
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize(("beta", "amplitude"), [(0.4, 1e-3), (1.472, 5e-5), (2.208, 1e-4)])
+def test_nothing_changes_where_nothing_lifts_off(law, beta, amplitude):
+    steady = Settings(method="event-driven", duration=None, settle_periods=30, kept_periods=2)
+    held = parameters.record(law, amplitude, beta * OMEGA_N)
+    first, _ = respond(held, steady, 9)
+    second, _ = respond(record(law, amplitude, beta), steady, 9)
+    assert first.numbers["minimum_normal_force"] > 0.0
+    assert second.numbers == pytest.approx(first.numbers, rel=1e-12, abs=1e-15, nan_ok=True)
+    assert second.numbers["impacts"] == second.numbers["lift_off_fraction"] == 0.0
+
+
+def without_input(step, **suspension):
+    """A case without input or friction whose "period" is a step (s), and the period map's arguments."""
+    case = record("coulomb", friction={"dynamic": 0.0}, **suspension)
+    excitation.set_no_motion(case, AMPLITUDE)
+    case["input"]["omega"] = 2.0 * np.pi / step
+    return case, prepared(compact(case)), memory(1e-10, 8, 1)
+
+
+def states_after(case, y, steps):
+    """States after each of some steps."""
+    _, cases, room = case
+    y, seen = np.array(y), []
+    for i in range(steps):
+        assert run_periods(cases, i, 1, y, True, room) == 0
+        seen.append(y.copy())
+    return np.array(seen)
+
+
+def test_free_flight_is_a_parabola():
+    step, steps = 2e-3, 20
+    case = without_input(step, wedge_spring=0.0)
+    p = case[0][0]
+    start = (0.0, 0.0, 0.5, 0.1, 0.4, 0.2)
+    seen = states_after(case, start, steps)
+    g, t = p["geometry"], step * np.arange(1, steps + 1)
+    gravity, omega = p["suspension"]["gravity"], OMEGA_N
+    # The bolster swings on its spring about its own rest, below that of the whole.
+    own_rest = -p["suspension"]["bolster_mass"] * gravity / p["suspension"]["bolster_spring"] - g["rest"]
+    bolster = own_rest * (1.0 - np.cos(omega * t))
+    _, n_c, _, p_b = vectors(p)
+    fall = -0.5 * gravity * t**2
+    column = start[COLUMN_GAP] + start[COLUMN_RATE] * t - fall * n_c[1]
+    face = start[BOLSTER_GAP] + start[BOLSTER_RATE] * t + (fall - bolster) * p_b[1]
+    assert seen[:, X] == pytest.approx(bolster, abs=1e-9)
+    assert seen[:, COLUMN_GAP] == pytest.approx(column, abs=1e-9)
+    assert seen[:, BOLSTER_GAP] == pytest.approx(face, abs=1e-9)
+
+
+def test_a_bouncing_block_comes_to_rest_at_the_known_time():
+    """Restitution 0.5: heights fall by 1/4, times by 1/2, and the last impact comes after 3 fall times."""
+    height, restitution, lean = 1e-3, 0.5, -0.3
+    gain = 9.80665 * sin(-lean)
+    fall = sqrt(2.0 * height / gain)
+    case = without_input(fall / 40.0, wedge_spring=0.0, column_angle=lean, restitution=restitution)
+    seen = states_after(case, (0.0, 0.0, height, 0.0, 1.0, 0.0), 160)
+    t = fall * np.arange(1, 161) / 40.0
+    expected, speed, began = np.zeros(t.size), gain * fall, fall
+    expected[t <= fall] = height - 0.5 * gain * t[t <= fall] ** 2
+    for _ in range(60):
+        speed *= restitution
+        flight = (t > began) & (t < began + 2.0 * speed / gain)
+        expected[flight] = speed * (t - began)[flight] - 0.5 * gain * (t - began)[flight] ** 2
+        began += 2.0 * speed / gain
+    assert began == pytest.approx(3.0 * fall)
+    assert seen[:, COLUMN_GAP] == pytest.approx(expected, abs=1e-9 * height)
+    assert seen[:, COLUMN_GAP].min() >= -1e-9 * height
+    # Nothing bounces below the stated speed: from there on the contact is closed.
+    assert np.all(seen[t > 3.0 * fall][:, (COLUMN_GAP, COLUMN_RATE)] == 0.0)
+
+
+CASES = [("coulomb", 2.5, 1e-3, 0.3), ("exponential", 1.2, 1e-3, 0.0), ("static-dynamic", 1.0, 1e-3, 0.3)]
+
+
+@pytest.mark.parametrize(("law", "beta", "amplitude", "restitution"), CASES)
+def test_both_solvers_agree_through_impacts(law, beta, amplitude, restitution):
+    case = record(law, amplitude, beta, restitution)
+    window, found = Window(beta * OMEGA_N, 2, 2, 64), []
+    for solver in (event_driven, radau):
+        run = solver.solve(case, window, rtol=1e-9, time_limit=120.0)
+        found.append(response.evaluate(run, case, harmonics=3).numbers)
+    assert found[0]["impacts"] > 0.0
+    names = ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "largest_impulse")
+    for name in (*names, "impacts", "impact_energy", "dissipated_energy"):
+        assert found[1][name] == pytest.approx(found[0][name], rel=1e-6), name
+    assert min(each["minimum_normal_force"] for each in found) > -1e-9
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_friction_and_impacts_take_what_the_base_supplies(law, restitution):
+    settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=150, kept_periods=2)
+    numbers = respond(record(law, 4.75e-3, 0.8, restitution), settled, 3)[0].numbers
+    assert numbers["periodicity"] < 1e-6
+    assert numbers["impact_energy"] > 0.1 * numbers["dissipated_energy"]
+    taken = numbers["dissipated_energy"] + numbers["impact_energy"]
+    assert taken == pytest.approx(numbers["supplied_energy"], rel=1e-5)
+
+
+def test_a_steady_response_with_impacts_is_that_of_a_long_run():
+    case = record("coulomb", 1e-3, 2.5)
+    long = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=200)
+    expected = respond(case, long, 3)[0].numbers
+    from wedgesweep.sweep import dataset
+    from wedgesweep.sweep.cases import solve_cases
+
+    found = Settings(method="event-driven", rtol=1e-8, duration=None, steady=True)
+    dtype = dataset.record_dtype({"phase": 0, "harmonic": 9, "part": 2})
+    (one,) = solve_cases(case, np.array([0]), found, inf, dtype)
+    assert one["period"] == 1
+    assert one["settled_periods"] < 100
+    for name in ("amplitude_ratio", "impact_energy", "column_open_fraction"):
+        assert one[name] == pytest.approx(expected[name], rel=1e-5), name
+
+
+EFFECTS = {
+    "viscous_damping": {"coefficient": 8.0},
+    "end_stop": {"clearance": 1e-3, "stiffness": 2e4},
+    "stribeck": {"velocity": 5e-3, "peak": 0.05},
+    "input_distortion": {"second": 0.1},
+}
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_effects_act_on_joints_that_lift_off(law):
+    settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=60, kept_periods=2)
+    made = [
+        parameters.record(law, a, 1.75 * OMEGA_N, {"joints": joints}, {}, EFFECTS)
+        for a in (1e-4, 1.5e-3)
+        for joints in parameters.JOINTS
+    ]
+    held, closed, _, opens = (respond(case, settled, 3)[0].numbers for case in made)
+    assert closed == pytest.approx(held, rel=1e-9, abs=1e-12, nan_ok=True)
+    assert opens["impacts"] > 0.0
+    taken = opens["dissipated_energy"] + opens["impact_energy"]
+    assert taken == pytest.approx(opens["supplied_energy"], rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("name", "numbers"), [("column_compliance", {"stiffness": 1e5}), ("guide_friction", {"force": 0.1})]
+)
+def test_effects_that_the_contacts_do_not_know_are_refused(name, numbers):
+    with pytest.raises(ValueError, match=f"unilateral joints do not go with: {name}"):
+        parameters.record("coulomb", 1e-3, OMEGA_N, {"joints": "unilateral"}, {}, {name: numbers})
+
+
+@pytest.mark.parametrize("law", ["coulomb", "static-dynamic"])
+def test_a_wedge_that_locks_is_never_a_number(law):
+    case = record(law, 4.75e-3, 1.0, friction={"dynamic": 1.0, "static": 1.1}, column_angle=-0.07)
+    assert not case["geometry"]["always_well_posed"][0]
+    with pytest.raises(CaseError) as raised:
+        event_driven.solve(case, Window(OMEGA_N, 20, 2, 64), rtol=1e-6, time_limit=60.0)
+    assert raised.value.status == "locked"
+
+
+def test_friction_that_presses_a_face_on_has_two_solutions_or_none():
+    """Painleve: the bolster face alone, with so much friction that it pulls the faces together."""
+    case = record(wedge_mass=2.0)
+    s, g = case[0]["suspension"], case[0]["geometry"]
+    limit = 0.5 * s["bolster_mass"] / s["wedge_mass"] + g["sin_wedge"] ** 2
+    steep = Faces(False, True, True, 0.0, -2.0 * limit / (g["sin_wedge"] * g["cos_wedge"]))
+    closing = mechanics.solve(Motion(1.0, 0.0, 0.0), steep, compact(case))
+    assert closing[1] == 0
+    assert closing[0].margin < 0.0
+    assert mechanics.solve(Motion(-1.0, 0.0, 0.0), steep, compact(case))[1] == 2
+
+
+def test_energy_never_grows_over_many_impacts():
+    assert mechanics.largest_gain(20_000, compact(record())) <= MARGIN

@@ -1,0 +1,358 @@
+"""The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
+
+While both contacts are closed its equations, events and closed forms are those of bilateral joints. Records
+of this system have a part ``unilateral`` beside those of the suspension.
+"""
+
+from math import inf, nan
+
+from wedgesweep import excitation, friction
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import hooks, travel
+from wedgesweep.hybrid import interface
+from wedgesweep.hybrid.interface import implement
+from wedgesweep.hybrid.recorder import keep_constant
+from wedgesweep.hybrid.state import NO_EVENT, State
+from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.systems.suspension import (
+    energy,
+    events,
+    filippov,
+    first_event,
+    linear_slip,
+    linear_slip_sums,
+    newton,
+    release,
+    transitions,
+)
+from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, VELOCITY, X, held, with_branch, with_segment
+from wedgesweep.systems.suspension.unilateral import contacts, impact
+from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, moved
+from wedgesweep.systems.suspension.unilateral.modes import (
+    Touching,
+    bolster_touches,
+    closed,
+    column_touches,
+    resolve,
+    signed_coefficient,
+    stuck,
+    touching,
+    without_jump,
+)
+from wedgesweep.systems.suspension.unilateral.motion import (
+    BOLSTER_GAP,
+    BOLSTER_RATE,
+    COLUMN_GAP,
+    COLUMN_RATE,
+    UNILATERAL,
+    free_accelerations,
+    kinetic_energy,
+    momentum,
+    velocities,
+)
+
+# Records with this field have no effects with mechanics of their own.
+PLAIN = "plain_unilateral"
+# Pairs of event functions are those of the suspension; the gaps stand where it has the sign of z'.
+COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 9
+TRAVEL, EVENTS = 10, 12
+
+
+@implement(interface.event_count, UNILATERAL)
+@inlined
+def event_count(p):
+    """Number of event functions."""
+    return EVENTS
+
+
+@implement(interface.holds, UNILATERAL)
+@inlined
+def holds(mode, p):
+    """Whether friction keeps the bolster at rest."""
+    return stuck(mode, p)
+
+
+@implement(interface.sticks, UNILATERAL)
+@inlined
+def sticks(y, mode, p):
+    """Whether the column face is closed and sticks, or slips below the threshold velocity."""
+    return mode.column_sign == 1 and abs(mode.column) != 1
+
+
+@implement(interface.opened, UNILATERAL)
+@inlined
+def opened(mode, p):
+    """Whether the column contact and the bolster contact are open."""
+    return mode.column_sign == 0, mode.bolster_sign == 0
+
+
+@implement(interface.free, UNILATERAL)
+@inlined
+def free(y, p):
+    """A closed contact keeps its gap, and a bolster that friction holds its velocity."""
+    column, bolster = not column_touches(y), not bolster_touches(y)
+    pinned = p.friction.set_valued != 0 and y[VELOCITY] == 0.0 and not column and not bolster
+    return True, not pinned, column, column, bolster, bolster
+
+
+# Motion
+
+
+@inlined
+def _apart(t, y, mode, p):
+    """Accelerations (m/s^2) and reactions (N) while a contact is open."""
+    at_will, motion = free_accelerations(t, y, mode.segment, p), velocities(y, p)
+    now = contacts.NOTHING
+    if mode.column_sign == 1:
+        rests = p.friction.set_valued != 0 and mode.column == 0
+        mu = signed_coefficient(motion.along, mode.column, mode.clock, y, p)
+        now = contacts.column_reactions(at_will, rests, mu, p)
+    elif mode.bolster_sign == 1:
+        rests = p.friction.set_valued != 0 and mode.bolster == 0
+        mu = signed_coefficient(bolster_slip(motion, p), mode.bolster, mode.clock, y, p)
+        now = contacts.bolster_reactions(at_will, rests, mu, p)
+    return moved(at_will, now, p), now
+
+
+@implement(interface.rate, UNILATERAL)
+@inner
+def rate(t, y, mode, p):
+    """dy/dt, and the reactions (friction is unknown, and not needed, while both contacts are closed)."""
+    if closed(mode):
+        (velocity, acceleration), now = transitions.rate(t, y, mode, p)
+        both = contacts.Reactions(now.column, nan, now.bolster, nan)
+        return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), both
+    motion, now = _apart(t, y, mode, p)
+    column_rate, column_gain, bolster_rate, bolster_gain = 0.0, 0.0, 0.0, 0.0
+    if mode.column_sign == 0:
+        column_rate, column_gain = y[COLUMN_RATE], motion.gap
+    if mode.bolster_sign == 0:
+        bolster_rate, bolster_gain = y[BOLSTER_RATE], bolster_gap(motion, p)
+    return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), now
+
+
+# Events
+
+
+@inner
+def _stuck_events(t, y, mode, p, out):
+    """Write how far (N) a bolster that friction holds is from any motion, and friction from its limits."""
+    at_will, highest = free_accelerations(t, y, mode.segment, p), friction.static(1, y, p)
+    faces = contacts.Faces(True, True, False, highest, highest)
+    out[2 * COLUMN] = -contacts.moving(at_will, faces, p)[0].margin
+    out[2 * COLUMN + 1] = contacts.sticking_reactions(at_will, highest, highest, p)[1]
+
+
+@inlined
+def _face_events(slip, branch, reaction, place, y, p, out):
+    """Write the ends of the slip branch of the only closed face, under its normal and friction force."""
+    normal, tangential = reaction
+    if not p.friction.set_valued:
+        friction.write_branch_ends(slip, p.friction.v_t, branch, place, out)
+    elif branch == 0:
+        most = friction.static(1, y, p) * normal
+        out[place], out[place + 1] = most + tangential, most - tangential
+    else:
+        out[place if branch > 0 else place + 1] = branch * slip
+
+
+@inner
+def _apart_events(now, y, mode, p, out):
+    """Write the event functions while a contact is open."""
+    motion = velocities(y, p)
+    if mode.column_sign == 0:
+        out[COLUMN_CLOSES] = y[COLUMN_GAP]
+    else:
+        out[COLUMN_NORMAL] = now.column
+        reaction = now.column, now.column_friction
+        _face_events(motion.along, mode.column, reaction, 2 * COLUMN, y, p, out)
+    if mode.bolster_sign == 0:
+        out[BOLSTER_CLOSES] = y[BOLSTER_GAP]
+    else:
+        out[BOLSTER_NORMAL] = now.bolster
+        reaction = now.bolster, now.bolster_friction
+        _face_events(bolster_slip(motion, p), mode.bolster, reaction, 2 * BOLSTER, y, p, out)
+    if travel.acts(p):
+        travel.write_events(y[X], mode.segment, p, TRAVEL, out)
+
+
+@implement(interface.events, UNILATERAL)
+@inner
+def all_events(now, t, y, mode, p, out):
+    """Write the event functions (m/s, m, N) under the reactions ``now``."""
+    if stuck(mode, p) or not closed(mode):
+        for i in range(EVENTS):
+            out[i] = inf
+    if stuck(mode, p):
+        _stuck_events(t, y, mode, p, out)
+    elif closed(mode):
+        events.events(now, t, y, mode, p, out)
+        if held(mode):  # by a jump of friction: the forces are those of its convex combination
+            both = filippov.contact_forces(t, y, mode, p)
+            out[COLUMN_NORMAL], out[BOLSTER_NORMAL] = both.column, both.bolster
+    else:
+        _apart_events(now, y, mode, p, out)
+
+
+@implement(interface.event, UNILATERAL)
+@inner
+def event(place, t, y, mode, p, out):
+    """One of them."""
+    if closed(mode) and not stuck(mode, p) and place < COLUMN_NORMAL and not held(mode):
+        return events.event(place, t, y, mode, p, out)
+    all_events(rate(t, y, mode, p)[1], t, y, mode, p, out)
+    return out[place]
+
+
+# Modes
+
+
+@implement(interface.initial_mode, UNILATERAL)
+@inner
+def initial_mode(t, y, p):
+    """Mode in which a run begins, and whether it is unique."""
+    return resolve(t, y, touching(y, p), travel.segment_at(y[X], p), p)
+
+
+@inlined
+def _of_mode(mode):
+    """Contacts that are closed in a mode, with its slip branches."""
+    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, mode.column, mode.bolster)
+
+
+@inlined
+def _at_rest(mode):
+    """The same with faces that do not slip."""
+    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, 0, 0)
+
+
+@implement(interface.well_posed, UNILATERAL)
+@inner
+def well_posed(t, y, mode, p):
+    """Whether exactly one mode is possible."""
+    if p.geometry.always_well_posed or held(mode):
+        return True
+    return resolve(t, y, _of_mode(mode), mode.segment, p)[1]
+
+
+@inner
+def _after_slip(t, y, mode, place, p):
+    """State and mode at the end of a slip branch, or of sticking, and whether they are unique."""
+    if p.friction.set_valued:
+        if closed(mode):
+            y = replaced(y, VELOCITY, 0.0)
+        found, certain = resolve(t, y, _at_rest(mode), mode.segment, p)
+        # What stops to hold the bolster, and then holds it again, may have touched its limit: if proved.
+        again = stuck(mode, p) and stuck(found, p)
+        return y, found, certain and (not again or p.geometry.always_well_posed != 0)
+    if not closed(mode):
+        axis = place // 2
+        now = mode.column if axis == COLUMN else mode.bolster
+        return y, with_branch(mode, axis, now + 2 * (place % 2) - 1, p), True
+    across, certain = transitions.cross_discontinuity(t, y, mode, place, p)
+    if closed(across) and certain:
+        return y, across, True
+    contact = without_jump(t, y, Touching(True, True, across.column, across.bolster), mode.segment, p)
+    found, certain = resolve(t, y, contact, mode.segment, p)
+    return y, found, certain
+
+
+@implement(interface.transition, UNILATERAL)
+@inner
+def transition(t, y, mode, place, p):
+    """State and mode after an event, and whether they are unique (if not: locked)."""
+    if place >= TRAVEL:
+        return y, with_segment(mode, travel.next_segment(mode.segment, place % 2, p)), True
+    if place >= COLUMN_CLOSES:
+        after = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
+        found, certain = resolve(t, after.y, touching(after.y, p), mode.segment, p)
+        return after.y, found, certain and after.unique
+    if place >= COLUMN_NORMAL:
+        contact = without_jump(t, y, _of_mode(mode), mode.segment, p)
+        found, certain = resolve(t, y, contact, mode.segment, p)
+        return y, found, certain
+    return _after_slip(t, y, mode, place, p)
+
+
+@implement(interface.impact, UNILATERAL)
+@inner
+def of_impact(y, mode, place, p):
+    """Whether an event is an impact, its largest normal impulse (N s) and the energy that it takes (J)."""
+    if place not in (COLUMN_CLOSES, BOLSTER_CLOSES):
+        return False, 0.0, 0.0
+    now = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
+    lost = kinetic_energy(velocities(y, p), p) - kinetic_energy(velocities(now.y, p), p)
+    return True, max(now.impulses.column, now.impulses.bolster), lost
+
+
+# Forces and energy
+
+
+@implement(interface.driving_force, UNILATERAL)
+@inner
+def driving_force(t, acceleration, y, mode, p):
+    """Force on the bolster (N) that gives it an acceleration; NaN while a contact is open or sticks."""
+    if stuck(mode, p) or not closed(mode):
+        return nan
+    return newton.driving_force(t, acceleration, y, mode, p)
+
+
+@inner
+def _forces_and_power(t, y, mode, p):
+    """Normal forces on column and bolster face (N), and the power (W) of friction."""
+    if stuck(mode, p):
+        return nan, nan, 0.0
+    if closed(mode):
+        if held(mode):
+            now, power, _ = filippov.filippov_forces(t, y, mode, p)
+            return now.column, now.bolster, power
+        now = newton.forces(t, y, mode, p)
+        return now.column, now.bolster, energy.friction_power(t, y, mode, now, p)
+    _, reactions = _apart(t, y, mode, p)
+    motion = velocities(y, p)
+    power = reactions.column_friction * motion.along + reactions.bolster_friction * bolster_slip(motion, p)
+    return reactions.column, reactions.bolster, 2.0 * power
+
+
+@implement(interface.powers, UNILATERAL)
+@inner
+def powers(t, y, mode, p):
+    """Power taken and supplied, and the normal forces."""
+    column, bolster, power = _forces_and_power(t, y, mode, p)
+    supplied = -excitation.acceleration(t, p) * momentum(velocities(y, p), p)
+    return power + hooks.power(y[VELOCITY], y, p), supplied, column, bolster
+
+
+@implement(interface.contact_forces, UNILATERAL)
+@inner
+def normal_forces(t, y, mode, p):
+    """Normal forces on column and bolster face; not determined while set-valued friction holds."""
+    column, bolster, _ = _forces_and_power(t, y, mode, p)
+    return column, bolster
+
+
+# Closed forms of the base model
+
+
+@implement(interface.closed_form, PLAIN)
+@inner
+def follow(state, stop, p, keeping, recorder, counts):
+    """Follow a mode with both contacts closed to its event or ``stop`` if it has a closed form."""
+    t, y, mode, last_event, step = state
+    if not closed(mode):
+        return False, state, NO_EVENT
+    short = State(t, (y[X], y[VELOCITY]), mode, last_event, step)
+    if stuck(mode, p):
+        if not release.is_known(short, p):
+            return False, state, NO_EVENT
+        end, event_place = release.release(short, stop, p)
+        if keeping:
+            keep_constant(t, end, y, mode, recorder, p)
+        return True, State(end, y, mode, last_event, step), event_place
+    free_motion = linear_slip.oscillator(y, mode, p)
+    if not free_motion.linear:
+        return False, state, NO_EVENT
+    end, x, velocity, event_place = first_event.slide(short, stop, free_motion, p)
+    if keeping:
+        linear_slip_sums.keep(short, end, free_motion, recorder, p)
+    return True, State(end, (x, velocity, 0.0, 0.0, 0.0, 0.0), mode, last_event, step), event_place

@@ -1,0 +1,112 @@
+"""Impacts: a gap closes, and impulses change all velocities at once.
+
+Moreau's impact law with one coefficient of restitution e for normal and tangential directions: with the
+velocities v before and v+ after an impact, the weighted velocities v+ + e v and the impulses fulfil the
+inequalities of ``contacts``. As these are homogeneous, v+ = v + (1 + e) (v0 - v), where v0 is the solution
+for e = 0. Both contacts take part if both touch. The energy of an impact cannot grow: with the impulses P
+and the velocities v+ + e v at the contacts its change is [P (v+ + e v) - (1 - e) P G P / 2] / (1 + e), G the
+positive inverse mass, and P (v+ + e v) <= 0.
+
+Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); Leine and van de Wouw,
+Stability and Convergence of Mechanical Systems with Unilateral Constraints (2008).
+"""
+
+from typing import Any, NamedTuple
+
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import states
+from wedgesweep.systems.suspension.modes import VELOCITY, X
+from wedgesweep.systems.suspension.unilateral.contacts import (
+    OPEN,
+    Faces,
+    Motion,
+    Reactions,
+    bolster_gap,
+    moved,
+    rounding,
+    solve,
+)
+from wedgesweep.systems.suspension.unilateral.modes import STILL
+from wedgesweep.systems.suspension.unilateral.motion import (
+    BOLSTER_GAP,
+    BOLSTER_RATE,
+    COLUMN_GAP,
+    COLUMN_RATE,
+    velocities,
+)
+
+# A face that falls back more slowly than this share of the input velocity does not bounce: that ends the
+# infinitely many impacts of a bouncing face.
+SLOWEST_BOUNCE = 1e-6
+
+
+class Impact(NamedTuple):
+    """State after an impact, impulses (N s) on one wedge, and whether they are unique."""
+
+    y: Any
+    impulses: Reactions
+    unique: bool
+
+
+@inlined
+def _scaled(now, factor):
+    return Reactions(
+        factor * now.column,
+        factor * now.column_friction,
+        factor * now.bolster,
+        factor * now.bolster_friction,
+    )
+
+
+@inlined
+def _gap_rate(state, before, after, restitution, nothing):
+    """Rate of a gap after an impact: exact where the contact closes."""
+    if state != OPEN:
+        after = -restitution * before
+    return 0.0 if abs(after) <= nothing else after
+
+
+@inlined
+def restitution_at(approach, p):
+    """Coefficient of restitution at a speed of approach (m/s)."""
+    slow = approach < SLOWEST_BOUNCE * states.scales(p)[VELOCITY]
+    return 0.0 if slow else p.unilateral.restitution
+
+
+@inner
+def struck(y, column, bolster, restitution, p):
+    """The impact of a state in which the given contacts touch; friction has the dynamic coefficient."""
+    before, mu = velocities(y, p), p.friction.mu_d
+    found, certain = solve(before, Faces(column, bolster, False, mu, mu), p)
+    unique = certain == 1 or (certain == 0 and found.margin >= -rounding(before, p))
+    plastic, part = moved(before, found.reactions, p), 1.0 + restitution
+    after = Motion(
+        before.along + part * (plastic.along - before.along),
+        before.gap + part * (plastic.gap - before.gap),
+        before.rise + part * (plastic.rise - before.rise),
+    )
+    nothing = STILL * (states.scales(p)[VELOCITY] + abs(before.gap) + abs(y[BOLSTER_RATE]))
+    column_rate = _gap_rate(found.column, before.gap, after.gap, restitution, nothing)
+    bolster_rate = _gap_rate(found.bolster, y[BOLSTER_RATE], bolster_gap(after, p), restitution, nothing)
+    velocity = after.rise
+    if column_rate == 0.0 and bolster_rate == 0.0 and column and bolster and abs(velocity) <= nothing:
+        velocity = 0.0
+    column_gap, bolster_gap_now = y[COLUMN_GAP], y[BOLSTER_GAP]
+    later = (
+        y[X],
+        velocity,
+        0.0 if column else column_gap,
+        column_rate if column else after.gap,
+        0.0 if bolster else bolster_gap_now,
+        bolster_rate if bolster else bolster_gap(after, p),
+    )
+    return Impact(later, _scaled(found.reactions, part), unique)
+
+
+@inner
+def closing(y, mode, place, column_closes, bolster_closes, p):
+    """The impact in which the gap of an event closes; places of both such events."""
+    column = mode.column_sign == 1 or place == column_closes
+    bolster = mode.bolster_sign == 1 or place == bolster_closes
+    approach = -y[COLUMN_RATE if place == column_closes else BOLSTER_RATE]
+    return struck(y, column, bolster, restitution_at(approach, p), p)

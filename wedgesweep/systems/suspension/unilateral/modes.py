@@ -1,0 +1,198 @@
+"""Contacts that stay closed and faces that slip or stick at an instant: modes of a wedge that may lift off.
+
+A mode is a ``ContactMode`` whose signs of the normal forces are 1 for a closed contact and 0 for an open
+one. The branch of an open face is 0.
+"""
+
+from typing import NamedTuple
+
+from wedgesweep import friction
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import states
+from wedgesweep.systems.suspension.modes import HELD, VELOCITY, ContactMode, X
+from wedgesweep.systems.suspension.modes import stuck as both_stuck
+from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
+from wedgesweep.systems.suspension.unilateral.contacts import (
+    FORWARD,
+    OPEN,
+    STICK,
+    Faces,
+    bolster_slip,
+    moved,
+    rounding,
+    solve,
+)
+from wedgesweep.systems.suspension.unilateral.motion import (
+    BOLSTER_GAP,
+    BOLSTER_RATE,
+    COLUMN_GAP,
+    COLUMN_RATE,
+    free_accelerations,
+    velocities,
+)
+
+# Slip below this share of the input velocity is none, where set-valued friction asks.
+STILL = 1e-11
+# Moments further and further ahead, in case the instant itself leaves several modes possible.
+MOMENTS, FARTHER = 4, 30.0
+
+
+class Touching(NamedTuple):
+    """Contacts whose gap and its rate are 0, and the slip branches of their faces.
+
+    Under a set-valued law branch 0 means that the face does not slip.
+    """
+
+    column: bool
+    bolster: bool
+    column_branch: int
+    bolster_branch: int
+
+
+@inlined
+def closed(mode):
+    """Whether both contacts are closed: then the equations are those of bilateral joints."""
+    return mode.column_sign == 1 and mode.bolster_sign == 1
+
+
+@inlined
+def stuck(mode, p):
+    """Whether set-valued friction holds the bolster."""
+    return closed(mode) and both_stuck(mode, p)
+
+
+@inlined
+def column_touches(y):
+    """Whether the column face is closed, or about to open."""
+    return y[COLUMN_GAP] == 0.0 and y[COLUMN_RATE] == 0.0
+
+
+@inlined
+def bolster_touches(y):
+    """Whether the bolster face is closed, or about to open."""
+    return y[BOLSTER_GAP] == 0.0 and y[BOLSTER_RATE] == 0.0
+
+
+@inlined
+def slip_branch(slip, nothing, p):
+    """Slip branch of a face; ``nothing`` (m/s): slip that counts as none under a set-valued law."""
+    if not p.friction.set_valued:
+        return friction.branch_at(slip, p)
+    if abs(slip) <= nothing:
+        return 0
+    return 1 if slip > 0.0 else -1
+
+
+@inner
+def touching(y, p):
+    """Contacts of a state that touch, and their slip branches."""
+    column, bolster = column_touches(y), bolster_touches(y)
+    motion, nothing = velocities(y, p), STILL * states.scales(p)[VELOCITY]
+    if column and bolster:
+        nothing = 0.0 if y[VELOCITY] != 0.0 else nothing
+    column_branch = slip_branch(motion.along, nothing, p)
+    return Touching(column, bolster, column_branch, slip_branch(bolster_slip(motion, p), nothing, p))
+
+
+@inlined
+def signed_coefficient(slip, branch, clock, y, p):
+    """Signed coefficient of friction of a face that slips, or is on the ramp of a regularised law."""
+    return friction.coefficient(slip, branch, friction.static(clock, y, p), p)
+
+
+@inner
+def _faces(y, contact, p):
+    """The contact problem's faces at a state."""
+    moving = not p.friction.set_valued
+    if not moving:
+        moving = (contact.column_branch if contact.column else contact.bolster_branch) != 0
+    if not moving:
+        highest = friction.static(1, y, p)
+        return Faces(contact.column, contact.bolster, False, highest, highest)
+    motion, clock = velocities(y, p), 1 if contact.column_branch == 0 else 0
+    column = signed_coefficient(motion.along, contact.column_branch, clock, y, p)
+    bolster = signed_coefficient(bolster_slip(motion, p), contact.bolster_branch, clock, y, p)
+    return Faces(contact.column, contact.bolster, True, column, bolster)
+
+
+@inner
+def _later(y, motion, moment):
+    """State after a moment (s) at constant accelerations."""
+    half, gap = 0.5 * moment * moment, y[COLUMN_GAP] + moment * y[COLUMN_RATE]
+    return (
+        y[X] + moment * y[VELOCITY] + half * motion.rise,
+        y[VELOCITY] + moment * motion.rise,
+        gap,
+        y[COLUMN_RATE],
+        y[BOLSTER_GAP] + moment * y[BOLSTER_RATE],
+        y[BOLSTER_RATE],
+    )
+
+
+@inlined
+def _branch(state, branch, moving):
+    """Slip branch of a face in a solution."""
+    if state == OPEN:
+        return 0
+    if moving:
+        return branch
+    return 0 if state == STICK else (1 if state == FORWARD else -1)
+
+
+@inner
+def _mode(found, contact, faces, segment, p):
+    column = _branch(found.column, contact.column_branch, faces.moving)
+    bolster = _branch(found.bolster, contact.bolster_branch, faces.moving)
+    column_sign, bolster_sign = 1 if found.column != OPEN else 0, 1 if found.bolster != OPEN else 0
+    clock = 1 if column == 0 else 0
+    if p.friction.set_valued:
+        clock = 1 if found.column == STICK and found.bolster == STICK else 0
+    return ContactMode(column, bolster, 0, column_sign, bolster_sign, 0, segment, clock)
+
+
+@inner
+def resolve(t, y, contact, segment, p):
+    """The mode that contacts which touch now are in from here on, and whether it is the only one."""
+    free, faces = free_accelerations(t, y, segment, p), _faces(y, contact, p)
+    found, certain = solve(free, faces, p)
+    moment = LOOK_AHEAD / p.input.omega
+    for _ in range(MOMENTS):
+        if certain > 0:
+            break
+        later = _later(y, moved(free, found.reactions, p), moment)
+        there, faces = free_accelerations(t + moment, later, segment, p), _faces(later, contact, p)
+        found, certain = solve(there, faces, p)
+        moment *= FARTHER
+    unique = certain == 1 or (certain == 0 and found.margin >= -rounding(free, p))
+    return _mode(found, contact, faces, segment, p), unique
+
+
+@inner
+def without_jump(t, y, contact, segment, p):
+    """Contacts of which none is held at the jump of a law: the branch that the slip moves into."""
+    column, bolster = contact.column_branch, contact.bolster_branch
+    if abs(column) != HELD and abs(bolster) != HELD:
+        return contact
+    outer = Touching(contact.column, contact.bolster, _outside(column), _outside(bolster))
+    free = free_accelerations(t, y, segment, p)
+    motion = moved(free, solve(free, _faces(y, outer, p), p)[0].reactions, p)
+    return Touching(
+        contact.column,
+        contact.bolster,
+        _beside(column, motion.along),
+        _beside(bolster, bolster_slip(motion, p)),
+    )
+
+
+@inlined
+def _outside(branch):
+    """The branch beyond the jump that holds a face."""
+    return branch // HELD if abs(branch) == HELD else branch
+
+
+@inlined
+def _beside(branch, acceleration):
+    """The branch into which a face moves from a jump."""
+    if abs(branch) != HELD:
+        return branch
+    return branch // HELD if branch * acceleration >= 0.0 else 0
