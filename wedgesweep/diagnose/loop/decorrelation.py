@@ -6,8 +6,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 
-# Least variance of a combination over the mean: what noise is free of, errors at reversals are not.
-LEAST = 0.5
 # Samples in a row whose correlation is known; farther ones count as independent.
 MOST = 400
 
@@ -19,10 +17,12 @@ class Decorrelation(NamedTuple):
     std: np.ndarray
 
 
-def decorrelation(known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarray]) -> Decorrelation:
+def decorrelation(
+    known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarray], least: float
+) -> Decorrelation:
     """Combinations of the known samples (k,); those of the others are zero.
 
-    ``covariance`` gives that of two samples by their distance.
+    ``covariance`` gives that of two samples by their distance; no variance is less than ``least``.
     """
     size = known.size
     matrix, std = np.zeros((size, size)), np.zeros(size)
@@ -32,7 +32,7 @@ def decorrelation(known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarr
     for part in parts:
         distance = np.abs(part[:, None] - part)
         variance, vectors = np.linalg.eigh(covariance(distance))
-        done.append((np.sqrt(np.maximum(variance, LEAST * variance.mean())), vectors.T))
+        done.append((np.sqrt(np.maximum(variance, least)), vectors.T))
     if done:
         std[: rows.size] = np.concatenate([each[0] for each in done])
         matrix[: rows.size, rows] = block_diag(*[each[1] for each in done])

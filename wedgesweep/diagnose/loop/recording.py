@@ -35,7 +35,7 @@ class Recording:
     ``model``: the base model with the numbers of the test; ``places`` (k,): samples of the motion at which
     the ``force`` (k,) is compared; ``spectrum`` of its noise there beside that of the ``inertia``; ``known``
     (k,): whether friction is; it is not where the mass rests or turns; ``blocks``: slices of the k samples,
-    whole cycles each.
+    whole cycles each; ``least``: variance (N^2) of a compared number.
     """
 
     name: str
@@ -47,6 +47,7 @@ class Recording:
     force: np.ndarray
     spectrum: NoiseSpectrum
     inertia: InertiaNoise
+    least: float
     known: np.ndarray
     blocks: tuple[slice, ...]
 
@@ -62,7 +63,7 @@ class Recording:
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
         """Independent combinations of the compared forces of each block."""
-        return tuple(decorrelation(self.known[block], self._covariance) for block in self.blocks)
+        return tuple(decorrelation(self.known[block], self._covariance, self.least) for block in self.blocks)
 
     def simulated(self, scenarios: list[Values]) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined."""
@@ -133,8 +134,10 @@ def recording(
         found = of_noise(left, FROM_REPEATS, inertia.power)
     else:
         found = of_force(own, compared, places, clear, inertia)
+    # White noise of the force; errors at reversals have a wide spectrum.
+    least = low_pass.noise(white_noise(force, rate)) ** 2 + (mass * own.acceleration_noise) ** 2
     blocks = _blocks(own.velocity[places])
-    return Recording(name, model, law, low_pass, own, places, compared, found, inertia, clear, blocks)
+    return Recording(name, model, law, low_pass, own, places, compared, found, inertia, least, clear, blocks)
 
 
 def _slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
