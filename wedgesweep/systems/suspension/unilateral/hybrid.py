@@ -46,6 +46,7 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     COLUMN_RATE,
     UNILATERAL,
     free_accelerations,
+    gap_state,
     kinetic_energy,
     momentum,
     velocities,
@@ -125,9 +126,9 @@ def rate(t, y, mode, p):
     motion, now = _apart(t, y, mode, p)
     column_rate, column_gain, bolster_rate, bolster_gain = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
-        column_rate, column_gain = y[COLUMN_RATE], motion.gap
+        column_rate, column_gain = gap_state(y, COLUMN_RATE), motion.gap
     if mode.bolster_sign == 0:
-        bolster_rate, bolster_gain = y[BOLSTER_RATE], bolster_gap(motion, p)
+        bolster_rate, bolster_gain = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
     return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), now
 
 
