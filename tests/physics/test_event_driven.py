@@ -120,6 +120,18 @@ def test_the_closed_form_misses_no_event():
     assert dips > 300
 
 
+@pytest.mark.parametrize("amplitude", [0.026e-3, 0.03e-3, 0.033e-3, 0.0365e-3, 0.05e-3, 0.2e-3, 2e-3])
+def test_extremes_are_those_of_the_waveforms(amplitude):
+    """Also of slips that last a tenth of a period: their first acceleration is zero, with a sign of noise."""
+    record = parameters.record("coulomb", amplitude, 1.472 * OMEGA_N)
+    found = respond(record, settle_periods=10, periods=3)
+    speed = np.abs(found.waveforms["velocity"]).max()
+    assert speed * (1.0 - 1e-9) <= found.numbers["peak_velocity"] <= speed * 1.005
+    forces = (found.waveforms[f"normal_force_{face}"] for face in ("column", "bolster"))
+    least, number = min(np.nanmin(each) for each in forces), found.numbers["minimum_normal_force"]
+    assert least - 0.01 <= number <= least + 1e-9
+
+
 def random_records(number, seed=7):
     generator = np.random.default_rng(seed)
     for _ in range(number):

@@ -102,8 +102,14 @@ def events(now, t, y, mode, p, out):
 
 
 @inlined
-def _time_to_end(slip, rate, branch, threshold):
-    """Time (s) in which a slip velocity reaches the end of its branch at a constant rate; inf: never."""
+def _time_to_end(slip, rate, branch, threshold, p):
+    """Time (s) in which a slip velocity reaches the end of its branch at a constant rate; inf: never.
+
+    Nor is the end of a sliding branch announced whose coefficient depends on velocity: it grows fast beyond
+    that end, where a step that aims at it would have stages.
+    """
+    if branch != 0 and not friction.constant(p):
+        return inf
     if branch == 0:
         return (threshold - slip if rate > 0.0 else -threshold - slip) / rate if rate != 0.0 else inf
     return (branch * threshold - slip) / rate if branch * rate < 0.0 else inf
@@ -117,11 +123,11 @@ def expected_event(now, t, y, mode, p):
     column, bolster = slip_measure(COLUMN, t, y, p), slip_measure(BOLSTER, t, y, p)
     of_column = slip_rate(COLUMN, t, y, now.acceleration, now.column_acceleration, p)
     if p.friction.set_valued:
-        return _time_to_end(column, of_column, mode.column, 0.0)
+        return _time_to_end(column, of_column, mode.column, 0.0, p)
     of_bolster = slip_rate(BOLSTER, t, y, now.acceleration, now.column_acceleration, p)
     return min(
-        _time_to_end(column, of_column, mode.column, p.friction.v_t),
-        _time_to_end(bolster, of_bolster, mode.bolster, p.friction.v_t),
+        _time_to_end(column, of_column, mode.column, p.friction.v_t, p),
+        _time_to_end(bolster, of_bolster, mode.bolster, p.friction.v_t, p),
     )
 
 
