@@ -5,6 +5,7 @@ of this system have a part ``unilateral`` beside those of the suspension.
 """
 
 from math import inf, nan
+from typing import NamedTuple
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
@@ -99,6 +100,20 @@ def free(y, p):
 # Motion
 
 
+class Acting(NamedTuple):
+    """Accelerations (m/s^2) of bolster and column, and reactions (N) of both faces.
+
+    Friction is not told while both contacts are closed: no event needs it.
+    """
+
+    acceleration: float
+    column_acceleration: float
+    column: float
+    column_friction: float
+    bolster: float
+    bolster_friction: float
+
+
 @inlined
 def _apart(t, y, mode, p):
     """Accelerations (m/s^2) and reactions (N) while a contact is open."""
@@ -118,18 +133,19 @@ def _apart(t, y, mode, p):
 @implement(interface.rate, UNILATERAL)
 @inner
 def rate(t, y, mode, p):
-    """dy/dt, and the reactions (friction is unknown, and not needed, while both contacts are closed)."""
+    """dy/dt, and what acts."""
     if closed(mode):
-        (velocity, acceleration), now = transitions.rate(t, y, mode, p)
-        both = contacts.Reactions(now.column, nan, now.bolster, nan)
-        return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), both
+        (velocity, acceleration), both = transitions.rate(t, y, mode, p)
+        acting = Acting(acceleration, both.column_acceleration, both.column, nan, both.bolster, nan)
+        return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), acting
     motion, now = _apart(t, y, mode, p)
+    acting = Acting(motion.rise, nan, now.column, now.column_friction, now.bolster, now.bolster_friction)
     column_rate, column_gain, bolster_rate, bolster_gain = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
         column_rate, column_gain = gap_state(y, COLUMN_RATE), motion.gap
     if mode.bolster_sign == 0:
         bolster_rate, bolster_gain = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
-    return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), now
+    return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), acting
 
 
 # Events
@@ -193,6 +209,13 @@ def all_events(now, t, y, mode, p, out):
             out[COLUMN_NORMAL], out[BOLSTER_NORMAL] = both.column, both.bolster
     else:
         _apart_events(now, y, mode, p, out)
+
+
+@implement(interface.expected_event, UNILATERAL)
+@inlined
+def expected_event(now, t, y, mode, p):
+    """Time (s) in which a face would reach the end of its branch; not told while a contact is open."""
+    return events.expected_event(now, t, y, mode, p) if closed(mode) else inf
 
 
 @implement(interface.event, UNILATERAL)
