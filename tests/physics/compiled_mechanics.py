@@ -14,10 +14,18 @@ from wedgesweep.systems.suspension import (
     first_event,
     linear_slip,
     newton,
+    parameters,
     set_valued,
     stiffness,
     transitions,
 )
+
+
+def with_all_mechanics(record):
+    """The same case, as compiled code gets it, with room for every effect."""
+    full = record.copy()
+    full["geometry"]["kit"] = parameters.ALL
+    return parameters.compact(full)
 
 
 def initial_state(p, values=()):

@@ -16,7 +16,7 @@ COLUMN = "column_compliance"
 
 def record(law="static-dynamic", **friction):
     effects = {"column_compliance": {"stiffness": 3e5}}
-    return parameters.record(law, 1e-4, OMEGA_N, {}, friction, effects)
+    return mechanics.with_all_mechanics(parameters.record(law, 1e-4, OMEGA_N, {}, friction, effects))
 
 
 def moving(record, **velocities):
@@ -116,6 +116,7 @@ def test_a_step_that_would_damp_what_runs_away_is_refused():
         OMEGA_N,
         effects={COLUMN: {"stiffness": 3e5}, "viscous_damping": {"coefficient": -1e6}},
     )
+    driven = mechanics.with_all_mechanics(driven)
     start = moving(driven)
     refused, made = (
         mechanics.implicit_step(0.0, h, start, ON_RAMPS, driven[0], 1e-6)[2] for h in (1e-4, 1e-8)

@@ -7,6 +7,7 @@ import pytest
 
 from tests.physics import compiled_mechanics as mechanics
 from tests.physics.cases import OMEGA_N
+from tests.physics.compiled_mechanics import with_all_mechanics
 from tests.physics.effect_cases import EXTENDING, residual, typical
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, radau, radau_system
@@ -47,13 +48,6 @@ def record_of(law, generator, names, column_angle=0.07):
     )
 
 
-def with_all_mechanics(record):
-    """The same case with room for every effect, none of which acts."""
-    full = record.copy()
-    full["geometry"]["kit"] = parameters.ALL
-    return full
-
-
 def random_state(p, generator):
     """State of a full record."""
     values = {("", 0): generator.uniform(-2e-3, 2e-3)}
@@ -79,7 +73,7 @@ def input_acceleration(p):
 
 
 def check(record, generator):
-    p = record[0]
+    p = with_all_mechanics(record)[0]
     t, y = generator.uniform(0, 3), random_state(p, generator)
     mode, unique = mechanics.initial_mode(t, y, p)
     _, now, _ = mechanics.resolve_mode(t, y, mode, p)
@@ -96,7 +90,8 @@ def check(record, generator):
 @pytest.mark.parametrize(("law", "lean"), list(product(LAW_NAMES, LEANS)))
 def test_forces_solve_newtons_equations_with_exactly_one_pair_of_signs(law, lean):
     for record, t, y in random_states(law, lean, 450):
-        p, small, s = record[0], parameters.compact(record)[0], record[0]["suspension"]
+        p, small = with_all_mechanics(record)[0], parameters.compact(record)[0]
+        s = p["suspension"]
         mode, unique = mechanics.initial_mode(t, y, small)
         now = mechanics.contact_forces(t, y, mode, small)
         assert unique
@@ -206,7 +201,7 @@ def test_a_wedge_that_is_proved_never_to_lock_has_one_pair_of_normal_forces_in_a
         )
         proved = int(record["geometry"]["always_well_posed"][0])
         record["geometry"]["always_well_posed"] = 0
-        p = record[0]
+        p = with_all_mechanics(record)[0]
         for _ in range(40):
             _, unique = mechanics.initial_mode(generator.uniform(0, 3), random_state(p, generator), p)
             locked[proved].append(not unique)
