@@ -211,7 +211,7 @@ def test_outputs_that_cannot_be_are_refused_before_any_case(here):
         "folder": "is a directory",
         "mine.nc": "mine.nc: not a netCDF dataset",
         "measured.nc": "measured.nc: not the dataset of a sweep",
-        "few.toml": "few.toml: not a netCDF dataset",
+        "few.toml": "few.toml: a config, where the dataset of a run is wanted",
         "/proc/x.nc": "/proc/x.nc.partial: No such file",
     }.items():
         for fresh in ((), ("--fresh",)):
@@ -230,7 +230,7 @@ def test_a_directory_without_write_permission(here):
 
 def test_status_of_nothing(here):
     assert "absent.nc: no such file" in invoke("status", "absent.nc", code=2)
-    assert "not a netCDF dataset" in invoke("status", "few.toml", code=2)
+    assert "few.toml: a config, where the dataset of a run is wanted" in invoke("status", "few.toml", code=2)
     (here / "x.nc.partial").write_text("text\n")
     assert "not the journal of a sweep" in invoke("status", "x.nc", code=2)
 
@@ -373,7 +373,7 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         (["stick-map", "OUT", "-o", "x.jpeg"], ".png, .pdf, .svg"),
         (["stick-map", "OUT", "-o", "absent/x.png"], "absent: not a directory"),
         (["stick-map", "absent.nc"], "absent.nc: no such file"),
-        (["stick-map", "few.toml"], "few.toml: not a netCDF dataset"),
+        (["stick-map", "few.toml"], "few.toml: a config, where the dataset of a run"),
         (["stickmap", "OUT"], "is not one of"),
         (["all", "OUT", "-o", "few.toml"], "few.toml: File exists"),
         (["all", "absent/x.nc"], "absent/x.nc: no such file"),

@@ -22,6 +22,7 @@ from wedgesweep.effects.states import TIME, kinds
 from wedgesweep.natural_units import NaturalUnits
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
+from wedgesweep.systems import compact
 
 # Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
 AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
@@ -258,7 +259,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
         """Whether (T,) a clock ran for longer than any response takes to repeat."""
-        clocks = [kind == TIME for _, kind in kinds(self.records(scenario).dtype.fields or {})]
+        clocks = [kind == TIME for _, kind in kinds(compact(self.records(scenario)).dtype.fields or {})]
         elapsed = scenario.point.warm.state[:, : len(clocks)][:, clocks]
         return (elapsed * self.omega[:, None] / (2.0 * np.pi) > LONGEST_PERIOD).any(axis=1)
 
