@@ -368,7 +368,7 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
     ("arguments", "words"),
     [
         (["stick-map", "OUT", "--beta", 1], "stick-map: takes no --beta"),
-        (["bifurcation", "OUT", "--amplitude", 1, "--amplitude", 2], "takes a single --amplitude"),
+        (["bifurcation", "OUT", "--amplitude", 1, "--amplitude", 4], "takes a single --amplitude"),
         (["phase-portrait", "OUT", "--law", "viscous"], "no friction law 'viscous'"),
         (["stick-map", "OUT", "-o", "x.jpeg"], ".png, .pdf, .svg"),
         (["stick-map", "OUT", "-o", "absent/x.png"], "absent: not a directory"),

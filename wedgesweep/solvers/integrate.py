@@ -326,7 +326,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             if h < SHORTEST * period:
                 return State(t, y, mode, last_event, h), FAILED
             continue
-        close = CLOSE if taken in (aim, to_event) else ROUGHLY
+        close = CLOSE if taken == aim or to_event < inf else ROUGHLY
         share, number = first_event(step, mode, last_event, (within, ahead), close, p, work)
         if number >= 0 and to_event == inf and (taken != aim or share < NEAR_END):
             to_event = (share + PAST_EVENT) * taken
