@@ -228,7 +228,7 @@ def test_an_uncertain_number_is_off_and_told(here):
             "tests.toml: test[1].known: 0 is neither true nor false",
         ),
         ("tests.toml", "0.11", "-0.11", "tests.toml: test[0].amplitude_mm: -0.11 is out of range"),
-        ("tests.toml", TESTS, "", "tests.toml: test: missing; write [[test]] with frequency_hz"),
+        ("tests.toml", TESTS, "", "tests.toml: test: missing; write [[test]] for each"),
         ("tests.toml", "[[test]]", "[test", "tests.toml: not valid TOML"),
     ],
 )

@@ -83,7 +83,8 @@ class TableList(Key):
 
     @property
     def written(self) -> str:
-        return f"[[{self.example or self.key}]] with {self.item.required_keys}"
+        needed = self.item.required_keys
+        return f"[[{self.example or self.key}]]" + (f" with {needed}" if needed else " for each")
 
     def read(self, value: Any, path: str, problems: list[str]) -> list[dict[str, Any]] | None:
         if not isinstance(value, list) or not value:
