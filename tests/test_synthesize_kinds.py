@@ -6,23 +6,11 @@ import numpy as np
 import pytest
 
 from tests.command import invoke
+from tests.diagnose import test_transients
 from wedgesweep import api
 from wedgesweep.measured import read
 
-RIG = """
-[oscillator]
-mass_kg = 2.0
-spring_N_per_mm = 0.5
-damping_N_s_per_m = 1.0
-normal_force_N = 1.0
-[friction]
-static = 0.3
-dynamic = 0.3
-[sweep]
-friction_law = "coulomb"
-beta = 1.0
-amplitude_mm = 1.0
-"""
+RIG = test_transients.OSCILLATOR
 HIDDEN = "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n"
 RELEASES = """
 [[test]]

@@ -14,14 +14,6 @@ from wedgesweep.measured.netcdf import write_netcdf
 
 MODEL = test_transients.OSCILLATOR
 HIDDEN = {"viscous_damping": {"coefficient": 2.0}}
-MEASURED = """
-[measurement]
-model = "model.toml"
-[measurement.columns]
-time = { column = "t", unit = "s" }
-displacement = { column = "x", unit = "mm" }
-force = { column = "F", unit = "N" }
-"""
 
 
 def write(folder, effects=None):
@@ -30,7 +22,7 @@ def write(folder, effects=None):
     test_loops.write(folder, MODEL, effects, motions=((0.01, 1.1, 8.0),))
     kinds = {"drop0": "transient", "loop0": "loop", "drop1": "transient"}
     tests = (f'[[measurement.test]]\nfile = "{n}.csv"\nkind = "{k}"\n' for n, k in kinds.items())
-    (folder / "measured.toml").write_text(MEASURED + "".join(tests))
+    (folder / "measured.toml").write_text(test_loops.MEASURED + "".join(tests))
     return folder / "measured.toml"
 
 
