@@ -21,7 +21,7 @@ from wedgesweep.natural_units import NaturalUnits
 # Effects that act by how a motion comes about, or on sensors of it.
 OF_MOTION = (
     *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
-    *("displacement_gain", "velocity_lag", "cross_slip"),
+    *("displacement_gain", "velocity_lag", "cross_slip", "lift_off"),
 )
 # Samples whose forces are as much work as a simulated period; see work.py.
 SAMPLES_PER_PERIOD = 400.0
