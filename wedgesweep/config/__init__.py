@@ -173,9 +173,9 @@ class Config:
     def possible_effects(self) -> tuple[str, ...]:
         """Names of the effects that a model may lack.
 
-        Of a suspension these are all, but what its joints do not go with. An oscillator has no wedge. If it rubs, more friction of its surface is another level of friction; if
-        not, there is nothing that the effects on the law of friction could change. Under a force the base is
-        at rest.
+        Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
+        rubs, more friction of its surface is another level of friction; if not, there is nothing that the
+        effects on the law of friction could change. Under a force the base is at rest.
         """
         from wedgesweep.effects import EFFECTS
         from wedgesweep.systems.oscillator import parameters

@@ -101,6 +101,11 @@ class Hypothesis:
         known = {name for name, _ in self.fixed}
         return tuple(each for name in self.effects for each in _parameters(name) if each.name not in known)
 
+    @property
+    def fades(self) -> bool:
+        """Whether some weak values of the effects come close to the base model."""
+        return any(each.fades or each.logarithmic for each in self.parameters)
+
     @cached_property
     def low(self) -> np.ndarray:
         """Lower bounds (k,)."""

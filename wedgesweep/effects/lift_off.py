@@ -1,6 +1,6 @@
 """Contacts that only press: both faces of a wedge may lift off, fall back and hit.
 
-The mechanics stand in systems/suspension/unilateral; ``joints = "unilateral"`` of a suspension is this effect.
+The mechanics stand in systems/suspension/unilateral; ``joints = "unilateral"`` is the same.
 Neutral: none, the joints hold; off where the table is absent (-1 in the record). Default: restitution = 0.
 """
 

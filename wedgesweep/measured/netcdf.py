@@ -148,7 +148,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         faults = [fault for kind, own in by_kind.items() for fault in excitation_faults(own, config, kind)]
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
-        problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns)]
+        problems += [f"{path}: model: {fault}" for fault in model_faults(config, columns, by_kind)]
         for test in complete:
             problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
     if problems or config is None:

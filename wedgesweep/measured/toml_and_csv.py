@@ -38,7 +38,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
             for kind, own in by_kind.items():
                 told = channels.excitation_faults(own, config, kind)
                 problems += [f"{path}: {_at(fault)}" for fault in told]
-        problems += [f"{model}: {fault}" for fault in channels.model_faults(config.effects, columns)]
+        problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         problems += _override_faults(path, measurement, config)
     tests = _tests(path, measurement, config, problems)
     if problems or config is None:
