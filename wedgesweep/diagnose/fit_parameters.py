@@ -55,9 +55,14 @@ class FitParameter:
         """Whether the effect fades towards a neutral value in the range: a mere switch does not."""
         return not self.logarithmic and self.low <= self.neutral <= self.high
 
+    @property
+    def switches(self) -> bool:
+        """Whether the effect acts at all of its values, so that it is not there or changes responses a lot."""
+        return not (self.fades or self.logarithmic or self.angle)
+
     def grid(self, points: int) -> np.ndarray:
         """Points (points,) inside the range: evenly spaced, or ever closer towards a neutral value."""
-        if self.angle or not self.fades:
+        if self.logarithmic or self.angle or self.switches:
             return self.low + (self.high - self.low) * (np.arange(points) + 0.5) / points
         spans = [end - self.neutral for end in (self.low, self.high) if abs(end - self.neutral) > 0.0]
         shares = np.geomspace(CLOSEST, FARTHEST, points // len(spans))
@@ -102,9 +107,9 @@ class Hypothesis:
         return tuple(each for name in self.effects for each in _parameters(name) if each.name not in known)
 
     @property
-    def fades(self) -> bool:
-        """Whether some weak values of the effects come close to the base model."""
-        return any(each.fades or each.logarithmic for each in self.parameters)
+    def switches(self) -> bool:
+        """Whether one of the effects acts at all of its values."""
+        return any(each.switches for each in self.parameters)
 
     @cached_property
     def low(self) -> np.ndarray:

@@ -177,7 +177,7 @@ def _detectable(hypothesis: Hypothesis, scan: _Scan, key: str) -> float | None:
     if not shown:
         return None
     leading = hypothesis.parameters[scan.parameter]
-    if not (leading.fades or leading.logarithmic):  # a switch: it shows, or does not
+    if leading.switches:  # it shows, or does not
         return float(hypothesis.in_key_units(points[min(shown)])[hypothesis.effects[0]].get(key, inf))
     i = int(shown[0])
     below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < DETECTABLE]
