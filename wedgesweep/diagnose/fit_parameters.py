@@ -57,7 +57,7 @@ class FitParameter:
 
     @property
     def switches(self) -> bool:
-        """Whether the effect acts at all of its values, so that it is not there or changes responses a lot."""
+        """Whether the effect acts at all of its values: it is there or not."""
         return not (self.fades or self.logarithmic or self.angle)
 
     def grid(self, points: int) -> np.ndarray:
