@@ -30,8 +30,8 @@ def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law."""
-    if not (ds[LIFT_OFF] > 0.0).any():
-        message = f"nothing lifts off in these cases: {LIFT_OFF} is 0 in all of them"
+    if (ds["status"] == 0).any() and not (ds[LIFT_OFF] > 0.0).any():
+        message = f"nothing lifts off in these cases: {LIFT_OFF} is never above 0"
         raise ValueError(message)
     words = labels.of(ds)
     amplitudes = ds["amplitude"].values * words.factor
