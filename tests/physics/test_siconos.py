@@ -29,7 +29,7 @@ def test_time_stepping_of_free_bodies_finds_the_same_motion(tmp_path):
     command = [PYTHON, MODEL, tmp_path / "results.json"]
     subprocess.run(command, input=given, text=True, stdout=subprocess.DEVNULL, check=True)
     settings = Settings(method="event-driven", duration=None, settle_periods=SETTLE, kept_periods=2)
-    its = np.array(json.loads((tmp_path / "results.json").read_text()))
+    its = np.array(json.loads((tmp_path / "results.json").read_text())["results"])
     for (beta, amplitude), (ratio, column, bolster) in zip(CASES, its, strict=True):
         case = parameters.record("coulomb", amplitude, beta * OMEGA_N, {"joints": "unilateral"})
         own = respond(case, settings, 3)[0].numbers

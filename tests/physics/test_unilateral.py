@@ -312,7 +312,7 @@ def test_energy_never_grows_over_many_impacts():
     assert mechanics.largest_gain(20_000, compact(record())) <= MARGIN
 
 
-def derivative(case, y, moved, share=1e-5):
+def derivative(case, y, moved, share=1e-6):
     """Derivative of some states after the period by themselves before it, by central differences."""
     columns = []
     for place in moved:
