@@ -1,4 +1,4 @@
-"""Unilateral joints: their cost against bilateral ones where nothing opens, and against siconos where some do.
+"""Unilateral joints: their cost against bilateral ones where none opens, and against siconos where some do.
 
 Where nothing lifts off both kinds of joints run interleaved on the same cases. Times are processor times.
 Siconos (Debian's python3-siconos) steps the same cases at the longest of some steps that keeps amplitude
