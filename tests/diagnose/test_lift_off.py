@@ -31,9 +31,7 @@ def decided(data):
     return finding, score_test.scores(search, base.fit, scans)
 
 
-@pytest.mark.parametrize(
-    ("law", "restitution"), [("static-dynamic", 0.0), ("coulomb", 0.4), ("exponential", 0.2)]
-)
+@pytest.mark.parametrize(("law", "restitution"), [("static-dynamic", 0.0), ("coulomb", 0.4)])
 def test_it_is_named_with_its_restitution(law, restitution):
     finding, _ = decided(measured(law, {NAME: {"restitution": restitution}}))
     assert finding.verdict == verdict.NAMED
