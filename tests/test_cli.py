@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -97,7 +98,7 @@ def test_schema(here):
 def test_check_tells_cases_time_and_size(here):
     told = invoke("check", "few.toml")
     assert "16 = 2 friction laws x 2 frequencies x 4 amplitudes" in told
-    assert "(from 16 cases run now)" in told
+    assert re.search(r"\(from \d+ cases run now\)", told)
     for quantity in ("title: small", "time: about", "memory: about", "dataset: at most"):
         assert quantity in told
     assert sorted(path.name for path in here.iterdir()) == ["few.toml", "locked.toml"]

@@ -45,6 +45,7 @@ def test_command_lines_are_understood(page, tmp_path, monkeypatch):
                 pass
 
 
+@pytest.mark.acceptance
 def test_the_tutorial_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copytree(ROOT / "examples", "examples")

@@ -77,10 +77,19 @@ INPUTS = {
 }
 
 
-@pytest.mark.parametrize("kind", INPUTS)
-def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind):
-    found = diagnosed(write(tmp_path, INPUTS[kind](), HIDDEN), CANDIDATES)
-    assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["viscous_damping"])
+# One bump alone is weak evidence; three take a minute.
+@pytest.mark.parametrize(
+    ("kind", "records", "verdict"),
+    [
+        ("sweep", 1, "named"),
+        ("random", 1, "named"),
+        ("bumps", 1, "consistent-with"),
+        pytest.param("bumps", 3, "named", marks=pytest.mark.acceptance),
+    ],
+)
+def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind, records, verdict):
+    found = diagnosed(write(tmp_path, INPUTS[kind]()[:records], HIDDEN), CANDIDATES)
+    assert (found.verdict, [each["effect"] for each in found.causes]) == (verdict, ["viscous_damping"])
     value = found.causes[0]["parameters"]["coefficient_N_s_per_m"]["value"]
     assert value == pytest.approx(4.0, rel=0.05)
 

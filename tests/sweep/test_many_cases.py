@@ -89,7 +89,7 @@ def test_a_list_of_many_numbers_is_read_in_a_moment():
         ("-0.1, 0.2", "sweep.beta[0]: -0.1 is out of range"),
         ("0.1, nan", "sweep.beta[1]: nan is not a finite number"),
         ("0.1, true", "sweep.beta[1]: true is not a finite number"),
-        ("0.1, " + "9" * 400, "sweep.beta[1]: 0x"),
+        ("0.1, " + "9" * 400, "sweep.beta[1]: 9999"),
     ],
 )
 def test_a_fault_of_a_list_is_told_with_its_place(betas, fault):
