@@ -12,7 +12,6 @@ from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.suspension import parameters
 from wedgesweep.systems.suspension.equilibrium import resonance
 
-
 BALANCED = [
     ("coulomb", 0.4, 1e-3),
     ("coulomb", 1.472, 0.08e-3),

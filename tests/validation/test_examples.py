@@ -6,7 +6,6 @@ from tests import marks
 from tests.validation import examples
 from tests.validation.laboratory import diagnose
 
-
 # The pair, and what comes close to one half of it or the other.
 FEW = ["column_compliance", "displacement_gain", "bolster_stiffness", "friction_level"]
 
