@@ -12,7 +12,7 @@ from wedgesweep import api
 FOLDER = Path(__file__).parents[3] / "shared" / "hard-examples"
 CAUSES = {"imperfect-1": "guide_friction", "imperfect-2": "fixture_resonance"}
 
-FEW = ["guide_friction", "fixture_resonance", "viscous_damping", "bolster_stiffness", "stribeck"]
+FEW = ["guide_friction", "fixture_resonance", "viscous_damping"]
 
 
 @pytest.fixture(scope="module", params=marks.few_or_all(FEW))
