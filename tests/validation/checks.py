@@ -22,7 +22,7 @@ def numbers_are_near_truth(found, effects):
 
 def strong_cause_is_named(specimen, here, candidates=None):
     measured, truth = make(specimen, here)
-    found = diagnose(measured, here / "found", candidates)
+    found = diagnose(measured, here / "found", candidates, "--no-report")
     assert found.document["misfit"]["excess_base"] >= 800.0
     assert found.verdict in NAMING
     assert found.causes == set(truth["effects"])

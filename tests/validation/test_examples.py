@@ -14,7 +14,7 @@ FEW = ["column_compliance", "displacement_gain", "friction_level"]
 @pytest.mark.parametrize("candidates", marks.few_or_all(FEW))
 def test_a_pair_with_a_local_minimum_is_named(candidates, tmp_path):
     file = examples.HARD_EXAMPLES / "pair-126" / "measured.toml"
-    found = diagnose(file, tmp_path / "found", candidates)
+    found = diagnose(file, tmp_path / "found", candidates, "--no-report")
     truth = examples.HARD_TRUTH["pair-126"]
     assert found.verdict == "named"
     assert found.causes == set(truth["truth"])

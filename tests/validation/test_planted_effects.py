@@ -36,7 +36,7 @@ def test_in_clean_data_nothing_is_named(tmp_path):
 @pytest.mark.parametrize("candidates", marks.few_or_all(CANDIDATES))
 def test_two_tests_of_unknown_amplitude_ask_for_a_third(candidates, tmp_path):
     measured, _ = make(PAPER_TESTS, tmp_path)
-    found = diagnose(measured, tmp_path / "found", candidates)
+    found = diagnose(measured, tmp_path / "found", candidates, "--no-report")
     assert found.verdict in ("data-insufficient", "tied")
     following = found.document["next_test"]
     assert following["frequency_hz"] > 0.0
