@@ -26,7 +26,7 @@ test: install  ## the tests
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 acceptance: install  ## whole commands and full searches, over 20 s each
-	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m acceptance
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m acceptance
 
 lint: install  ## linter and types
 	$(BIN)/ruff check .
