@@ -56,11 +56,12 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
     named = [measurement.columns[name].get("of", "relative") for name in _names(measurement, test)]
     both = [factors(model, of) for of in named]
     channels = record.channels * np.array([factor for factor, _ in both])[:, None]
-    if record.driven is not None and any(share for _, share in both):
+    shares = tuple(share for _, share in both)
+    if record.driven is not None and any(shares):
         base = record.driven.displacement
-        for place, (own, (_, share)) in enumerate(zip(channels, both, strict=True)):
+        for place, (own, share) in enumerate(zip(channels, shares, strict=True)):
             own += share * (base if place == 0 else np.gradient(base) * record.rate)
-    return record._replace(channels=channels)
+    return record._replace(channels=channels, shares=shares)
 
 
 def _spectra(tests: tuple[TestRecord, ...], channels: list[np.ndarray]) -> list[list[NoiseSpectrum]]:

@@ -25,7 +25,10 @@ FEWEST_COMPARED, SMALL = 8, 1e-3
 
 
 class Recorded(NamedTuple):
-    """A record: channels (C, n) at a rate (Hz), the noise of each, the input; ``number`` of its test."""
+    """A record: channels (C, n) at a rate (Hz), the noise of each, the input; ``number`` of its test.
+
+    ``shares`` (C,): of the base's displacement in each channel.
+    """
 
     name: str
     channels: np.ndarray
@@ -33,6 +36,7 @@ class Recorded(NamedTuple):
     spectra: Sequence[NoiseSpectrum]
     driven: Driven | None = None
     number: int = 0
+    shares: tuple[float, ...] = ()
 
 
 def highest_compared(record: Recorded, model: Config) -> float:
@@ -79,7 +83,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 coefficients=min(max(ceil(top * size / pi), FEWEST_COMPARED), size),
                 grid=grid,
                 input=nothing(span) if acting is None else at(acting, (skipped + start) / rate),
-                driven=acting is not None,
+                input_noise=record.driven.input_noise(record.shares) if record.driven else None,
                 length=max(float(np.abs(channels[0, start : first + size] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),
             )
