@@ -9,6 +9,7 @@ import pytest
 from tests import fixture_measured
 from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, csv_lines, lines, vibration
 from wedgesweep import config, measured
+from wedgesweep.kinds import is_measured
 from wedgesweep.measured.channels import model_faults
 from wedgesweep.measured.declarations import PARAMETERS
 from wedgesweep.measured.netcdf import write_netcdf
@@ -421,10 +422,10 @@ def test_files_that_are_not_netcdf_or_hold_no_test(tmp_path):
 
 def test_which_files_are_measured_data(tmp_path):
     path = fixture_measured.write(tmp_path)
-    assert measured.is_measured(path)
-    assert measured.is_measured(tmp_path / "any.nc")
+    assert is_measured(path)
+    assert is_measured(tmp_path / "any.nc")
     for other in ("model.toml", "one.csv", "absent.toml"):
-        assert not measured.is_measured(tmp_path / other)
+        assert not is_measured(tmp_path / other)
 
 
 def test_a_model_whose_joints_lift_off_is_for_steady_tests():

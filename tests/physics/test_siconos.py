@@ -13,7 +13,7 @@ from wedgesweep.systems.suspension import parameters
 
 PYTHON, MODEL = Path("/usr/bin/python3"), Path(__file__).parents[2] / "scripts" / "siconos_model.py"
 CASES = ((0.9, 1e-3), (1.0, 4.75e-3))
-SETTLE, STEPS = 25, 750
+SETTLE, STEPS = 8, 750
 
 
 def siconos_is_there():

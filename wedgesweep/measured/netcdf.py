@@ -42,7 +42,6 @@ from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
 
-SUFFIXES = (".nc", ".nc4")
 ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
 LONG_NAMES = {
