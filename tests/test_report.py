@@ -214,7 +214,7 @@ def test_sentence(verdict, tmp_path):
         (
             "tied",
             {"next_test": {"distance": 29.0}},
-            "no test would reliably distinguish them, the best one is at 24 Hz",
+            "no test would reliably distinguish them, the best one is a test at 24 Hz",
         ),
         (
             "data-insufficient",

@@ -128,7 +128,7 @@ def recording(
         told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
         raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
     inertia = InertiaNoise(low_pass, mass, noise)
-    compared, clear = low_pass(force)[places], ~_slow(own, low_pass)[places]
+    compared, clear = low_pass(force)[places], ~slow(own, low_pass)[places]
     if differences:
         left = [low_pass(each)[ends : -ends : low_pass.stride] for each in differences]
         found = of_noise(left, FROM_REPEATS, inertia.power)
@@ -140,7 +140,7 @@ def recording(
     return Recording(name, model, law, low_pass, own, places, compared, found, inertia, least, clear, blocks)
 
 
-def _slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
+def slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
     """Whether (n,) the mass rests or turns at or near a sample: noise shifts the time of a turn."""
     within = AT_REST * motion.velocity_noise + 0.5 * np.abs(motion.acceleration) / low_pass.rate
     slow = np.abs(motion.velocity) <= within
