@@ -57,7 +57,7 @@ def test_the_next_test_makes_every_suspect_move(suspects):
 def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     locking = explained("directional_friction", {"asymmetry": 0.4}, 0.01)
     assert not next_test._predict(
-        locking, Conditions(np.array([60.0]), np.array([1e-3])), rig_of(drawn())
+        locking, Conditions(np.array([60.0]), np.array([1e-3])), rig_of(locking.model.data)
     ).found.any()
     assert next_test.recommend([*suspects, locking]) == next_test.recommend(suspects)
     assert next_test.recommend([suspects[0], locking]) is None

@@ -32,11 +32,13 @@ class Design(NamedTuple):
 class _Prediction(NamedTuple):
     """An evaluation, and its changes (T, m, j) by one standard deviation of everything that is uncertain.
 
-    ``moves`` (T,): whether there is a motion that shows.
+    ``spread``: by parameters; ``adapted``: by the nuisance parameters of a test. ``moves`` (T,): whether
+    there is a motion that shows.
     """
 
     evaluation: Evaluation
     spread: np.ndarray
+    adapted: np.ndarray
     moves: np.ndarray
 
 
@@ -61,16 +63,18 @@ def _predicted(fit: Fit, data: SampledData) -> _Prediction:
     std[:, data.eliminated : data.eliminated + stated.shape[1]] = stated
     size = np.linalg.norm(by_nuisance, axis=1)
     std = np.where(np.isinf(std), FREE / np.maximum(size, 1e-300), std)
-    known = derivatives.by_parameter @ covariance_root(fit)
     moves = replace(data, resampled=here.response).power > MOVES * data.observations  # type: ignore[type-var]
-    spread = np.concatenate([known, by_nuisance * std[:, None]], axis=2)
-    return _Prediction(here, spread, moves & here.found_tests)
+    spread = derivatives.by_parameter @ covariance_root(fit)
+    return _Prediction(here, spread, by_nuisance * std[:, None], moves & here.found_tests)
 
 
 def _distances(data: SampledData, one: _Prediction, other: _Prediction) -> np.ndarray:
-    """Squared distances (T,), 0 where a prediction does not exist or a mass sticks."""
+    """Squared distances (T,), 0 where a prediction does not exist or a mass sticks.
+
+    Of the two, one is what happens; the other adapts its start, and whatever else is unknown of a test.
+    """
     gap = data.response_change(one.evaluation, other.evaluation)
-    columns = np.concatenate([one.spread, other.spread], axis=2)
+    columns = np.concatenate([one.spread, other.spread, other.adapted], axis=2)
     both = one.moves & other.moves
     return np.array(
         [least_distance(*each) if ok else 0.0 for *each, ok in zip(gap, columns, both, strict=True)]

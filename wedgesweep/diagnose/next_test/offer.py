@@ -13,8 +13,8 @@ from scipy.ndimage import minimum_filter1d
 
 from wedgesweep.diagnose.model import Fit
 
-# Squared distance at which two explanations are separated.
-SEPARATED = 30.0
+# Squared distance at which two explanations are separated, and below which nobody could see a difference.
+SEPARATED, UNSEEN = 30.0, 1.0
 # Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
 # Largest standard deviation of a parameter, in its scales.
@@ -59,9 +59,9 @@ class Offer(NamedTuple):
 
 
 def recommended(offer: Offer, best: Fit) -> NextTest | None:
-    """The test on offer that separates most explanations; None where no two of them differ at all."""
+    """The test on offer that separates most explanations; None where no two of them differ visibly."""
     pairs = list(combinations(offer.fits, 2))
-    if not offer.distances.any():
+    if not (offer.distances > UNSEEN).any():
         return None
     chosen = choice(offer.distances)
     here = offer.distances.reshape(len(pairs), -1)[:, chosen]
