@@ -60,11 +60,11 @@ def write_loop(folder, test, effects):
     np.savetxt(folder / "loop.csv", table, "%.10g", ",", header="t,x,F", comments="")
 
 
-def released(folder, truth, starts=test_transients.STARTS):
+def released(folder, truth):
     """Releases of a rig; returns the path of measured.toml."""
     folder.mkdir()
     effects = {truth: RIVALS[truth]}
-    path = test_transients.write(folder, SPRING_AND_MASS, effects, starts)
+    path = test_transients.write(folder, SPRING_AND_MASS, effects)
     path.write_text(path.read_text().replace("[[measurement.test]]", UNCERTAIN + "[[measurement.test]]", 1))
     return path
 
@@ -77,7 +77,7 @@ def test_a_loop_tells_mass_from_spring_where_no_free_motion_does(tmp_path):
     assert test["kind"] == "loop"
     assert test["distance"] >= SEPARATED
     for truth in RIVALS:
-        path = released(tmp_path / truth, truth, test_transients.STARTS[:2])
+        path = released(tmp_path / truth, truth)
         write_loop(path.parent, test, {truth: RIVALS[truth]})
         force = '[measurement.columns]\nforce = { column = "F", unit = "N" }'
         text = path.read_text().replace("[measurement.columns]", force)
