@@ -78,6 +78,23 @@ class Driven:
             return self.samples
         return self.acting(np.arange(self.samples.size) / self.rate)
 
+    def derivative(self, order: int) -> np.ndarray:
+        """Displacement (m) of the base at the samples, or a derivative of it."""
+        if order == 0:
+            return self.displacement
+        if order == 1:
+            return np.gradient(self.displacement) * self.rate
+        if self.quantity == "acceleration":
+            return self.samples
+        return self.acting(np.arange(self.samples.size) / self.rate, 2)
+
+    def noise_of_acceleration(self, frequency: np.ndarray) -> np.ndarray:
+        """Power of the noise in the acceleration of the base at frequencies in rad a sample."""
+        missing = 2 - QUANTITIES_OF_MOTION.index(self.quantity)
+        found = self.noise(frequency) * (frequency * self.rate) ** (2 * missing)
+        kept = (frequency < 2.0 * pi * self._cutoff) | (missing == 0)
+        return np.where(kept, found, 0.0)
+
     def passed_on(self, response: np.ndarray) -> np.ndarray:
         """Power of the input's noise in a response (n,) by frequency, from 0 to half the sampling rate.
 

@@ -20,6 +20,8 @@ from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
+# Derivative of the displacement that an accelerometer shows.
+ACCELERATION = 2
 # Error of a simulation over the rms of the motion, which counts as noise.
 SIMULATED = 1e-5
 
@@ -42,11 +44,12 @@ class Release:
     """One window.
 
     ``model``: the base model with the numbers of the test; ``step`` (s) between samples; ``begins`` (s):
-    time of its first sample in its record, of the ``number``-th test; ``channels`` (C, n): displacement (m)
-    and, where it was recorded, velocity (m/s), as they are simulated; ``spectra``: their noise, beside that
-    of the input, ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a
-    channel are compared. ``input`` acts in the simulation, of ``size`` in what it was recorded as; ``length``
-    (m): of the motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
+    time of its first sample in its record, of the ``number``-th test; ``channels`` (C, n): what was recorded
+    of displacement (m), velocity (m/s) and acceleration (m/s^2), as they are simulated; ``orders`` (C,): the
+    derivative of the displacement that each of them is; ``spectra``: their noise, beside that of the input,
+    ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a channel are
+    compared. ``input`` acts in the simulation, of ``size`` in what it was recorded as; ``length`` (m): of the
+    motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
     """
 
     name: str
@@ -64,6 +67,7 @@ class Release:
     driven: bool
     length: float
     guess: tuple[float, float]
+    orders: tuple[int, ...] = (0, 1)
 
     @cached_property
     def compared(self) -> np.ndarray:
@@ -88,7 +92,10 @@ class Release:
         grid = np.linspace(0.0, pi, self.passed_on.shape[1])
         passed = [np.interp(frequency, grid, each) for each in self.passed_on]
         own = zip(self.spectra, passed, least, strict=True)
-        return np.sqrt([each(frequency) + more + low**2 for each, more, low in own])
+        found = np.sqrt([each(frequency) + more + low**2 for each, more, low in own])
+        # The zero of a first channel is fitted; that of an accelerometer beside others tells nothing.
+        found[1:, 0] *= np.array(self.orders[1 : len(found)]) < ACCELERATION
+        return found
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
         """Signals (..., C, n) of coefficients (..., C, K)."""
@@ -132,8 +139,10 @@ class Release:
         states = np.zeros((len(rows), state_count()))
         # Channels are minus what solvers record, which the suspension has as its state.
         states[:, :2] = starts if self.model.system == "oscillator" else -starts
-        x, velocity, _ = periodic.samples(rows, states, 0, 1, grid.samples, tolerance)
-        window = -np.stack([x, velocity], axis=1)[:, : len(self.channels), grid.lead :]
+        orders = self.orders[: len(self.channels)]
+        run = periodic.sampled(rows, states, 0, 1, grid.samples, tolerance, max(orders) == ACCELERATION)
+        motion = run.x, run.velocity, run.acceleration
+        window = -np.stack([motion[order] for order in orders], axis=1)[..., grid.lead :]
         return dct(window, norm="ortho")[..., : self.coefficients]
 
     @property
