@@ -116,11 +116,16 @@ def test_the_cutoff_is_where_the_noise_of_the_inertia_is_small():
     assert highest_cutoff(1e-12, 3.0, 2.0, 1000.0) == 200.0
 
 
-def test_misfit_of_the_true_model_is_noise(tmp_path):
+# A damper makes more force of the noise of the motion than inertia does.
+DAMPER = OSCILLATOR.replace("damping_N_s_per_m = 3.0", "damping_N_s_per_m = 3000.0")
+
+
+@pytest.mark.parametrize(("model", "noise"), [(OSCILLATOR, (1e-6, 0.02)), (DAMPER, (5e-6, 0.02))])
+def test_misfit_of_the_true_model_is_noise(tmp_path, model, noise):
     ratios = []
     for seed in range(8):
         (tmp_path / str(seed)).mkdir()
-        data = loop_data(read(write(tmp_path / str(seed), seed=seed)))
+        data = loop_data(read(write(tmp_path / str(seed), model=model, noise=noise, seed=seed)))
         fit = base_fit(Search.of(data, [])).base.fit
         ratios.append(fit.chi2 / fit.dof)
     # The noise that is assumed is the upper end of its interval.

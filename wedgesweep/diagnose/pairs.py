@@ -16,7 +16,7 @@ import numpy as np
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import Evaluation
+from wedgesweep.diagnose.fit_data import Evaluation, best_evaluation_per_test
 from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import (
@@ -187,7 +187,7 @@ def _fit_combinations(
     fits = _continued(search, fits, ROUNDS[1], further)
     fits = _continued(search, fits if diverse else promising(fits)[:ENTERING], ROUNDS[2], further)
     completed = LEADING if diverse or search.budget.left <= 0.0 else COMPLETED
-    found = search.each(lambda fit: _complete(search, job.base, fit), promising(fits)[:completed])
+    found = search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
     return refit_best(search, found)
 
 
@@ -294,8 +294,16 @@ def begin(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
     return [unfitted(model, each) for each in chosen]
 
 
-def _complete(search: Search, base: Fit, subset: Fit) -> Explanation:
-    """A fit to all tests from one to some of them."""
-    model = search.model(*subset.effects)
-    fit = minimise(model, model.evaluate(model.start(base, subset.x[: model.size])))
-    return search.explanation(fit)
+def _complete(job: PairSearch, subset: Fit) -> Explanation:
+    """A fit to all tests from one to some of them.
+
+    What is free in each test begins where the base model or one of the effects by itself has it: whichever
+    fits this test best.
+    """
+    model = job.search.model(*subset.effects)
+    known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]
+    starts = [model.start(fit, subset.x[: model.size]) for fit in known]
+    best = best_evaluation_per_test(model.evaluate_all(starts))
+    nuisance = np.array([each.nuisance for each in starts])[best, np.arange(best.size)]
+    start = replace(starts[0], nuisance=nuisance)
+    return job.search.explanation(minimise(model, model.evaluate(start)))

@@ -76,12 +76,17 @@ class LowPass:
         frequency, once = signal.sosfreqz(self._sections, GRID, fs=self.rate)
         return frequency, np.abs(once) ** 2
 
-    def power(self, std: float, order: int = 0) -> np.ndarray:
-        """Power (GRID + 1,) of filtered white noise, or of its derivative, from 0 to half the rate."""
+    def power(self, std: float, factors: tuple[float, float, float]) -> np.ndarray:
+        """Power (GRID + 1,) of filtered white noise from 0 to half the rate.
+
+        ``factors``: of the noise, of its derivative and of its second derivative in the sum of them.
+        """
         frequency = np.linspace(0.0, pi, GRID + 1)
         _, once = signal.sosfreqz(self._sections, frequency)
         # As numpy.gradient differentiates.
-        return (std * (self.rate * np.sin(frequency)) ** order * np.abs(once) ** 2) ** 2
+        rate = self.rate * np.sin(frequency)
+        through = np.hypot(factors[0] - factors[2] * rate**2, factors[1] * rate)
+        return (std * through * np.abs(once) ** 2) ** 2
 
 
 def white_noise(values: np.ndarray, rate: float) -> float:

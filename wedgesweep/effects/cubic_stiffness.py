@@ -1,4 +1,4 @@
-"""Bolster springs that stiffen with travel (Duffing, 1918).
+"""Bolster springs that stiffen or, with a negative coefficient, soften with travel (Duffing, 1918).
 
 z is counted from the springs' free length. It moves the rest position. Neutral and default: coefficient = 0.
 """
@@ -13,7 +13,7 @@ EFFECT = Effect(
     name="cubic_stiffness",
     family="missing-force",
     branch=NUMERICAL,
-    meaning="{mass} springs that stiffen with travel",
+    meaning="{mass} springs that stiffen or soften with travel",
     quantities=(Quantity("coefficient_N_per_mm3", 0.0, "cubic stiffness, k_3", search=(-1.0, 20.0)),),
     extends=("coefficient",),
 )

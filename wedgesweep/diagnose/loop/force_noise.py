@@ -31,20 +31,21 @@ LEAST_CLEAR = 0.2
 
 
 @dataclass(frozen=True)
-class InertiaNoise:
-    """Force (N) that noise of the displacement, of some ``std`` (m), makes of a ``mass`` (kg).
+class MotionNoise:
+    """Force (N) that noise of the displacement, of some ``std`` (m), makes of an ``impedance``.
 
-    It has passed a filter, of which every so many samples are compared (``low_pass.stride``).
+    The latter holds the force by displacement (N/m), velocity (N s/m) and acceleration (kg). The force has
+    passed a filter, of which every so many samples are compared (``low_pass.stride``).
     """
 
     low_pass: LowPass
-    mass: float
+    impedance: tuple[float, float, float]
     std: float
 
     @cached_property
     def _power(self) -> np.ndarray:
         """Power up to half the sampling rate, of all samples."""
-        return self.low_pass.power(self.mass * self.std, 2)
+        return self.low_pass.power(self.std, self.impedance)
 
     def power(self, frequency: np.ndarray) -> np.ndarray:
         """Power at frequencies in rad a compared sample."""
@@ -58,16 +59,30 @@ class InertiaNoise:
         return np.where(distance < values.size, values[np.minimum(distance, values.size - 1)], 0.0)
 
 
+def impedance(motion: Motion, force: np.ndarray, mass: float) -> tuple[float, float, float]:
+    """Force (n,) by displacement, velocity and acceleration, whatever makes it; dry friction is set apart.
+
+    Damping may differ by direction, and counts by its mean square.
+    The acceleration's part is that of the ``mass`` (kg, negative if the force counts the other way), as
+    inertia and stiffness look alike in a sine.
+    """
+    x, v = motion.displacement, motion.velocity
+    columns = np.column_stack([x, v, np.abs(v), np.sign(v), np.ones(x.size)])
+    size = np.linalg.norm(columns, axis=0)
+    fitted = np.linalg.lstsq(columns / size, force - mass * motion.acceleration, rcond=None)[0] / size
+    return float(fitted[0]), float(np.hypot(fitted[1], fitted[2])), mass
+
+
 def of_force(
-    motion: Motion, force: np.ndarray, places: np.ndarray, clear: np.ndarray, inertia: InertiaNoise
+    motion: Motion, force: np.ndarray, places: np.ndarray, clear: np.ndarray, known: MotionNoise
 ) -> NoiseSpectrum:
     """The noise of a force (k,) that was filtered, at some places (k,) of a motion.
 
     ``clear`` (k,): those that are away from reversals, where noise of the motion turns a jump of friction
-    into an outlier. ``inertia``: the noise that is known to come from the motion, which is not counted again.
+    into an outlier. ``known``: the noise that comes from that of the motion, which is not counted again.
     """
     clear = np.convolve(clear, np.ones(2 * FARTHER + 1), mode="same") > 2 * FARTHER + 0.5
-    columns = inertia.low_pass(_functions(motion).T)[:, places].T
+    columns = known.low_pass(_functions(motion).T)[:, places].T
     columns = columns[:, : max(int(clear.sum()) // ENOUGH, 4)]
     u, size, _ = np.linalg.svd(columns[clear], full_matrices=False)
     basis = u[:, size > DEPENDENT * size[0]]
@@ -77,7 +92,7 @@ def of_force(
     whole[clear] = left
     # Samples that are left out carry their share of the power.
     share = max(float(clear.mean()), LEAST_CLEAR)
-    return of_noise([whole / np.sqrt(share)], FROM_MOTION, inertia.power)
+    return of_noise([whole / np.sqrt(share)], FROM_MOTION, known.power)
 
 
 def _functions(motion: Motion) -> np.ndarray:

@@ -11,7 +11,7 @@ from wedgesweep import systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop.decorrelation import Decorrelation, decorrelation
-from wedgesweep.diagnose.loop.force_noise import InertiaNoise, of_force
+from wedgesweep.diagnose.loop.force_noise import MotionNoise, impedance, of_force
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
@@ -33,9 +33,9 @@ class Recording:
     """One test.
 
     ``model``: the base model with the numbers of the test; ``places`` (k,): samples of the motion at which
-    the ``force`` (k,) is compared; ``spectrum`` of its noise there beside that of the ``inertia``; ``known``
-    (k,): whether friction is; it is not where the mass rests or turns; ``blocks``: slices of the k samples,
-    whole cycles each; ``least``: variance (N^2) of a compared number.
+    the ``force`` (k,) is compared; ``spectrum`` of its noise there, beside what noise of the motion has
+    ``passed_on``; ``known`` (k,): whether friction is; it is not where the mass rests or turns; ``blocks``:
+    slices of the k samples, whole cycles each; ``least``: variance (N^2) of a compared number.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Recording:
     places: np.ndarray
     force: np.ndarray
     spectrum: NoiseSpectrum
-    inertia: InertiaNoise
+    passed_on: MotionNoise
     least: float
     known: np.ndarray
     blocks: tuple[slice, ...]
@@ -58,7 +58,7 @@ class Recording:
 
     def _covariance(self, distance: np.ndarray) -> np.ndarray:
         """Covariance (N^2) of two compared forces by their distance."""
-        return self.spectrum.covariance(distance) + self.inertia.covariance(distance)
+        return self.spectrum.covariance(distance) + self.passed_on.covariance(distance)
 
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
@@ -71,7 +71,7 @@ class Recording:
             [self.model.record_with(merge(self.model.effects, each), self.law, 0.0) for each in scenarios]
         )
         own = self.motion
-        sign = 1.0 if self.model.system == "oscillator" else -1.0
+        sign = _sign(self.model)
         forces = imposed_motion.forces(
             rows,
             sign * own.displacement,
@@ -127,17 +127,24 @@ def recording(
     if not places.size:
         told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
         raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
-    inertia = InertiaNoise(low_pass, mass, noise)
-    compared, clear = low_pass(force)[places], ~slow(own, low_pass)[places]
+    smooth, clear = low_pass(force), ~slow(own, low_pass)[places]
+    compared = smooth[places]
+    passed_on = MotionNoise(low_pass, impedance(own, smooth, _sign(model) * mass), noise)
     if differences:
         left = [low_pass(each)[ends : -ends : low_pass.stride] for each in differences]
-        found = of_noise(left, FROM_REPEATS, inertia.power)
+        found = of_noise(left, FROM_REPEATS, passed_on.power)
     else:
-        found = of_force(own, compared, places, clear, inertia)
+        found = of_force(own, compared, places, clear, passed_on)
     # White noise of the force; errors at reversals have a wide spectrum.
     least = low_pass.noise(white_noise(force, rate)) ** 2 + (mass * own.acceleration_noise) ** 2
     blocks = _blocks(own.velocity[places])
-    return Recording(name, model, law, low_pass, own, places, compared, found, inertia, least, clear, blocks)
+    noises = found, passed_on, least
+    return Recording(name, model, law, low_pass, own, places, compared, *noises, clear, blocks)
+
+
+def _sign(model: Config) -> float:
+    """Sign of the simulated motion over that of the recorded one."""
+    return 1.0 if model.system == "oscillator" else -1.0
 
 
 def slow(motion: Motion, low_pass: LowPass) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from wedgesweep import systems
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.loop.force_noise import InertiaNoise
+from wedgesweep.diagnose.loop.force_noise import MotionNoise
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.loop.recording import Recording, slow
 from wedgesweep.diagnose.model import Fit
@@ -33,14 +33,14 @@ class _Machine(NamedTuple):
     """How forces are compared.
 
     ``variance`` (N^2) of a compared force beside others of some ``rms`` (N); without a measured loop, where
-    noise is a share of any force, beside others of unit rms, and ``rms`` is None. ``mass`` (kg): what the
-    motion accelerates.
+    noise is a share of any force, beside others of unit rms, and ``rms`` is None. ``impedance``: what turns
+    noise of the motion into force.
     """
 
     low_pass: LowPass
     variance: float
     rms: float | None
-    mass: float
+    impedance: tuple[float, float, float]
 
     def noise(self, rms: float) -> float:
         """Variance of a compared force beside others of some rms."""
@@ -49,7 +49,7 @@ class _Machine(NamedTuple):
 
 def loops(best: Fit, known: Sensors, measured: LoopData | None) -> Design:
     """Sines on a grid of frequencies and amplitudes, under the noise of measured loops if there are any."""
-    machine = _unmeasured(best, known) if measured is None else _measured(measured, best)
+    machine = _unmeasured(best, known) if measured is None else _measured(measured)
     frequencies = _frequencies(known, measured, machine.low_pass)
     amplitude, frequency = (
         each.ravel() for each in np.meshgrid(SIZES * known.travel, frequencies, indexing="ij")
@@ -77,11 +77,11 @@ def _frequencies(known: Sensors, measured: LoopData | None, low_pass: LowPass) -
     return possible if possible.size else asked[:1]
 
 
-def _measured(data: LoopData, best: Fit) -> _Machine:
+def _measured(data: LoopData) -> _Machine:
     """Forces as those of the tests at hand, of which the one with the most noise counts."""
     own = max(data.recordings, key=lambda each: each.noise)
     variance = float(own.spectrum(np.zeros(1))[0]) + own.least
-    return _Machine(own.low_pass, variance, float(own.force.std()), _mass(best))
+    return _Machine(own.low_pass, variance, float(own.force.std()), own.passed_on.impedance)
 
 
 def _unmeasured(best: Fit, known: Sensors) -> _Machine:
@@ -89,7 +89,7 @@ def _unmeasured(best: Fit, known: Sensors) -> _Machine:
     mass, std = _mass(best), known.spectra[0].std
     force = mass * known.omega**2 * float(known.rms[0])
     low_pass = LowPass(highest_cutoff(std, force, mass, known.rate), known.rate)
-    return _Machine(low_pass, low_pass.noise(known.share) ** 2, None, mass)
+    return _Machine(low_pass, low_pass.noise(known.share) ** 2, None, (0.0, 0.0, mass))
 
 
 def _mass(best: Fit) -> float:
@@ -124,7 +124,7 @@ def _recording(
         places=places,
         force=nothing,
         spectrum=NoiseSpectrum(0.0, 0.0, 0.0),
-        inertia=InertiaNoise(low_pass, machine.mass, 0.0),
+        passed_on=MotionNoise(low_pass, machine.impedance, 0.0),
         least=0.0,
         known=~slow(motion, low_pass)[places],
         blocks=(slice(0, places.size),),
@@ -133,5 +133,5 @@ def _recording(
     rms = float(force[empty.known].std()) if empty.known.any() else 0.0
     # Each compared number stands for all those between it and the next.
     variance = machine.noise(rms) * low_pass.stride / step
-    variance += (machine.mass * motion.acceleration_noise) ** 2
+    variance += float(MotionNoise(low_pass, machine.impedance, std).covariance(np.zeros(1, int))[0])
     return replace(empty, force=force, spectrum=NoiseSpectrum(0.0, 0.0, variance), least=1e-6 * variance)
