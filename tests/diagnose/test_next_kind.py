@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose import test_loops, test_transients
+from tests.diagnose.synthetic import drawn
 from tests.diagnose.test_loops import CELLS, RATE, diagnosed
 from wedgesweep.config import parse, toml
 from wedgesweep.diagnose import verdict
@@ -20,12 +21,14 @@ from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.next_test.sensors import sensors
 from wedgesweep.diagnose.next_test.transients import releases, sweeps
 from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.steady import next_test
 from wedgesweep.effects import merge
 from wedgesweep.measured import read
 from wedgesweep.solvers import imposed_motion
 
 # Free motion of a mass on a spring tells their ratio; how much dry friction takes is not known here.
 SPRING_AND_MASS = test_transients.OSCILLATOR.replace("damping_N_s_per_m = 1.0\n", "")
+FRICTION = {"friction_level": 0.3}
 UNCERTAIN = "[measurement.uncertain]\nfriction_level = 0.3\n"
 RIVALS = {"bolster_mass": {"scale": 1.2}, "bolster_stiffness": {"scale": 1.0 / 1.2}}
 DAMPED = {"viscous_damping": {"coefficient_N_s_per_m": 2.0}}
@@ -112,6 +115,20 @@ def test_a_distance_is_the_excess_that_a_fit_would_leave(tmp_path):
         fit = minimise(known, known.evaluate(replace(fits[1].point, nuisance=start)))
         assert distances[3] > SEPARATED
         assert fit.chi2 == pytest.approx(distances[3], rel=0.05)
+
+
+def test_a_steady_measurement_may_be_told_another_kind():
+    """Neither sines of the base nor free motions tell mass from spring; friction is uncertain here."""
+    model = parse(SPRING_AND_MASS.replace("normal_force_N = 1.0", "normal_force_N = 0.05"), "model")
+    data = replace(drawn(), model=model, law="coulomb", uncertain=FRICTION)
+    fits = [explained(data, {name: each}, std=np.array([1e-3, 0.3])) for name, each in RIVALS.items()]
+    steady = next_test.recommend(fits)
+    assert steady is None or steady.distance < SEPARATED
+    found = recommend(fits)
+    assert found.kind == "loop"
+    assert found.distance >= SEPARATED
+    easy = [explained(replace(data, uncertain={}), each) for each in (DAMPED, RUBBED)]
+    assert recommend(easy).kind == "steady"
 
 
 def test_no_kind_tells_an_explanation_from_itself(tmp_path):

@@ -3,7 +3,7 @@
 That is T-optimality (Atkinson and Fedorov, 1975, Biometrika 62, 57).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
@@ -17,6 +17,8 @@ from wedgesweep.diagnose.model import Fit
 SEPARATED, UNSEEN = 30.0, 1.0
 # Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
+# Tests that are looked at closely, if explanations adapt to those before.
+TRIED = 5
 # Largest standard deviation of a parameter, in its scales.
 WIDEST = 10.0
 
@@ -48,7 +50,8 @@ class Offer(NamedTuple):
     """Tests of one kind to choose from: A sizes, the cheapest first, by B other choices.
 
     ``fits``: the explanations that predict them; ``distances`` (pairs, A, B) of every two; ``numbers``: of
-    each test, A B of them.
+    each test, A B of them. ``adapted``: distances (pairs,) of a test (its index) when explanations adapt to
+    it as they are, and not just as their derivatives say; None if that is not known.
     """
 
     kind: str
@@ -56,6 +59,7 @@ class Offer(NamedTuple):
     fits: Sequence[Fit]
     distances: np.ndarray
     numbers: Sequence[Mapping[str, float]]
+    adapted: Callable[[int], np.ndarray] | None = None
 
 
 def recommended(offer: Offer, best: Fit) -> NextTest | None:
@@ -63,8 +67,7 @@ def recommended(offer: Offer, best: Fit) -> NextTest | None:
     pairs = list(combinations(offer.fits, 2))
     if not (offer.distances > UNSEEN).any():
         return None
-    chosen = choice(offer.distances)
-    here = offer.distances.reshape(len(pairs), -1)[:, chosen]
+    chosen, here = _confirmed(offer)
     separated = here >= SEPARATED if (here >= SEPARATED).any() else np.ones(len(pairs), bool)
     # Pairs with the best explanation are of most interest.
     with_best = separated & [one is best for one, _ in pairs]
@@ -76,6 +79,21 @@ def recommended(offer: Offer, best: Fit) -> NextTest | None:
     )
     numbers = offer.numbers[chosen]
     return NextTest(offer.kind, numbers, *separations[closest], separations, offer.motion)
+
+
+def _confirmed(offer: Offer) -> tuple[int, np.ndarray]:
+    """The chosen test and its distances (pairs,); another one if explanations adapt to the first choice."""
+    distances = offer.distances.copy()
+    by_test = distances.reshape(len(distances), -1)
+    for _ in range(TRIED):
+        chosen = choice(distances)
+        before = by_test[:, chosen].copy()
+        if offer.adapted is None or not (before >= SEPARATED).any():
+            break
+        by_test[:, chosen] = np.minimum(before, offer.adapted(chosen))
+        if ((by_test[:, chosen] >= SEPARATED) == (before >= SEPARATED)).all():
+            break
+    return chosen, by_test[:, chosen]
 
 
 def choice(distances: np.ndarray) -> int:
