@@ -47,16 +47,21 @@ def response(config, effects, given, quantity):
     return -np.array([found[0][0], found[1][0]])
 
 
-def write(folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=1e-4, more=""):
-    """Files of tests under some inputs (n,); returns the path of measured.toml."""
+def write(
+    folder, inputs, effects=None, model=OSCILLATOR, quantity="displacement", noise=(1e-4, 1e-3), more=""
+):
+    """Files of tests under some inputs (n,); returns the path of measured.toml.
+
+    ``noise``: of the displacement (m), and of the input over its standard deviation.
+    """
     rng, (unit, size) = np.random.default_rng(1), UNITS[quantity]
     config = parse(model, "model")
     text = MEASURED + f'input = {{ column = "u", unit = "{unit}", quantity = "{quantity}" }}\n' + more
     (folder / "model.toml").write_text(model)
     for i, given in enumerate(inputs):
         x = response(config, effects or {}, given, quantity)[0, ::FINE]
-        x = x + 1e-3 + noise * rng.standard_normal(x.size)
-        u = given[::FINE] + 1e-3 * given.std() * rng.standard_normal(x.size)
+        x = x + 1e-3 + noise[0] * rng.standard_normal(x.size)
+        u = given[::FINE] + noise[1] * given.std() * rng.standard_normal(x.size)
         table = np.column_stack([TIMES[::FINE], 1e3 * x, u / size])
         np.savetxt(folder / f"t{i}.csv", table, "%.12g", ",", header="t,x,u", comments="")
         text += f'[[measurement.test]]\nfile = "t{i}.csv"\nkind = "transient"\n'
@@ -95,6 +100,17 @@ def test_a_force_that_was_recorded(tmp_path):
     path = write(tmp_path, [4.0 * rough(5)], HIDDEN, model, "force")
     found = diagnosed(path, CANDIDATES)
     assert [each["effect"] for each in found.causes] == ["viscous_damping"]
+
+
+def test_noise_of_the_input_counts_as_the_resonance_passes_it_on(tmp_path):
+    model = OSCILLATOR.replace("amplitude_mm = 1.0", 'excitation = "force"\namplitude_N = 1.0')
+    model = model.replace("normal_force_N = 1.0", "normal_force_N = 0.0")
+    inputs = [amplitude * rough(seed, 6.0) for seed, amplitude in enumerate((1.0, 2.0))]
+    stiffening = {"cubic_stiffness": {"coefficient": 2e5}}
+    found = diagnosed(write(tmp_path, inputs, stiffening, model, "force", (3e-5, 0.01)), CANDIDATES)
+    assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["cubic_stiffness"])
+    low, high = found.causes[0]["parameters"]["coefficient_N_per_mm3"]["ci95"]
+    assert low < 2e-4 < high < 1.01 * low
 
 
 def test_motion_against_the_ground_is_the_motion_against_the_base_and_its_own(tmp_path):

@@ -39,7 +39,7 @@ class SampledData(FitData):
     @property
     @abstractmethod
     def noise(self) -> np.ndarray:
-        """Standard deviation of each of them, (T, m); 0 where nothing is compared."""
+        """Standard deviation (T, m) of their independent combinations; 0 where nothing is compared."""
 
     @property
     @abstractmethod
@@ -95,10 +95,18 @@ class SampledData(FitData):
         compared = self.weight > 0.0
         return float(np.sqrt(np.mean((self.noise[compared] / self.size[compared]) ** 2)))
 
+    def decorrelated(self, values: np.ndarray) -> np.ndarray:
+        """Orthogonal combinations of values (..., T, m) whose noise is independent."""
+        return values
+
+    def correlated(self, values: np.ndarray) -> np.ndarray:
+        """What ``decorrelated`` turns into values (..., T, m)."""
+        return values
+
     def zero(self, values: np.ndarray) -> np.ndarray:
         """Best zero of the sensor (..., T, 1) for values (..., T, m) that are left."""
-        share = self.weight * self.shifted / self.std**2
-        return (values * share).sum(-1, keepdims=True) / (self.shifted * share).sum(-1, keepdims=True)
+        left, unit = self._whitened(values), self._whitened(self.shifted)
+        return (left * unit).sum(-1, keepdims=True) / (unit**2).sum(-1, keepdims=True)
 
     def without_zero(self, values: np.ndarray) -> np.ndarray:
         """Values (..., T, m) less their best zero."""
@@ -114,8 +122,11 @@ class SampledData(FitData):
         return np.sqrt((self.weight * left**2).sum(-1) / self.weight.sum(-1))
 
     def _whitened(self, values: np.ndarray) -> np.ndarray:
-        """Values (..., T, m) over their standard deviation, 0 where nothing is compared."""
-        return values * self.weight / self.std
+        """Independent combinations of values (..., T, m) over their standard deviation.
+
+        They are 0 where nothing is compared.
+        """
+        return self.decorrelated(values) * self.weight / self.std
 
     def _simulated(self, scenarios: Sequence[Scenario]) -> tuple[np.ndarray, np.ndarray]:
         """Simulated values (n, T, m), and whether they exist, (n, T)."""
@@ -154,7 +165,7 @@ class SampledData(FitData):
 
     def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
         noise = rng.standard_normal(self.weight.shape) * self.std
-        return replace(self, resampled=truth.response + noise)  # type: ignore[type-var]
+        return replace(self, resampled=truth.response + self.correlated(noise))  # type: ignore[type-var]
 
     def with_undetected(self, effect: str) -> Self:
         """What is no candidate changes nothing that is simulated."""

@@ -53,7 +53,7 @@ LEADING = {
     "velocity_lag": Leading("time_s", 1e-6, 0.018),
     "displacement_gain": Leading("scale", 1e-4, 0.6, 1.0, 0.5, 0.4),
 }
-LOGARITHMIC, UNIFORM, GROWING = "logarithmic", "uniform", "growing"
+LOGARITHMIC, UNIFORM, EITHER_SIGN, GROWING = "logarithmic", "uniform", "uniform, of either sign", "growing"
 # A growing parameter starts at this share of the drawn one.
 GROWTH = 1e-3
 # Drawn once per set: (low, high) and how. A growing parameter increases with the leading one.
@@ -61,7 +61,8 @@ OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "stribeck": {"peak": (0.0, 0.4, GROWING)},
     "ageing": {"time_s": (2e-4, 0.3, LOGARITHMIC)},
     "cross_slip": {"phase_deg": (-88.0, 88.0, UNIFORM)},
-    "directional_damping": {"asymmetry": (-0.9, 0.9, UNIFORM)},
+    # With less asymmetry it is viscous_damping.
+    "directional_damping": {"asymmetry": (0.3, 0.9, EITHER_SIGN)},
     "end_stop": {"stiffness_N_per_mm": (3.0, 800.0, LOGARITHMIC)},
     "input_distortion": {
         "second_phase_deg": (-175.0, 175.0, UNIFORM),
@@ -96,4 +97,5 @@ def path(effect: str, random: np.random.Generator, units: NaturalUnits = BENCH) 
 def _draw(low: float, high: float, scale: str, random: np.random.Generator) -> float:
     if scale == LOGARITHMIC:
         return float(np.exp(random.uniform(np.log(low), np.log(high))))
-    return float(random.uniform(low, high))
+    value = float(random.uniform(low, high))
+    return -value if scale == EITHER_SIGN and random.random() < 0.5 else value

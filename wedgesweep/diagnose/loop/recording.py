@@ -9,8 +9,8 @@ import numpy as np
 
 from wedgesweep import systems
 from wedgesweep.config import Config
+from wedgesweep.diagnose.decorrelation import Decorrelation, decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.loop.decorrelation import Decorrelation, decorrelation
 from wedgesweep.diagnose.loop.force_noise import MotionNoise, impedance, of_force
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise

@@ -10,6 +10,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
 from wedgesweep.diagnose.transient.driven import nothing
+from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.diagnose.transient.release import Grid, Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.windows import FEWEST_COMPARED, HARMONICS
@@ -49,8 +50,10 @@ def sweeps(best: Fit, known: Sensors) -> Design:
     tests = []
     for size in sizes:
         given = from_samples(size * shape, duration / count, quantity, fastest=2.0 * pi * high)
+        power = np.full(2, (known.share * size) ** 2 / 2.0)
+        noise = InputNoise(power, 0, 2.0 * pi * high / known.rate, (0.0,) * len(known.spectra))
         tests.append(
-            replace(_window(known, known.travel, duration), input=given, driven=True, guess=(0.0, 0.0))
+            replace(_window(known, known.travel, duration), input=given, input_noise=noise, guess=(0.0, 0.0))
         )
     numbers = [
         {"frequency_hz": low, "to_hz": high, unit.key: size / unit.factor, "duration_s": duration}
@@ -76,7 +79,7 @@ def _window(known: Sensors, start: float, duration: float) -> Release:
         coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
         grid=Grid(0, count, known.omega),
         input=nothing(count / known.rate),
-        driven=False,
+        input_noise=None,
         length=start,
         guess=(start, 0.0),
     )

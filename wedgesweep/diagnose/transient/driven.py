@@ -9,7 +9,8 @@ from scipy import signal
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_record
-from wedgesweep.sampled_input import SampledInput, from_samples
+from wedgesweep.diagnose.transient.input_noise import InputNoise
+from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
 # Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
 # acceleration would shake a mass loose that sticks. Order of the filter, which leaves the rest alone.
@@ -84,16 +85,18 @@ class Driven:
             return self.displacement
         if order == 1:
             return np.gradient(self.displacement) * self.rate
-        if self.quantity == "acceleration":
-            return self.samples
         return self.acting(np.arange(self.samples.size) / self.rate, 2)
 
-    def noise_of_acceleration(self, frequency: np.ndarray) -> np.ndarray:
-        """Power of the noise in the acceleration of the base at frequencies in rad a sample."""
-        missing = 2 - QUANTITIES_OF_MOTION.index(self.quantity)
-        found = self.noise(frequency) * (frequency * self.rate) ** (2 * missing)
-        kept = (frequency < 2.0 * pi * self._cutoff) | (missing == 0)
-        return np.where(kept, found, 0.0)
+    @cached_property
+    def noise_power(self) -> np.ndarray:
+        """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
+        given = _power(self.samples)
+        return np.minimum(self.noise(np.linspace(0.0, pi, given.size)), MOST_NOISE**2 * given)
+
+    def input_noise(self, shares: tuple[float, ...]) -> InputNoise:
+        """The noise as it acts; ``shares`` (C,): of the base's displacement in each channel."""
+        cutoff = 2.0 * pi * min(self._cutoff, 0.5)
+        return InputNoise(self.noise_power, INTEGRATED[self.quantity], cutoff, shares)
 
     def passed_on(self, response: np.ndarray) -> np.ndarray:
         """Power of the input's noise in a response (n,) by frequency, from 0 to half the sampling rate.
@@ -101,9 +104,7 @@ class Driven:
         The rig passes on noise as it passes on the input: by the ratio of the spectra of the two.
         """
         given, seen = (_power(each) for each in (self.samples, response))
-        frequency = np.linspace(0.0, pi, given.size)
-        noise = np.minimum(self.noise(frequency), MOST_NOISE**2 * given)
-        return seen * noise / np.maximum(given, 1e-300)
+        return seen * self.noise_power / np.maximum(given, 1e-300)
 
 
 def at(given: SampledInput, start: float) -> SampledInput:

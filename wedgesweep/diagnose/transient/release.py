@@ -13,8 +13,17 @@ import numpy as np
 from scipy.fft import dct, idct
 
 from wedgesweep.config import Config
+from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.transient.input_noise import (
+    MOST,
+    InputNoise,
+    converted,
+    cosines,
+    decorrelated,
+    disturbed,
+)
 from wedgesweep.effects import merge
 from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
@@ -22,6 +31,8 @@ from wedgesweep.systems import state_count
 
 # Derivative of the displacement that an accelerometer shows.
 ACCELERATION = 2
+# Zero of an accelerometer over the rms of what it shows, as good as unknown.
+UNKNOWN = 1e3
 # Error of a simulation over the rms of the motion, which counts as noise.
 SIMULATED = 1e-5
 
@@ -48,8 +59,8 @@ class Release:
     of displacement (m), velocity (m/s) and acceleration (m/s^2), as they are simulated; ``orders`` (C,): the
     derivative of the displacement that each of them is; ``spectra``: their noise, beside that of the input,
     ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a channel are
-    compared. ``input`` acts in the simulation, of ``size`` in what it was recorded as; ``length`` (m): of the
-    motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
+    compared. ``input`` acts in the simulation; ``input_noise``: that of its record, None for no input;
+    ``length`` (m): of the motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
     """
 
     name: str
@@ -64,7 +75,7 @@ class Release:
     coefficients: int
     grid: Grid
     input: SampledInput
-    driven: bool
+    input_noise: InputNoise | None
     length: float
     guess: tuple[float, float]
     orders: tuple[int, ...] = (0, 1)
@@ -84,18 +95,58 @@ class Release:
         """Samples for each coefficient; an error that has all its power there is larger by the root of it."""
         return self.channels.shape[1] / self.coefficients
 
+    @property
+    def driven(self) -> bool:
+        """Whether an input was recorded."""
+        return self.input_noise is not None
+
+    @property
+    def _orders(self) -> tuple[int, ...]:
+        """The derivative of the displacement that each channel is."""
+        return self.orders[: len(self.channels)]
+
+    @cached_property
+    def _frequency(self) -> np.ndarray:
+        """Frequency (K,) of each coefficient in rad a sample."""
+        return pi * np.arange(self.coefficients) / self.channels.shape[1]
+
+    @cached_property
+    def _own_variance(self) -> np.ndarray:
+        """Variance (C, K) of each coefficient but for what the input adds."""
+        least = SIMULATED * self.rms * sqrt(self.spread)
+        own = zip(self.spectra, least, strict=True)
+        found = np.array([each(self._frequency) + low**2 for each, low in own])
+        # The zero of a first channel is fitted; that of an accelerometer beside others tells nothing.
+        zero = (UNKNOWN * self.rms) ** 2 * self.channels.shape[1]
+        found[1:, 0] += zero[1:] * (np.array(self._orders[1:]) == ACCELERATION)
+        return found
+
     @cached_property
     def noise(self) -> np.ndarray:
-        """Standard deviation (C, K) of each coefficient."""
-        frequency = pi * np.arange(self.coefficients) / self.channels.shape[1]
-        least = SIMULATED * self.rms * sqrt(self.spread)
+        """Standard deviation (C, K) of each coefficient, with the input's noise spread as its motion is."""
         grid = np.linspace(0.0, pi, self.passed_on.shape[1])
-        passed = [np.interp(frequency, grid, each) for each in self.passed_on]
-        own = zip(self.spectra, passed, least, strict=True)
-        found = np.sqrt([each(frequency) + more + low**2 for each, more, low in own])
-        # The zero of a first channel is fitted; that of an accelerometer beside others tells nothing.
-        found[1:, 0] *= np.array(self.orders[1 : len(found)]) < ACCELERATION
-        return found
+        passed = [np.interp(self._frequency, grid, each) for each in self.passed_on]
+        return np.sqrt(self._own_variance + passed)
+
+    def decorrelation(
+        self, values: Values, start: np.ndarray, gain: float, tolerance: float
+    ) -> tuple[Decorrelation, ...]:
+        """Independent combinations of the coefficients of each channel, by the response in a scenario.
+
+        ``start`` (2,) of the simulation; ``gain`` of the input.
+        """
+        if self.input_noise is None:
+            unit = np.eye(min(self.coefficients, MOST))
+            return tuple(Decorrelation(unit, std[: len(unit)]) for std in self.noise)
+        grid = self.grid
+        parts = cosines(self.input_noise, grid.samples, self.step, float(self._frequency[-1]))
+        inputs = disturbed(self.input, parts)
+        rows = np.repeat(self._records([values]), len(inputs), axis=0)
+        for place, each in enumerate(inputs):
+            self._drive(rows[place : place + 1], each, gain)
+        above, below = np.split(self._motions(rows, np.tile(start, (len(rows), 1)), tolerance), 2)
+        changes = converted(parts, self.input_noise.shares, self._orders, grid.lead) - 0.5 * (above - below)
+        return decorrelated(self._own_variance, np.nan_to_num(changes))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
         """Signals (..., C, n) of coefficients (..., C, K)."""
@@ -128,22 +179,30 @@ class Release:
 
         ``gains`` (n,): of the input.
         """
-        grid = self.grid
-        rows = np.concatenate(
-            [
-                self.model.record_with(merge(self.model.effects, each), self.law, 1.0, grid.omega)
-                for each in scenarios
-            ]
+        rows = self._records(scenarios)
+        self._drive(rows, self.input, gains)
+        return dct(self._motions(rows, starts, tolerance), norm="ortho")[..., : self.coefficients]
+
+    def _records(self, scenarios: list[Values]) -> np.ndarray:
+        """Parameter records of scenarios, without an input."""
+        known, omega = self.model.effects, self.grid.omega
+        return np.concatenate(
+            [self.model.record_with(merge(known, each), self.law, 1.0, omega) for each in scenarios]
         )
-        set_sampled(rows, self.input, self._scale, grid.omega, grid.samples * self.step, gains)
+
+    def _drive(self, rows: np.ndarray, given: SampledInput, gain: float | np.ndarray) -> None:
+        """Let an input act in records."""
+        set_sampled(rows, given, self._scale, self.grid.omega, self.grid.samples * self.step, gain)
+
+    def _motions(self, rows: np.ndarray, starts: np.ndarray, tolerance: float) -> np.ndarray:
+        """Channels (n, C, samples) of the window from starts (n, 2); NaN for none."""
         states = np.zeros((len(rows), state_count()))
         # Channels are minus what solvers record, which the suspension has as its state.
         states[:, :2] = starts if self.model.system == "oscillator" else -starts
-        orders = self.orders[: len(self.channels)]
-        run = periodic.sampled(rows, states, 0, 1, grid.samples, tolerance, max(orders) == ACCELERATION)
+        orders, samples = self._orders, self.grid.samples
+        run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(orders) == ACCELERATION)
         motion = run.x, run.velocity, run.acceleration
-        window = -np.stack([motion[order] for order in orders], axis=1)[..., grid.lead :]
-        return dct(window, norm="ortho")[..., : self.coefficients]
+        return -np.stack([motion[order] for order in orders], axis=1)[..., self.grid.lead :]
 
     @property
     def _scale(self) -> float:

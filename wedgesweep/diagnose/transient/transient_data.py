@@ -4,7 +4,7 @@ A window is a test: errors of phase do not add up over a long record (multiple s
 zero of the displacement is unknown in each.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -13,6 +13,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
+from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_data import (
     Evaluation,
     NuisanceParameter,
@@ -41,13 +42,18 @@ GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
 @dataclass(frozen=True, eq=False)
 class TransientData(SampledData):
-    """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other."""
+    """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other.
+
+    ``decorrelations``: combinations with independent noise of the first coefficients of each channel of each
+    test; without them coefficients count as independent.
+    """
 
     releases: tuple[Release, ...]
     uncertain: dict[str, float]
     model_error: float = 0.0
     gain_std: float = 0.0
     resampled: np.ndarray | None = None
+    decorrelations: tuple[tuple[Decorrelation, ...], ...] | None = None
 
     kind = "transient"
 
@@ -78,7 +84,39 @@ class TransientData(SampledData):
 
     @cached_property
     def noise(self) -> np.ndarray:
-        return self._padded([own.noise for own in self.releases])
+        noise = self._padded([own.noise for own in self.releases])
+        for t, part, each in self._combinations():
+            noise[t, part] = each.std
+        return noise
+
+    def _combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
+        """Test, place and combination of all coefficients that are correlated."""
+        for t, both in enumerate(self.decorrelations or ()):
+            for channel, each in enumerate(both):
+                first = channel * self.releases[t].coefficients
+                yield t, slice(first, first + each.std.size), each
+
+    def decorrelated(self, values: np.ndarray) -> np.ndarray:
+        found = values.copy()
+        for t, part, each in self._combinations():
+            found[..., t, part] = values[..., t, part] @ each.matrix.T
+        return found
+
+    def correlated(self, values: np.ndarray) -> np.ndarray:
+        found = values.copy()
+        for t, part, each in self._combinations():
+            found[..., t, part] = values[..., t, part] @ each.matrix
+        return found
+
+    def renewed(self, scenario: Scenario) -> Self:
+        """The data with the noise of the input as the response in a scenario passes it on."""
+        if not any(own.driven for own in self.releases):
+            return self
+        (values,) = self.known_values([scenario], OF_INPUT)
+        starts, gains = self.starts(scenario.point), self._gain(scenario.point)
+        own = zip(self.releases, starts, gains, strict=True)
+        found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
+        return replace(self, decorrelations=found)
 
     @cached_property
     def size(self) -> np.ndarray:
@@ -127,6 +165,10 @@ class TransientData(SampledData):
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
         return point.nuisance[:, : len(START)] * self._scale
 
+    def _gain(self, point: Point) -> np.ndarray:
+        """True input over the recorded one in each test, (T,)."""
+        return np.exp(point.nuisance[:, len(START)]) if self._gains else np.ones(self.tests)
+
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         return (*START, GAIN) if self._gains else START
 
@@ -136,7 +178,9 @@ class TransientData(SampledData):
 
     def subset(self, rows: np.ndarray) -> Self:
         releases = tuple(self.releases[row] for row in np.arange(self.tests)[rows])
-        part = replace(self, releases=releases, resampled=None)
+        known = self.decorrelations
+        kept = None if known is None else tuple(known[row] for row in np.arange(self.tests)[rows])
+        part = replace(self, releases=releases, resampled=None, decorrelations=kept)
         if self.resampled is None:
             return part
         return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
@@ -149,9 +193,7 @@ class TransientData(SampledData):
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
         values = self.known_values(scenarios, OF_INPUT)
         starts = np.array([self.starts(each.point) for each in scenarios])
-        gains = np.ones((len(values), self.tests))
-        if self._gains:
-            gains = np.exp([each.point.nuisance[:, len(START)] for each in scenarios])
+        gains = np.array([self._gain(each.point) for each in scenarios])
         work.add(len(values) * sum(own.periods for own in self.releases))
         return self._padded(
             [

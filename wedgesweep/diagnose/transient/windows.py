@@ -27,8 +27,8 @@ FEWEST_COMPARED, SMALL = 8, 1e-3
 class Recorded(NamedTuple):
     """A record: channels (C, n) at a rate (Hz), the noise of each, the input; ``number`` of its test.
 
-    ``orders`` (C,): derivatives of the displacement that were recorded; ``shares`` (C,): of the motion of the
-    base in each channel, which was added to what was recorded.
+    ``orders`` (C,): derivatives of the displacement that were recorded; ``shares`` (C,): of the base's motion
+    in each channel, which was added to what was recorded.
     """
 
     name: str
@@ -86,7 +86,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 coefficients=min(max(ceil(top * size / pi), FEWEST_COMPARED), size),
                 grid=grid,
                 input=nothing(span) if acting is None else at(acting, (skipped + start) / rate),
-                driven=acting is not None,
+                input_noise=record.driven.input_noise(record.shares) if record.driven else None,
                 length=max(float(np.abs(displacement[start : first + size] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),
                 orders=record.orders[: len(own)],
@@ -122,9 +122,4 @@ def _passed_on(record: Recorded) -> np.ndarray:
     """Power of the input's noise in each channel, (C, f)."""
     if record.driven is None:
         return np.zeros((len(record.channels), 2))
-    found = np.array([record.driven.passed_on(each) for each in record.channels])
-    frequency = np.linspace(0.0, pi, found.shape[1])
-    for own, order, share in zip(found, record.orders, record.shares, strict=False):
-        if share and order > 1:
-            own += share**2 * record.driven.noise_of_acceleration(frequency)
-    return found
+    return np.array([record.driven.passed_on(each) for each in record.channels])

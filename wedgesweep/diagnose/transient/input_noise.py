@@ -1,0 +1,112 @@
+"""Noise of a recorded input as the response passes it on, from the response that is simulated.
+
+The noise is a sum of cosines over what is simulated of a window, each with a variance of its own. Each is
+added to the input and taken from it; half the change of the response is what that cosine does. A resonance
+turns it into noise of a narrow band, whose neighbouring coefficients are far from independent.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from scipy.fft import dct
+
+from wedgesweep.diagnose.decorrelation import Decorrelation
+from wedgesweep.sampled_input import SampledInput, from_samples
+
+# Coefficients of a window whose noise is taken to be correlated, at most: those of the lowest frequencies.
+MOST = 400
+# Knots of the input beyond a window to either side.
+BEYOND = 3
+
+
+class InputNoise(NamedTuple):
+    """Noise of a recorded input.
+
+    ``power`` (f,): of a sample by frequency, from 0 to half the sampling rate; ``integrated``: how often what
+    was recorded is integrated to what acts; ``cutoff`` (rad a sample): highest frequency that acts;
+    ``shares`` (C,): of the base's displacement in each channel, which was converted with it.
+    """
+
+    power: np.ndarray
+    integrated: int
+    cutoff: float
+    shares: tuple[float, ...]
+
+    def of_acting(self, frequency: np.ndarray, step: float) -> np.ndarray:
+        """Variance (m^2, or N^2 of a force) of a cosine of what acts, at frequencies in rad a sample."""
+        recorded = np.interp(frequency, np.linspace(0.0, pi, self.power.size), self.power)
+        return recorded / (frequency / step) ** (2 * self.integrated)
+
+
+class Cosines(NamedTuple):
+    """Cosines by which the input of a window may be wrong, of ``size`` (k,) and ``frequency`` (rad a sample).
+
+    ``samples`` n: those that are simulated, ``step`` (s) apart.
+    """
+
+    size: np.ndarray
+    frequency: np.ndarray
+    samples: int
+    step: float
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Their values (k, t) at times (s) from the first sample."""
+        angles = np.multiply.outer(self.frequency, times / self.step + 0.5)
+        return self.size[:, None] * sqrt(2.0 / self.samples) * np.cos(angles)
+
+
+def cosines(noise: InputNoise, samples: int, step: float, highest: float) -> Cosines:
+    """The cosines up to a frequency (rad a sample)."""
+    count = int(min(noise.cutoff, highest) * samples / pi)
+    frequency = pi * np.arange(1, max(count, 1) + 1) / samples
+    return Cosines(np.sqrt(noise.of_acting(frequency, step)), frequency, samples, step)
+
+
+def disturbed(given: SampledInput, parts: Cosines) -> list[SampledInput]:
+    """The input with each of the cosines added, then with each of them taken away."""
+    first, last = (np.array([0.0, parts.samples * parts.step]) - given.begin) / given.step
+    begin = min(max(int(first) - BEYOND, 0), len(given.coefficients) - 1)
+    end = min(int(last) + BEYOND + 1, len(given.coefficients))
+    own = given.coefficients[begin : max(end, begin + 1)]
+    start = given.begin + begin * given.step
+    knots = start + given.step * np.arange(len(own) + 1)
+    changes = [from_samples(values, given.step).coefficients for values in parts.at(knots)]
+    return [
+        replace(given, coefficients=own + sign * each, begin=start)
+        for sign in (1.0, -1.0)
+        for each in changes
+    ]
+
+
+def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], lead: int) -> np.ndarray:
+    """What the cosines (k) add to channels converted with the motion of the base, (k, C, n).
+
+    ``orders`` (C,): the derivative of the displacement that each channel is.
+    """
+    wrong = parts.at(parts.step * np.arange(parts.samples))
+    rate = np.gradient(wrong, axis=1) / parts.step
+    motion = wrong, rate, np.gradient(rate, axis=1) / parts.step
+    pairs = zip(shares, orders, strict=False)
+    return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]
+
+
+def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, ...]:
+    """Independent combinations of the first coefficients of each channel.
+
+    Parameters
+    ----------
+    own : ndarray, shape (C, K)
+        Variance of each coefficient that does not come from the input.
+    changes : ndarray, shape (k, C, n)
+        What each cosine of the input does to a channel.
+    """
+    size = min(own.shape[1], MOST)
+    found = []
+    for variance, change in zip(own, np.moveaxis(changes, 1, 0), strict=True):
+        by_input = dct(change, norm="ortho")[:, :size]
+        values, vectors = np.linalg.eigh(np.diag(variance[:size]) + by_input.T @ by_input)
+        found.append(Decorrelation(vectors.T, np.sqrt(values)))
+    return tuple(found)
