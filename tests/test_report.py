@@ -347,7 +347,7 @@ OTHER_KINDS = {
     ),
     "loop": (
         {"kind": "loop", "frequency_hz": 0.5, "amplitude_mm": 6.0, "duration_s": 6.0},
-        "an imposed sine of 0.5 Hz and 6 mm would distinguish them",
+        "the force under a sine of 0.5 Hz and 6 mm would distinguish them",
         "Impose a sine of 0.5 Hz and 6 mm for 6 s; record displacement and force",
     ),
 }

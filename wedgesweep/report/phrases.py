@@ -169,12 +169,12 @@ def separated(document: Mapping[str, Any]) -> Separated | None:
 
 
 def next_test(test: Mapping[str, Any]) -> str:
-    """The recommended test: a test at 20 Hz and 0.1 mm, a release from 2 mm."""
+    """The recommended test: a test at 20 Hz and 0.1 mm, a release from 2 mm, a sine-sweep, a loop."""
     if test.get("motion") == "release":
         return f"a release from {_size(test, 'start_mm')}"
     if test.get("motion") == "sweep":
         return f"a sine-sweep from {_band(test)} with {_amplitude(test)}"
-    name = "an imposed sine of" if test.get("kind") == "loop" else "a test at"
+    name = "the force under a sine of" if test.get("kind") == "loop" else "a test at"
     return f"{name} {_size(test, 'frequency_hz')} and {_amplitude(test)}"
 
 
