@@ -40,8 +40,8 @@ force = { column = "F", unit = "N" }
 """
 TEST = '[[measurement.test]]\nfile = "{}.csv"\nkind = "loop"\n'
 RATE, CELLS = 500.0, 10
-# Zero of the force, in N: the tool does not know it.
-ZERO = 0.5
+# Zero of the force (N), and of an oscillator's displacement (m): the tool does not know them.
+ZERO, PLACE = 0.5, 3e-3
 
 
 def motion_of(amplitude, frequency, duration):
@@ -70,7 +70,7 @@ def write(
     config = parse(model, "model")
     values = merge(config.effects, effects or {})
     record = config.record_with(values, config.case_list()[0].law, 0.0)
-    sign = 1.0 if config.system == "oscillator" else -1.0
+    sign, place = (1.0, PLACE) if config.system == "oscillator" else (-1.0, 0.0)
     text = MEASURED + more
     (folder / "model.toml").write_text(model)
     for i, each in enumerate(motions):
@@ -80,7 +80,7 @@ def write(
         table = np.column_stack(
             [
                 np.arange(n) / RATE,
-                1e3 * (fine[0].reshape(n, CELLS).mean(1) + noise[0] * rng.standard_normal(n)),
+                1e3 * (fine[0].reshape(n, CELLS).mean(1) + place + noise[0] * rng.standard_normal(n)),
                 force.reshape(n, CELLS).mean(1) + noise[1] * rng.standard_normal(n) + ZERO,
             ]
         )

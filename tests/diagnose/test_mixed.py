@@ -49,8 +49,11 @@ def test_subsets_and_derivatives_are_those_of_each_kind(tmp_path):
     model = Search.of(alone, []).model()
     assert model.evaluate(point).chi2 == pytest.approx(fit.evaluation.chi2_by_test[-1], rel=1e-6)
     columns = jacobian(fit.model, fit.evaluation).by_nuisance
-    assert (columns[: releases.tests, :, 1:] != 0.0).any(axis=1).all()
-    assert not columns[releases.tests :, :, 1:].any()
+    # After the zero of each sensor: the start of a release, then the zero of a loop's displacement.
+    assert (columns[: releases.tests, :, 1:3] != 0.0).any(axis=1).all()
+    assert (columns[releases.tests :, :, 3] != 0.0).any(axis=1).all()
+    assert not columns[: releases.tests, :, 3].any()
+    assert not columns[releases.tests :, :, 1:3].any()
 
 
 def test_a_cause_is_named_over_all_kinds(tmp_path):

@@ -158,6 +158,11 @@ class FitData(Protocol):
         """Number of tests T."""
 
     @property
+    def measured_tests(self) -> int:
+        """Number of tests as they were measured, of which T may be windows or blocks."""
+        return self.tests
+
+    @property
     @abstractmethod
     def observations(self) -> np.ndarray:
         """Real numbers that each test contributes, (T,)."""

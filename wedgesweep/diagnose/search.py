@@ -83,7 +83,7 @@ class Search:
         """A search for some effects in some data."""
         detected = data.candidates(effects)
         undetected = tuple(effect for effect in effects if effect not in detected)
-        budget = work.Budget(WORK_PER_TEST * max(data.tests, FEWEST_COUNTED))
+        budget = work.Budget(WORK_PER_TEST * max(data.measured_tests, FEWEST_COUNTED))
         return cls(data, detected, undetected, threads, progress, budget)
 
     @property

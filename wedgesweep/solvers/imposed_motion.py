@@ -31,8 +31,10 @@ def forces(
     ----------
     parameters : structured array, shape (n,)
         Cases; see systems.suspension.parameters.record.
-    displacement, velocity, acceleration : ndarray, shape (k,)
-        The state of the mass as the system holds it (m, m/s, m/s^2), at even times.
+    displacement : ndarray, shape (k,) or (n, k)
+        Displacement of the mass as the system holds it (m), at even times, which may differ between cases.
+    velocity, acceleration : ndarray, shape (k,)
+        Its derivatives (m/s, m/s^2).
     step : float
         Time (s) between them.
 
@@ -41,11 +43,12 @@ def forces(
     ndarray, shape (n, k)
         Forces (N); NaN where they are not determined: at rest under set-valued friction, or beyond lift-off.
     """
-    found = np.empty((len(parameters), displacement.size))
-    motion = np.stack([displacement, velocity, acceleration])
+    found = np.empty((len(parameters), velocity.size))
+    places = np.broadcast_to(displacement, found.shape)
+    motion = np.stack([velocity, acceleration])
     for rows, cases in grouped(parameters):
-        part = np.empty((rows.size, displacement.size))
-        _follow_all(cases, motion, step, part)
+        part = np.empty((rows.size, velocity.size))
+        _follow_all(cases, places[rows], motion, step, part)
         found[rows] = part
     return _with_jumps(found, velocity)
 
@@ -64,17 +67,17 @@ def _with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def _follow_all(cases, motion, step, out):
+def _follow_all(cases, places, motion, step, out):
     for k in range(cases.size):
         p = cases[k]
         y = vector(np.zeros(len(scales(p))), scales(p))
         for i in range(motion.shape[1]):
-            y = replaced(replaced(y, 0, motion[0, i]), 1, motion[1, i])
-            out[k, i] = driving_force(0.0, motion[2, i], y, initial_mode(0.0, y, p)[0], p)
+            y = replaced(replaced(y, 0, places[k, i]), 1, motion[0, i])
+            out[k, i] = driving_force(0.0, motion[1, i], y, initial_mode(0.0, y, p)[0], p)
             following = min(i + 1, motion.shape[1] - 1)
             # States of effects see the mean motion between two samples.
-            y = replaced(y, 0, 0.5 * (motion[0, i] + motion[0, following]))
-            y = replaced(y, 1, 0.5 * (motion[1, i] + motion[1, following]))
+            y = replaced(y, 0, 0.5 * (places[k, i] + places[k, following]))
+            y = replaced(y, 1, 0.5 * (motion[0, i] + motion[0, following]))
             y = _advanced(y, step, p)
 
 

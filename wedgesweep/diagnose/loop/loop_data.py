@@ -1,7 +1,8 @@
 """Hysteresis loops as data of a fit.
 
 A test is a block of whole cycles of a record, so that blocks can be left out of a fit. What is compared are
-forces; each block has an unknown zero of the force.
+forces; each block has an unknown zero of the force, and an oscillator's one of the displacement: play and
+springs that are not linear act by their place. A wedge's displacement counts from rest, as its friction does.
 """
 
 from collections.abc import Iterable, Sequence
@@ -23,6 +24,8 @@ OF_MOTION = (
     *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
     *("displacement_gain", "velocity_lag", "cross_slip"),
 )
+# Zero of the displacement over half the range of the motion, and its standard deviation.
+ZERO, ZERO_STD = NuisanceParameter(step=1e-3, max_step=0.1), 0.3
 # Samples whose forces are as much work as a simulated period; see work.py.
 SAMPLES_PER_PERIOD = 400.0
 
@@ -50,6 +53,10 @@ class LoopData(SampledData):
     def _name(self, number: int, block: int) -> str:
         own = self.recordings[number]
         return own.name if len(own.blocks) == 1 else f"{own.name} {block + 1}"
+
+    @property
+    def measured_tests(self) -> int:
+        return len({number for number, _ in self.chosen})
 
     @property
     def model(self) -> Config:  # type: ignore[override]
@@ -117,8 +124,13 @@ class LoopData(SampledData):
         return self.independent([np.ones(own.force.size) for own in self.recordings])
 
     @property
+    def _zeros_are_free(self) -> bool:
+        """Whether the zero of the displacement is unknown."""
+        return self.model.system == "oscillator"
+
+    @property
     def nuisance_std(self) -> np.ndarray:
-        return np.zeros((self.tests, 0))
+        return np.full((self.tests, int(self._zeros_are_free)), ZERO_STD)
 
     @cached_property
     def units(self) -> NaturalUnits:
@@ -129,10 +141,10 @@ class LoopData(SampledData):
         return self.model.natural_units(travel, speed / travel)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        return ()
+        return (ZERO,) if self._zeros_are_free else ()
 
     def start(self) -> tuple[np.ndarray, NoStart]:
-        return np.zeros((self.tests, 0)), NoStart()
+        return np.zeros((self.tests, int(self._zeros_are_free))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         chosen = tuple(self.chosen[row] for row in np.arange(self.tests)[rows])
@@ -149,9 +161,21 @@ class LoopData(SampledData):
         needed = {number for number, _ in self.chosen}
         samples = sum(self.recordings[number].motion.velocity.size for number in needed)
         work.add(len(values) * samples / SAMPLES_PER_PERIOD)
-        nothing = np.zeros((len(values), 0))
-        forces = [own.simulated(values) if i in needed else nothing for i, own in enumerate(self.recordings)]
+        nothing, zeros = np.zeros((len(values), 0)), self._zeros(scenarios)
+        forces = [
+            own.simulated(values, zeros[i]) if i in needed else nothing
+            for i, own in enumerate(self.recordings)
+        ]
         return self.independent(forces)
+
+    def _zeros(self, scenarios: Sequence[Scenario]) -> list[np.ndarray]:
+        """What to add to the displacement (m) in each block of each recording, (n, blocks) each."""
+        found = [np.zeros((len(scenarios), len(own.blocks))) for own in self.recordings]
+        if self._zeros_are_free:
+            for t, (number, block) in enumerate(self.chosen):
+                size = self.recordings[number].half_range
+                found[number][:, block] = [size * each.point.nuisance[t, 0] for each in scenarios]
+        return found
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """Each recording, or each block where there is only one."""

@@ -65,8 +65,16 @@ class Recording:
         """Independent combinations of the compared forces of each block."""
         return tuple(decorrelation(self.known[block], self._covariance, self.least) for block in self.blocks)
 
-    def simulated(self, scenarios: list[Values]) -> np.ndarray:
-        """Forces (n, k) under the values of n scenarios; NaN where they are not determined."""
+    @property
+    def half_range(self) -> float:
+        """Half the range (m) of the motion."""
+        return 0.5 * float(np.ptp(self.motion.displacement))
+
+    def simulated(self, scenarios: list[Values], zeros: np.ndarray) -> np.ndarray:
+        """Forces (n, k) under the values of n scenarios; NaN where they are not determined.
+
+        ``zeros`` (n, blocks): what to add to the displacement (m) in each block.
+        """
         rows = np.concatenate(
             [self.model.record_with(merge(self.model.effects, each), self.law, 0.0) for each in scenarios]
         )
@@ -74,12 +82,18 @@ class Recording:
         sign = _sign(self.model)
         forces = imposed_motion.forces(
             rows,
-            sign * own.displacement,
+            sign * (own.displacement + zeros[:, self._block]),
             sign * own.velocity,
             sign * own.acceleration,
             1.0 / self.low_pass.rate,
         )
         return self._compared(forces)
+
+    @cached_property
+    def _block(self) -> np.ndarray:
+        """The block of each sample, (N,); what lies before or after all blocks belongs to the nearest."""
+        first = [self.places[block.start] for block in self.blocks[1:]]
+        return np.searchsorted(first, np.arange(self.motion.velocity.size), side="right")
 
     def _compared(self, forces: np.ndarray) -> np.ndarray:
         """Forces (n, N) along the motion as they are compared."""

@@ -88,6 +88,10 @@ class MixedData(FitData):
         return sum(self.layout.tests)
 
     @property
+    def measured_tests(self) -> int:
+        return sum(part.measured_tests for part in self.present)
+
+    @property
     def observations(self) -> np.ndarray:
         return np.concatenate(self._of_present(lambda part: part.observations))
 

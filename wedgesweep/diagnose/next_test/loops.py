@@ -129,7 +129,7 @@ def _recording(
         known=~slow(motion, low_pass)[places],
         blocks=(slice(0, places.size),),
     )
-    force = np.nan_to_num(empty.simulated([dict(values)])[0])
+    force = np.nan_to_num(empty.simulated([dict(values)], np.zeros((1, 1)))[0])
     rms = float(force[empty.known].std()) if empty.known.any() else 0.0
     # Each compared number stands for all those between it and the next.
     variance = machine.noise(rms) * low_pass.stride / step

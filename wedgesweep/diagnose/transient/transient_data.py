@@ -62,6 +62,10 @@ class TransientData(SampledData):
         return tuple(own.name for own in self.releases)
 
     @property
+    def measured_tests(self) -> int:
+        return len({own.number for own in self.releases})
+
+    @property
     def model(self) -> Config:  # type: ignore[override]
         """The base model, with the numbers of the first test."""
         return self.releases[0].model
