@@ -22,15 +22,18 @@ run: install  ## run configs/quick.toml; dataset and figures in out/
 	$(BIN)/wedgesweep run configs/quick.toml --fresh -o $(OUT)/quick.nc
 	$(BIN)/wedgesweep plot all $(OUT)/quick.nc -o $(OUT)/quick-figures
 
-test: install  ## all tests
+test: install  ## the tests
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+
+acceptance: install  ## whole commands and full searches, over 20 s each
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m acceptance
 
 lint: install  ## linter and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-check: lint test  ## linter, types and all tests
+check: lint test acceptance  ## linter, types and all tests
 
 reproduce: install  ## run the paper's 1,800 cases and check its claims
 	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
@@ -49,4 +52,4 @@ bench: install  ## benchmarks, as ratios within one run
 clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
-.PHONY: help install run test lint check reproduce validate torture bench clean
+.PHONY: help install run test acceptance lint check reproduce validate torture bench clean

@@ -5,6 +5,7 @@ of a run; it says more than wall time where other jobs share the machine. Memory
 sum over all processes of a run (proportional set size, sampled). Writes docs/bench_scaling.txt and draws
 docs/scaling.png. Its parts can be run by their names, bench_scaling.py [cases [MOST]] [paper] [radau], where
 the others keep the lines of an earlier run. MOST: the largest number of cases, by default all grids.
+bench_scaling.py picture draws the picture from the report.
 """
 
 import os
@@ -24,6 +25,8 @@ import xarray as xr
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
+
+from wedgesweep.figures import style
 
 ROOT = Path(__file__).parent.parent
 REPORT, PICTURE = ROOT / "docs" / "bench_scaling.txt", ROOT / "docs" / "scaling.png"
@@ -143,27 +146,32 @@ def scaling(folder, largest=inf):
     say(f"linear: the last {most - before} cases took {1e3 * last:.3f} ms each")
     each = (costs[most].together - costs[fewest].together) / (most - fewest)
     say(f"memory: {each:.0f} bytes a case; file: {costs[most].file / most:.0f} bytes a case")
-    return costs
+    draw("\n".join(said))
 
 
-def draw(costs):
+def table(lines):
+    """Columns of the table in the lines of the part ``cases``, shape (7, n)."""
+    rows = [line.split() for line in lines.splitlines() if re.fullmatch(r"[\d. ]+", line)]
+    return np.array(rows, float).T
+
+
+def draw(lines):
     """The picture of cost against number of cases."""
+    cases, _, cpu, _, largest, together, _ = table(lines)
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 2.8), layout="constrained")
-    cases, walls = list(costs), [cost.wall for cost in costs.values()]
-    left.loglog(cases, walls, "o-", color="#0072B2")
-    most = cases[-1]
-    left.loglog([most / 100, most], [walls[-1] / 100, walls[-1]], "--", color="0.6", label="linear")
-    left.set(xlabel="cases", ylabel="wall time, two jobs (s)")
-    left.legend(frameon=False)
-    for name, colour, label in (
-        ("together", "#0072B2", "all processes"),
-        ("largest", "#D55E00", "largest process"),
-    ):
-        right.semilogx(
-            cases, [getattr(cost, name) / 1e6 for cost in costs.values()], "o-", color=colour, label=label
-        )
-    right.set(xlabel="cases", ylabel="peak memory (MB)", ylim=(0.0, None))
-    right.legend(frameon=False)
+    slope = (cpu[-1] - cpu[0]) / (cases[-1] - cases[0])
+    shown = np.geomspace(cases[0], cases[-1], 200)
+    fixed = cpu[0] - slope * cases[0]
+    label = f"{fixed:.1f} s + {1e3 * slope:.2f} ms a case"
+    left.loglog(shown, fixed + slope * shown, "--", color="0.6", label=label)
+    left.loglog(cases, cpu, "o", color="#0072B2", label="measured")
+    style.decimal_ticks(left.yaxis)
+    left.set(xlabel="cases", ylabel="CPU time of all processes [s]")
+    right.semilogx(cases, together, "o-", color="#0072B2", label="all processes")
+    right.semilogx(cases, largest, "x", color="#D55E00", markersize=9, label="largest process")
+    right.set(xlabel="cases", ylabel="peak memory [MB]", ylim=(0.0, 1.3 * together.max()))
+    for axes in (left, right):
+        axes.legend(frameon=False)
     PICTURE.parent.mkdir(exist_ok=True)
     figure.savefig(PICTURE, dpi=150)
 
@@ -227,7 +235,7 @@ def warm(folder):
         run(config, folder / f"warm-{number}.nc", "--n-jobs", "2")
 
 
-PARTS = {"paper": paper, "cases": lambda folder, *most: draw(scaling(folder, *most)), "radau": overhead}
+PARTS = {"paper": paper, "cases": scaling, "radau": overhead}
 
 
 def earlier():
@@ -238,6 +246,9 @@ def earlier():
 
 
 def main(arguments):
+    if arguments == ["picture"]:
+        draw(earlier()["cases"])
+        return
     wanted = [name for name in arguments if name in PARTS] or list(PARTS)
     most = [float(number) for number in arguments if number not in PARTS]
     folder, lines = Path(tempfile.mkdtemp()), earlier()

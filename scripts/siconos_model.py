@@ -10,6 +10,7 @@ import json
 import sys
 from math import cos, pi, radians, sin, sqrt
 from pathlib import Path
+from time import process_time
 
 import numpy as np
 import siconos.kernel as kernel
@@ -73,5 +74,7 @@ def run(beta, amplitude, restitution, settle, keep, steps):
 
 
 if __name__ == "__main__":
-    results = [run(**case) for case in json.load(sys.stdin)]
-    Path(sys.argv[1]).write_text(json.dumps(results))
+    cases = json.load(sys.stdin)
+    began = process_time()
+    results = [run(**case) for case in cases]
+    Path(sys.argv[1]).write_text(json.dumps({"results": results, "seconds": process_time() - began}))

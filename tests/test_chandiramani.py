@@ -269,6 +269,7 @@ def by_radau(row):
     return observations.recording((np.array(spectra) @ [1.0, 1j])[None], extremes)
 
 
+@pytest.mark.acceptance
 def test_more_preload_explains_all_observations_with_either_solver():
     """What the search finds for preload, rounded: next to breakaway, the columns leaning the other way."""
     (_, force) = BY_NAME["preload"].free[0]

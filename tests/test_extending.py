@@ -110,6 +110,7 @@ def python(tmp_path):
     return run
 
 
+@pytest.mark.acceptance
 def test_law_and_effect(python, tmp_path):
     (tmp_path / "sweep.toml").write_text(SWEEP)
     solvers = ("event-driven", "radau")
@@ -125,6 +126,7 @@ def test_law_and_effect(python, tmp_path):
         assert one == pytest.approx(other, rel=1e-5), name
 
 
+@pytest.mark.acceptance
 def test_system(python):
     code = example("run_two_masses.py") + ENERGIES
     runs = json.loads(python(code, ("two_masses.py",)).splitlines()[-1])

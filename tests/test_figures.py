@@ -335,6 +335,12 @@ def test_cases_outside_of_validity_and_unsettled_ones_are_marked(kind, dataset):
     assert "not settled" not in told
 
 
+def test_a_map_of_lift_off_needs_cases_that_lift_off(dataset):
+    held = dataset.assign(lift_off_fraction=0.0 * dataset["lift_off_fraction"])
+    with pytest.raises(ValueError, match="lift-off-map: nothing lifts off in these cases"):
+        figures.draw(held, "lift-off-map")
+
+
 def test_marked_points_are_those_of_the_variables(dataset):
     case = dataset.isel(friction_law=0, amplitude=5)
     ax = Figure().subplots()

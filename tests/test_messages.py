@@ -94,6 +94,19 @@ def test_slow_steps_are_told_one_by_one(capfd, clock):
     assert told[7] == "single effects: 7 of 21, about 7 min left"
 
 
+def test_time_left_leaves_out_what_was_compiled(capfd, clock, monkeypatch):
+    messages.begin()
+    monkeypatch.setattr(compiling, "_listener", compiling.listener(object))
+    steps = StepReport()
+    steps(Step("single effects", 0, 4))
+    compiling._listener.on_start(None)
+    clock[0] += 30.0
+    compiling._listener.on_end(None)
+    clock[0] += 2.0
+    steps(Step("single effects", 1, 4))
+    assert lines(capfd)[-1] == "single effects: 1 of 4, about 6.0 s left"
+
+
 def test_progress_of_a_diagnosis_on_a_terminal_is_one_line(capfd, clock, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     messages.begin()

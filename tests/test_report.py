@@ -316,6 +316,18 @@ def test_a_missing_confirmation_by_held_out_tests_is_stated(tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
+@pytest.mark.parametrize(("size", "words"), [(0.0, "noise"), (0.02, "noise and model error")])
+def test_the_gain_says_over_what_the_excess_is(size, words, tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "named")
+    document["method"]["model_error"] = size
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert f"of the excess over {words} is gone (" in plain(report.sentence(tmp_path))
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    assert f"error on held-out tests, times the {words} " in f"{text} "
+    assert f"of the excess over {words} (" in text
+
+
+@pytest.mark.usefixtures("no_figures")
 @pytest.mark.parametrize(
     ("distance", "words"),
     [

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from wedgesweep.files import regular
+from wedgesweep.files import read_bytes, regular
 
 CONFIG, MEASURED, SWEEP, DIAGNOSIS, DATASET = "config", "measured", "sweep", "diagnosis", "dataset"
 # What each is, and what it is good for.
@@ -17,7 +17,10 @@ WORDS = {
 WANTED = {CONFIG: "a config (TOML)", MEASURED: "a measurement", SWEEP: "the dataset of a run"}
 # netCDF 4 is HDF5.
 NETCDF = (b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-TABLES = {MEASURED: rb"^\s*\[\[?measurement\b", CONFIG: rb"^\s*\[\[?sweep\b"}
+NETCDF_SUFFIXES = (".nc", ".nc4")
+# Also found in a file that is not valid TOML, so that its errors are those of measured data.
+MEASURED_TABLE = rb"""^(?:\xef\xbb\xbf)?\s*(\[+\s*["']?measurement\b|["']?measurement["']?\s*[.=])"""
+TABLES = {MEASURED: MEASURED_TABLE, CONFIG: rb"^(?:\xef\xbb\xbf)?\s*\[\[?sweep\b"}
 
 
 def confusion(path: Path, wanted: str) -> str | None:
@@ -28,6 +31,16 @@ def confusion(path: Path, wanted: str) -> str | None:
         return None
     what, use = WORDS[found]
     return f"{path}: {what}, where {WANTED[wanted]} is wanted; {use}"
+
+
+def is_measured(path: Path) -> bool:
+    """Whether a file holds measured data and not a config, by its suffix or its table [measurement]."""
+    if path.suffix in NETCDF_SUFFIXES:
+        return True
+    try:
+        return re.search(MEASURED_TABLE, read_bytes(path), re.MULTILINE) is not None
+    except OSError:
+        return False
 
 
 def kind_of(path: Path) -> str | None:

@@ -1,7 +1,7 @@
 """Numbers from the kept window of one run, with the paper's sign: displacement x - y = -z."""
 
 from dataclasses import dataclass
-from math import atan2, cos, inf, isfinite, nan, pi, sin
+from math import atan2, cos, inf, nan, pi, sin
 
 import numpy as np
 
@@ -88,10 +88,10 @@ def _change(signal, periods):
     return largest
 
 
-@term("unilateral", off="False")
+@term("lift_off", off="False")
 def _opens(p):
     """Whether joints may lift off."""
-    return isfinite(p.unilateral.restitution)
+    return p.lift_off.restitution >= 0.0
 
 
 @inner

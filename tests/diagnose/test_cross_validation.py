@@ -21,6 +21,14 @@ def test_gain_on_held_out_tests_reaches_the_noise():
     assert measured.interval is None  # six tests are too few for one
 
 
+def test_less_error_than_is_allowed_is_no_excess():
+    """Under a model error that is far from used up, all of the excess is gone, and no more than that."""
+    held_out = [HeldOut(i, "test", 400.0 + 40.0 * i, 10.0, 100, 2.0) for i in range(10)]
+    gain = Gain(tuple(held_out))
+    assert gain.excess_removed == 1.0
+    assert gain.interval == [1.0, 1.0]
+
+
 def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
     """Squared misfit of a right model, less what noise should leave."""
     for std, known, least, most in ((1e-5, True, 1.0, 1.05), (0.5, True, 1.9, 2.0), (0.0, False, 2.0, 2.0)):

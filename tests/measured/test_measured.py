@@ -9,8 +9,9 @@ import pytest
 from tests import fixture_measured
 from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, csv_lines, lines, vibration
 from wedgesweep import config, measured
+from wedgesweep.kinds import is_measured
+from wedgesweep.measured.channels import model_faults
 from wedgesweep.measured.declarations import PARAMETERS
-from wedgesweep.measured.model import with_law
 from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.measured.noise_estimate import estimate_noise
 from wedgesweep.measured.sampling import even_grid, resolution
@@ -421,18 +422,17 @@ def test_files_that_are_not_netcdf_or_hold_no_test(tmp_path):
 
 def test_which_files_are_measured_data(tmp_path):
     path = fixture_measured.write(tmp_path)
-    assert measured.is_measured(path)
-    assert measured.is_measured(tmp_path / "any.nc")
+    assert is_measured(path)
+    assert is_measured(tmp_path / "any.nc")
     for other in ("model.toml", "one.csv", "absent.toml"):
-        assert not measured.is_measured(tmp_path / other)
+        assert not is_measured(tmp_path / other)
 
 
-def test_a_model_whose_joints_lift_off_is_refused():
-    """A diagnosis would simulate effects that do not go with them."""
-    problems = []
+def test_a_model_whose_joints_lift_off_is_for_steady_tests():
+    """Nothing simulates such joints in a transient or along a loop."""
     sweep = '[sweep]\nfriction_law = "coulomb"\nbeta = 1\namplitude_mm = 1\n'
-    model = config.parse(sweep + '[suspension]\njoints = "unilateral"\n')
-    with_law(model, "model.toml", problems)
-    (problem,) = problems
-    assert problem.startswith("model.toml: suspension.joints: ")
-    assert '"bilateral"' in problem
+    for opens in ('[suspension]\njoints = "unilateral"\n', "[effects.lift_off]\n"):
+        model = config.parse(sweep + opens)
+        assert model_faults(model, {}, ["steady"]) == []
+        (fault,) = model_faults(model, {}, ["steady", "transient"])
+        assert "joints that lift off" in fault

@@ -10,7 +10,7 @@ from numpy.lib.recfunctions import structured_to_unstructured
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
 from wedgesweep import config, response
-from wedgesweep.effects import EFFECTS, FAMILIES, acting, merge
+from wedgesweep.effects import EFFECTS, FAMILIES, acting, go_together, merge
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, periodic, radau
 from wedgesweep.solvers.trajectory import CaseError, Window
@@ -44,11 +44,12 @@ def test_the_declared_order_is_that_of_the_families():
         "parameters",
         "friction-law",
         "two-dimensional",
+        "contact",
         "missing-force",
         "excitation",
         "sensor",
     )
-    assert len(EFFECTS) == 24
+    assert len(EFFECTS) == 25
 
 
 @pytest.mark.parametrize("name", EFFECTS)
@@ -286,7 +287,8 @@ def test_a_foreign_tone_shows_at_its_frequency_and_has_a_phase_of_its_own():
 
 
 def pairs():
-    return strategies.lists(strategies.sampled_from(list(EFFECTS)), min_size=1, max_size=2, unique=True)
+    names = strategies.sampled_from(list(EFFECTS))
+    return strategies.lists(names, min_size=1, max_size=2, unique=True).filter(go_together)
 
 
 @settings(max_examples=40, deadline=None)

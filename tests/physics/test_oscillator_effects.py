@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from tests import marks
 from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, M, coulomb, oscillator, steady
 from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven
@@ -52,8 +53,7 @@ def test_words_name_parts_of_the_oscillator(name):
     assert not any(part in words for part in ("bolster", "wedge", "column", "side frame", "{"))
 
 
-@pytest.mark.parametrize("law", ["coulomb", "exponential"])
-@pytest.mark.parametrize("name", MECHANICAL)
+@pytest.mark.parametrize(("name", "law"), marks.each_nth(2, MECHANICAL, ["coulomb", "exponential"]))
 def test_energy_balances_and_solvers_agree(name, law):
     contact = "ground" if name in GROUNDED else "base"
     # Time at rest strengthens friction only where there is some.

@@ -310,3 +310,37 @@ def test_friction_that_presses_a_face_on_has_two_solutions_or_none():
 
 def test_energy_never_grows_over_many_impacts():
     assert mechanics.largest_gain(20_000, compact(record())) <= MARGIN
+
+
+def derivative(case, y, moved, share=1e-6):
+    """Derivative of some states after the period by themselves before it, by central differences."""
+    columns = []
+    for place in moved:
+        pair = []
+        for side in (share, -share):
+            start = np.array(y)
+            start[place] += side
+            pair.append(states_after(case, start, 1)[0][list(moved)])
+        columns.append((pair[0] - pair[1]) / (2.0 * share))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.9])
+def test_differences_of_runs_hold_the_jump_of_an_impact(restitution):
+    """Saltation: a block falls, hits and rises; the closed form of d(gap, rate) is flight, jump, flight.
+
+    With speeds v before and w = -e v after the impact, and acceleration -a, a change of the gap by d at the
+    impact shifts it by -d/v in time, and changes the rate afterwards by -a (1 + e) d/v: Leine and
+    Nijmeijer (2004), ch. 7.
+    """
+    height, lean, step = 1e-3, -0.3, 0.03
+    gain = 9.80665 * sin(-lean)
+    speed = -sqrt(2.0 * gain * height)
+    fall = -speed / gain
+    case = without_input(step, wedge_spring=0.0, column_angle=lean, restitution=restitution)
+    before, after = ([[1.0, time], [0.0, 1.0]] for time in (fall, step - fall))
+    jump = [[-restitution, 0.0], [-gain * (1.0 + restitution) / speed, -restitution]]
+    expected = np.array(after) @ jump @ before
+    assert 2.0 * restitution * -speed / gain > step - fall  # it is still in its first flight
+    found = derivative(case, (0.0, 0.0, height, 0.0, 1.0, 0.0), (COLUMN_GAP, COLUMN_RATE))
+    assert found == pytest.approx(expected, rel=1e-4)

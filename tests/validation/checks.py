@@ -20,9 +20,9 @@ def numbers_are_near_truth(found, effects):
             assert abs(true - middle) <= WIDER * half, f"{name}.{key}: {true} against {estimate}"
 
 
-def strong_cause_is_named(specimen, here):
+def strong_cause_is_named(specimen, here, candidates=None):
     measured, truth = make(specimen, here)
-    found = diagnose(measured, here / "found")
+    found = diagnose(measured, here / "found", candidates, "--no-report")
     assert found.document["misfit"]["excess_base"] >= 800.0
     assert found.verdict in NAMING
     assert found.causes == set(truth["effects"])

@@ -5,16 +5,21 @@
 
 from dataclasses import replace
 
+import pytest
+
+from tests import marks
 from tests.validation import checks
 from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, PAPER_TESTS, diagnose, make
 from wedgesweep.diagnosis_result import DATASET, EXTENDED, JSON
 
 # Every second test: Radau takes longer over the data than the diagnosis does.
 FEW = BENCH[::2]
+CANDIDATES = ["guide_friction", "viscous_damping", "stribeck", "displacement_gain", "bolster_stiffness"]
 
 
-def test_a_strong_cause_is_named_with_its_numbers(tmp_path):
-    checks.strong_cause_is_named(replace(GUIDE_FRICTION, tests=FEW), tmp_path)
+@pytest.mark.parametrize("candidates", marks.few_or_all(CANDIDATES))
+def test_a_strong_cause_is_named_with_its_numbers(candidates, tmp_path):
+    checks.strong_cause_is_named(replace(GUIDE_FRICTION, tests=FEW), tmp_path, candidates)
 
 
 def test_in_clean_data_nothing_is_named(tmp_path):
@@ -28,9 +33,10 @@ def test_in_clean_data_nothing_is_named(tmp_path):
     assert {file.name for file in again.directory.iterdir()} == {JSON, DATASET, EXTENDED}
 
 
-def test_two_tests_of_unknown_amplitude_ask_for_a_third(tmp_path):
+@pytest.mark.parametrize("candidates", marks.few_or_all(CANDIDATES))
+def test_two_tests_of_unknown_amplitude_ask_for_a_third(candidates, tmp_path):
     measured, _ = make(PAPER_TESTS, tmp_path)
-    found = diagnose(measured, tmp_path / "found")
+    found = diagnose(measured, tmp_path / "found", candidates, "--no-report")
     assert found.verdict in ("data-insufficient", "tied")
     following = found.document["next_test"]
     assert following["frequency_hz"] > 0.0

@@ -40,6 +40,7 @@ kind = "loop"
 CANDIDATES = ["friction_level", "stribeck", "viscous_damping", "directional_damping", "quadratic_drag"]
 
 
+@pytest.mark.acceptance
 @pytest.mark.skipif(not DATA.is_file(), reason="the recording is not here")
 def test_damping_that_differs_by_direction_is_missing(tmp_path):
     (tmp_path / "model.toml").write_text(MODEL)

@@ -27,6 +27,11 @@ def announce_compiling() -> None:
         event.register("numba:compile", _listener)
 
 
+def seconds_compiling() -> float:
+    """How long (s) this process has compiled by now; 0 where it is not announced."""
+    return _listener.elapsed() if _listener is not None else 0.0
+
+
 def listener(base: type) -> Any:
     """A listener that numba tells when it begins and ends to compile a function, or one inside another."""
 
@@ -41,13 +46,16 @@ def listener(base: type) -> Any:
             self._tell()
 
         def on_end(self, event: Any) -> None:
+            if self.depth == 1:
+                self.before = self.elapsed()
             self.depth -= 1
             self._tell()
-            if self.depth == 0:
-                self.before += perf_counter() - self.began
+
+        def elapsed(self) -> float:
+            return self.before + (perf_counter() - self.began if self.depth else 0.0)
 
         def _tell(self) -> None:
-            elapsed = self.before + perf_counter() - self.began
+            elapsed = self.elapsed()
             if elapsed > self.due:
                 log.info(FIRST if self.due == WORTH else f"compiling, {duration(elapsed)} so far")
                 self.due = elapsed + AGAIN

@@ -15,7 +15,7 @@ from wedgesweep.cli.options import CONFIG, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
 from wedgesweep.files import write_text
 from wedgesweep.kinds import CONFIG as CONFIG_FILE
-from wedgesweep.kinds import DIAGNOSIS, SWEEP, kind_of
+from wedgesweep.kinds import DIAGNOSIS, SWEEP, is_measured, kind_of
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
@@ -55,11 +55,13 @@ def check(config_path: Path) -> None:
     For a config, a few timed cases give an estimate of the time and memory that a run needs. For measured
     data, the tests are listed with their frequencies and noise.
     """
-    from wedgesweep import config, measured
+    from wedgesweep import config
 
     if kind_of(config_path) in (SWEEP, DIAGNOSIS):
         require_kind(config_path, CONFIG_FILE)
-    if measured.is_measured(config_path):
+    if is_measured(config_path):
+        from wedgesweep import measured
+
         print_measurement(measured.read(config_path))
         return
     settings = config.load(config_path)

@@ -12,8 +12,10 @@ from wedgesweep.cli.messages import log, shows_status
 if TYPE_CHECKING:
     import numpy as np
 
+# Off a terminal there is a line for this share of the cases, but not more often than each so many seconds, or
+# after so many.
 LINE_SHARE = 0.1
-LINE_SECONDS = 30.0
+LEAST_SECONDS, LINE_SECONDS = 1.0, 30.0
 
 
 class ProgressReport:
@@ -63,8 +65,9 @@ class ProgressReport:
 
     def _log(self) -> None:
         now = perf_counter()
-        due = self.done - self._said_done >= LINE_SHARE * self.total
-        if due or now - self._said >= LINE_SECONDS or self.done == self.total:
+        silent = now - self._said
+        due = self.done - self._said_done >= LINE_SHARE * self.total and silent >= LEAST_SECONDS
+        if due or silent >= LINE_SECONDS or self.done == self.total:
             self._said, self._said_done = now, self.done
             log.info(self._line(now - self._started))
 

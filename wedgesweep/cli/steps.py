@@ -3,6 +3,7 @@
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from wedgesweep.cli.compiling import seconds_compiling
 from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log, show_status, shows_status
 
@@ -28,13 +29,15 @@ class StepReport:
             log.info(step)
         else:
             if step.done == 0:
-                self._began, self._said_done = perf_counter(), -step.total
+                self._began, self._said_done = perf_counter() - seconds_compiling(), -step.total
             self._tell(step)
 
     def _tell(self, step: "Step") -> None:
         line = str(step)
         if 0 < step.done < step.total:
-            left = (perf_counter() - self._began) / step.done * (step.total - step.done)
+            # What is compiled at the first step is not compiled again.
+            spent = perf_counter() - seconds_compiling() - self._began
+            left = spent / step.done * (step.total - step.done)
             line = f"{step}, about {duration(left)} left"
         if shows_status():
             show_status(line)

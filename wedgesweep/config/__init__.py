@@ -25,6 +25,8 @@ log = logging.getLogger(__name__)
 # With this effect a suspension may have no equilibrium.
 SOFTENING = "cubic_stiffness"
 OSCILLATOR = "oscillator"
+# The effect that is the same as unilateral joints.
+LIFT_OFF = "lift_off"
 # What beta refers to where there is no spring: 1 Hz, in rad/s.
 UNIT_FREQUENCY = 2.0 * pi
 
@@ -129,10 +131,10 @@ class Config:
     @cached_property
     def suspension(self) -> dict[str, Any]:
         """SI numbers of the suspension; ``joints`` and ``restitution`` where they are unilateral."""
-        from wedgesweep.systems.suspension.parameters import RESTITUTION, SUSPENSION
+        from wedgesweep.systems.suspension.parameters import RESTITUTION, SUSPENSION, UNILATERAL
 
         given = self.document["suspension"]
-        if not self.opens:
+        if given.get("joints") != UNILATERAL:
             return _si(SUSPENSION, given)
         restitution = given.get(RESTITUTION.key, RESTITUTION.default)
         return {**_si(SUSPENSION, given), "joints": given["joints"], "restitution": restitution}
@@ -140,7 +142,8 @@ class Config:
     @property
     def opens(self) -> bool:
         """Whether the joints of a suspension are unilateral, so that wedges may lift off."""
-        return self.document.get("suspension", {}).get("joints") == "unilateral"
+        unilateral = self.document.get("suspension", {}).get("joints") == "unilateral"
+        return unilateral or LIFT_OFF in self.document["effects"]
 
     def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
         """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
@@ -168,17 +171,17 @@ class Config:
 
     @property
     def possible_effects(self) -> tuple[str, ...]:
-        """Names of the effects that a model may lack; all of them for a suspension.
+        """Names of the effects that a model may lack.
 
-        An oscillator has no wedge. If it rubs, more friction of its surface is another level of friction; if
-        not, there is nothing that the effects on the law of friction could change. Under a force the base is
-        at rest.
+        Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
+        rubs, more friction of its surface is another level of friction; if not, there is nothing that the
+        effects on the law of friction could change. Under a force the base is at rest.
         """
         from wedgesweep.effects import EFFECTS
         from wedgesweep.systems.oscillator import parameters
 
         if self.system != OSCILLATOR:
-            return tuple(EFFECTS)
+            return tuple(name for name in EFFECTS if name in self.effects or self._may_have(name))
         rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
         without = {parameters.LATERAL} if rubs else {*parameters.OF_FRICTION}
         if self.oscillator["spring"] == 0.0:
@@ -186,6 +189,13 @@ class Config:
         if self.forced:
             without.add(parameters.OF_BASE)
         return tuple(name for name in parameters.effect_names() if name not in without)
+
+    def _may_have(self, effect: str) -> bool:
+        """Whether the model of a suspension can have a further effect, as far as its joints are concerned."""
+        if effect != LIFT_OFF and not self.opens:
+            return True
+        added = self.document["effects"] | {effect: {}}
+        return not any(contradictions(self.document | {"effects": added}))
 
     @property
     def excitation(self) -> str:

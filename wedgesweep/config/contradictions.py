@@ -99,34 +99,39 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
 
 def _joints(document: Mapping[str, Any]) -> Iterator[str]:
     """What unilateral joints need, or do not go with."""
-    from wedgesweep.systems.suspension.parameters import UNILATERAL, effects_with_lift_off
+    from wedgesweep.effects import lift_off, with_lift_off
+    from wedgesweep.systems.suspension.parameters import UNILATERAL
 
     suspension, friction = document.get("suspension", {}), document.get("friction", {})
-    if suspension.get("joints") != UNILATERAL:
-        if "restitution" in suspension:
-            yield 'suspension.restitution: held joints do not hit; write joints = "unilateral", or remove it'
+    effects, unilateral = document.get("effects", {}), suspension.get("joints") == UNILATERAL
+    if not unilateral and "restitution" in suspension:
+        yield 'suspension.restitution: held joints do not hit; write joints = "unilateral", or remove it'
+    if not unilateral and lift_off.NAME not in effects:
         return
+    key, held = "suspension.joints", 'joints = "bilateral"'
+    if lift_off.NAME in effects:
+        key, held = f"effects.{lift_off.NAME}", "remove it"
+        if unilateral:
+            yield f'{key}: joints = "unilateral" says the same; remove one of them'
     if "input" in document:
-        yield 'suspension.joints: inputs that do not repeat need held joints; write "bilateral"'
+        yield f"{key}: inputs that do not repeat need held joints; {held.replace('joints = ', 'write ')}"
     if suspension.get("wedge_mass_kg") == 0.0:
         yield "suspension.wedge_mass_kg: a wedge that lifts off needs a mass; it must be greater than 0"
     if suspension.get("column_angle_deg") == 0.0:
         yield (
             "suspension.column_angle_deg: at 0 the bolster face does not slip, and an impact does not "
-            'determine its friction; use another angle, or joints = "bilateral"'
+            f"determine its friction; use another angle, or {held}"
         )
     static, dynamic = friction.get("static", inf), friction.get("dynamic", 0.0)
     if static < dynamic and set(_named_laws(document.get("sweep", {}))) - {"coulomb"}:
         yield (
             f"friction.static: {static:g} is below friction.dynamic, which unilateral joints do not go with; "
-            f'it must be at least {dynamic:g}, or joints = "bilateral"'
+            f"it must be at least {dynamic:g}, or {held}"
         )
-    for name in document.get("effects", {}):
-        if name not in effects_with_lift_off():
-            yield (
-                f"effects.{name}: does not go with unilateral joints; "
-                f"valid here: {', '.join(effects_with_lift_off())}"
-            )
+    possible = [name for name in with_lift_off() if name != lift_off.NAME]
+    for name in effects:
+        if name not in (*possible, lift_off.NAME):
+            yield f"effects.{name}: does not go with unilateral joints; valid here: {', '.join(possible)}"
 
 
 def _bristles(document: Mapping[str, Any]) -> Iterator[str]:

@@ -12,6 +12,8 @@ from difflib import get_close_matches
 from math import inf, isfinite
 from typing import Any, Self
 
+import numpy as np
+
 from wedgesweep.config import toml
 from wedgesweep.quantity import Quantity
 
@@ -159,6 +161,13 @@ class Number(Key):
             problems.append(f"{path}: {show(value)} is out of range; it {fault}")
             return None
         return float(value)
+
+    def in_range(self, values: np.ndarray) -> np.ndarray:
+        """Where ``read`` finds no fault in numbers, of the shape of ``values``."""
+        own, size = self.quantity, np.abs(values)
+        sized = (values == 0.0) | ((size >= SMALLEST) & (size <= LARGEST))
+        lower = (values >= own.minimum) & (values > own.above)
+        return sized & lower & (values <= own.maximum) & (values < own.below)
 
     def shape(self) -> dict[str, Any]:
         bounds = {

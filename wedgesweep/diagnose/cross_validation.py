@@ -96,9 +96,12 @@ class Gain:
 
     @property
     def excess_removed(self) -> float:
-        """Share of the base model's excess over noise that the extended model removes."""
+        """Share of the base model's excess over noise that the extended model removes, at most 1.
+
+        Noise counts with the model error that is allowed. Less error than that leaves no excess.
+        """
         base, extended, noise = self.mean_squares()
-        return (base - extended) / (base - noise) if base > noise else 0.0
+        return min((base - extended) / (base - noise), 1.0) if base > noise else 0.0
 
     @property
     def interval(self) -> list[float] | None:
@@ -125,7 +128,7 @@ class Gain:
         shows = excess > max(SHOWS * (sums[:, 0] - sums[:, 2]).sum(), 0.0)
         removed = (base - extended)[shows] / excess[shows] if shows.any() else np.zeros(1)
         tail = ndtr(np.sqrt(len(tests) / (len(tests) - 1.0)) * stdtrit(len(tests) - 1, 0.025))
-        low, high = np.quantile(removed, [tail, 1.0 - tail])
+        low, high = np.quantile(np.minimum(removed, 1.0), [tail, 1.0 - tail])
         return [float(low), float(high)]
 
 

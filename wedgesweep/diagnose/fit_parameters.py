@@ -50,14 +50,23 @@ class FitParameter:
         """A change that matters."""
         return LOG_SCALE if self.logarithmic else RANGE_SCALE * (self.high - self.low)
 
+    @property
+    def fades(self) -> bool:
+        """Whether the effect fades towards a neutral value in the range: a mere switch does not."""
+        return not self.logarithmic and self.low <= self.neutral <= self.high
+
+    @property
+    def switches(self) -> bool:
+        """Whether the effect acts at all of its values: it is there or not."""
+        return not (self.fades or self.logarithmic or self.angle)
+
     def grid(self, points: int) -> np.ndarray:
         """Points (points,) inside the range: evenly spaced, or ever closer towards a neutral value."""
-        if self.logarithmic or self.angle:
+        if self.logarithmic or self.angle or self.switches:
             return self.low + (self.high - self.low) * (np.arange(points) + 0.5) / points
-        neutral = min(max(self.neutral, self.low), self.high)
-        spans = [end - neutral for end in (self.low, self.high) if abs(end - neutral) > 0.0]
+        spans = [end - self.neutral for end in (self.low, self.high) if abs(end - self.neutral) > 0.0]
         shares = np.geomspace(CLOSEST, FARTHEST, points // len(spans))
-        return np.concatenate([neutral + span * shares for span in spans])
+        return np.concatenate([self.neutral + span * shares for span in spans])
 
 
 def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
@@ -96,6 +105,11 @@ class Hypothesis:
     def parameters(self) -> tuple[FitParameter, ...]:
         known = {name for name, _ in self.fixed}
         return tuple(each for name in self.effects for each in _parameters(name) if each.name not in known)
+
+    @property
+    def switches(self) -> bool:
+        """Whether one of the effects acts at all of its values."""
+        return any(each.switches for each in self.parameters)
 
     @cached_property
     def low(self) -> np.ndarray:

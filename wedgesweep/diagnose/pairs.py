@@ -27,6 +27,7 @@ from wedgesweep.diagnose.search import (
     best_per_value,
     refit_best,
 )
+from wedgesweep.effects import go_together
 
 # Best single fits with which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
@@ -177,7 +178,7 @@ def _fit_combinations(
 ) -> list[Explanation]:
     """Fits of combinations, the best first; ``diverse``: from several starts of each."""
     search = job.search
-    useful = [each for each in combinations if len(each.second.x)]
+    useful = [each for each in combinations if len(each.second.x) and go_together(each.effects)]
     begun = search.each_affordable(lambda each: begin(search, each, diverse), useful, what, _effects)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.chi2)]
     further = f"{what}, followed further"

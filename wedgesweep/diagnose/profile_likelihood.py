@@ -24,6 +24,8 @@ RISE_SHARE, TRIES = 0.8, 5
 FURTHER = 3.0
 # Iterations of a fit with a parameter held.
 ITERATIONS = 10
+# Values at which the parameter of a switch is held, from where its interval should end out to its bound.
+VALUES = 6
 # A fit that is better by this much becomes the new centre, at most this many times.
 LOWER, RESTARTS = 0.5, 6
 
@@ -39,6 +41,7 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """The fit, or a better one found beside it, with a covariance as wide as its profile likelihood.
 
     Intervals never become narrower than by the curvature: a fit with a parameter held may stop short as well.
+    Only where a parameter is at a bound, and the curvature there tells nothing, does the profile alone count.
 
     Parameters
     ----------
@@ -64,8 +67,13 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
 def _profile_end(fit: Fit, parameter: int, side: float) -> ProfileEnd:
     """Move one parameter out until chi-squared has risen enough, or is lower than where it began."""
     std = np.sqrt(fit.covariance[parameter, parameter])
-    bound = (fit.model.high if side > 0.0 else fit.model.low)[parameter]
+    bounds = fit.model.low[parameter], fit.model.high[parameter]
+    bound = bounds[1] if side > 0.0 else bounds[0]
     furthest = abs(bound - fit.x[parameter]) / std
+    if fit.x[parameter] in bounds and TWO_SIDED * std > bounds[1] - bounds[0]:
+        return _end_by_bisection(fit, parameter, side, furthest)
+    if fit.model.hypothesis.parameters[parameter].switches:
+        return _end_beyond_ridges(fit, parameter, side, furthest)
     end, held = TWO_SIDED, fit
     for _ in range(TRIES):
         off = min(end, furthest)
@@ -78,6 +86,39 @@ def _profile_end(fit: Fit, parameter: int, side: float) -> ProfileEnd:
         if rise > RISE_SHARE * RISE or off == furthest:
             break
     return ProfileEnd(end, fit)
+
+
+def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
+    """Where chi-squared has risen enough between the fit and a bound, both of which may be the same."""
+    std, low, high = np.sqrt(fit.covariance[parameter, parameter]), 0.0, furthest
+    middle = high
+    for _ in range(TRIES if furthest else 0):
+        held = _held(fit, fit, parameter, fit.x[parameter] + side * middle * std)
+        rise = held.chi2 - fit.chi2
+        if rise < -LOWER:
+            return ProfileEnd(middle, held)
+        low, high = (middle, high) if rise < RISE else (low, middle)
+        middle = 0.5 * (low + high)
+    return ProfileEnd(high, fit)
+
+
+def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
+    """The first value beyond all that fit nearly as well.
+
+    Behind a switch chi-squared is rugged: impacts come and go, and a response has rivals that are as steady.
+    """
+    if furthest <= TWO_SIDED:
+        return ProfileEnd(TWO_SIDED, fit)
+    std, end = np.sqrt(fit.covariance[parameter, parameter]), TWO_SIDED
+    values = np.geomspace(TWO_SIDED, furthest, VALUES)
+    for value, beyond in zip(values, [*values[1:], furthest], strict=True):
+        held = _held(fit, fit, parameter, fit.x[parameter] + side * value * std)
+        rise = held.chi2 - fit.chi2
+        if rise < -LOWER:
+            return ProfileEnd(value, held)
+        if rise < RISE:
+            end = beyond
+    return ProfileEnd(float(end), fit)
 
 
 def _held(fit: Fit, start: Fit, parameter: int, value: float) -> Fit:

@@ -153,22 +153,15 @@ def _path(hypothesis: Hypothesis, parameter: int) -> np.ndarray:
     The others are in the middle of their range, except for a leading one that has a neutral value.
     """
     first, varied = hypothesis.parameters[0], hypothesis.parameters[parameter]
-    neutral = _neutral(hypothesis)
     at = np.array([0.5 * (each.low + each.high) for each in hypothesis.parameters])
-    if not first.logarithmic:
-        at[0] = neutral
+    if first.fades:
+        at[0] = first.neutral
     path = np.repeat(at[None], POINTS, axis=0)
-    if varied.logarithmic:
-        path[:, parameter] = np.linspace(varied.low, varied.high, POINTS)
+    if varied.fades:
+        path[:, parameter] = first.neutral + (varied.high - first.neutral) * np.geomspace(1e-4, 1.0, POINTS)
     else:
-        path[:, parameter] = neutral + (varied.high - neutral) * np.geomspace(1e-4, 1.0, POINTS)
+        path[:, parameter] = np.linspace(varied.low, varied.high, POINTS)
     return path
-
-
-def _neutral(hypothesis: Hypothesis) -> float:
-    """Value in its range at which the leading parameter acts least, if it is no logarithm."""
-    first = hypothesis.parameters[0]
-    return min(max(first.neutral, first.low), first.high)
 
 
 def _weakest(size: np.ndarray) -> int:
@@ -183,6 +176,9 @@ def _detectable(hypothesis: Hypothesis, scan: _Scan, key: str) -> float | None:
     shown = [i for i in np.argsort(distance) if distance[i] >= DETECTABLE]
     if not shown:
         return None
+    leading = hypothesis.parameters[scan.parameter]
+    if leading.switches:  # it shows, or does not
+        return float(hypothesis.in_key_units(points[min(shown)])[hypothesis.effects[0]].get(key, inf))
     i = int(shown[0])
     below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < DETECTABLE]
     point = points[i].copy()
@@ -192,8 +188,8 @@ def _detectable(hypothesis: Hypothesis, scan: _Scan, key: str) -> float | None:
         point += (points[j] - points[i]) * (high - np.sqrt(DETECTABLE)) / (high - low)
     elif hypothesis.parameters[scan.parameter].logarithmic and i in (0, len(points) - 1):
         point[scan.parameter] += _extrapolation(points[:, scan.parameter], distance, i)
-    elif i == 0:  # near its neutral value an effect acts in proportion
-        neutral = _neutral(hypothesis)
+    elif i == 0 and hypothesis.parameters[0].fades:  # near its neutral value an effect acts in proportion
+        neutral = hypothesis.parameters[0].neutral
         point[scan.parameter] = neutral + (point[scan.parameter] - neutral) * np.sqrt(
             DETECTABLE / distance[i]
         )

@@ -240,7 +240,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point)
-    if implausible or data.brings_nuisances(effect):
+    if implausible or data.brings_nuisances(effect) or model.hypothesis.switches:
         # Without the effect the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
         evaluations = evaluations + fresh

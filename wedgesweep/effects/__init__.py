@@ -1,9 +1,10 @@
 """Physics that the base model leaves out: one effect per file, each off at its neutral value."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from types import ModuleType
 
+from wedgesweep.effects import lift_off
 from wedgesweep.effects.base import Effect
 
 # Numbers of effects by name, in SI units or in those of their keys.
@@ -14,6 +15,7 @@ NAMES = (
     *("bolster_stiffness", "wedge_stiffness", "bolster_mass", "preload", "friction_level"),
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
     *("cross_slip", "column_compliance"),
+    lift_off.NAME,
     *("viscous_damping", "directional_damping", "quadratic_drag"),
     *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),
@@ -56,6 +58,21 @@ def confounded(names: Sequence[str]) -> bool:
     off look like a third: one that is no candidate, as the wedge's mass, may be.
     """
     return len(names) > 1 and {EFFECTS[name].family for name in names} == {OF_THE_MODEL}
+
+
+def with_lift_off() -> tuple[str, ...]:
+    """Names of the effects that joints which lift off go with."""
+    return tuple(
+        name
+        for name, effect in EFFECTS.items()
+        if name in lift_off.GO_WITH or not (effect.extends or name == lift_off.NOT_WITH)
+    )
+
+
+def go_together(names: Iterable[str]) -> bool:
+    """Whether one model can have all of these effects."""
+    others = set(names) - {lift_off.NAME}
+    return lift_off.NAME not in names or others <= set(with_lift_off())
 
 
 def parts(names: Sequence[str]) -> set[str]:

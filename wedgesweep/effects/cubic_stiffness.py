@@ -13,7 +13,7 @@ EFFECT = Effect(
     name="cubic_stiffness",
     family="missing-force",
     branch=NUMERICAL,
-    meaning="{mass} springs that stiffen or soften with travel",
+    meaning="a spring under the {mass} that stiffens or softens with travel",
     quantities=(Quantity("coefficient_N_per_mm3", 0.0, "cubic stiffness, k_3", search=(-1.0, 20.0)),),
     extends=("coefficient",),
 )

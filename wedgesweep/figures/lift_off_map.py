@@ -30,6 +30,9 @@ def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law."""
+    if ds[LIFT_OFF].notnull().any() and not (ds[LIFT_OFF] > 0.0).any():
+        message = f"nothing lifts off in these cases: {LIFT_OFF} is never above 0"
+        raise ValueError(message)
     words = labels.of(ds)
     amplitudes = ds["amplitude"].values * words.factor
     logarithmic = bool(amplitudes[0] > 0.0)

@@ -16,7 +16,7 @@ OPENS = "column_open_fraction"  # of joints that may lift off
 POINT = {"linestyle": "", "marker": "o", "markersize": 4.5, "zorder": 4}
 HOLLOW: dict[str, Any] = {**POINT, "markerfacecolor": "white"}
 PALE: dict[str, Any] = {**POINT, "color": "0.6"}
-FEW_POINTS = 60
+FEW_POINTS = 25
 
 
 def lifted(ds: xr.Dataset) -> xr.DataArray:
@@ -43,7 +43,7 @@ def unsettled(ds: xr.Dataset) -> xr.DataArray:
 
 def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -> None:
     """Mark the points of a line of cases: hollow where a joint lifts off, grey where unsettled."""
-    size = {} if len(x) <= FEW_POINTS else {"markersize": 2.5}
+    size = {} if len(x) <= FEW_POINTS else {"markersize": 2.8, "markeredgewidth": 0.7}
     hollow, grey = lifted(case).values, unsettled(case).values
     for at, look in (
         (hollow & ~grey, {**HOLLOW, "color": color}),

@@ -2,16 +2,10 @@
 
 from pathlib import Path
 
+from wedgesweep.kinds import NETCDF_SUFFIXES
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 
-__all__ = ["MeasuredError", "Measurement", "TestRecord", "is_measured", "read"]
-
-
-def is_measured(path: Path) -> bool:
-    """Whether a file holds measured data and not a config, by its suffix or its table [measurement]."""
-    from wedgesweep.measured import netcdf, toml_and_csv
-
-    return path.suffix in netcdf.SUFFIXES or toml_and_csv.has_measurement(path)
+__all__ = ["MeasuredError", "Measurement", "TestRecord", "read"]
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
@@ -37,7 +31,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     from wedgesweep.measured import netcdf, toml_and_csv
     from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
 
-    reader = netcdf if path.suffix in netcdf.SUFFIXES else toml_and_csv
+    reader = netcdf if path.suffix in NETCDF_SUFFIXES else toml_and_csv
     measurement = reader.read(path, model)
     if faults := noise_faults(measurement) or amplitude_faults(measurement):
         raise MeasuredError([f"{path}: {fault}" for fault in faults])

@@ -1,6 +1,6 @@
 """Which channels go together: what a measurement must have, and what a system cannot show."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from wedgesweep.config import Config
@@ -104,11 +104,15 @@ def keys_faults(given: Mapping[str, Any], columns: Mapping[str, Any], model: Con
     return [f"{key}: {told}" for key in stated if key != right]
 
 
-def model_faults(effects: Mapping[str, Any], columns: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """Faults of the base model beside the channels."""
+def model_faults(
+    model: Config, columns: Mapping[str, Mapping[str, Any]], kinds: Iterable[str] = (STEADY,)
+) -> list[str]:
+    """Faults of the base model beside the channels and kinds of the tests."""
+    faults, effects = [], model.effects
+    if model.opens and {*kinds} != {STEADY}:
+        faults.append(f"joints that lift off are simulated in tests of kind {STEADY} only; let them hold")
     if INPUT not in columns:
-        return []
-    faults = []
+        return faults
     if STRAY in effects:
         faults.append(f"effects.{STRAY}: a recorded input repeats each period; remove it from the model")
     absolute = any(each.get("of") == ABSOLUTE for each in columns.values())

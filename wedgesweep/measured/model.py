@@ -24,14 +24,9 @@ def parse_model(text: str, source: str, problems: list[str]) -> tuple[Config | N
 
 
 def with_law(config: Config, source: str, problems: list[str]) -> tuple[Config, str]:
-    """Return the config and its one friction law; several laws are a fault, and joints that lift off."""
+    """Return the config and its one friction law; several laws are a fault."""
     laws = config.sweep.laws
     if len(laws) > 1:
         names = ", ".join(laws)
         problems.append(f"{source}: sweep.friction_law: {names}; a model must name exactly one law")
-    if config.opens:
-        problems.append(
-            f"{source}: suspension.joints: a diagnosis knows no joints that lift off; "
-            'write "bilateral", or leave the key out'
-        )
     return config, laws[0]

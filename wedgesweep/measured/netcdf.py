@@ -42,7 +42,6 @@ from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
 
-SUFFIXES = (".nc", ".nc4")
 ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
 LONG_NAMES = {
@@ -148,7 +147,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         faults = [fault for kind, own in by_kind.items() for fault in excitation_faults(own, config, kind)]
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
-        problems += [f"{path}: model: {fault}" for fault in model_faults(config.effects, columns)]
+        problems += [f"{path}: model: {fault}" for fault in model_faults(config, columns, by_kind)]
         for test in complete:
             problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
     if problems or config is None:

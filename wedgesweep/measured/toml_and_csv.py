@@ -1,6 +1,5 @@
 """measured.toml and its CSV files."""
 
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,9 +13,6 @@ from wedgesweep.measured.declarations import INPUT, ROOT, STEADY, columns_of
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
-
-# Also matches in a file that is not valid TOML, so that its errors are those of measured data.
-HEADER = re.compile(r"""^\s*(\[+\s*["']?measurement\b|["']?measurement["']?\s*[.=])""", re.MULTILINE)
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
@@ -38,7 +34,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
             for kind, own in by_kind.items():
                 told = channels.excitation_faults(own, config, kind)
                 problems += [f"{path}: {_at(fault)}" for fault in told]
-        problems += [f"{model}: {fault}" for fault in channels.model_faults(config.effects, columns)]
+        problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         problems += _override_faults(path, measurement, config)
     tests = _tests(path, measurement, config, problems)
     if problems or config is None:
@@ -78,15 +74,6 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
     for i, given in enumerate(measurement.get("test", ())):
         faults += overrides.faults(config, given, f"{path}: measurement.test[{i}].model")
     return faults
-
-
-def has_measurement(path: Path) -> bool:
-    """Whether a file has a [measurement] table, even if it is not valid TOML."""
-    try:
-        text = read_text(path)
-    except (OSError, UnicodeDecodeError):
-        return False
-    return HEADER.search(text) is not None
 
 
 def _document(path: Path, problems: list[str]) -> dict[str, Any]:

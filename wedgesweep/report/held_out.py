@@ -9,7 +9,7 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 HEAD = ("test", "left out", "error before", "error after", "noise floor")
-CAPTION = "Each test is predicted by models fitted to the other tests. Errors are in units of the noise."
+CAPTION = "Each test is predicted by models fitted to the other tests. Errors are in units of the {allowed}."
 
 
 def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
@@ -21,7 +21,7 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
         rows = [_row(result, each) for each in gain["held_out"]]
         content = (
             html.paragraph(_summary(result, gain)),
-            draw("gain", CAPTION),
+            draw("gain", CAPTION.format(allowed=phrases.allowed(result.document))),
             html.details("Table of the held-out tests", html.table("Held-out tests", HEAD, rows, 2)),
         )
     return html.section("gain", "Before and after, on held-out tests", *content)
@@ -36,11 +36,13 @@ def _why_not(result: DiagnosisResult) -> str:
 def _summary(result: DiagnosisResult, gain: dict[str, Any]) -> str:
     before, after, floor = (formatting.number(gain[f"rmse_{kind}"]) for kind in ("base", "extended", "noise"))
     gained, removed = (formatting.percent(gain[key]) for key in ("gain", "excess_removed"))
+    allowed = phrases.allowed(result.document)
+    alone = "noise alone leaves" if allowed == "noise" else f"{allowed} leave"
     claim = "" if result.document["causes"] else " This is the best attempt; the verdict names no cause."
     return (
         f"Cross-validation ({gain['scheme']}): the error on held-out tests goes from {before} to {after} "
-        f"times the noise, a gain of {gained}; noise alone leaves {floor}. The extension removes {removed} "
-        f"of the excess over noise ({phrases.interval(gain)}).{claim}"
+        f"times the {allowed}, a gain of {gained}; {alone} {floor}. The extension removes {removed} "
+        f"of the excess over {allowed} ({phrases.interval(gain)}).{claim}"
     )
 
 

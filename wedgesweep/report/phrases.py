@@ -86,6 +86,11 @@ def _to_places(value: float, places: int) -> str:
     return number(value, 1) if vanishes else fixed(value, places)
 
 
+def allowed(document: Mapping[str, Any]) -> str:
+    """What may be left where a model is right: noise, and the model error where one is allowed."""
+    return "noise and model error" if document["method"].get("model_error") else "noise"
+
+
 def interval(gain: Mapping[str, Any]) -> str:
     """The interval of the gain on held-out tests."""
     if not gain["ci95"]:

@@ -237,7 +237,8 @@ def _gain(result: DiagnosisResult) -> str:
     if gain is None:
         return " (not checked on held-out tests)"
     removed = formatting.percent(gain["excess_removed"])
-    return f", and on held-out tests {removed} of the excess over noise is gone ({phrases.interval(gain)})"
+    excess = f"excess over {phrases.allowed(result.document)}"
+    return f", and on held-out tests {removed} of the {excess} is gone ({phrases.interval(gain)})"
 
 
 def _next_test(result: DiagnosisResult, rivals: str = "") -> str:

@@ -34,15 +34,19 @@ def table(result: DiagnosisResult) -> Markup:
     """Error before and after, gain on held-out tests, and the next step."""
     models = ("base", "extended") if result.added else ("base",)
     head = ("", "before", "after" if result.document["causes"] else "best attempt")[: 1 + len(models)]
+    allowed = phrases.allowed(result.document)
     rows: list[Sequence[object]] = [
-        ["error, times the noise", *(_times_noise(result, model) for model in models)],
+        [
+            f"error, times the {allowed}",
+            *(_times_noise(result, model) for model in models),
+        ],
         ["error, share of the response", *_accuracies(result)],
     ]
     gain, test = result.gain, result.document["next_test"]
     if gain is not None:
         errors = [formatting.number(gain[f"rmse_{model}"]) for model in models]
-        rows.append(["error on held-out tests, times the noise", *errors])
-        removed = f"{formatting.percent(gain['excess_removed'])} of the excess over noise is gone"
+        rows.append([f"error on held-out tests, times the {allowed}", *errors])
+        removed = f"{formatting.percent(gain['excess_removed'])} of the excess over {allowed} is gone"
         rows.append(["gain on held-out tests", Spanning(f"{removed} ({phrases.interval(gain)})")])
     step = next_test.NOTHING_TO_MEASURE[result.verdict]
     rows.append(["next step", Spanning(step if test is None else phrases.next_test(test))])

@@ -12,7 +12,7 @@ from numba import types
 
 from wedgesweep.compiled import Pointer, borrowed, compiled, inlined
 from wedgesweep.hybrid import accumulators
-from wedgesweep.hybrid.interface import clocks, cycle, free, repeats, scales
+from wedgesweep.hybrid.interface import clocks, cycle, free, impact, provided, repeats, scales
 from wedgesweep.hybrid.recorder import Recorder
 from wedgesweep.hybrid.vectors import store, vector
 from wedgesweep.solvers.integrate import Workspace, run, workspace
@@ -108,7 +108,8 @@ class Cases(NamedTuple):
     """What drivers know of cases, one row each: how to run them, and what their states are.
 
     ``records`` (n, bytes) for ``period_map``; natural sizes of the states and whether they only count time
-    (n, S), the input's period (s) and whether all of the input repeats after it (n,).
+    (n, S), the input's period (s) and whether all of the input repeats after it (n,). ``impacts``: whether
+    velocities may jump.
     """
 
     period_map: Any
@@ -117,6 +118,7 @@ class Cases(NamedTuple):
     clocks: Any
     cycle: Any
     repeats: Any
+    impacts: bool
 
 
 def prepared(records: np.ndarray) -> Cases:
@@ -129,6 +131,7 @@ def prepared(records: np.ndarray) -> Cases:
         np.zeros((n, states), np.bool_),
         np.zeros(n),
         np.zeros(n, np.bool_),
+        provided(impact, dict(records.dtype.fields or {})),
     )
     describe(records, found.scales, found.clocks, found.cycle, found.repeats)
     return found

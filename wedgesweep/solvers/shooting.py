@@ -242,6 +242,13 @@ def _update(jacobian, y, image, before, image_before, size):
 
 
 @inner
+def _leave_out_closed(moves, y, shooting):
+    """Leave out states that a contact holds at y, and not at its image: they can only change to one side."""
+    for i in range(moves.size):
+        moves[i] = moves[i] and not (shooting.cases.impacts and y[i] == 0.0)
+
+
+@inner
 def newton_shooting(y, periods, jacobian, most, shooting):
     """Newton's method from y for a state that comes back; J is computed where it is unknown or out of date.
 
@@ -267,6 +274,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
             copy(image, y)
             return True, OK, run
         moves = _moving(image, periods, shooting)
+        _leave_out_closed(moves, y, shooting)
         if now < shortest:
             shortest = now
             copy(image, best)

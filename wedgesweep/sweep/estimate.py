@@ -2,18 +2,18 @@
 
 import resource
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
 from wedgesweep.sweep.backend import local
 from wedgesweep.sweep.backend import threads as in_threads
-from wedgesweep.sweep.cases import compile_once
+from wedgesweep.sweep.cases import compile_once, solve_cases
 from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
-SECONDS = 4.0
+SECONDS = 1.0
 GOLDEN = 0.6180339887498949
 
 
@@ -32,9 +32,9 @@ class Estimate:
 
 
 def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
-    """Time a few cases spread over the sweep, for some seconds, and extrapolate to ``n_jobs`` jobs."""
+    """Time a few cases spread over the sweep, for a second, and extrapolate to ``n_jobs`` jobs."""
     compile_once(sweep.settings.method, sweep.kit, sweep.config.system)
-    sweep.solve(np.array([0]))  # loads the compiled code
+    _load(sweep)
     started = perf_counter()
     records = []
     for index in _spread(sweep.count):
@@ -54,6 +54,16 @@ def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
         each,
         sweep.count * sweep.dtype.itemsize,
     )
+
+
+def _load(sweep: Sweep) -> None:
+    """Have the compiled code loaded, by a case that is as short as can be."""
+    if sweep.settings.transient is not None:
+        sweep.solve(np.array([0]))
+        return
+    short = replace(sweep.settings, settle_periods=1, steady=False, continuation=False)
+    first = np.array([0])
+    solve_cases(sweep.config.records(first), first, short, short.case_timeout, sweep.dtype)
 
 
 def _spread(count: int) -> list[int]:

@@ -8,10 +8,9 @@ from datetime import UTC, datetime
 from functools import partial
 from math import nan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from wedgesweep.config import Case, Config, parse
 from wedgesweep.errors import MismatchError, SweepError
@@ -27,6 +26,10 @@ from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.workers import Workers, interrupts_ignored
 from wedgesweep.systems import has_own_mechanics, kits, oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
+
+# Not needed until there are results; it takes a third of a second to load.
+if TYPE_CHECKING:
+    import xarray as xr
 
 log = logging.getLogger(__name__)
 
@@ -106,7 +109,7 @@ class Sweep:
     def journal_header(self) -> dict[str, str]:
         return {**self.fingerprint, "config": self.config.to_toml()}
 
-    def stored(self) -> xr.Dataset | None:
+    def stored(self) -> "xr.Dataset | None":
         """Return the dataset of an earlier run if it is complete, else None.
 
         Raises MismatchError if ``out`` holds another sweep, SweepError if it is no sweep's dataset.
@@ -139,7 +142,7 @@ class Sweep:
         backend: Backend | None = None,
         fresh: bool = False,
         tell: Callable[[str], None] = lambda remark: None,
-    ) -> xr.Dataset:
+    ) -> "xr.Dataset":
         """Run the cases that are not finished yet, or all if ``fresh``, and write the dataset.
 
         Parameters
@@ -189,7 +192,7 @@ class Sweep:
             self.journal_path.unlink()
         return result
 
-    def run_here(self, case_timeout: float | None = None) -> xr.Dataset:
+    def run_here(self, case_timeout: float | None = None) -> "xr.Dataset":
         """Run all cases one after the other in this process; nothing is stored."""
         started = datetime.now(UTC)
         indices = np.arange(self.count)
@@ -253,7 +256,7 @@ class Sweep:
             message = f"{where}: {failed[0]['message'].decode()}"
             raise CaseFailedError(message)
 
-    def assembled(self, records: np.ndarray, started: datetime) -> xr.Dataset:
+    def assembled(self, records: np.ndarray, started: datetime) -> "xr.Dataset":
         """Assemble the dataset from the records of all cases."""
         shape, coords = self.config.case_coordinates()
         coords |= self._time()
@@ -300,7 +303,7 @@ def _decay(p: np.void) -> float:
     return float(4.0 * force / own["spring"]) if own["spring"] > 0.0 else nan
 
 
-def unfinished(out: Path) -> xr.Dataset | None:
+def unfinished(out: Path) -> "xr.Dataset | None":
     """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
 
     None if there is no such run; raises SweepError if its journal is damaged.
@@ -315,7 +318,7 @@ def unfinished(out: Path) -> xr.Dataset | None:
     return sweep.assembled(records, datetime.now(UTC))
 
 
-def _read_sweep(path: Path) -> xr.Dataset:
+def _read_sweep(path: Path) -> "xr.Dataset":
     found = dataset.read_sweep(path)
     try:
         json_object(found.attrs["fingerprint"]), found.attrs["config"]

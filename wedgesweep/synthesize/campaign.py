@@ -96,8 +96,10 @@ def _with_recorded_input(config: Config, plan: Plan, options: Options) -> Option
 
 
 def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) -> list[str]:
-    """Amplitudes and recorded inputs of another excitation than the config's."""
+    """Amplitudes and recorded inputs of another excitation than the config's, and joints of another kind."""
     unit = config.amplitude_unit.unit
+    if config.opens and any(test.kind != STEADY for test in plan.tests):
+        return [f"{source}: joints that lift off are simulated in tests of kind {STEADY} only"]
     excited = f'{source} has excitation = "{config.excitation}"'
     faults = [
         f"{plan.source}: test[{i}].amplitude_{test.unit}: {excited}; write amplitude_{unit}"

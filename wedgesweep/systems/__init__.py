@@ -61,6 +61,13 @@ def has_own_mechanics(parameters: np.ndarray) -> np.ndarray:
     return _kits(parameters) != 0
 
 
+def has_impacts(parameters: np.ndarray) -> np.ndarray:
+    """Whether contacts of records, shape (n,), may open and hit."""
+    if is_oscillator(parameters):
+        return np.zeros(len(parameters), bool)
+    return suspension.has_unilateral_joints(parameters)
+
+
 def driven_mass(parameters: np.ndarray) -> np.ndarray:
     """Mass (kg) that the base acceleration drives, of records of any shape."""
     if is_oscillator(parameters):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, go_together, lift_off
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.synthesize.names import NOISES
 from wedgesweep.validation import imperfect, plan, ranges, rigs, strength, unmodelled
@@ -25,6 +25,8 @@ LEAN_DEG = 4.0
 ATTEMPTS, SAME_NOISE, SAME_EFFECT = 60, 12, 48
 # Excess that each effect of a pair must cause while only the other is in the model.
 LEAST_OF_PAIR = 900.0
+# How many times louder tests may be in which wedges are to lift off.
+LOUDEST = 20.0
 # How well a recorded input is known.
 RECORDED_SPREAD = 0.001
 # What a recorded input tells by itself, and what only sensors of the relative motion show.
@@ -95,7 +97,7 @@ class Draft:
         return self._excesses(true, strength.tone_of(self.hidden), *models)
 
     def presses(self) -> bool:
-        """Whether the wedges stay pressed, and the bolster moves, in every test."""
+        """Whether the bolster moves, and the wedges stay pressed unless they may lift off, in every test."""
         if self.unmodelled:
             return self._unmodelled(self.unmodelled)[1] > unmodelled.LEAST_FORCE
         return plan.suits(self.true_system, self.tests)
@@ -194,11 +196,32 @@ def _hide_nothing(one: DataSet, draft: Draft, random: np.random.Generator, attem
 def _hide(draft: Draft, effect: str, target: float, random: np.random.Generator) -> bool:
     """Add an effect that, missing from the model, causes the target excess beside the effects there are."""
     others, path = dict(draft.hidden), ranges.path(effect, random, draft.rig.units)
+    if effect == lift_off.NAME:
+        return _lift_off(draft, path(random.random()), target)
     draft.uncertain.pop(effect, None)
     found = strength.reach(target, lambda s: draft.excess_of({**others, effect: path(s)}, others))
     if found is None:
         return False
     draft.hidden[effect] = {key: float(f"{value:.6g}") for key, value in path(found).items()}
+    return draft.presses()
+
+
+def _lift_off(draft: Draft, numbers: dict[str, float], target: float) -> bool:
+    """Let joints open in tests so much louder that this causes the target excess."""
+    tests, others = draft.tests, dict(draft.hidden)
+    hidden = {**others, lift_off.NAME: {key: float(f"{value:.3g}") for key, value in numbers.items()}}
+
+    def louder(strength: float) -> float:
+        gain = LOUDEST**strength
+        draft.tests = [each._replace(amplitude=float(f"{gain * each.amplitude:.4g}")) for each in tests]
+        return draft.excess_of(hidden, others)
+
+    found = strength.reach(target, louder)
+    if found is None:
+        draft.tests = tests
+        return False
+    louder(found)
+    draft.hidden = hidden
     return draft.presses()
 
 
@@ -243,7 +266,7 @@ def _hide_pair(one: DataSet, draft: Draft, random: np.random.Generator, attempt:
     # The same names for several attempts, so that pairs that rarely work are not left out.
     names = np.random.default_rng([one.seed, 7, one.index, attempt // SAME_NOISE])
     first, second = names.choice(ranges.EFFECTS, 2, replace=False).tolist()
-    while EFFECTS[first].family == EFFECTS[second].family:
+    while EFFECTS[first].family == EFFECTS[second].family or not go_together((first, second)):
         first, second = names.choice(ranges.EFFECTS, 2, replace=False).tolist()
     for name in (first, second):
         if not _hide(draft, name, one.draw_target(random), random):

@@ -40,6 +40,7 @@ LEADING = {
     "load_dependent_friction": Leading("exponent", 1e-4, 0.55, 0.0, 0.3, 0.45),
     "cross_slip": Leading("velocity_mm_per_s", 0.1, 150.0),
     "column_compliance": Leading("stiffness_N_per_mm", 5000.0, 4.0),
+    "lift_off": Leading("restitution", 1e-3, 0.7),  # how strongly it shows, louder tests decide
     "viscous_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
     "directional_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
     "quadratic_drag": Leading("coefficient_N_s2_per_m2", 1e-2, 1800.0),

@@ -22,7 +22,7 @@ from wedgesweep.natural_units import NaturalUnits
 # Effects that act by how a motion comes about, or on sensors of it.
 OF_MOTION = (
     *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
-    *("displacement_gain", "velocity_lag", "cross_slip"),
+    *("displacement_gain", "velocity_lag", "cross_slip", "lift_off"),
 )
 # Zero of the displacement over half the range of the motion, and its standard deviation.
 ZERO, ZERO_STD = NuisanceParameter(step=1e-3, max_step=0.1), 0.3

@@ -1,5 +1,8 @@
 """The extended model as extended.toml."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from wedgesweep import effects
 from wedgesweep.config import toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
@@ -17,13 +20,13 @@ def extended(found: Diagnosis) -> str:
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
     if not isinstance(data, HarmonicData):
         return _heading(found) + toml.dumps(document)
-    # Repeated tests are one case, and single cases do not continue one another.
+    # Repeated tests are one case.
     unit, inputs = data.model.amplitude_unit, data.inputs_of(best.model.scenario(best.point))
     cases = dict.fromkeys(
         (spectrum.frequency, float(f"{amplitude / unit.factor:.7g}"))
         for spectrum, amplitude in zip(data.spectra, inputs, strict=True)
     )
-    document["solver"] = {**document["solver"], "continuation": False}
+    document["solver"] = _steady(document["solver"])
     document["sweep"] = {
         "omega_n_rad_per_s": data.model.sweep.omega_n,
         "excitation": data.model.excitation,
@@ -33,6 +36,12 @@ def extended(found: Diagnosis) -> str:
         ],
     }
     return _heading(found) + toml.dumps(document)
+
+
+def _steady(solver: Mapping[str, Any]) -> dict[str, Any]:
+    """The solver of a config, to run until steady, as the tests are; single cases do not continue others."""
+    kept = {key: value for key, value in solver.items() if key not in ("duration_s", "settle_periods")}
+    return {**kept, "method": "event-driven", "settle": "steady", "continuation": False}
 
 
 def _heading(found: Diagnosis) -> str:

@@ -16,7 +16,8 @@ from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
-MOST_PERIODS = 40
+# Periods without a repetition after which a response counts as not periodic; impacts settle slowly.
+MOST_PERIODS, MOST_WITH_IMPACTS = 40, 120
 SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
 # Periods run before a response under a spurious tone is evaluated, and further ones if it starts at rest.
 TONE_SETTLING, FROM_REST = 10, 30
@@ -48,7 +49,8 @@ def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitud
 
 def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
     """Steady responses to parameter records (n,)."""
-    accuracy = periodic.Accuracy(tolerance, MOST_PERIODS, rtol=tolerance)
+    opens = systems.has_impacts(rows).any()
+    accuracy = periodic.Accuracy(tolerance, MOST_WITH_IMPACTS if opens else MOST_PERIODS, rtol=tolerance)
     found = periodic.respond(rows, warm, accuracy, SAMPLES_PER_PERIOD, harmonics)
     _count(rows, found.periods)
     return Responses(found.spectra, found.outcome == periodic.OK, found.warm)

@@ -26,8 +26,8 @@ from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.natural_units import NaturalUnits
 
-# Effects of a sine as an input, or of what a recorded input holds already.
-OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
+# Effects of a sine as an input, of what a recorded input holds already, or of mechanics for sines only.
+OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip", "lift_off")
 # Effects of sensors, each of one derivative of the displacement.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Blocks of a record that are left out in turn, at most.

@@ -8,7 +8,7 @@ off cost nothing, nor does the Fourier series of a recorded input (part ``series
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from math import cos, isfinite, nan, sin
+from math import cos, isfinite, sin
 from types import MappingProxyType
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 from wedgesweep import effects as known
 from wedgesweep import excitation
 from wedgesweep import friction as laws
+from wedgesweep.effects import lift_off
 from wedgesweep.natural_units import VELOCITY, NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
@@ -62,20 +63,11 @@ GEOMETRY = (
     "rest",  # z of the frictionless equilibrium (m)
 )
 
-# Whether a contact between wedge and column or bolster can pull, or opens.
+# Whether a contact between wedge and column or bolster can pull, or opens: then it is the effect lift_off.
 BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
-RESTITUTION = Quantity(
-    "restitution", 0.0, "coefficient of restitution of unilateral joints", minimum=0.0, below=1.0
-)
-# Marks of records with unilateral joints, and of those without effects that have mechanics of their own.
-OPENS: list[tuple] = [(UNILATERAL, [("restitution", np.float64)])]
+RESTITUTION = lift_off.EFFECT.quantities[0]
+# Mark of records of unilateral joints without other effects that have mechanics of their own.
 PLAIN: list[tuple] = [("plain_unilateral", np.int64)]
-# Effects with mechanics of their own that unilateral joints go with, and one without that they do not.
-GO_WITH_LIFT_OFF = (
-    *("viscous_damping", "directional_damping", "quadratic_drag", "cubic_stiffness", "end_stop", "backlash"),
-    *("stribeck", "input_distortion", "stray_vibration"),
-)
-NOT_WITH_LIFT_OFF = "guide_friction"
 
 # Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects;
 # unilateral joints without effects that have mechanics of their own, and with those that go with them.
@@ -93,14 +85,16 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
     simple = [name for name in names if not known.EFFECTS[name].extends]
     own = [name for name in names if name not in known.NAMES]
     plain = [name for name in simple if name not in own]
-    some = [*plain, *(name for name in names if name in GO_WITH_LIFT_OFF)]
+    some = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
+    held = [name for name in names if name != lift_off.NAME]
+    opens = records.effect_parts([lift_off.NAME])
     if series:
         # There is no closed form, so that ``base`` marks nothing here.
         part = records.SERIES
-        bilateral = _dtype(part, plain), _dtype(part, own + plain), _dtype(part, names)
-        return *bilateral, _dtype(OPENS + part, plain), _dtype(OPENS + part, some)
-    bilateral = _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], names)
-    return *bilateral, _dtype(PLAIN + OPENS, plain), _dtype(OPENS, some)
+        bilateral = _dtype(part, plain), _dtype(part, own + plain), _dtype(part, held)
+        return *bilateral, _dtype(opens + part, plain), _dtype(opens + part, some)
+    bilateral = _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], held)
+    return *bilateral, _dtype(PLAIN + opens, plain), _dtype(opens, some)
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -121,7 +115,7 @@ def record_type() -> np.dtype:
 
 @cache
 def _full_type(names: tuple[str, ...]) -> np.dtype:
-    return _dtype(records.SERIES + OPENS, names)
+    return _dtype(records.SERIES, names)
 
 
 def record(
@@ -153,8 +147,9 @@ def record(
     p = case[0]
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
-    opens = suspension.get("joints", BILATERAL) == UNILATERAL
-    p[UNILATERAL]["restitution"] = suspension.get("restitution", RESTITUTION.default) if opens else nan
+    if suspension.get("joints") == UNILATERAL:
+        restitution = suspension.get("restitution", RESTITUTION.default)
+        effects = {**effects, lift_off.NAME: {"restitution": restitution}}
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
     for name in known.EFFECTS:
@@ -171,25 +166,16 @@ def _acting(p: np.void) -> list[str]:
     return records.acting(p, known.EFFECTS)
 
 
-def effects_with_lift_off() -> tuple[str, ...]:
-    """Names of the effects that unilateral joints go with."""
-    return tuple(
-        name
-        for name, effect in known.EFFECTS.items()
-        if name in GO_WITH_LIFT_OFF or not (effect.extends or name == NOT_WITH_LIFT_OFF)
-    )
-
-
 def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
     """Whether the joints of full records can open, of records of any shape."""
-    return np.isfinite(rows[UNILATERAL]["restitution"])
+    return rows[lift_off.NAME]["restitution"] >= 0.0
 
 
 def _kit_of(p: np.void) -> int:
-    acting = _acting(p)
+    acting = [name for name in _acting(p) if name != lift_off.NAME]
     if has_unilateral_joints(p):
-        lateral = [NOT_WITH_LIFT_OFF] if p[NOT_WITH_LIFT_OFF]["force"] > 0.0 else []
-        if refused := {*acting, *lateral} - set(effects_with_lift_off()):
+        lateral = [lift_off.NOT_WITH] if p[lift_off.NOT_WITH]["force"] > 0.0 else []
+        if refused := {*acting, *lateral} - set(known.with_lift_off()):
             message = f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}"
             raise ValueError(message)
         return JOINTS_OPEN_WITH_EFFECTS if acting else JOINTS_OPEN

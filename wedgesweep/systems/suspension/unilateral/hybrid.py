@@ -1,7 +1,7 @@
 """The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
 
 While both contacts are closed its equations, events and closed forms are those of bilateral joints. Records
-of this system have a part ``unilateral`` beside those of the suspension.
+of this system have a part ``lift_off`` beside those of the suspension.
 """
 
 from math import inf, nan

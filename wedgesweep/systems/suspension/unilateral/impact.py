@@ -70,7 +70,7 @@ def _gap_rate(state, before, after, restitution, nothing):
 def restitution_at(approach, p):
     """Coefficient of restitution at a speed of approach (m/s)."""
     slow = approach < SLOWEST_BOUNCE * states.scales(p)[VELOCITY]
-    return 0.0 if slow else p.unilateral.restitution
+    return 0.0 if slow else p.lift_off.restitution
 
 
 @inner

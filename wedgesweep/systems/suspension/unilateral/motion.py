@@ -14,12 +14,12 @@ from numba.core import types
 from numba.extending import overload
 
 from wedgesweep.compiled import CONTRACTED, function_of, inlined
-from wedgesweep.effects import hooks, states, travel
+from wedgesweep.effects import hooks, lift_off, states, travel
 from wedgesweep.excitation import acceleration
 from wedgesweep.systems.suspension.modes import VELOCITY, X
 from wedgesweep.systems.suspension.unilateral.contacts import Motion
 
-UNILATERAL = "unilateral"
+UNILATERAL = lift_off.NAME
 COLUMN_GAP, COLUMN_RATE, BOLSTER_GAP, BOLSTER_RATE = 2, 3, 4, 5
 
 states.add_to_mass(UNILATERAL, (states.LENGTH, states.VELOCITY) * 2)
