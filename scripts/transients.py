@@ -1,4 +1,4 @@
-"""Both solvers on random transients: python scripts/transients.py [count]; 100 of them take about 10 minutes.
+"""Both solvers on random transients: python scripts/transients.py [count]; 100 of them take 3 minutes of CPU.
 
 Oscillators and suspensions, all laws, effects, and kinds of input. Radau is the reference: every sample of
 the displacement of both must agree to 1e-6 of the largest.

@@ -214,7 +214,7 @@ def test_sentence(verdict, tmp_path):
         (
             "tied",
             {"next_test": {"distance": 29.0}},
-            "no test would reliably distinguish them, the best one is at 24 Hz",
+            "no test would reliably distinguish them, the best one is a test at 24 Hz",
         ),
         (
             "data-insufficient",
@@ -341,6 +341,41 @@ def test_a_recommended_test_says_whether_it_distinguishes_reliably(distance, wor
     (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
     text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
     assert words in text.replace("\u00a0", " ")
+
+
+OTHER_KINDS = {
+    "release": (
+        {"kind": "transient", "motion": "release", "start_mm": 2.1, "duration_s": 4.0},
+        "a release from 2.1 mm would distinguish them",
+        "Release the mass at rest from 2.1 mm and record its motion for 4 s",
+    ),
+    "sweep": (
+        {
+            **{"kind": "transient", "motion": "sweep", "frequency_hz": 1.25, "to_hz": 5.0},
+            **{"amplitude_N": 3.0, "duration_s": 8.0},
+        },
+        "a sine-sweep from 1.25 to 5 Hz with 3 N would distinguish them",
+        "Sweep a sine of 3 N from 1.25 to 5 Hz in 8 s; record input and motion",
+    ),
+    "loop": (
+        {"kind": "loop", "frequency_hz": 0.5, "amplitude_mm": 6.0, "duration_s": 6.0},
+        "the force under a sine of 0.5 Hz and 6 mm would distinguish them",
+        "Impose a sine of 0.5 Hz and 6 mm for 6 s; record displacement and force",
+    ),
+}
+
+
+@pytest.mark.usefixtures("no_figures")
+@pytest.mark.parametrize("kind", OTHER_KINDS)
+def test_a_test_of_another_kind_is_told_as_what_to_do(kind, tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "tied")
+    test, sentence, order = OTHER_KINDS[kind]
+    document["next_test"] = test | {key: document["next_test"][key] for key in ("separates", "distance")}
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    assert plain(report.sentence(tmp_path)).endswith(f"{sentence}.")
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text.replace("\u00a0", " ")
+    assert order in text
+    assert f'kind = "{test["kind"]}"' in text
 
 
 def test_rivals_that_the_next_test_does_not_distinguish_are_named(tmp_path):

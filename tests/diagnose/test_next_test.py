@@ -9,8 +9,9 @@ from tests.diagnose.synthetic import LEANING, drawn, searched
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
+from wedgesweep.diagnose.next_test.offer import SEPARATED, choice
 from wedgesweep.diagnose.steady import next_test, simulation
-from wedgesweep.diagnose.steady.next_test import ACCELERATIONS, FREQUENCIES, SEPARATED, Conditions, _choice
+from wedgesweep.diagnose.steady.next_test import ACCELERATIONS, FREQUENCIES, Conditions, rig_of
 from wedgesweep.solvers.periodic import at_rest
 
 SHAPE = (ACCELERATIONS.size, FREQUENCIES.size)
@@ -28,7 +29,8 @@ def explained(effect, values, std):
 
 def gain(fit, test, factor):
     """Fundamental of the response over the input, at a test whose amplitude is off by a factor."""
-    omega, amplitude = (np.array([each]) for each in (2.0 * np.pi * test.frequency, factor * test.amplitude))
+    omega = np.array([2.0 * np.pi * test.numbers["frequency_hz"]])
+    amplitude = np.array([factor * 1e-3 * test.numbers["amplitude_mm"]])
     data = fit.model.data
     rows = simulation.records(data.model, data.law, fit.model.values(fit.x), omega, amplitude)
     return abs(simulation.respond(rows, at_rest(1), 1).harmonics[0, 0, 0]) / amplitude[0]
@@ -54,7 +56,9 @@ def test_the_next_test_makes_every_suspect_move(suspects):
 
 def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     locking = explained("directional_friction", {"asymmetry": 0.4}, 0.01)
-    assert not next_test._predict(locking, Conditions(np.array([60.0]), np.array([1e-3]))).found.any()
+    assert not next_test._predict(
+        locking, Conditions(np.array([60.0]), np.array([1e-3])), rig_of(locking.model.data)
+    ).found.any()
     assert next_test.recommend([*suspects, locking]) == next_test.recommend(suspects)
     assert next_test.recommend([suspects[0], locking]) is None
 
@@ -68,20 +72,20 @@ def test_the_cheapest_test_is_chosen_that_would_do_with_a_neighbour_s_amplitude(
     distances[0, 0, 0] = FAR  # alone
     distances[0, 3:, 4] = FAR
     distances[0, 5:, 7] = 2.0 * FAR
-    assert _choice(distances.reshape(1, -1)) == np.ravel_multi_index((4, 4), SHAPE)
+    assert choice(distances) == np.ravel_multi_index((4, 4), SHAPE)
 
 
 def test_a_pair_that_nothing_tells_apart_does_not_spoil_the_others():
     distances = np.zeros((2, *SHAPE))
     distances[0, 1:4, 2] = FAR
     distances[1, 6, 9] = 0.5 * SEPARATED
-    assert _choice(distances.reshape(2, -1)) == np.ravel_multi_index((2, 2), SHAPE)
+    assert choice(distances) == np.ravel_multi_index((2, 2), SHAPE)
 
 
 def test_where_none_tells_enough_the_farthest_is_chosen():
     distances = np.full((2, *SHAPE), 0.1)
     distances[:, 5:, 6] = 0.4 * SEPARATED
-    assert _choice(distances.reshape(2, -1)) in np.ravel_multi_index(([6, 7], [6, 6]), SHAPE)
+    assert choice(distances) in np.ravel_multi_index(([6, 7], [6, 6]), SHAPE)
 
 
 def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
@@ -93,8 +97,8 @@ def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     distances = []
     for factor in (1.0, 1e30):
         fits = [replace(fit, covariance=factor * fit.covariance) for fit in found]
-        one, other = (next_test._predict(fit, tests) for fit in fits)
-        weight = next_test._weights(data, [one, other])
+        one, other = (next_test._predict(fit, tests, rig_of(data)) for fit in fits)
+        weight = next_test._weights(rig_of(data), [one, other])
         distances.append(next_test._distances(one, other, weight))
         np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
     usual, undetermined = distances

@@ -5,9 +5,12 @@ import pytest
 
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
 from wedgesweep.diagnose import repeats
-from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, of_noise, of_record
+from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, FROM_SPECTRUM, of_noise, of_record
 from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import MeasuredError, read
+from wedgesweep.report.sampled import NOISE, noise_source
 
 RATE, SIZE, STD = 500.0, 4000, 2e-3
 TIME = np.arange(SIZE) / RATE
@@ -63,3 +66,19 @@ def test_a_repeat_of_nothing_is_told(tmp_path):
     path.write_text(path.read_text() + 'repeat_of = "drop9.csv"\n')
     with pytest.raises(MeasuredError, match="not the file of an earlier test"):
         read(path)
+
+
+def test_the_report_knows_where_any_noise_comes_from():
+    assert set(NOISE) == {FROM_REPEATS, FROM_SPECTRUM, FROM_MOTION}
+    told = noise_source([{"noise_from": FROM_REPEATS}] * 2 + [{"name": "of an older version"}])
+    assert told == NOISE[FROM_REPEATS]
+
+
+def test_jumps_of_dry_friction_are_no_noise_of_an_accelerometer():
+    rng, time = np.random.default_rng(7), np.arange(3000) / 1000.0
+    motion = np.exp(-time) * np.cos(15.0 * time) + 0.2 * np.sign(np.sin(15.0 * time))
+    noise = 0.01 * rng.standard_normal(time.size)
+    assert of_record(motion + noise).std > 1.5 * 0.01
+    assert of_record(continuous(motion + noise)).std == pytest.approx(0.01, rel=0.3)
+    smooth = np.cos(15.0 * time) + noise
+    assert of_record(continuous(smooth)).std == pytest.approx(0.01, rel=0.1)

@@ -65,8 +65,9 @@ def test_verdict_causes_numbers_and_next_test_are_those_of_the_bench(effects, si
     found, expected = (each.numbers(each.finding.best) for each in (rig, bench))
     assert found[cause] == pytest.approx(expected[cause], rel=1e-4)
     assert rig.next.separates == bench.next.separates
-    assert rig.next.frequency * size.time == pytest.approx(bench.next.frequency)
-    assert rig.next.amplitude / size.length == pytest.approx(bench.next.amplitude)
+    mine, its = bench.next.numbers, rig.next.numbers
+    assert its["frequency_hz"] * size.time == pytest.approx(mine["frequency_hz"])
+    assert its["amplitude_mm"] / size.length == pytest.approx(mine["amplitude_mm"])
     assert rig.simulated <= MORE * bench.simulated
 
 

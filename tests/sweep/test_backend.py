@@ -6,12 +6,14 @@ import signal
 import time
 from functools import partial
 
+import numpy as np
 import pytest
 import xarray as xr
 
 from tests import small_sweep
 from tests.command import invoke
 from tests.small_sweep import CASES, CONFIG, assert_same_numbers
+from tests.sweep.test_transient_sweep import HEAD, SWEPT, TAIL
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.sweep import cluster as clusters
 from wedgesweep.sweep import workers as workers_of_a_sweep
@@ -58,6 +60,17 @@ def test_every_backend_gives_the_same_bits(tmp_path, monkeypatch, method):
     for name in ("threads", "dask"):
         assert_same_numbers(xr.load_dataset(f"{name}.nc"), xr.load_dataset("loky.nc"))
     assert {path.name for path in tmp_path.iterdir()} == {"few.toml", "dask.nc", "loky.nc", "threads.nc"}
+
+
+def test_an_input_that_does_not_repeat_goes_to_the_workers(tmp_path, cluster):
+    """Its samples are no part of the records, which hold their address only."""
+    text = HEAD + SWEPT.replace("duration_s = 4.0", "duration_s = 1.0") + TAIL
+    here = small_sweep.sweep(tmp_path, text).run(n_jobs=2)
+    (tmp_path / "small.nc").unlink()
+    there = small_sweep.sweep(tmp_path, text).run(backend=through(cluster))
+    assert (here["status"] == 0).all()
+    assert float(np.abs(here["displacement"]).max()) > 0.0
+    assert_same_numbers(there, here)
 
 
 def test_a_killed_worker_costs_its_chunk_only(tmp_path, expected, cluster):

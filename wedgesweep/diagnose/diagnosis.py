@@ -14,6 +14,8 @@ from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.next_test.offer import NextTest
+from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.renewal import Explained, with_renewed_covariance
@@ -30,7 +32,6 @@ from wedgesweep.diagnose.search import (
 )
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.steady.next_test import NextTest, recommend
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.verdict import Finding, Thresholds
@@ -129,10 +130,8 @@ def diagnose(
         gain = gain if finding.best is not None else None
     progress("accuracy")
     rungs = ladder(search, base, explanations)
-    next_test = None
-    if data.kind == STEADY:
-        progress("next test")
-        next_test = recommend(_undecided(finding, explanations, thresholds))
+    progress("next test")
+    next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
         measurement=measurement,
         data=cast("Data", search.data),

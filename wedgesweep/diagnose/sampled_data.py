@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, Scenario
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Comparison, Evaluation, FitData, Scenario
 
 
 class NoStart(NamedTuple):
@@ -173,6 +173,7 @@ class SampledData(FitData):
 
     def known_values(self, scenarios: Sequence[Scenario], left_out: Iterable[str]) -> list[dict[str, Any]]:
         """Values of scenarios without some effects, which this kind of record cannot show."""
+        left_out = (*left_out, INPUT_GAIN)
         return [
             {name: numbers for name, numbers in each.values.items() if name not in left_out}
             for each in scenarios

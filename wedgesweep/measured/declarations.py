@@ -35,7 +35,7 @@ MIXED = "mixed"
 # Channels of each kind where several kinds share one declaration.
 CHANNELS = {
     STEADY: ("time", "displacement", "velocity", "acceleration", INPUT),
-    TRANSIENT: ("time", "displacement", "velocity", INPUT),
+    TRANSIENT: ("time", "displacement", "velocity", "acceleration", INPUT),
     LOOP: ("time", "displacement", "force"),
 }
 

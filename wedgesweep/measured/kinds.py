@@ -19,9 +19,13 @@ FEWEST = 64
 # Keys of a test under a sine, and of a loop.
 OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpass_hz",)
 OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
+# Responses of a transient, of which it has at least one.
+MOTIONS = ("displacement", "velocity", "acceleration")
+# Their units as they are told.
+SHOWN = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
 # What is compared, and what else a test may have, by kind.
-NEEDED = {"transient": ("displacement",), "loop": ("displacement", "force")}
-OPTIONAL = {"transient": ("velocity", INPUT), "loop": ()}
+NEEDED = {"transient": (), "loop": ("displacement", "force")}
+OPTIONAL = {"transient": (*MOTIONS, INPUT), "loop": ()}
 MEANING = {
     "transient": "a transient is a motion from some start, free or under a recorded input",
     "loop": "a loop is the force under a recorded displacement",
@@ -32,6 +36,10 @@ def column_faults(columns: Mapping[str, Any], kind: str) -> list[str]:
     """Faults of the channels of tests that are not steady, as "key: fault"."""
     needed, known = NEEDED[kind], ("time", *NEEDED[kind], *OPTIONAL[kind])
     missing = [f"{name}: missing; {MEANING[kind]}" for name in needed if name not in columns]
+    if kind == TRANSIENT and not any(name in columns for name in MOTIONS):
+        missing = [f"displacement: missing, and so are velocity and acceleration; {MEANING[kind]}"]
+    if kind == TRANSIENT and "displacement" not in columns and columns.get("velocity", {}).get("derived"):
+        missing.append("velocity.derived: there is no displacement that it was computed from; give that one")
     extra = [f"{name}: not used; {MEANING[kind]}, omit it" for name in columns if name not in known]
     return missing + extra
 
@@ -65,11 +73,11 @@ def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
 
 def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
     """Faults of a transient; without an input the motion must decay."""
-    if test.displacement is None:  # a fault of the columns
+    name, signal = next(iter(test.responses.items()), ("", None))
+    if signal is None:  # a fault of the columns
         return []
     if test.time.size < FEWEST:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a transient"]
-    signal = test.displacement
     if test.input is not None:
         return []
     first, last = (
@@ -77,7 +85,9 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
         for part in (signal[: int(FIRST * signal.size)], signal[-int(LAST * signal.size) :])
     )
     if first < DECAYS * last:
-        told = f"the motion does not decay (it swings by {1e3 * first:.3g} mm, at last {1e3 * last:.3g} mm)"
+        size, unit = SHOWN[name]
+        told = f"it swings by {first / size:.3g} {unit}, at last {last / size:.3g} {unit}"
+        told = f"the motion does not decay ({told})"
         better = f'add the column input if there is one; if it is steady write kind = "steady" ({at}.kind)'
         return [f"{file}: {told}; {better}"]
     return []

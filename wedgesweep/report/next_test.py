@@ -21,14 +21,29 @@ def _recommended(result: DiagnosisResult) -> Markup:
         best = "No test within reach does better."
     else:
         would, best = f"would distinguish {found.told}", "It is the cheapest test that does."
-    place = html.element("strong", phrases.next_test(test))
     rows = [
         [" from ".join(each["separates"]), formatting.number(each["distance"])]
         for each in test.get("pairs", [test])
     ]
     caption = f"Squared distance of the predicted responses over the noise; {enough:g} is enough"
     table = html.table(caption, ("this test would distinguish", "distance"), rows)
-    return html.join([html.paragraph("A test at ", place, f" {would}. {best}"), table])
+    return html.join([_told(result, would, best), table])
+
+
+def _told(result: DiagnosisResult, would: str, best: str) -> Markup:
+    """The test in words: of a steady one its place, of others what to do."""
+    test = result.document["next_test"]
+    kind = test.get("kind", "steady")
+    if kind == "steady":
+        place = phrases.next_test(test).removeprefix("a test at ")
+        return html.paragraph("A test at ", html.element("strong", place), f" {would}. {best}")
+    order = html.element("strong", phrases.instruction(test))
+    written = (
+        ""
+        if result.document.get("kind", "steady") in (kind, "mixed")
+        else f' In measured.toml it has kind = "{kind}".'
+    )
+    return html.paragraph(order, f": this {would}. {best}{written}")
 
 
 NOTHING_TO_MEASURE = {

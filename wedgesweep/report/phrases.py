@@ -174,10 +174,41 @@ def separated(document: Mapping[str, Any]) -> Separated | None:
 
 
 def next_test(test: Mapping[str, Any]) -> str:
-    """Frequency and amplitude of the recommended test."""
-    unit = amplitude_unit(test)
-    amplitude = f"{short(test[f'amplitude_{unit}'], 3)}{NO_BREAK}{unit}"
-    return f"{short(test['frequency_hz'])}{NO_BREAK}Hz and {amplitude}"
+    """The recommended test: a test at 20 Hz and 0.1 mm, a release from 2 mm, a sine-sweep, a loop."""
+    if test.get("motion") == "release":
+        return f"a release from {_size(test, 'start_mm')}"
+    if test.get("motion") == "sweep":
+        return f"a sine-sweep from {_band(test)} with {_amplitude(test)}"
+    name = "the force under a sine of" if test.get("kind") == "loop" else "a test at"
+    return f"{name} {_size(test, 'frequency_hz')} and {_amplitude(test)}"
+
+
+def instruction(test: Mapping[str, Any]) -> str:
+    """What to do for the recommended test, as an order."""
+    if test.get("motion") == "release":
+        seconds = _size(test, "duration_s", 2)
+        return f"Release the mass at rest from {_size(test, 'start_mm')} and record its motion for {seconds}"
+    seconds = _size(test, "duration_s", 2)
+    if test.get("motion") == "sweep":
+        return f"Sweep a sine of {_amplitude(test)} from {_band(test)} in {seconds}; record input and motion"
+    sine = f"a sine of {_size(test, 'frequency_hz')} and {_amplitude(test)}"
+    return f"Impose {sine} for {seconds}; record displacement and force"
+
+
+UNITS = {"hz": "Hz", "mm": "mm", "s": "s", "N": "N"}
+
+
+def _size(test: Mapping[str, Any], key: str, digits: int = 3) -> str:
+    """A number of a test with its unit."""
+    return f"{short(test[key], digits)}{NO_BREAK}{UNITS[key.rpartition('_')[2]]}"
+
+
+def _amplitude(test: Mapping[str, Any]) -> str:
+    return _size(test, f"amplitude_{amplitude_unit(test)}")
+
+
+def _band(test: Mapping[str, Any]) -> str:
+    return f"{short(test['frequency_hz'], 3)} to {_size(test, 'to_hz')}"
 
 
 def amplitude_unit(test: Mapping[str, Any]) -> str:

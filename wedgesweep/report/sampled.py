@@ -1,6 +1,6 @@
 """Measured against simulated samples: forces of loops, free motions in time."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wedgesweep import formatting
@@ -32,7 +32,19 @@ COLUMNS = {
         "start [mm]": "start_mm",
         "start [mm/s]": "start_mm_per_s",
         "noise [mm]": "noise_displacement_mm",
+        "noise [mm/s]": "noise_velocity_mm_per_s",
+        "noise [m/s²]": "noise_acceleration_m_per_s2",
     },
+}
+# What the noise is taken from (``noise_from``), and what that assumes.
+NOISE = {
+    "repeats": "The noise is what differs between repeats of a test, which assumes that the rig did not "
+    "change from one to the next.",
+    "frequencies without motion": "The noise is read where the motion has no frequencies, which assumes that "
+    "it is as smooth a function of frequency where the motion has some.",
+    "what no smooth function of the motion explains": "The noise is what no smooth function of displacement, "
+    "velocity, acceleration and distance from the last reversal explains, which assumes that what is missing "
+    "in the model is such a function; anything else counts as noise.",
 }
 COMPARED = {
     "loop": "The motion is imposed, and the force is compared in {tests} of whole cycles, below the cut-off "
@@ -45,20 +57,33 @@ COMPARED = {
 def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: str) -> Markup:
     """Section with the samples and a table of the tests."""
     kind, order = result.document["kind"], by_misfit(result.data).tolist()
-    head = ["test", "samples", *COLUMNS[kind], *(f"error, {model}" for model in result.models)]
-    rows = [_row(test, kind, result.models) for test in result.document["misfit"]["tests"]]
+    tests = result.document["misfit"]["tests"]
+    # Channels that no test has are left out.
+    columns = {
+        name: key for name, key in COLUMNS[kind].items() if any(each.get(key) is not None for each in tests)
+    }
+    head = ["test", "samples", *columns, *(f"error, {model}" for model in result.models)]
+    rows = [_row(test, list(columns.values()), result.models) for test in tests]
     return html.section(
         place,
         heading,
         html.paragraph(_overall(result, kind)),
+        html.paragraph(noise_source(tests)),
         draw(FIGURES[kind], CAPTIONS[kind], order[:SHOWN]),
         draw("spectrogram", SPECTROGRAM) if spectrogram.possible(result) else Markup(),
         html.table("All tests; errors are rms over that of the response", head, rows),
     )
 
 
-def _row(test: Mapping[str, Any], kind: str, models: tuple[str, ...]) -> list[str]:
-    own = [formatting.short(test[key]) for key in COLUMNS[kind].values()]
+def noise_source(tests: Sequence[Mapping[str, Any]]) -> str:
+    """Where the noise of the tests comes from, and what that assumes."""
+    # Results of older versions do not tell it.
+    sources = dict.fromkeys(each["noise_from"] for each in tests if each.get("noise_from"))
+    return " ".join(NOISE.get(source, f"The noise is taken from {source}.") for source in sources)
+
+
+def _row(test: Mapping[str, Any], keys: Sequence[str], models: tuple[str, ...]) -> list[str]:
+    own = [formatting.short(test.get(key)) for key in keys]
     errors = [formatting.error(test[f"error_{model}"]) for model in models]
     return [test["name"], str(test["samples"]), *own, *errors]
 

@@ -249,6 +249,6 @@ def _next_test(result: DiagnosisResult, rivals: str = "") -> str:
     place, found = phrases.next_test(test), phrases.separated(result.document)
     if found is None:
         rivals = rivals or " from ".join(test["separates"])
-        return f"; no test would reliably distinguish {rivals}, the best one is at {place}"
+        return f"; no test would reliably distinguish {rivals}, the best one is {place}"
     told = rivals if rivals and not found.left else found.told
-    return f"; a test at {place} would distinguish {told}"
+    return f"; {place} would distinguish {told}"

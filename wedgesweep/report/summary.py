@@ -49,7 +49,7 @@ def table(result: DiagnosisResult) -> Markup:
         removed = f"{formatting.percent(gain['excess_removed'])} of the excess over {allowed} is gone"
         rows.append(["gain on held-out tests", Spanning(f"{removed} ({phrases.interval(gain)})")])
     step = next_test.NOTHING_TO_MEASURE[result.verdict]
-    rows.append(["next step", Spanning(step if test is None else f"a test at {phrases.next_test(test)}")])
+    rows.append(["next step", Spanning(step if test is None else phrases.next_test(test))])
     return html.table("Error of the model", head, rows)
 
 

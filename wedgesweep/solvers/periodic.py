@@ -191,25 +191,49 @@ def samples(
     For responses that do not repeat: each case starts at phase 0 from ``states`` (n, S; a row with NaN:
     at rest) and runs ``settle_periods`` before the kept ones. NaN where the case has no answer.
     """
-    n, kept = len(parameters), periods * samples_per_period
-    x, velocity = np.full((n, kept), np.nan), np.full((n, kept), np.nan)
-    state = np.array(states, dtype=float)
-    slowest = float((parameters["velocity_lag"]["time"] * parameters["input"]["omega"]).max()) / (2.0 * pi)
-    # The lag of the velocity channel dies out before the kept samples.
-    before = min(settle_periods, ceil(LAG_TIMES * slowest))
-    room = memory(rtol, samples_per_period, before + periods, energies=False, forces=False)
-    spans = np.array([settle_periods - before, before + periods])
-    for rows, cases in grouped(parameters):
-        _sample_all(prepared(cases), parameters[rows], rows, spans, room, Sampled(x, velocity, state))
-    return x, velocity, state
+    found = sampled(parameters, states, settle_periods, periods, samples_per_period, rtol)
+    return found.x, found.velocity, found.state
 
 
 class Sampled(NamedTuple):
-    """Samples (n, k) of displacement (m) and velocity (m/s), and states (n, S) before and after."""
+    """Samples (n, k) of displacement (m), velocity (m/s) and acceleration (m/s^2; (n, 0) without).
+
+    ``state`` (n, S): before and after.
+    """
 
     x: Any
     velocity: Any
+    acceleration: Any
     state: Any
+
+
+def sampled(
+    parameters: np.ndarray,
+    states: np.ndarray,
+    settle_periods: int,
+    periods: int,
+    samples_per_period: int,
+    rtol: float,
+    acceleration: bool = False,
+) -> Sampled:
+    """Samples as those of ``samples``, and if wanted the acceleration, which has no sensor of its own."""
+    n, kept = len(parameters), periods * samples_per_period
+    found = Sampled(
+        np.full((n, kept), np.nan),
+        np.full((n, kept), np.nan),
+        np.full((n, kept if acceleration else 0), np.nan),
+        np.array(states, dtype=float),
+    )
+    slowest = float((parameters["velocity_lag"]["time"] * parameters["input"]["omega"]).max()) / (2.0 * pi)
+    # The lag of the velocity channel dies out before the kept samples.
+    before = min(settle_periods, ceil(LAG_TIMES * slowest))
+    room = memory(
+        rtol, samples_per_period, before + periods, energies=False, forces=False, acceleration=acceleration
+    )
+    spans = np.array([settle_periods - before, before + periods])
+    for rows, cases in grouped(parameters):
+        _sample_all(prepared(cases), parameters[rows], rows, spans, room, found)
+    return found
 
 
 @compiled
@@ -236,3 +260,5 @@ def _sample_all(cases, parameters, rows, spans, room, out):
             for j in range(out.x.shape[1]):
                 out.x[i, j] = p.displacement_gain.scale * room.x[first + j]
                 out.velocity[i, j] = seen[first + j]
+            for j in range(out.acceleration.shape[1]):
+                out.acceleration[i, j] = room.acceleration[first + j]

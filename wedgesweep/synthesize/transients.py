@@ -23,10 +23,14 @@ FLANK = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Transient:
-    """Displacement (m), velocity (m/s) and input (m or N), shape (n,) each; ``input`` None without one."""
+    """Displacement (m), velocity (m/s), acceleration (m/s^2) and input (m or N), shape (n,) each.
+
+    ``input`` is None without one.
+    """
 
     displacement: np.ndarray
     velocity: np.ndarray
+    acceleration: np.ndarray
     input: np.ndarray | None
 
 
@@ -77,4 +81,4 @@ def transient(
     velocity = lagged(velocity, 1.0 / sampling_hz, lag) if lag > 0.0 else velocity
     gain = effects.get("displacement_gain", {}).get("scale", 1.0)
     recorded = None if given is None else given[: count * FINER : FINER]
-    return Transient(gain * displacement, velocity, recorded)
+    return Transient(gain * displacement, velocity, -samples.acceleration, recorded)

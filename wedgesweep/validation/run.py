@@ -101,9 +101,10 @@ def _run(one: DataSet, out: Path) -> Record:
     spreads = [draft.spread] * len(draft.tests)
     if one.kind == "added":
         original = record_of(one.original, out)
-        if original["next_test"] is None:  # nothing to add: the verdict stands
-            return {**original, "name": one.name, "kind": one.kind}
         added = original["next_test"]
+        # Nothing to add, or a test that these rigs cannot make: the verdict stands.
+        if added is None or added.get("kind", "steady") != "steady":
+            return {**original, "name": one.name, "kind": one.kind}
         draft.tests.append(Test(added["frequency_hz"], added[draft.rig.amplitude_key]))
         spreads.append(ADDED_SPREAD)
     write(directory / DRAFT, asdict(draft))

@@ -141,7 +141,7 @@ def recording(
     if not places.size:
         told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
         raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
-    smooth, clear = low_pass(force), ~_slow(own, low_pass)[places]
+    smooth, clear = low_pass(force), ~slow(own, low_pass)[places]
     compared = smooth[places]
     passed_on = MotionNoise(low_pass, impedance(own, smooth, _sign(model) * mass), noise)
     if differences:
@@ -161,7 +161,7 @@ def _sign(model: Config) -> float:
     return 1.0 if model.system == "oscillator" else -1.0
 
 
-def _slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
+def slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
     """Whether (n,) the mass rests or turns at or near a sample: noise shifts the time of a turn."""
     within = AT_REST * motion.velocity_noise + 0.5 * np.abs(motion.acceleration) / low_pass.rate
     slow = np.abs(motion.velocity) <= within

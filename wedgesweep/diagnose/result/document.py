@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import __version__
-from wedgesweep.config import AmplitudeUnit, Config
+from wedgesweep.config import Config
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
 from wedgesweep.diagnose.ladder import Rated, Rung
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
 from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.steady.next_test import SEPARATED, NextTest
 from wedgesweep.diagnose.verdict import p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
@@ -47,7 +47,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
         "not_testable": hidden,
-        "next_test": _following(found.next_test, data.model.amplitude_unit),
+        "next_test": _following(found.next_test),
         "ladder": [_rung(each) for each in found.ladder],
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
@@ -192,12 +192,13 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
     }
 
 
-def _following(following: NextTest | None, unit: AmplitudeUnit) -> dict[str, Any] | None:
+def _following(following: NextTest | None) -> dict[str, Any] | None:
     if following is None:
         return None
     return {
-        "frequency_hz": following.frequency,
-        unit.key: following.amplitude / unit.factor,
+        "kind": following.kind,
+        **({} if following.motion is None else {"motion": following.motion}),
+        **following.numbers,
         "separates": list(following.separates),
         "distance": following.distance,
         "pairs": [{"separates": list(each.names), "distance": each.distance} for each in following.pairs],

@@ -10,13 +10,14 @@ from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result.estimates import finite
+from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.sweep import labels
 
 # Dimensions, values, unit and meaning of a variable.
 Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
 BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
-CHANNELS, CHANNEL_UNIT = ("displacement", "velocity"), "m or m/s"
+CHANNELS, CHANNEL_UNIT = ("displacement", "velocity", "acceleration"), "m, m/s or m/s^2"
 
 
 def _fits(found: Diagnosis) -> dict[str, Fit]:
@@ -69,11 +70,21 @@ def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
             "start_s": finite(own.starts_at),
             "start_mm": finite(start[0]),
             "start_mm_per_s": finite(start[1]),
-            "noise_displacement_mm": finite(1e3 * own.spectra[0].std),
-            "noise_velocity_mm_per_s": finite(1e3 * own.spectra[1].std) if len(own.spectra) > 1 else None,
+            **_noise(own),
         }
         for own, start in zip(data.releases, starts, strict=True)
     ]
+
+
+def _noise(own: Release) -> dict[str, Any]:
+    """Noise of a sample of each channel; null where it was not recorded."""
+    keys = ("noise_displacement_mm", "noise_velocity_mm_per_s", "noise_acceleration_m_per_s2")
+    std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=False)}
+    sizes = (1e3, 1e3, 1.0)
+    return {
+        key: finite(size * std[order]) if order in std else None
+        for order, (key, size) in enumerate(zip(keys, sizes, strict=True))
+    }
 
 
 def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
@@ -86,7 +97,7 @@ def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
     variables["dof"] = (("test",), data.dof, "1", "degrees of freedom")
     coordinates = {"test": list(data.names), "model": list(_fits(found))}
     if isinstance(data, TransientData):
-        coordinates["channel"] = list(CHANNELS[: len(data.releases[0].channels)])
+        coordinates["channel"] = [CHANNELS[order] for order in _orders(data)]
     return xr.Dataset(
         {
             name: (dims, values, {"units": unit, "long_name": meaning})
@@ -124,6 +135,11 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
             "noise of a compared force",
         ),
     }
+
+
+def _orders(data: TransientData) -> tuple[int, ...]:
+    """Derivatives of the displacement that any test recorded."""
+    return max((own.orders[: len(own.channels)] for own in data.releases), key=len)
 
 
 def _transients(data: TransientData, simulated: np.ndarray) -> Variables:

@@ -79,6 +79,14 @@ class Driven:
             return self.samples
         return self.acting(np.arange(self.samples.size) / self.rate)
 
+    def derivative(self, order: int) -> np.ndarray:
+        """Displacement (m) of the base at the samples, or a derivative of it."""
+        if order == 0:
+            return self.displacement
+        if order == 1:
+            return np.gradient(self.displacement) * self.rate
+        return self.acting(np.arange(self.samples.size) / self.rate, 2)
+
     @cached_property
     def noise_power(self) -> np.ndarray:
         """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""

@@ -4,7 +4,8 @@ import numpy as np
 
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise, of_record
-from wedgesweep.diagnose.transient.driven import Driven, factors
+from wedgesweep.diagnose.transient.driven import QUANTITIES_OF_MOTION, Driven, factors
+from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.windows import FEWEST, Recorded, windows
@@ -15,12 +16,15 @@ def transient_data(measurement: Measurement) -> TransientData:
     """Windows of all tests."""
     tests = measurement.tests
     channels = [_channels(measurement, test) for test in tests]
-    spectra = _spectra(tests, channels)
+    spectra = _spectra(tests, channels, [_names(measurement, test) for test in tests])
     fewest = FEWEST if len(tests) == 1 else 1
     found: list[Release] = []
     for number, test in enumerate(tests):
         model, driven = measurement.model_of(test), _driven(measurement, test)
-        record = Recorded(test.name, channels[number], test.sampling_rate, spectra[number], driven, number)
+        orders = tuple(QUANTITIES_OF_MOTION.index(name) for name in _names(measurement, test))
+        record = Recorded(
+            test.name, channels[number], test.sampling_rate, spectra[number], driven, number, orders
+        )
         record = _as_simulated(record, measurement)
         found += windows(record, model, measurement.law, fewest)
     return TransientData(
@@ -31,11 +35,7 @@ def transient_data(measurement: Measurement) -> TransientData:
 def _names(measurement: Measurement, test: TestRecord) -> list[str]:
     """Channels that are measurements of their own."""
     derived = ("velocity",) if measurement.derived_velocity else ()
-    return [
-        name
-        for name in ("displacement", "velocity")
-        if getattr(test, name) is not None and name not in derived
-    ]
+    return [name for name in QUANTITIES_OF_MOTION if getattr(test, name) is not None and name not in derived]
 
 
 def _channels(measurement: Measurement, test: TestRecord) -> np.ndarray:
@@ -57,16 +57,22 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
     both = [factors(model, of) for of in named]
     channels = record.channels * np.array([factor for factor, _ in both])[:, None]
     shares = tuple(share for _, share in both)
-    if record.driven is not None and any(shares):
-        base = record.driven.displacement
-        for place, (own, share) in enumerate(zip(channels, shares, strict=True)):
-            own += share * (base if place == 0 else np.gradient(base) * record.rate)
+    if record.driven is not None:
+        for own, order, share in zip(channels, record.orders, shares, strict=True):
+            if share:
+                own += share * record.driven.derivative(order)
     return record._replace(channels=channels, shares=shares)
 
 
-def _spectra(tests: tuple[TestRecord, ...], channels: list[np.ndarray]) -> list[list[NoiseSpectrum]]:
+def _spectra(
+    tests: tuple[TestRecord, ...], channels: list[np.ndarray], names: list[list[str]]
+) -> list[list[NoiseSpectrum]]:
     """Noise of each channel of each test: from its repeats, or from the record itself."""
-    found: list[list[NoiseSpectrum]] = [[of_record(each) for each in own] for own in channels]
+    without_jumps = [
+        [continuous(each) if name == "acceleration" else each for name, each in zip(own, record, strict=True)]
+        for own, record in zip(names, channels, strict=True)
+    ]
+    found: list[list[NoiseSpectrum]] = [list(map(of_record, own)) for own in without_jumps]
     for rows in repeats.groups(tests):
         for place in range(len(channels[rows[0]])):
             left = repeats.differences([channels[row][place] for row in rows])

@@ -81,11 +81,16 @@ def disturbed(given: SampledInput, parts: Cosines) -> list[SampledInput]:
     ]
 
 
-def converted(parts: Cosines, shares: Sequence[float], lead: int) -> np.ndarray:
-    """What the cosines (k) add to channels converted with the displacement of the base, (k, C, n)."""
+def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], lead: int) -> np.ndarray:
+    """What the cosines (k) add to channels converted with the motion of the base, (k, C, n).
+
+    ``orders`` (C,): the derivative of the displacement that each channel is.
+    """
     wrong = parts.at(parts.step * np.arange(parts.samples))
-    both = [wrong, np.gradient(wrong, axis=1) / parts.step]
-    return np.stack([share * each for share, each in zip(shares, both, strict=False)], axis=1)[..., lead:]
+    rate = np.gradient(wrong, axis=1) / parts.step
+    motion = wrong, rate, np.gradient(rate, axis=1) / parts.step
+    pairs = zip(shares, orders, strict=False)
+    return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]
 
 
 def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, ...]:

@@ -29,6 +29,10 @@ from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
+# Derivative of the displacement that an accelerometer shows.
+ACCELERATION = 2
+# Zero of an accelerometer over the rms of what it shows, as good as unknown.
+UNKNOWN = 1e3
 # Error of a simulation over the rms of the motion, which counts as noise.
 SIMULATED = 1e-5
 
@@ -51,11 +55,12 @@ class Release:
     """One window.
 
     ``model``: the base model with the numbers of the test; ``step`` (s) between samples; ``begins`` (s):
-    time of its first sample in its record, of the ``number``-th test; ``channels`` (C, n): displacement (m)
-    and, where it was recorded, velocity (m/s), as they are simulated; ``spectra``: their noise, beside that
-    of the input, ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a
-    channel are compared. ``input`` acts in the simulation; ``input_noise``: that of its record, None for no
-    input; ``length`` (m): of the motion; ``guess``: displacement (m) and velocity (m/s) where it starts.
+    time of its first sample in its record, of the ``number``-th test; ``channels`` (C, n): what was recorded
+    of displacement (m), velocity (m/s) and acceleration (m/s^2), as they are simulated; ``orders`` (C,): the
+    derivative of the displacement that each of them is; ``spectra``: their noise, beside that of the input,
+    ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a channel are
+    compared. ``input`` acts in the simulation; ``input_noise``: that of its record, None for no input;
+    ``length`` (m): of the motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
     """
 
     name: str
@@ -73,6 +78,7 @@ class Release:
     input_noise: InputNoise | None
     length: float
     guess: tuple[float, float]
+    orders: tuple[int, ...] = (0, 1)
 
     @cached_property
     def compared(self) -> np.ndarray:
@@ -94,6 +100,11 @@ class Release:
         """Whether an input was recorded."""
         return self.input_noise is not None
 
+    @property
+    def _orders(self) -> tuple[int, ...]:
+        """The derivative of the displacement that each channel is."""
+        return self.orders[: len(self.channels)]
+
     @cached_property
     def _frequency(self) -> np.ndarray:
         """Frequency (K,) of each coefficient in rad a sample."""
@@ -104,7 +115,11 @@ class Release:
         """Variance (C, K) of each coefficient but for what the input adds."""
         least = SIMULATED * self.rms * sqrt(self.spread)
         own = zip(self.spectra, least, strict=True)
-        return np.array([each(self._frequency) + low**2 for each, low in own])
+        found = np.array([each(self._frequency) + low**2 for each, low in own])
+        # The zero of a first channel is fitted; that of an accelerometer beside others tells nothing.
+        zero = (UNKNOWN * self.rms) ** 2 * self.channels.shape[1]
+        found[1:, 0] += zero[1:] * (np.array(self._orders[1:]) == ACCELERATION)
+        return found
 
     @cached_property
     def noise(self) -> np.ndarray:
@@ -130,7 +145,7 @@ class Release:
         for place, each in enumerate(inputs):
             self._drive(rows[place : place + 1], each, gain)
         above, below = np.split(self._motions(rows, np.tile(start, (len(rows), 1)), tolerance), 2)
-        changes = converted(parts, self.input_noise.shares, grid.lead) - 0.5 * (above - below)
+        changes = converted(parts, self.input_noise.shares, self._orders, grid.lead) - 0.5 * (above - below)
         return decorrelated(self._own_variance, np.nan_to_num(changes))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
@@ -184,8 +199,10 @@ class Release:
         states = np.zeros((len(rows), state_count()))
         # Channels are minus what solvers record, which the suspension has as its state.
         states[:, :2] = starts if self.model.system == "oscillator" else -starts
-        x, velocity, _ = periodic.samples(rows, states, 0, 1, self.grid.samples, tolerance)
-        return -np.stack([x, velocity], axis=1)[:, : len(self.channels), self.grid.lead :]
+        orders, samples = self._orders, self.grid.samples
+        run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(orders) == ACCELERATION)
+        motion = run.x, run.velocity, run.acceleration
+        return -np.stack([motion[order] for order in orders], axis=1)[..., self.grid.lead :]
 
     @property
     def _scale(self) -> float:

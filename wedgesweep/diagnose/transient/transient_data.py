@@ -28,8 +28,8 @@ from wedgesweep.natural_units import NaturalUnits
 
 # Effects of a sine as an input, of what a recorded input holds already, or of mechanics for sines only.
 OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip", "lift_off")
-# Effect of a sensor of the velocity.
-OF_VELOCITY = "velocity_lag"
+# Effects of sensors, each of one derivative of the displacement.
+OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Blocks of a record that are left out in turn, at most.
 MOST_BLOCKS = 12
 # Displacement and velocity of the start, over the largest displacement and that a natural time later.
@@ -132,7 +132,7 @@ class TransientData(SampledData):
 
     @cached_property
     def shifted(self) -> np.ndarray:
-        """The first coefficient of the displacement is its mean."""
+        """The first coefficient of the first channel is its mean."""
         found = np.zeros_like(self.recorded)
         found[:, 0] = [np.sqrt(own.channels.shape[1]) for own in self.releases]
         return found
@@ -190,7 +190,8 @@ class TransientData(SampledData):
         return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        hidden = OF_INPUT if any(len(own.channels) > 1 for own in self.releases) else (*OF_INPUT, OF_VELOCITY)
+        shown = {order for own in self.releases for order in own.orders[: len(own.channels)]}
+        hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
         return tuple(name for name in effects if name not in hidden)
 
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:

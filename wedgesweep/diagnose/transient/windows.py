@@ -27,7 +27,8 @@ FEWEST_COMPARED, SMALL = 8, 1e-3
 class Recorded(NamedTuple):
     """A record: channels (C, n) at a rate (Hz), the noise of each, the input; ``number`` of its test.
 
-    ``shares`` (C,): of the base's displacement in each channel.
+    ``orders`` (C,): derivatives of the displacement that were recorded; ``shares`` (C,): of the base's motion
+    in each channel, which was added to what was recorded.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Recorded(NamedTuple):
     spectra: Sequence[NoiseSpectrum]
     driven: Driven | None = None
     number: int = 0
+    orders: tuple[int, ...] = (0, 1)
     shares: tuple[float, ...] = ()
 
 
@@ -54,12 +56,13 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     passed_on = _passed_on(record)
     record = record._replace(channels=record.channels[:, skipped : record.channels.shape[1] - skipped])
     channels = record.channels
-    rest, length = _extent(channels[0])
     period, top = _period(record, model), highest_compared(record, model)
+    displacement = _displacement(record, 2.0 * pi / period)
+    rest, length = _extent(displacement)
     total = channels.shape[1] / period
     count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
     size = channels.shape[1] // count
-    smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(channels[0]) - rest
+    smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
     acting = None if record.driven is None else record.driven.acting
     found = []
@@ -84,11 +87,24 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 grid=grid,
                 input=nothing(span) if acting is None else at(acting, (skipped + start) / rate),
                 input_noise=record.driven.input_noise(record.shares) if record.driven else None,
-                length=max(float(np.abs(channels[0, start : first + size] - rest).max()), SMALL * length),
+                length=max(float(np.abs(displacement[start : first + size] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),
+                orders=record.orders[: len(own)],
             )
         )
     return found
+
+
+def _displacement(record: Recorded, omega: float) -> np.ndarray:
+    """Displacement (n,), roughly where none was recorded: that of a spring that accelerates the mass.
+
+    ``omega``: natural frequency in rad a sample.
+    """
+    if record.orders[0] == 0:
+        return record.channels[0]
+    last = record.channels[-1] / record.rate ** record.orders[len(record.channels) - 1]
+    acceleration = last if record.orders[len(record.channels) - 1] > 1 else np.gradient(last)
+    return -acceleration / omega**2
 
 
 def _extent(displacement: np.ndarray) -> tuple[float, float]:

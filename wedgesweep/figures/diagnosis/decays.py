@@ -20,6 +20,12 @@ DESCRIPTION = "motion in time and the size of its swings, measured and simulated
 SWINGS = 40
 # Swings below so many standard deviations of the noise are not drawn.
 CLEAR = 3.0
+# Units of the first channel, and what turns SI into them.
+UNITS = {"displacement": ("mm", style.MM), "velocity": ("mm/s", style.MM), "acceleration": ("m/s²", 1.0)}
+
+
+def _unit(result: DiagnosisResult) -> tuple[str, float]:
+    return UNITS[str(result.data["channel"].values[0])]
 
 
 def swings(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -31,12 +37,12 @@ def swings(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _signals(result: DiagnosisResult, test: int) -> dict[str, np.ndarray]:
-    """Times (s) and displacements (mm) of the measurement and of each model, as far as there are any."""
+    """Times (s) and motions of the measurement and of each model, as far as there are any; see UNITS."""
     data = result.data.isel(test=test, channel=0)
     there = np.isfinite(data["measured"].values)
     found = {model: data["simulated"].sel(model=model).values for model in result.models}
     found["measured"] = data["measured"].values
-    motions = {name: each[there] * style.MM for name, each in found.items()}
+    motions = {name: each[there] * _unit(result)[1] for name, each in found.items()}
     return {"time": data["time"].values[there], **motions}
 
 
@@ -85,7 +91,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     cut = False
     for test, (motion, sizes, left) in made:
         signals = _signals(result, test)
-        noise, end = float(result.data["sample_noise"].values[test, 0]) * style.MM, _end(signals)
+        noise, end = float(result.data["sample_noise"].values[test, 0]) * _unit(result)[1], _end(signals)
         cut |= end < signals["time"][-1]
         _draw_motion(motion, result, signals, end)
         _draw_swings(sizes, result, signals, noise)
@@ -93,7 +99,8 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
         row = result.document["misfit"]["tests"][test]
         errors = " → ".join(formatting.error(row[f"error_{model}"]) for model in result.models)
         motion.set_title(f"{selection.label(result.data, test)}\nerror {errors}", fontsize=8.5)
-    made.label_sides("displacement [mm]", "swings [mm]", "left [mm]")
+    name, (unit, _) = str(result.data["channel"].values[0]), _unit(result)
+    made.label_sides(f"{name} [{unit}]", f"swings [{unit}]", f"left [{unit}]")
     marks.legend(made, result, dots=False)
     first = f" (first {SWINGS} swings)" if cut else ""
     made.title(

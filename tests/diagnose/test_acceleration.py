@@ -1,0 +1,98 @@
+"""Transients whose response is an acceleration, made by Radau: free and driven, both systems."""
+
+import numpy as np
+import pytest
+
+from tests.diagnose.test_transients import MEASURED, OSCILLATOR, WEDGE
+from wedgesweep import api
+from wedgesweep.config import parse
+from wedgesweep.effects import merge
+from wedgesweep.measured import MeasuredError, read
+from wedgesweep.synthesize.plan import PlannedTest
+from wedgesweep.synthesize.transients import transient
+
+# Rig, hidden effect, travel (mm), sampling rate (Hz), noise (m/s^2); then releases over the travel.
+RIGS = {
+    "oscillator": (OSCILLATOR, {"viscous_damping": {"coefficient": 2.0}}, 12.0, 500.0, 0.01),
+    "wedge": (WEDGE, {"friction_level": {"scale": 1.2}}, 1.0, 1500.0, 0.02),
+}
+RELEASES, SECONDS = (1.0, -0.7, 0.5), 40.0
+CANDIDATES = ["viscous_damping", "friction_level", "bolster_stiffness"]
+CHANNEL = 'acceleration = {{ column = "a", unit = "m/s^2"{} }}\n'
+
+
+def made(rig, test, rate, effects):
+    config = parse(rig, "model")
+    random = np.random.default_rng(2)
+    return transient(config, "coulomb", merge(config.effects, effects), test, rate, random)
+
+
+def write(folder, rig, tables, columns):
+    """Files of tests; returns the path of measured.toml."""
+    (folder / "model.toml").write_text(rig)
+    text = MEASURED.replace('displacement = { column = "x", unit = "mm" }\n', columns)
+    for i, table in enumerate(tables):
+        header = ",".join(("t", "a", "u")[: len(table)])
+        np.savetxt(folder / f"t{i}.csv", np.column_stack(table), "%.12g", ",", header=header, comments="")
+        text += f'[[measurement.test]]\nfile = "t{i}.csv"\nkind = "transient"\n'
+    (folder / "measured.toml").write_text(text)
+    return folder / "measured.toml"
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_path, name):
+    rig, effects, travel, rate, noise = RIGS[name]
+    rng, tables = np.random.default_rng(1), []
+    for share in RELEASES:
+        seconds = SECONDS * 0.05 * (500.0 / rate)
+        test = PlannedTest(0.0, 0.0, "mm", 0.0, True, "transient", "release", seconds, None, share * travel)
+        a = made(rig, test, rate, effects).acceleration
+        # An accelerometer that does not stand upright shows a share of gravity.
+        tables.append([np.arange(a.size) / rate, a + 0.3 + noise * rng.standard_normal(a.size)])
+    path = write(tmp_path, rig, tables, CHANNEL.format(""))
+    found = api.diagnose_measurement(read(path), effects=CANDIDATES, n_jobs=2)
+    assert [each["effect"] for each in found.causes] == list(effects)
+    (numbers,) = (each["parameters"] for each in found.causes)
+    (estimate,), (true,) = numbers.values(), next(iter(effects.values())).values()
+    assert estimate["value"] == pytest.approx(true, rel=0.03)
+    assert list(found.data["channel"].values) == ["acceleration"]
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path, name):
+    """Where mass and base each carry an accelerometer."""
+    rig, effects, travel, rate, noise = RIGS[name]
+    natural = 1.0 / (2.0 * np.pi * parse(rig, "model").natural_units(1e-3 * travel).time)
+    test = PlannedTest(
+        0.6 * natural, 0.2 * travel, "mm", 0.0, True, "transient", "sweep", 20.0 / natural, 1.8 * natural
+    )
+    run = made(rig, test, rate, effects)
+    time = np.arange(run.input.size) / rate
+    turns = 0.6 * natural * time + 1.2 * natural * time**2 / (40.0 / natural)
+    rate_of = 2.0 * np.pi * (0.6 * natural + 1.2 * natural * time / (20.0 / natural))
+    bend = 2.0 * np.pi * 1.2 * natural / (20.0 / natural)
+    base = 0.2e-3 * travel * (bend * np.cos(2.0 * np.pi * turns) - rate_of**2 * np.sin(2.0 * np.pi * turns))
+    rng = np.random.default_rng(3)
+    # The suspension's motion is that of the side frame less that of the bolster.
+    absolute = run.acceleration + base if "oscillator" in rig else base - run.acceleration
+    u = base + 1e-3 * base.std() * rng.standard_normal(time.size)
+    table = [time, absolute + noise * rng.standard_normal(time.size), u]
+    columns = CHANNEL.format(', of = "absolute"')
+    columns += 'input = { column = "u", unit = "m/s^2", quantity = "acceleration" }\n'
+    found = api.diagnose_measurement(
+        read(write(tmp_path, rig, [table], columns)), effects=CANDIDATES, n_jobs=2
+    )
+    assert [each["effect"] for each in found.causes] == list(effects)
+
+
+def test_a_transient_needs_a_response(tmp_path):
+    time = np.arange(200.0) / 100.0
+    path = write(tmp_path, OSCILLATOR, [[time, np.exp(-time) * np.cos(9.0 * time)]], "")
+    with pytest.raises(MeasuredError, match="displacement: missing, and so are velocity and acceleration"):
+        read(path)
+    written = path.read_text().replace("[[meas", CHANNEL.format("") + "[[meas")
+    path.write_text(written)
+    assert read(path).tests[0].displacement is None
+    path = write(tmp_path, OSCILLATOR, [[time, np.cos(31.4 * time)]], CHANNEL.format(""))
+    with pytest.raises(MeasuredError, match=r"does not decay \(it swings by 2 m/s"):
+        read(path)

@@ -1,0 +1,128 @@
+"""Distances of predictions of tests that nobody made, as data of a fit in which nothing was measured."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep.diagnose.fit_data import Evaluation, Point
+from wedgesweep.diagnose.jacobian import jacobian
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance
+from wedgesweep.diagnose.sampled_data import SampledData
+
+# A mass whose motion has less than this power over that of its noise sticks: there is nothing to fit.
+MOVES = 10.0
+# Gauss-Newton steps of a test that is looked at closely.
+STEPS = 4
+# Standard deviations of the noise that a free nuisance parameter may take up.
+FREE = 1e4
+
+
+class Design(NamedTuple):
+    """Tests to choose from: ``data`` with A B tests, and the ``numbers`` of each."""
+
+    kind: str
+    motion: str | None
+    data: SampledData
+    numbers: Sequence[Mapping[str, float]]
+    shape: tuple[int, int]
+
+
+class _Moved(NamedTuple):
+    """Parameters (k + u,) in standard deviations off the fit, and nuisance parameters (N,) off the start."""
+
+    parameters: np.ndarray
+    nuisances: np.ndarray
+
+
+class _Prediction(NamedTuple):
+    """An evaluation, and its changes (T, m, j) by one standard deviation of everything that is uncertain.
+
+    ``spread``: by parameters; ``adapted``: by the nuisance parameters of a test, with their standard
+    deviations ``std`` (T, L). ``moves`` (T,): whether there is a motion that shows.
+    """
+
+    evaluation: Evaluation
+    spread: np.ndarray
+    adapted: np.ndarray
+    std: np.ndarray
+    moves: np.ndarray
+
+
+def offered(design: Design, fits: Sequence[Fit]) -> Offer:
+    """What the tests of a design separate."""
+    predicted = [(fit, _predicted(fit, design.data)) for fit in fits]
+    predicted = [each for each in predicted if each[1].evaluation.found_tests.mean() >= PREDICTED]
+    pairs = combinations([each for _, each in predicted], 2)
+    distances = [_distances(design.data, *pair).reshape(design.shape) for pair in pairs]
+    kept = [fit for fit, _ in predicted]
+
+    def adapted(test: int) -> np.ndarray:
+        own = design.data.subset(np.array([test]))
+        return np.array([_adapted(own, *pair) for pair in combinations(kept, 2)])
+
+    return Offer(design.kind, design.motion, kept, np.array(distances), design.numbers, adapted)
+
+
+def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Prediction:
+    model, root = replace(fit.model, data=data), covariance_root(fit)
+    point = Point(fit.x, *data.start())
+    if moved is not None:
+        x = np.clip(point.x + root @ moved.parameters, model.low, model.high)
+        point = replace(point, x=x).moved(np.zeros(x.size), moved.nuisances[None])
+    here = model.evaluate(point)
+    by_parameter, by_nuisance = jacobian(model, here)
+    std = np.full((data.tests, by_nuisance.shape[2]), np.inf)
+    stated = data.nuisance_std
+    std[:, data.eliminated : data.eliminated + stated.shape[1]] = stated
+    size = np.linalg.norm(by_nuisance, axis=1)
+    std = np.where(np.isinf(std), FREE / np.maximum(size, 1e-300), std)
+    moves = replace(data, resampled=here.response).power > MOVES * data.observations  # type: ignore[type-var]
+    spread, adapted = by_parameter @ root, by_nuisance * std[:, None]
+    return _Prediction(here, spread, adapted, std, moves & here.found_tests)
+
+
+def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
+    """Squared distance of two predictions of a single test, by Gauss-Newton steps.
+
+    Derivatives alone say too much where predictions are far from linear in what is uncertain.
+    """
+    fixed = np.zeros(data.start()[0].shape[1])
+    first, second = (_Moved(np.zeros(fit.x.size), fixed) for fit in (one, other))
+    found = np.inf
+    for _ in range(STEPS):
+        mine, its = _predicted(one, data, first), _predicted(other, data, second)
+        if not (mine.moves & its.moves).all():
+            break
+        std = its.std[0]
+        spent = np.r_[first.parameters, second.parameters, np.zeros(data.eliminated)]
+        spent = np.r_[spent, second.nuisances / std[data.eliminated :]]
+        gap = data.response_change(mine.evaluation, its.evaluation)[0]
+        # Derivatives are those of residuals, which fall as responses rise.
+        columns = np.concatenate([mine.spread, -its.spread, -its.adapted], axis=2)[0]
+        zero = its.adapted[0, :, : data.eliminated]
+        left = gap - zero @ np.linalg.lstsq(zero, gap, rcond=None)[0]
+        found = min(found, float(left @ left + spent @ spent))
+        matrix = np.concatenate([columns, np.eye(spent.size)])
+        step = np.linalg.lstsq(matrix, -np.concatenate([gap, spent]), rcond=None)[0]
+        k, both = one.x.size, one.x.size + other.x.size
+        first = first._replace(parameters=first.parameters + step[:k])
+        nuisances = second.nuisances + (step[both:] * std)[data.eliminated :]
+        second = _Moved(second.parameters + step[k:both], nuisances)
+    return found
+
+
+def _distances(data: SampledData, one: _Prediction, other: _Prediction) -> np.ndarray:
+    """Squared distances (T,), 0 where a prediction does not exist or a mass sticks.
+
+    Of the two, one is what happens; the other adapts its start, and whatever else is unknown of a test.
+    """
+    gap = data.response_change(one.evaluation, other.evaluation)
+    columns = np.concatenate([one.spread, other.spread, other.adapted], axis=2)
+    both = one.moves & other.moves
+    return np.array(
+        [least_distance(*each) if ok else 0.0 for *each, ok in zip(gap, columns, both, strict=True)]
+    )

@@ -1,0 +1,137 @@
+"""Imposed sines to choose from: the force is measured."""
+
+from dataclasses import replace
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep import systems
+from wedgesweep.diagnose.fit_parameters import Values
+from wedgesweep.diagnose.loop.force_noise import MotionNoise
+from wedgesweep.diagnose.loop.loop_data import LoopData
+from wedgesweep.diagnose.loop.recording import Recording, slow
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.next_test.designs import Design
+from wedgesweep.diagnose.next_test.sensors import Sensors
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.smoothing import WIDER, LowPass, Motion, highest_cutoff
+from wedgesweep.measured.declarations import LOOP
+
+# Amplitudes over the largest one measured; frequencies over those measured, or over the natural frequency.
+SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0])
+FREQUENCIES, OF_NATURAL = np.array([0.25, 0.5, 1.0, 2.0, 4.0]), np.array([0.1, 0.2, 0.4, 0.8])
+# Highest frequency over the cut-off.
+HIGHEST = 0.1
+# Highest number of samples of a cycle, beyond which a frequency is too low to be of use.
+LONGEST = 40_000
+# Cycles, and numbers that stand for all forces that are compared of them.
+CYCLES, COMPARED = 3.0, 240
+
+
+class _Machine(NamedTuple):
+    """How forces are compared.
+
+    ``variance`` (N^2) of a compared force beside others of some ``rms`` (N); without a measured loop, where
+    noise is a share of any force, beside others of unit rms, and ``rms`` is None. ``impedance``: what turns
+    noise of the motion into force.
+    """
+
+    low_pass: LowPass
+    variance: float
+    rms: float | None
+    impedance: tuple[float, float, float]
+
+    def noise(self, rms: float) -> float:
+        """Variance of a compared force beside others of some rms."""
+        return self.variance * (rms**2 if self.rms is None else max(1.0, rms / self.rms) ** 2)
+
+
+def loops(best: Fit, known: Sensors, measured: LoopData | None) -> Design:
+    """Sines on a grid of frequencies and amplitudes, under the noise of measured loops if there are any."""
+    machine = _unmeasured(best, known) if measured is None else _measured(measured)
+    frequencies = _frequencies(known, measured, machine.low_pass)
+    amplitude, frequency = (
+        each.ravel() for each in np.meshgrid(SIZES * known.travel, frequencies, indexing="ij")
+    )
+    values = best.model.values(best.x)
+    tests = [_recording(known, machine, values, *each) for each in zip(amplitude, frequency, strict=True)]
+    own = best.model.data
+    chosen = tuple((i, 0) for i in range(len(tests)))
+    data = LoopData(tuple(tests), chosen, dict(own.uncertain), own.model_error)
+    numbers = [
+        {"frequency_hz": f, "amplitude_mm": 1e3 * a, "duration_s": CYCLES / f}
+        for a, f in zip(amplitude, frequency, strict=True)
+    ]
+    return Design(LOOP, None, data, numbers, (SIZES.size, frequencies.size))
+
+
+def _frequencies(known: Sensors, measured: LoopData | None, low_pass: LowPass) -> np.ndarray:
+    """Frequencies (Hz) whose loops the low-pass leaves as they are."""
+    asked = OF_NATURAL * known.omega / (2.0 * pi)
+    if measured is not None:
+        fastest = [own.motion for own in measured.recordings]
+        speed = max(float(np.abs(each.velocity).max()) for each in fastest)
+        asked = FREQUENCIES * speed / (2.0 * pi * known.travel)
+    possible = asked[(asked <= HIGHEST * low_pass.cutoff) & (asked >= known.rate / LONGEST)]
+    return possible if possible.size else asked[:1]
+
+
+def _measured(data: LoopData) -> _Machine:
+    """Forces as those of the tests at hand, of which the one with the most noise counts."""
+    own = max(data.recordings, key=lambda each: each.noise)
+    variance = float(own.spectrum(np.zeros(1))[0]) + own.least
+    return _Machine(own.low_pass, variance, float(own.force.std()), own.passed_on.impedance)
+
+
+def _unmeasured(best: Fit, known: Sensors) -> _Machine:
+    """Forces that are recorded with as large a share of noise as displacements are."""
+    mass, std = _mass(best), known.spectra[0].std
+    force = mass * known.omega**2 * float(known.rms[0])
+    low_pass = LowPass(highest_cutoff(std, force, mass, known.rate), known.rate)
+    return _Machine(low_pass, low_pass.noise(known.share) ** 2, None, (0.0, 0.0, mass))
+
+
+def _mass(best: Fit) -> float:
+    model = best.model.data.model
+    return float(systems.moving_mass(model.record_with(model.effects, best.model.data.law))[0])
+
+
+def _recording(
+    known: Sensors, machine: _Machine, values: Values, amplitude: float, frequency: float
+) -> Recording:
+    """A loop that was not recorded; its force is the one under the values of the best explanation."""
+    low_pass, std = machine.low_pass, known.spectra[0].std
+    wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
+    ends, omega = low_pass.settling, 2.0 * pi * frequency
+    time = np.arange(round(CYCLES / frequency * known.rate) + 2 * ends) / known.rate
+    motion = Motion(
+        amplitude * np.sin(omega * time),
+        amplitude * omega * np.cos(omega * time),
+        -amplitude * omega**2 * np.sin(omega * time),
+        wide.noise(std, 1),
+        low_pass.noise(std, 2),
+    )
+    step = max(low_pass.stride, (time.size - 2 * ends) // COMPARED)
+    places = np.arange(ends, time.size - ends, step)
+    nothing = np.zeros(places.size)
+    empty = Recording(
+        name="",
+        model=known.model,
+        law=known.law,
+        low_pass=low_pass,
+        motion=motion,
+        places=places,
+        force=nothing,
+        spectrum=NoiseSpectrum(0.0, 0.0, 0.0),
+        passed_on=MotionNoise(low_pass, machine.impedance, 0.0),
+        least=0.0,
+        known=~slow(motion, low_pass)[places],
+        blocks=(slice(0, places.size),),
+    )
+    force = np.nan_to_num(empty.simulated([dict(values)], np.zeros((1, 1)))[0])
+    rms = float(force[empty.known].std()) if empty.known.any() else 0.0
+    # Each compared number stands for all those between it and the next.
+    variance = machine.noise(rms) * low_pass.stride / step
+    variance += float(MotionNoise(low_pass, machine.impedance, std).covariance(np.zeros(1, int))[0])
+    return replace(empty, force=force, spectrum=NoiseSpectrum(0.0, 0.0, variance), least=1e-6 * variance)

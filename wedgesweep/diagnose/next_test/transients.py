@@ -1,0 +1,107 @@
+"""Releases from a displacement, and sine-sweeps of the input, to choose from."""
+
+from dataclasses import replace
+from math import ceil, pi
+
+import numpy as np
+
+from wedgesweep.diagnose.fit_data import Point
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.next_test.designs import Design
+from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
+from wedgesweep.diagnose.transient.driven import nothing
+from wedgesweep.diagnose.transient.input_noise import InputNoise
+from wedgesweep.diagnose.transient.release import Grid, Release
+from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.diagnose.transient.windows import FEWEST_COMPARED, HARMONICS
+from wedgesweep.measured.declarations import TRANSIENT
+from wedgesweep.sampled_input import from_samples
+
+RELEASE, SWEEP = "release", "sweep"
+# Sizes of the tests over what was measured.
+SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8])
+# Amplitude of a sweep over the travel where no input was recorded.
+GENTLE = 0.1
+# Length of a release in natural periods; of a sweep, and its ends over the natural frequency.
+RELEASED, SWEPT, LOW, HIGH = 10.0, 20.0, 0.5, 2.0
+# Samples of a sweep in a period of its highest frequency, at least.
+FINE = 32
+
+
+def releases(best: Fit, known: Sensors) -> Design:
+    """Releases without velocity; the best explanation tells how much noise there is beside the motion."""
+    starts, duration = SIZES * known.travel, RELEASED * 2.0 * pi / known.omega
+    tests = tuple(_window(known, start, duration) for start in starts)
+    numbers = [{"start_mm": 1e3 * start, "duration_s": duration} for start in starts]
+    return Design(TRANSIENT, RELEASE, _data(best, known, tests), numbers, (SIZES.size, 1))
+
+
+def sweeps(best: Fit, known: Sensors) -> Design:
+    """Sweeps through the resonance from rest, of constant amplitude."""
+    unit, natural = known.model.amplitude_unit, known.omega / (2.0 * pi)
+    low, high, duration = LOW * natural, HIGH * natural, SWEPT / natural
+    sizes = SIZES * (known.drive or GENTLE * known.travel)
+    if known.model.forced:
+        sizes = sizes * known.model.natural_units(known.travel).mass * known.omega**2
+    count = max(ceil(known.rate * duration), ceil(FINE * high * duration))
+    time = np.linspace(0.0, duration, count + 1)
+    shape = np.sin(2.0 * pi * (low * time + (high - low) * time**2 / (2.0 * duration)))
+    quantity = "force" if known.model.forced else "displacement"
+    tests = []
+    for size in sizes:
+        given = from_samples(size * shape, duration / count, quantity, fastest=2.0 * pi * high)
+        power = np.full(2, (known.share * size) ** 2 / 2.0)
+        noise = InputNoise(power, 0, 2.0 * pi * high / known.rate, (0.0,) * len(known.spectra))
+        tests.append(
+            replace(_window(known, known.travel, duration), input=given, input_noise=noise, guess=(0.0, 0.0))
+        )
+    numbers = [
+        {"frequency_hz": low, "to_hz": high, unit.key: size / unit.factor, "duration_s": duration}
+        for size in sizes
+    ]
+    return Design(TRANSIENT, SWEEP, _data(best, known, tuple(tests)), numbers, (SIZES.size, 1))
+
+
+def _window(known: Sensors, start: float, duration: float) -> Release:
+    """A release that was not recorded."""
+    count = round(known.rate * duration)
+    highest = HARMONICS * known.omega / known.rate
+    return Release(
+        name="",
+        model=known.model,
+        law=known.law,
+        step=1.0 / known.rate,
+        begins=0.0,
+        number=0,
+        channels=np.zeros((len(known.spectra), count)),
+        spectra=known.spectra,
+        passed_on=np.zeros((len(known.spectra), 2)),
+        coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
+        grid=Grid(0, count, known.omega),
+        input=nothing(count / known.rate),
+        input_noise=None,
+        length=start,
+        guess=(start, 0.0),
+    )
+
+
+def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientData:
+    """The tests as if the best explanation were measured, with the noise that sensors would have."""
+    own = best.model.data
+    data = TransientData(tests, dict(own.uncertain), own.model_error, getattr(own, "gain_std", 0.0))
+    nuisance, warm = data.start()
+    found = replace(best.model, data=data).evaluate(Point(best.x, nuisance, warm))
+    return replace(
+        data,
+        releases=tuple(_filled(known, each, row) for each, row in zip(tests, found.response, strict=True)),
+    )
+
+
+def _filled(known: Sensors, own: Release, response: np.ndarray) -> Release:
+    shape = len(own.channels), own.coefficients
+    channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
+    rms = channels.std(axis=1)
+    spectra = tuple(scaled(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
+    # A recorded input has noise as well: as large a share as the response has.
+    passed_on = np.array([each.std**2 for each in spectra])[:, None] * np.full((1, 2), float(own.driven))
+    return replace(own, channels=channels, spectra=spectra, passed_on=passed_on)
