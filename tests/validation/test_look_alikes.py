@@ -1,0 +1,61 @@
+"""Recordings like those that people have, of an independent simulator: right causes, and no false friction."""
+
+import look_alikes
+import pytest
+
+from wedgesweep.effects import EFFECTS
+
+OF_FRICTION = [name for name, each in EFFECTS.items() if each.family == "friction-law"]
+FRICTION = {"guide_friction", "friction_level", *OF_FRICTION}
+NAMED = {
+    "stiffening, random force": {"cubic_stiffness"},
+    "stiffening, nine samples a period": {"cubic_stiffness"},
+    "drag, random force": {"quadratic_drag"},
+    "pendulum from 10 deg": {"viscous_damping", "cubic_stiffness"},
+    "spring with play": {"backlash"},
+    "spring that stiffens": {"cubic_stiffness"},
+}
+NOTHING = ("linear, random force", "damper")
+# What the candidates only come close to: the best single effect, and the best pair if there is one.
+CLOSE = {
+    "pendulum from 60 deg": [["cubic_stiffness"], ["cubic_stiffness", "viscous_damping"]],
+    "pendulum with drag": [["cubic_stiffness"], ["cubic_stiffness", "quadratic_drag"]],
+    "pendulum with dry friction": [["cubic_stiffness"], ["cubic_stiffness", "guide_friction"]],
+    "damper that differs by direction": [["directional_damping"]],
+    "damper with play of 1 mm": [["presliding"]],
+}
+
+
+def found_in(name):
+    return look_alikes.diagnosed(look_alikes.MADE[name]())
+
+
+def test_no_look_alike_is_left_out():
+    assert {*NAMED, *NOTHING, *CLOSE} == set(look_alikes.MADE)
+
+
+def test_loops_of_a_damper_as_it_is_modelled():
+    assert found_in("damper").verdict == "nothing-missing"
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize("name", NAMED)
+def test_the_cause_is_named(name):
+    found = found_in(name)
+    causes = {cause["effect"] for cause in found.causes}
+    assert (found.verdict, causes) in (("named", NAMED[name]), ("consistent-with", NAMED[name]))
+    assert not causes & FRICTION
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize("name", CLOSE)
+def test_nothing_is_named_where_candidates_only_come_close(name):
+    found = found_in(name)
+    assert (found.verdict, found.causes) == ("none-of-mine", [])
+    best = [sorted(rung["effects"]) for rung in found.document["ladder"][1:]]
+    assert best[: len(CLOSE[name])] == CLOSE[name]
+
+
+@pytest.mark.acceptance
+def test_a_linear_oscillator_under_a_random_force():
+    assert found_in("linear, random force").verdict == "nothing-missing"
