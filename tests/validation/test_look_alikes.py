@@ -1,4 +1,4 @@
-"""Recordings like those that people have, of an independent simulator: right causes, and no false friction."""
+"""Recordings like those that people have, by an independent simulator: right causes, no false friction."""
 
 import look_alikes
 import pytest
