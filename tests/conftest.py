@@ -12,7 +12,6 @@ os.environ.update(dict.fromkeys(THREADS, "1"))
 # processes end together.
 FIRST = (
     "physics/test_unilateral.py",
-    "validation/test_examples.py",
     "physics/test_agreement.py",
     "diagnose/test_driven.py",
     "physics/test_transients.py",
@@ -24,7 +23,6 @@ FIRST = (
     "test_cli.py",
     "sweep/test_run.py",
     "physics/test_oscillator_effects.py",
-    "validation/test_hard_examples.py",
     "validation/test_scale.py",
     "validation/test_real_frame.py",
     "validation/test_planted_effects.py",

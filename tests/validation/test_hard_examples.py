@@ -6,23 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from tests import marks
 from wedgesweep import api
 
 FOLDER = Path(__file__).parents[3] / "shared" / "hard-examples"
 CAUSES = {"imperfect-1": "guide_friction", "imperfect-2": "fixture_resonance"}
-
-FEW = ["guide_friction", "fixture_resonance", "viscous_damping"]
-
-
-@pytest.fixture(scope="module", params=marks.few_or_all(FEW))
-def candidates(request):
-    """Names of the effects that may be missing; None: all."""
-    return request.param
+pytestmark = pytest.mark.acceptance
 
 
 @pytest.fixture(scope="module", params=CAUSES)
-def tolerant(request, candidates, tmp_path_factory):
+def tolerant(request, tmp_path_factory):
     """Cause and diagnosis of a bench with a model error of 2 %."""
     source = FOLDER / request.param
     if not source.is_dir():
@@ -31,7 +23,7 @@ def tolerant(request, candidates, tmp_path_factory):
     shutil.copytree(source, copy)
     file = copy / "measured.toml"
     file.write_text(file.read_text().replace("[measurement]\n", "[measurement]\nmodel_error = 0.02\n", 1))
-    found = api.diagnose_measurement(api.read_measurement(file), effects=candidates, n_jobs=2)
+    found = api.diagnose_measurement(api.read_measurement(file), n_jobs=2)
     return CAUSES[request.param], found.document
 
 
