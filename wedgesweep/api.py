@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from wedgesweep import config as configs
 from wedgesweep import figures, measured
-from wedgesweep.config import Config
+from wedgesweep.config import Config, variants
 from wedgesweep.config.keys import hint
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError
@@ -107,7 +107,7 @@ def simulate_case(
     >>> case = ws.simulate_case(config, law="coulomb", beta=0.8, amplitude_mm=1.0)  # doctest: +SKIP
     >>> case["amplitude_ratio"].item()  # doctest: +SKIP
     """
-    single = config.single_case(amplitude_mm, beta, frequency_hz, law, amplitude_N)
+    single = variants.single_case(config, amplitude_mm, beta, frequency_hz, law, amplitude_N)
     return Sweep(single, Path("case.nc"), "wedgesweep.simulate_case").run_here()
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from wedgesweep import config
 from wedgesweep.config import Case
+from wedgesweep.config.variants import with_method
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.systems.suspension.parameters import SUSPENSION
 
@@ -130,7 +131,7 @@ def test_digest_follows_every_number():
 
 def test_with_method_changes_the_solver_alone():
     read = config.parse(SWEEP)
-    other = read.with_method("another")
+    other = with_method(read, "another")
     assert other.solver == replace(read.solver, method="another")
     assert other.case_list() == read.case_list()
     assert read.solver.method == "radau"

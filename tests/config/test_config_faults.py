@@ -8,6 +8,7 @@ from wedgesweep import config
 from wedgesweep.config import ConfigError
 from wedgesweep.config.keys import Number
 from wedgesweep.config.tables import table
+from wedgesweep.config.variants import with_method
 from wedgesweep.quantity import Quantity
 
 SWEEP = '[sweep]\nfriction_law = "coulomb"\nbeta = 1.0\namplitude_mm = 0.1\n'
@@ -208,7 +209,7 @@ def test_continuation_needs_steady_states_and_neighbours(text, hint):
 def test_another_method_must_suit_the_other_settings():
     read = config.parse(SWEEP + STEADY)
     with pytest.raises(ConfigError, match=r'solver "radau": solver\.settle: .*\n.*solver\.continuation'):
-        read.with_method("radau")
+        with_method(read, "radau")
 
 
 def test_springs_that_soften_until_they_hold_no_weight_are_refused():

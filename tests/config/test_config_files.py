@@ -11,6 +11,7 @@ import pytest
 from wedgesweep import config
 from wedgesweep.config import Case
 from wedgesweep.config.declarations import root
+from wedgesweep.config.variants import with_method
 from wedgesweep.effects import EFFECTS
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.sweep import outcomes
@@ -107,7 +108,7 @@ def test_quick_is_small_and_settles(tmp_path):
     quick = shipped("quick")
     assert quick.solver.method == "radau"
     assert quick.sweep.count <= 40
-    ds = Sweep(quick.with_method("event-driven"), tmp_path / "quick.nc").run_here()
+    ds = Sweep(with_method(quick, "event-driven"), tmp_path / "quick.nc").run_here()
     assert outcomes.of_dataset(ds).unsettled == 0
 
 

@@ -60,9 +60,10 @@ def case(
     if (amplitude is None) == (force is None):
         message = "give either --amplitude or --force"
         raise click.UsageError(message)
-    from wedgesweep import config
+    from wedgesweep.config import load
+    from wedgesweep.config.variants import single_case
 
-    settings = config.load(config_path).single_case(amplitude, beta, frequency, law, force)
+    settings = single_case(load(config_path), amplitude, beta, frequency, law, force)
     print_remark(settings)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))

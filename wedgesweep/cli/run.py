@@ -122,10 +122,11 @@ def run(
 
 def _settings(config_path: Path, solver: str | None) -> "Config":
     from wedgesweep import config
+    from wedgesweep.config.variants import with_method
 
     settings = config.load(config_path)
     try:
-        return settings.with_method(solver) if solver else settings
+        return with_method(settings, solver) if solver else settings
     except config.ConfigError as error:
         raise config.ConfigError([f"{config_path}: {problem}" for problem in error.problems]) from error
 

@@ -1,0 +1,314 @@
+"""A checked config: every key in its own unit, and SI numbers of all that is simulated."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wedgesweep.config import toml
+from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
+from wedgesweep.config.contradictions import contradictions
+from wedgesweep.config.input_contradictions import is_force
+from wedgesweep.natural_units import natural_units
+
+OSCILLATOR = "oscillator"
+# The effect that is the same as unilateral joints.
+LIFT_OFF = "lift_off"
+# What beta refers to where there is no spring: 1 Hz, in rad/s.
+UNIT_FREQUENCY = 2.0 * pi
+
+# Imports that load numba or scipy come late, so that `wedgesweep --help` does not wait for them.
+if TYPE_CHECKING:
+    from wedgesweep.inputs.sampled import Input
+    from wedgesweep.natural_units import NaturalUnits
+    from wedgesweep.quantity import Quantity
+    from wedgesweep.simulate import Settings, Transient
+
+
+@dataclass(frozen=True)
+class Config:
+    """A checked config. ``document`` holds every key in its own unit; the properties are SI."""
+
+    document: dict[str, Any]
+
+    @property
+    def title(self) -> str:
+        return self.document["title"]
+
+    @cached_property
+    def suspension(self) -> dict[str, Any]:
+        """SI numbers of the suspension; ``joints`` and ``restitution`` where they are unilateral."""
+        from wedgesweep.systems.suspension.parameters import RESTITUTION, SUSPENSION, UNILATERAL
+
+        given = self.document["suspension"]
+        if given.get("joints") != UNILATERAL:
+            return _si(SUSPENSION, given)
+        restitution = given.get(RESTITUTION.key, RESTITUTION.default)
+        return {**_si(SUSPENSION, given), "joints": given["joints"], "restitution": restitution}
+
+    @property
+    def opens(self) -> bool:
+        """Whether the joints of a suspension are unilateral, so that wedges may lift off."""
+        unilateral = self.document.get("suspension", {}).get("joints") == "unilateral"
+        return unilateral or LIFT_OFF in self.document["effects"]
+
+    def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
+        """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
+        if self.system == OSCILLATOR:
+            own = self.oscillator
+            return natural_units(own["mass"], own["spring"], travel=travel, omega=omega)
+        from wedgesweep.systems.suspension.parameters import natural_units_of
+
+        return natural_units_of(self.suspension, travel)
+
+    @property
+    def system(self) -> str:
+        """Name of the mechanical system: suspension or oscillator."""
+        return OSCILLATOR if OSCILLATOR in self.document else "suspension"
+
+    @cached_property
+    def oscillator(self) -> dict[str, Any]:
+        """SI numbers of the oscillator, and its contact."""
+        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY, BRISTLES
+        from wedgesweep.systems.oscillator.parameters import OSCILLATOR as QUANTITIES
+
+        given = self.document[OSCILLATOR]
+        more = [each for each in (BELT_VELOCITY, *BRISTLES) if each.key in given]
+        return {**_si((*QUANTITIES, *more), given), "contact": given["contact"]}
+
+    @property
+    def possible_effects(self) -> tuple[str, ...]:
+        """Names of the effects that a model may lack.
+
+        Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
+        rubs, more friction of its surface is another level of friction; if not, there is nothing that the
+        effects on the law of friction could change. Under a force the base is at rest.
+        """
+        from wedgesweep.effects import EFFECTS
+        from wedgesweep.systems.oscillator import parameters
+
+        if self.system != OSCILLATOR:
+            return tuple(name for name in EFFECTS if name in self.effects or self._may_have(name))
+        rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
+        without = {parameters.LATERAL} if rubs else {*parameters.OF_FRICTION}
+        if self.oscillator["spring"] == 0.0:
+            without.update(parameters.OF_SPRING)
+        if self.forced:
+            without.add(parameters.OF_BASE)
+        return tuple(name for name in parameters.effect_names() if name not in without)
+
+    def _may_have(self, effect: str) -> bool:
+        """Whether the model of a suspension can have a further effect, as far as its joints are concerned."""
+        if effect != LIFT_OFF and not self.opens:
+            return True
+        added = self.document["effects"] | {effect: {}}
+        return not any(contradictions(self.document | {"effects": added}))
+
+    @property
+    def excitation(self) -> str:
+        """What the input is: "base" (its motion) or "force"."""
+        if self.transient:
+            return "force" if is_force(self.document["input"]) else "base"
+        return self.document["sweep"].get("excitation", "base")
+
+    @cached_property
+    def friction(self) -> dict[str, float]:
+        from wedgesweep.friction.quantities import FRICTION
+
+        return _si(FRICTION, self.document["friction"])
+
+    @cached_property
+    def effects(self) -> dict[str, dict[str, float]]:
+        from wedgesweep.effects import EFFECTS
+
+        given = self.document["effects"]
+        return {name: _si(EFFECTS[name].quantities, values) for name, values in given.items()}
+
+    @cached_property
+    def sweep(self) -> Cases:
+        return of_sweep(self.document["sweep"], self.transient)
+
+    @cached_property
+    def solver(self) -> "Settings":
+        from wedgesweep.simulate import Settings
+
+        given = self.document["solver"]
+        return Settings(
+            method=given["method"],
+            rtol=given["rtol"],
+            duration=given.get("duration_s"),
+            settle_periods=given.get("settle_periods"),
+            kept_periods=given["kept_periods"],
+            samples_per_period=given["samples_per_period"],
+            case_timeout=given["case_timeout_s"],
+            steady="settle" in given,
+            steady_tolerance=given["steady_tolerance"],
+            max_periods=given["max_periods"],
+            keep_waveforms=given["keep_waveforms"],
+            continuation=given["continuation"],
+            transient=self._transient() if self.transient else None,
+        )
+
+    @property
+    def transient(self) -> bool:
+        """Whether the config has an [input], which does not repeat."""
+        return "input" in self.document
+
+    @cached_property
+    def input(self) -> "Input":
+        """The input at scale 1; raises ConfigError if a recording cannot be read."""
+        from wedgesweep.inputs.sampled import made
+
+        return made(self.document["input"], self.sweep.omega_n)
+
+    def _transient(self) -> "Transient":
+        """How the input is run."""
+        from wedgesweep.inputs.transient import transient
+
+        absolute = self.system == OSCILLATOR and self.oscillator["contact"] != "base"
+        rate = self.document["input"].get("sampling_hz")
+        return transient(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR)
+
+    def case_list(self) -> list[Case]:
+        """All cases, which may be many: ``sweep.case`` makes one of them."""
+        laws, *numbers = (each.tolist() for each in self.sweep.at(np.arange(self.sweep.count)))
+        return [Case(self.sweep.laws[law], *pair) for law, *pair in zip(laws, *numbers, strict=True)]
+
+    def case_coordinates(
+        self,
+    ) -> tuple[tuple[int, ...], dict[str, tuple[str, Any, dict[str, str]]]]:
+        """Shape of the cases; dimension, values and attributes of their coordinates."""
+        sweep = self.sweep
+        if self.transient:
+            about = "what multiplies the input, or the start of a release"
+            return (len(sweep.friction_law), sweep.amplitude.size), {
+                "friction_law": ("friction_law", list(sweep.friction_law), {"long_name": "friction law"}),
+                "scale": ("scale", sweep.amplitude, {"units": "1", "long_name": about}),
+            }
+        if sweep.cases is None:
+            dims = ["friction_law", "beta", "amplitude"]
+            laws, betas, amplitudes = list(sweep.friction_law), sweep.beta, sweep.amplitude
+        else:
+            dims = ["case"] * 3
+            laws = [case.law for case in sweep.cases]
+            _, betas, amplitudes = sweep.at(np.arange(sweep.count))
+        frequencies = betas * sweep.omega_n / (2.0 * pi)
+        unit, amplitude = ("N", "amplitude of the force") if self.forced else ("m", "input amplitude a")
+        beta = "input frequency over 1 Hz" if self.has_no_spring else "input frequency over omega_n"
+        return sweep.shape, {
+            "friction_law": (dims[0], laws, {"long_name": "friction law"}),
+            "beta": (dims[1], betas, {"units": "1", "long_name": beta}),
+            "amplitude": (dims[2], amplitudes, {"units": unit, "long_name": amplitude}),
+            "frequency": (dims[1], frequencies, {"units": "Hz", "long_name": "input frequency"}),
+        }
+
+    def record(self, case: Case) -> np.ndarray:
+        """Parameter record of a case, shape (1,)."""
+        return self.record_with(self.effects, case.law, case.amplitude, case.beta * self.sweep.omega_n)
+
+    def record_with(
+        self, effects: Mapping[str, Mapping[str, float]], law: str, amplitude: float = 1.0, omega: float = 1.0
+    ) -> np.ndarray:
+        """Parameter record, shape (1,), with other effects (SI); amplitude in m or N, omega in rad/s."""
+        from wedgesweep.systems import oscillator, suspension
+
+        if self.system == OSCILLATOR:
+            own = self.oscillator
+            return oscillator.record(law, amplitude, omega, own, self.friction, effects, self.excitation)
+        return suspension.record(law, amplitude, omega, self.suspension, self.friction, effects)
+
+    @property
+    def forced(self) -> bool:
+        """Whether the input is a force, and amplitudes are in N."""
+        return self.excitation == "force"
+
+    @property
+    def has_no_spring(self) -> bool:
+        """Whether there is no natural frequency that frequencies could be compared with."""
+        own, omega_n = self.document.get(OSCILLATOR, {}), self.document["sweep"]["omega_n_rad_per_s"]
+        return own.get("spring_N_per_mm") == 0.0 and omega_n == UNIT_FREQUENCY
+
+    @property
+    def amplitude_unit(self) -> AmplitudeUnit:
+        """Unit of the input's amplitude in files: N of a force, mm of the base."""
+        return AmplitudeUnit("N", 1.0) if self.forced else AmplitudeUnit("mm", 1e-3)
+
+    @property
+    def simulated_motion(self) -> tuple[str, ...]:
+        """Whether simulated displacements are "relative" to the base, "absolute", or both."""
+        if self.forced:
+            return "relative", "absolute"
+        moves_with_base = self.system != OSCILLATOR or self.oscillator["contact"] == "base"
+        return ("relative",) if moves_with_base else ("absolute",)
+
+    def deflection(self, omega: float | np.ndarray) -> float | np.ndarray:
+        """Length (m) that motions are compared with, over the input amplitude, at omega (rad/s).
+
+        1 on a moving base; under a force the deflection at rest, without a spring the free mass's motion.
+        """
+        if not self.forced:
+            return 1.0
+        own = self.oscillator
+        return 1.0 / (own["spring"] or own["mass"] * omega**2)
+
+    def records(self, indices: np.ndarray | None = None) -> np.ndarray:
+        """Parameter records of the cases of these indices, shape (n,); by default of all."""
+        sweep = self.sweep
+        laws, betas, amplitudes = sweep.at(np.arange(sweep.count) if indices is None else indices)
+        records = self.records_of_laws[laws]
+        # Only amplitude and frequency differ between the cases of a law.
+        records["input"]["amplitude"] = amplitudes
+        records["input"]["omega"] = betas * sweep.omega_n
+        return records
+
+    @cached_property
+    def records_of_laws(self) -> np.ndarray:
+        """Parameter records of one case of each of ``sweep.laws``."""
+        return np.concatenate([self.record(Case(law, 1.0, 1.0)) for law in self.sweep.laws])
+
+    def to_toml(self) -> str:
+        """The resolved config with every key, ranges expanded; ``parse`` of it gives the same config."""
+        return toml.dumps(self.document)
+
+    @property
+    def remark(self) -> str | None:
+        """What readers of the results should know of the friction: effects change it, or it is unusual."""
+        return "; ".join(filter(None, (self._regularised(), self._strengthening()))) or None
+
+    def _strengthening(self) -> str | None:
+        """Static friction that is below dynamic friction."""
+        static, dynamic = (self.friction[name] for name in ("static", "dynamic"))
+        if static >= dynamic:
+            return None
+        return (
+            f"friction.static = {static:g} is below friction.dynamic = {dynamic:g}: friction rises once the "
+            "faces slip, so that nothing makes them break away and stick again; dry friction has it the "
+            "other way round (coulomb knows dynamic friction only)"
+        )
+
+    def _regularised(self) -> str | None:
+        """Set-valued friction that effects make smooth."""
+        from wedgesweep.systems.suspension import parameters
+
+        law = "coulomb"
+        if self.system == OSCILLATOR or law not in self.sweep.laws:
+            return None
+        if not parameters.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
+            return None
+        width = parameters.regularised_velocity(self.suspension) * 1e3
+        return (
+            f"{law}: with cross_slip or column_compliance the faces may stick one at a time; "
+            f"friction is regularised, a ramp up to mu_d over {width:g} mm/s"
+        )
+
+    @property
+    def sha256(self) -> str:
+        return sha256(self.to_toml().encode()).hexdigest()
+
+
+def _si(quantities: Iterable["Quantity"], given: Mapping[str, float]) -> dict[str, float]:
+    return {each.name: given[each.key] * each.factor for each in quantities}

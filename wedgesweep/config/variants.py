@@ -1,0 +1,42 @@
+"""Other configs made of one: with another solver, or of a single case."""
+
+from wedgesweep.config import Config, ConfigError, from_document
+from wedgesweep.config.contradictions import contradictions
+
+
+def with_method(config: Config, method: str) -> Config:
+    """The same config with another solver; raises ConfigError if its settings do not allow it."""
+    document = config.document | {"solver": config.document["solver"] | {"method": method}}
+    if problems := list(contradictions(document)):
+        raise ConfigError([f'solver "{method}": {problem}' for problem in problems])
+    return Config(document)
+
+
+def single_case(
+    config: Config,
+    amplitude_mm: float | None,
+    beta: float | None,
+    frequency_hz: float | None,
+    law: str | None,
+    amplitude_N: float | None = None,
+) -> Config:
+    """The same config with a grid of one case, whose waveforms are kept; raises ConfigError.
+
+    Either ``beta`` or ``frequency_hz`` is given, and one of the amplitudes; ``law`` is by default the
+    config's first.
+    """
+    given = {
+        "friction_law": law.lower() if law else config.sweep.laws[0],
+        "beta": beta,
+        "frequency_hz": frequency_hz,
+        "excitation": config.document["sweep"].get("excitation"),
+        "amplitude_mm": amplitude_mm,
+        "amplitude_N": amplitude_N,
+        "omega_n_rad_per_s": None if config.has_no_spring else config.sweep.omega_n,
+    }
+    grid = {key: value for key, value in given.items() if value is not None}
+    if config.transient:
+        problem = "input: a single case is of a sine; remove [input], or use 'wedgesweep run'"
+        raise ConfigError([problem])
+    solver = config.document["solver"] | {"keep_waveforms": True, "continuation": False}
+    return from_document(config.document | {"sweep": grid, "solver": solver}, "case")
