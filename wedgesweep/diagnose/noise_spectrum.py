@@ -10,6 +10,7 @@ with most noise counts, as an estimate that is too low would look like a misfit.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,8 @@ import numpy as np
 # 2009, Neural Computation 21, 793).
 POLES = np.array([0.0, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.995, 0.999])
 UPDATES = 150
+# Relative width of the bands over which bins are averaged before they are fitted.
+WIDTH = 0.02
 # A frequency stands out if its power is this many times the noise, and so do its neighbours; found in rounds.
 STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
 # Power over the noise of a line above the motion that is told of.
@@ -162,6 +165,23 @@ def _spread(marked: np.ndarray) -> np.ndarray:
     return np.convolve(marked, np.ones(2 * NEIGHBOURS + 1), mode="same") > 0.5
 
 
+class _Bands(NamedTuple):
+    """Means over narrow bands of bins: frequency, power, known power, and number of bins, (b,) each."""
+
+    frequency: np.ndarray
+    power: np.ndarray
+    known: np.ndarray
+    bins: np.ndarray
+
+
+def _bands(frequency: np.ndarray, power: np.ndarray, known: np.ndarray) -> _Bands:
+    """Bins by rising frequency in bands, over which no spectrum changes much."""
+    first = np.flatnonzero(np.diff(np.floor(np.log(frequency) / WIDTH), prepend=-np.inf))
+    bins = np.diff(np.r_[first, frequency.size])
+    mean = [np.add.reduceat(each, first) / bins for each in (frequency, power, known)]
+    return _Bands(mean[0], mean[1], mean[2], bins)
+
+
 def _fit(
     frequency: np.ndarray,
     power: np.ndarray,
@@ -173,31 +193,37 @@ def _fit(
 
     ``floor``: power that is known and comes on top.
     """
-    here, shape = power[kept], _shape(POLES[:, None], frequency[kept])
-    least = 1e-12 * here.mean() + 1e-300 + (0.0 if floor is None else floor[kept])
-    red, white = 0.5 * here.mean() / shape.mean(axis=1), np.full(POLES.size, 0.5 * here.mean())
+    known = np.zeros(frequency.size) if floor is None else floor
+    own = _bands(frequency[kept], power[kept], known[kept])
+    mean = float(power[kept].mean())
+    own = own._replace(known=own.known + 1e-12 * mean + 1e-300)
+    here, least, bins, shape = own.power, own.known, own.bins, _shape(POLES[:, None], own.frequency)
+    red, white = 0.5 * mean * bins.sum() / (bins * shape).sum(axis=1), np.full(POLES.size, 0.5 * mean)
     for _ in range(UPDATES):
         level = red[:, None] * shape + white[:, None] + least
-        red *= (here * shape / level**2).sum(axis=1) / (shape / level).sum(axis=1)
+        red *= (bins * here * shape / level**2).sum(axis=1) / (bins * shape / level).sum(axis=1)
         level = red[:, None] * shape + white[:, None] + least
-        white *= (here / level**2).sum(axis=1) / (1.0 / level).sum(axis=1)
-    level = red[:, None] * shape + white[:, None] + least
-    loss = (here / level + np.log(level)).sum(axis=1) / CORRELATED
-    level = _white(here, least) + least
-    alone = (here / level + np.log(level)).sum() / CORRELATED
+        white *= (bins * here / level**2).sum(axis=1) / (bins / level).sum(axis=1)
+    loss = _loss(own, red[:, None] * shape + white[:, None] + least)
+    alone = _white(own)
     raised = 1.0 + ONE_END * sqrt(CORRELATED / kept.sum()) if as_well else 1.0
-    if alone <= loss.min() + COLOURED:
-        return NoiseSpectrum(0.0, 0.0, float(raised * _white(here, least)))
+    if _loss(own, alone + least) <= loss.min() + COLOURED:
+        return NoiseSpectrum(0.0, 0.0, raised * alone)
     elsewhere = red * _shape(POLES[:, None], frequency).mean(axis=1) + white
     good = np.flatnonzero(loss <= loss.min() + as_well)
     best = int(good[np.argmax(elsewhere[good])])
     return NoiseSpectrum(float(raised * red[best]), float(POLES[best]), float(raised * white[best]))
 
 
-def _white(power: np.ndarray, floor: np.ndarray | float) -> float:
-    """White noise that fits bins best on top of a floor."""
-    white = float(power.mean())
+def _loss(own: _Bands, level: np.ndarray) -> np.ndarray:
+    """Minus Whittle's log-likelihood of noise of some level (..., b)."""
+    return (own.bins * (own.power / level + np.log(level))).sum(axis=-1) / CORRELATED
+
+
+def _white(own: _Bands) -> float:
+    """White noise that fits bands best on top of what is known."""
+    white = float((own.bins * own.power).sum() / own.bins.sum())
     for _ in range(UPDATES):
-        level = white + floor
-        white *= float((power / level**2).sum() / (np.ones(power.size) / level).sum())
+        level = white + own.known
+        white *= float((own.bins * own.power / level**2).sum() / (own.bins / level).sum())
     return white
