@@ -1,19 +1,26 @@
 """Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
 
-An oscillator hides one effect, or none in every fifth set. How strongly it shows is drawn and not aimed at:
-sets whose excess is too small for a name count as weak.
+An oscillator hides one effect, or none in every fifth set. It is as strong as is needed for a drawn change of
+the response; sets whose excess is too small for a name all the same count as weak.
 """
 
+from collections.abc import Callable
+from dataclasses import fields
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
+from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.plan import PlannedTest
+from wedgesweep.synthesize.transients import transient
 from wedgesweep.validation import ranges, rigs
 from wedgesweep.validation.rigs import Rig
 from wedgesweep.validation.sets import DataSet
+from wedgesweep.validation.strength import reach
 
 TRANSIENT, LOOP, MIXED = TIME_KINDS = ("transient", "loop", "mixed")
 LAWS = ("coulomb", "static-dynamic")
@@ -24,8 +31,10 @@ NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_
 CLEAN_EACH = 5
 # Natural frequency (Hz), damping ratio, and friction over the spring's force at the largest motion.
 FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
-# Largest motion (mm) of a mass (kg), noise over the rms of a channel, strength of an effect from 0 to 1.
-TRAVEL_MM, MASS_KG, LEVEL, STRENGTH = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02), (0.35, 0.9)
+# Largest motion (mm) of a mass (kg), noise over the rms of a channel.
+TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
+# Change of the response to the first release or loop by the hidden effect over the response, and attempts to reach it.
+CHANGE, ATTEMPTS = (0.05, 0.5), 20
 # Sampling rate, lengths of a release, a sweep and a loop in natural periods.
 SAMPLED, RELEASE, SWEEP, LOOPS = 60.0, 8.0, 24.0, 20.0
 # Frequencies of steady tests beside the others, over the natural one.
@@ -33,29 +42,78 @@ STEADY = (0.7, 0.9, 1.15, 1.4)
 
 
 def draw(one: DataSet) -> dict[str, Any]:
-    """Rig, tests, effect and noise of a set, as documents."""
-    random = one.random()
+    """Rig, tests, effect and noise of a set, as documents.
+
+    Raises
+    ------
+    RuntimeError
+        If no rig shows the effect as strongly as is wanted.
+    """
+    for attempt in range(ATTEMPTS):
+        if drawn := _drawn(one, one.random(attempt)):
+            return drawn
+    message = f"{one.name}: no rig shows its effect as is wanted in {ATTEMPTS} attempts"
+    raise RuntimeError(message)
+
+
+def _drawn(one: DataSet, random: np.random.Generator) -> dict[str, Any] | None:
+    """Documents of a set; None if its effect cannot be as strong as is wanted."""
     frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
     law = LAWS[one.index % len(LAWS)]
     rig = _rig(frequency, travel, random)
+    tests = TESTS[one.kind](frequency, travel)
+    sampling_hz = round(SAMPLED * frequency, 3)
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
         left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
         possible = [name for name in EFFECTS if name in rig.possible_effects and name not in left_out]
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
         effect = possible[order[one.index % len(possible)]]
-        strength = float(random.uniform(*STRENGTH))
-        numbers = ranges.path(effect, random, rig.units)(strength)
-        hidden[effect] = {key: float(f"{value:.6g}") for key, value in numbers.items()}
+        path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
+        shown = next((test for test in tests if "release_mm" in test), tests[0])
+        change = _change(rig, law, _planned(shown), sampling_hz)
+        strength = reach(wanted, lambda s: change({effect: path(s)}))
+        if strength is None:
+            return None
+        hidden[effect] = {key: float(f"{value:.6g}") for key, value in path(strength).items()}
     return {
         "law": law,
         "document": rig.document(law, hidden),
         "hidden": hidden,
-        "tests": TESTS[one.kind](frequency, travel),
-        "sampling_hz": round(SAMPLED * frequency, 3),
+        "tests": tests,
+        "sampling_hz": sampling_hz,
         "level": round(rigs.logarithmic(LEVEL, random), 5),
         "noise": NOISES[one.index % 3],
     }
+
+
+def _planned(test: dict[str, Any]) -> PlannedTest:
+    """The test of a document, without what noise and knowledge of its amplitude add."""
+    given = {"frequency_hz": 0.0, "amplitude_mm": 0.0, **test}
+    known = {each.name for each in fields(PlannedTest)}
+    own = {key: value for key, value in given.items() if key in known}
+    return PlannedTest(amplitude=given["amplitude_mm"], unit="mm", amplitude_std=0.0, known=True, **own)
+
+
+def _change(
+    rig: Rig, law: str, test: PlannedTest, sampling_hz: float
+) -> Callable[[dict[str, dict[str, float]]], float]:
+    """Change of the response to a test by effects, over the response; of all channels together."""
+
+    def response(effects: dict[str, dict[str, float]]) -> np.ndarray:
+        config = from_document(rig.document(law, effects))
+        if test.kind == LOOP:
+            return loop(config, law, config.effects, test, sampling_hz)[1][None]
+        made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
+        return np.array([made.displacement, made.velocity])
+
+    base = response({})
+
+    def change(effects: dict[str, dict[str, float]]) -> float:
+        left = (response(effects) - base).std(axis=1) / base.std(axis=1)
+        return float(np.linalg.norm(left))
+
+    return change
 
 
 def _rig(frequency: float, travel: float, random: np.random.Generator) -> Rig:
