@@ -10,7 +10,7 @@ from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.search import Search, base_fit
-from wedgesweep.diagnose.smoothing import LowPass, highest_cutoff, motion, white_noise
+from wedgesweep.diagnose.smoothing import LowPass, derivative, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
@@ -108,6 +108,16 @@ def test_noise_of_a_filter_and_of_derivatives():
     # Dry friction jumps twice a cycle: that is no noise.
     square = 5.0 * np.sign(np.sin(2.0 * np.pi * 1.1 * np.arange(200_000) / rate))
     assert white_noise(square + noise, rate) == pytest.approx(std, rel=0.3)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_derivatives_of_a_sine_are_right_at_twenty_samples_a_period(order):
+    rate, omega = 100.0, 10.0 * np.pi
+    angle = omega * np.arange(400) / rate
+    exact = omega**order * np.sin(angle + 0.5 * np.pi * order)
+    assert derivative(np.sin(angle), rate, order)[10:-10] == pytest.approx(
+        exact[10:-10], abs=1e-4 * omega**order
+    )
 
 
 def test_the_cutoff_is_where_the_noise_of_the_inertia_is_small():

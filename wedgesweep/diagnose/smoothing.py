@@ -11,6 +11,7 @@ from math import pi, sqrt
 
 import numpy as np
 from scipy import signal
+from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
 from wedgesweep.measured.kinds import HIGHEST
@@ -62,9 +63,7 @@ class LowPass:
     def noise(self, std: float, order: int = 0) -> float:
         """Standard deviation of white noise after the filter, or of its derivative of an order."""
         frequency, gain = self._response
-        # As numpy.gradient differentiates.
-        rate = self.rate * np.sin(2.0 * pi * frequency / self.rate)
-        return std * float(np.sqrt(np.mean((rate**order * gain) ** 2)))
+        return std * float(np.sqrt(np.mean(((2.0 * pi * frequency) ** order * gain) ** 2)))
 
     def noise_above(self, std: float) -> float:
         """Standard deviation of what the filter takes of white noise."""
@@ -83,10 +82,19 @@ class LowPass:
         """
         frequency = np.linspace(0.0, pi, GRID + 1)
         _, once = signal.sosfreqz(self._sections, frequency)
-        # As numpy.gradient differentiates.
-        rate = self.rate * np.sin(frequency)
+        rate = self.rate * frequency
         through = np.hypot(factors[0] - factors[2] * rate**2, factors[1] * rate)
         return (std * through * np.abs(once) ** 2) ** 2
+
+
+def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
+    """Derivative of samples (..., n) at a rate (Hz), by a spline of degree 5.
+
+    Differences of neighbours would be too small by x^2 / 6 at x rad a sample: at 60 samples a period that
+    makes an error of 0.4 % of the inertia.
+    """
+    places = np.arange(values.shape[-1], dtype=float)
+    return make_interp_spline(places, values, k=5, axis=-1)(places, order) * rate**order
 
 
 def white_noise(values: np.ndarray, rate: float) -> float:
@@ -154,6 +162,5 @@ def motion(displacement: np.ndarray, std: float, low_pass: LowPass) -> Motion:
     """
     wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
     smooth = wide(displacement)
-    velocity = np.gradient(smooth) * low_pass.rate
-    acceleration = np.gradient(velocity) * low_pass.rate
+    velocity, acceleration = (derivative(smooth, low_pass.rate, order) for order in (1, 2))
     return Motion(smooth, velocity, acceleration, wide.noise(std, 1), low_pass.noise(std, 2))

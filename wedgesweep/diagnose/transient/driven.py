@@ -9,6 +9,7 @@ from scipy import signal
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_record
+from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
@@ -84,7 +85,7 @@ class Driven:
         if order == 0:
             return self.displacement
         if order == 1:
-            return np.gradient(self.displacement) * self.rate
+            return derivative(self.displacement, self.rate)
         return self.acting(np.arange(self.samples.size) / self.rate, 2)
 
     @cached_property

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.fft import dct
 
 from wedgesweep.diagnose.decorrelation import Decorrelation
+from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, from_samples
 
 # Coefficients of a window whose noise is taken to be correlated, at most: those of the lowest frequencies.
@@ -87,8 +88,7 @@ def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], le
     ``orders`` (C,): the derivative of the displacement that each channel is.
     """
     wrong = parts.at(parts.step * np.arange(parts.samples))
-    rate = np.gradient(wrong, axis=1) / parts.step
-    motion = wrong, rate, np.gradient(rate, axis=1) / parts.step
+    motion = wrong, *(derivative(wrong, 1.0 / parts.step, order) for order in (1, 2))
     pairs = zip(shares, orders, strict=False)
     return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]
 
