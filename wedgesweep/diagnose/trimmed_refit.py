@@ -49,15 +49,16 @@ def refit_without_influential_tests(fit: Fit) -> Fit:
 
 
 def _at_best_nuisances(model: Model, start: Point, chosen: np.ndarray) -> Point:
-    """The point with nuisance parameters of some tests (T,) where they fit best, within their priors.
+    """The point with nuisance parameters of some tests (T,) where they fit best.
 
-    From too large an input a step down can end where the bolster sticks.
+    Those with a prior are looked for within it: from too large an input a step down can end where the bolster
+    sticks. Those without stay where they are.
     """
     std = model.data.nuisance_std
     priors = std.shape[1]
     off = np.multiply.outer(WITHIN, np.where(np.isfinite(std), std, 0.0))
     tried = np.repeat(start.nuisance[None], len(WITHIN), axis=0)
-    tried[..., :priors] = np.where(chosen[:, None], off, tried[..., :priors])
+    tried[..., :priors] += np.where(chosen[:, None], off, 0.0)
     best = best_evaluation_per_test(model.evaluate_all([replace(start, nuisance=each) for each in tried]))
     return replace(start, nuisance=tried[best, np.arange(best.size)])
 
