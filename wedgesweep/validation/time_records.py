@@ -35,6 +35,8 @@ FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
 TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
 # Change of the response to the first release or loop over that response, and attempts to reach it.
 CHANGE, ATTEMPTS = (0.05, 0.5), 20
+# After so many of them the next effect takes the place of the one that is due.
+SAME_EFFECT = 5
 # Sampling rate, lengths of a release, a sweep and a loop in natural periods.
 SAMPLED, RELEASE, SWEEP, LOOPS = 60.0, 8.0, 24.0, 20.0
 # Frequencies of steady tests beside the others, over the natural one.
@@ -50,14 +52,15 @@ def draw(one: DataSet) -> dict[str, Any]:
         If no rig shows the effect as strongly as is wanted.
     """
     for attempt in range(ATTEMPTS):
-        if drawn := _drawn(one, one.random(attempt)):
+        if drawn := _drawn(one, attempt):
             return drawn
     message = f"{one.name}: no rig shows its effect as is wanted in {ATTEMPTS} attempts"
     raise RuntimeError(message)
 
 
-def _drawn(one: DataSet, random: np.random.Generator) -> dict[str, Any] | None:
+def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     """Documents of a set; None if its effect cannot be as strong as is wanted."""
+    random = one.random(attempt)
     frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
     law = LAWS[one.index % len(LAWS)]
     rig = _rig(frequency, travel, random)
@@ -68,7 +71,7 @@ def _drawn(one: DataSet, random: np.random.Generator) -> dict[str, Any] | None:
         left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
         possible = [name for name in EFFECTS if name in rig.possible_effects and name not in left_out]
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
-        effect = possible[order[one.index % len(possible)]]
+        effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
         path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
         shown = next((test for test in tests if "release_mm" in test), tests[0])
         change = _change(rig, law, _planned(shown), sampling_hz)
