@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation, Point, best_evaluation_per_test
+from wedgesweep.diagnose.fit_data import Evaluation, Point
 from wedgesweep.diagnose.jacobian import conservative_jacobian
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
@@ -126,9 +126,8 @@ def with_extra_nuisances(fit: Fit) -> Fit:
     points = model.data.extra_nuisance_points(fit.effects, fit.point) if fit.evaluation.found else []
     if not points:
         return fit
-    best = best_evaluation_per_test(model.evaluate_all(points))
-    nuisance = np.array([each.nuisance for each in points])[best, np.arange(best.size)]
-    again = minimise(model, model.evaluate(replace(fit.point, nuisance=nuisance)))
+    start = replace(fit.point, nuisance=model.best_nuisances(points))
+    again = minimise(model, model.evaluate(start))
     return min(fit, again, key=lambda each: each.chi2)
 
 

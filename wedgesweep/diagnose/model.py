@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point, Scenario
+from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point, Scenario, best_evaluation_per_test
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
 
 # Relative errors of simulations: negligible beside the noise of 4 % data, negligible in derivatives as well,
@@ -120,6 +120,11 @@ class Model:
             )
             for point, each in zip(points, compared, strict=True)
         ]
+
+    def best_nuisances(self, points: Sequence[Point]) -> np.ndarray:
+        """Nuisance parameters (T, N) of each test from the point that fits it best."""
+        best = best_evaluation_per_test(self.evaluate_all(points))
+        return np.array([each.nuisance for each in points])[best, np.arange(best.size)]
 
     def _prior(self, point: Point) -> np.ndarray:
         nuisance = point.nuisance[:, : self.nuisance_weight.shape[1]] * self.nuisance_weight

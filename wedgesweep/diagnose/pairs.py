@@ -16,7 +16,7 @@ import numpy as np
 
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import Evaluation, best_evaluation_per_test
+from wedgesweep.diagnose.fit_data import Evaluation
 from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import (
@@ -304,7 +304,5 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     model = job.search.model(*subset.effects)
     known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]
     starts = [model.start(fit, subset.x[: model.size]) for fit in known]
-    best = best_evaluation_per_test(model.evaluate_all(starts))
-    nuisance = np.array([each.nuisance for each in starts])[best, np.arange(best.size)]
-    start = replace(starts[0], nuisance=nuisance)
+    start = replace(starts[0], nuisance=model.best_nuisances(starts))
     return job.search.explanation(minimise(model, model.evaluate(start)))

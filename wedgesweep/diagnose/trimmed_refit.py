@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Point, best_evaluation_per_test
+from wedgesweep.diagnose.fit_data import Point
 from wedgesweep.diagnose.least_squares import lm_step, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
@@ -59,8 +59,7 @@ def _at_best_nuisances(model: Model, start: Point, chosen: np.ndarray) -> Point:
     off = np.multiply.outer(WITHIN, np.where(np.isfinite(std), std, 0.0))
     tried = np.repeat(start.nuisance[None], len(WITHIN), axis=0)
     tried[..., :priors] += np.where(chosen[:, None], off, 0.0)
-    best = best_evaluation_per_test(model.evaluate_all([replace(start, nuisance=each) for each in tried]))
-    return replace(start, nuisance=tried[best, np.arange(best.size)])
+    return replace(start, nuisance=model.best_nuisances([replace(start, nuisance=each) for each in tried]))
 
 
 def _other_response_from_rest(fit: Fit) -> np.ndarray:

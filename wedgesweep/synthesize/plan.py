@@ -112,13 +112,18 @@ def load(path: Path) -> Plan:
         raise InputError([problem]) from error
     except ValueError as error:
         raise InputError([f"{path}: not valid TOML: {error}"]) from error
+    return from_document(given, str(path))
+
+
+def from_document(given: Mapping[str, Any], source: str = "tests") -> Plan:
+    """Check the tables of a tests.toml; raises InputError with everything that is wrong."""
     problems: list[str] = []
     document = ROOT.read(given, "", problems)
     for i, test in enumerate(document.get("test", ())):
         problems += [f"test[{i}].{fault}" for fault in _faults(test)]
     if problems:
-        raise InputError([f"{path}: {problem}" for problem in problems])
-    return Plan(tuple(map(_planned, document["test"])), document["uncertain"], str(path))
+        raise InputError([f"{source}: {problem}" for problem in problems])
+    return Plan(tuple(map(_planned, document["test"])), document["uncertain"], source)
 
 
 def _faults(given: Mapping[str, Any]) -> list[str]:

@@ -5,7 +5,6 @@ the response; sets whose excess is too small for a name all the same count as we
 """
 
 from collections.abc import Callable
-from dataclasses import fields
 from math import pi
 from typing import Any
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
+from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.names import NOISES
 from wedgesweep.synthesize.plan import PlannedTest
@@ -74,7 +74,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
         path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
         shown = next((test for test in tests if "release_mm" in test), tests[0])
-        change = _change(rig, law, _planned(shown), sampling_hz)
+        change = _change(rig, law, plan.from_document({"test": [shown]}).tests[0], sampling_hz)
         strength = reach(wanted, lambda s: change({effect: path(s)}))
         if strength is None:
             return None
@@ -88,14 +88,6 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         "level": round(rigs.logarithmic(LEVEL, random), 5),
         "noise": NOISES[one.index % 3],
     }
-
-
-def _planned(test: dict[str, Any]) -> PlannedTest:
-    """The test of a document, without what noise and knowledge of its amplitude add."""
-    given = {"frequency_hz": 0.0, "amplitude_mm": 0.0, **test}
-    known = {each.name for each in fields(PlannedTest)}
-    own = {key: value for key, value in given.items() if key in known}
-    return PlannedTest(amplitude=given["amplitude_mm"], unit="mm", amplitude_std=0.0, known=True, **own)
 
 
 def _change(

@@ -132,7 +132,7 @@ def recording(
         function of the motion explains.
     """
     displacement, force = samples
-    mass = float(systems.moving_mass(model.record_with(model.effects, law))[0])
+    mass = moving_mass(model, law)
     noise = white_noise(displacement, rate)
     low_pass = LowPass(cutoff or highest_cutoff(noise, float(force.std()), mass, rate), rate)
     own = motion(displacement, noise, low_pass)
@@ -154,6 +154,11 @@ def recording(
     blocks = _blocks(own.velocity[places])
     noises = found, passed_on, least
     return Recording(name, model, law, low_pass, own, places, compared, *noises, clear, blocks)
+
+
+def moving_mass(model: Config, law: str) -> float:
+    """Mass (kg) that an imposed motion accelerates."""
+    return float(systems.moving_mass(model.record_with(model.effects, law))[0])
 
 
 def _sign(model: Config) -> float:

@@ -6,11 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep import systems
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.loop.force_noise import MotionNoise
 from wedgesweep.diagnose.loop.loop_data import LoopData
-from wedgesweep.diagnose.loop.recording import Recording, slow
+from wedgesweep.diagnose.loop.recording import Recording, moving_mass, slow
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors
@@ -86,15 +85,11 @@ def _measured(data: LoopData) -> _Machine:
 
 def _unmeasured(best: Fit, known: Sensors) -> _Machine:
     """Forces that are recorded with as large a share of noise as displacements are."""
-    mass, std = _mass(best), known.spectra[0].std
+    own = best.model.data
+    mass, std = moving_mass(own.model, own.law), known.spectra[0].std
     force = mass * known.omega**2 * float(known.rms[0])
     low_pass = LowPass(highest_cutoff(std, force, mass, known.rate), known.rate)
     return _Machine(low_pass, low_pass.noise(known.share) ** 2, None, (0.0, 0.0, mass))
-
-
-def _mass(best: Fit) -> float:
-    model = best.model.data.model
-    return float(systems.moving_mass(model.record_with(model.effects, best.model.data.law))[0])
 
 
 def _recording(

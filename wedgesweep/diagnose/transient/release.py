@@ -17,7 +17,6 @@ from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.input_noise import (
-    MOST,
     InputNoise,
     converted,
     cosines,
@@ -133,11 +132,11 @@ class Release:
     ) -> tuple[Decorrelation, ...]:
         """Independent combinations of the coefficients of each channel, by the response in a scenario.
 
+        None without an input: the coefficients are independent as they are.
         ``start`` (2,) of the simulation; ``gain`` of the input.
         """
         if self.input_noise is None:
-            unit = np.eye(min(self.coefficients, MOST))
-            return tuple(Decorrelation(unit, std[: len(unit)]) for std in self.noise)
+            return ()
         grid = self.grid
         parts = cosines(self.input_noise, grid.samples, self.step, float(self._frequency[-1]))
         inputs = disturbed(self.input, parts)
