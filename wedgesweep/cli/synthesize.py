@@ -95,8 +95,8 @@ def synthesize(
     from wedgesweep import config
     from wedgesweep.sweep.backend import count_jobs
     from wedgesweep.synthesize import plan
-    from wedgesweep.synthesize.campaign import Options
     from wedgesweep.synthesize.campaign import synthesize as make
+    from wedgesweep.synthesize.options import Options
 
     settings, tests = config.load(config_path), plan.load(plan_path)
     directory = output or Path(f"{config_path.stem}-measured")

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from wedgesweep.config import inputs, toml
+from wedgesweep import toml
+from wedgesweep.config import inputs
 from wedgesweep.config.keys import Key
 from wedgesweep.config.tables import GridOrList, Table, TableList
 

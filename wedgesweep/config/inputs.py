@@ -5,18 +5,19 @@ from dataclasses import dataclass
 from math import nan
 from typing import Any
 
-from wedgesweep.config import toml
-from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole, hint, show
+from wedgesweep import toml
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole
 from wedgesweep.config.series import Series
 from wedgesweep.config.tables import Table, table
+from wedgesweep.hints import hint, show
 from wedgesweep.inputs.units import RECORDED, UNITS
 from wedgesweep.quantity import Quantity
 
 KIND = "kind"
 
 
-def _positive(key: str, meaning: str, default: float = nan, **more: Any) -> Number:
-    return Number.of(Quantity(key, default, meaning, above=0.0), **more)
+def _positive(key: str, meaning: str, **more: Any) -> Number:
+    return Number.of(Quantity(key, nan, meaning, above=0.0), **more)
 
 
 def _any(key: str, meaning: str, default: float = nan, **more: Any) -> Number:

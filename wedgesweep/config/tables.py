@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from wedgesweep.config.keys import Key, hint, show
+from wedgesweep.config.keys import Key
+from wedgesweep.hints import hint, show
 
 Group = tuple[Key, ...]
 

@@ -19,9 +19,10 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.config.keys import Number, hint, show
+from wedgesweep.config.keys import Number
 from wedgesweep.config.tables import Table
 from wedgesweep.files import json_object, regular, written
+from wedgesweep.hints import hint, show
 from wedgesweep.measured import overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
@@ -36,11 +37,11 @@ from wedgesweep.measured.declarations import (
     TRANSIENT,
     UNCERTAIN,
     UNDRIVEN,
-    UNITS,
 )
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
+from wedgesweep.units import UNITS
 
 ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}

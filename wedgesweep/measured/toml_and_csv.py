@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from wedgesweep.config import Config, toml
-from wedgesweep.config.keys import show
+from wedgesweep import toml
+from wedgesweep.config import Config
+from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.files import read_text
-from wedgesweep.measured import arrays, channels, csv_columns, overrides
+from wedgesweep.hints import show
+from wedgesweep.measured import arrays, channels, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import INPUT, ROOT, STEADY, columns_of
 from wedgesweep.measured.declarations import units as units_of

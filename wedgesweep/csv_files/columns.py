@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.config.keys import hint, show
+from wedgesweep.csv_files import dialect as csv_dialect
+from wedgesweep.csv_files.dialect import Dialect
 from wedgesweep.files import read_bytes
-from wedgesweep.measured import csv_dialect
-from wedgesweep.measured.csv_dialect import Dialect
+from wedgesweep.hints import hint, show
 
 # Number of faulty lines that are listed per file; the others are counted.
 LISTED = 3
