@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from math import nan
 from typing import Any
 
-from wedgesweep import toml
 from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole
 from wedgesweep.config.series import Series
 from wedgesweep.config.tables import Table, table
@@ -178,18 +177,3 @@ SCALE = Series(
     item=_positive("scale", "scale"),
     default=[1.0],
 )
-
-
-def template(mark: str = "# ") -> str:
-    """TOML text of all kinds, commented out."""
-    lines = [
-        f"\n# {INPUT.meaning}:\n# then [sweep] holds only friction_law and scale, and [solver] no settle\n"
-    ]
-    lines.append(f"{mark}sweep.{SCALE.written}  # {SCALE.meaning}\n")
-    for name, kind in KINDS.items():
-        lines.append(f"# kind {name}: {kind.meaning}\n{mark}[input]\n{mark}{KIND} = {toml.inline(name)}\n")
-        for group in kind.groups[1:]:
-            for key in group:
-                about = "; ".join(filter(None, (key.meaning, key.limits)))
-                lines.append(f"{mark}{key.written}  # {about}\n")
-    return "".join(lines)
