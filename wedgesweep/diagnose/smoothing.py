@@ -92,12 +92,12 @@ def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
     return make_interp_spline(places, values, k=5, axis=-1)(places, order) * rate**order
 
 
-def white_noise(values: np.ndarray, rate: float) -> float:
+def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:
     """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.
 
     It is the upper end of its 95 % interval: in a short record an estimate that is too low would look like a
-    misfit. The jumps of dry friction are outliers, which do not count as noise, nor does what the filter
-    makes of them nearby.
+    misfit. Outliers do not count as noise. Where they are ``jumps`` of dry friction, nor does what the filter
+    makes of them nearby; noise that comes and goes must not be taken for them.
     """
     low_pass = LowPass(HIGHEST * rate, rate)
     above = np.abs(values - low_pass(values))
@@ -106,8 +106,9 @@ def white_noise(values: np.ndarray, rate: float) -> float:
     near = np.ones(2 * low_pass.settling + 1)
     for _ in range(CLIPPINGS):
         kept = above <= OUTLIER * size
-        clear = np.convolve(~kept, near, mode="same") < 0.5
-        kept = clear if clear.mean() > LEAST_KEPT else kept
+        if jumps:
+            clear = np.convolve(~kept, near, mode="same") < 0.5
+            kept = clear if clear.mean() > LEAST_KEPT else kept
         size = float(np.sqrt(np.mean(above[kept] ** 2)))
     return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * kept.sum() * share**2))
 

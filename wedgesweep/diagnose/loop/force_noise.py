@@ -27,6 +27,9 @@ DEPENDENT = 1e-6
 ENOUGH = 4
 # Variance by noise of the motion, over its median, beyond which a force is too near a reversal.
 NEAR = 4.0
+# Compared samples to either side of a reversal that are left out here as well, as friction may build up there
+# as no function does, and the share of samples that must be left then.
+FARTHER, ENOUGH_LEFT = 4, 0.5
 # Part of the record at least that must be free of reversals.
 LEAST_CLEAR = 0.2
 
@@ -42,11 +45,13 @@ class KnownNoise(NamedTuple):
     white: float
     counted: np.ndarray
 
-    @property
-    def clear(self) -> np.ndarray:
-        """Samples (k,) that are far enough from reversals."""
+    def clear(self, velocity: np.ndarray) -> np.ndarray:
+        """Samples (k,) that are far enough from reversals of a velocity (k,), unless few are left then."""
         variance = self.passed_on[0] + self.white**2
-        return self.counted & (variance <= NEAR * np.median(variance[self.counted]))
+        quiet = self.counted & (variance <= NEAR * np.median(variance[self.counted]))
+        turns = np.diff(np.sign(velocity), append=0.0) != 0.0
+        far = quiet & (np.convolve(turns, np.ones(2 * FARTHER + 1), mode="same") < 0.5)
+        return far if far.sum() >= ENOUGH_LEFT * quiet.sum() else quiet
 
 
 def of_force(
@@ -61,7 +66,7 @@ def of_force(
 
     ``model`` (n,): the force of a model along the motion.
     """
-    clear = known.clear
+    clear = known.clear(motion.velocity[places])
     columns = low_pass(_functions(motion, model))[:, places].T
     whole = np.zeros(force.size)
     whole[clear] = _left(columns[clear], force[clear])

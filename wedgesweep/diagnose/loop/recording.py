@@ -207,7 +207,7 @@ def recording(
         told = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
         raise InputError([f"{name}: {told}; move it faster, or measure it with less noise"])
     blocks = _blocks(own.velocity[places])
-    white = low_pass.noise(white_noise(force, rate))
+    white = low_pass.noise(white_noise(force, rate, jumps=True))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)
     found = Recording(name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left)
     return found.renewed({}, np.zeros(len(blocks)))
