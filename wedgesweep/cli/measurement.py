@@ -97,7 +97,7 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
             f"{test.time.size}",
             f"{own.low_pass.cutoff:.4g}",
             f"{own.noise:.3g} N ({100.0 * own.noise / float(own.force.std()):.2g} %)",
-            f"{1e3 * own.motion.velocity_noise:.3g} mm/s",
+            f"{1e3 * own.motion.noise[1]:.3g} mm/s",
             f"{len(own.blocks)}",
         )
         for test, own in zip(measurement.tests, loop_data(measurement).recordings, strict=True)

@@ -49,7 +49,7 @@ def _of_loops(data: LoopData) -> list[dict[str, Any]]:
             "noise_force_N": finite(own.noise),
             "noise_from": own.spectrum.source,
             "noise_correlation": finite(own.spectrum.correlation),
-            "noise_velocity_mm_per_s": finite(1e3 * own.motion.velocity_noise),
+            "noise_velocity_mm_per_s": finite(1e3 * own.motion.noise[1]),
         }
         for own in recordings
     ]
@@ -99,7 +99,6 @@ def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
 def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     """Forces along the imposed motion."""
     shown = np.where(data.seen, 1.0, np.nan)
-    measured, simulated = data.in_samples(data.measured), data.in_samples(simulated)
     position, velocity = (
         data.padded([getattr(own.motion, name)[own.places] for own in data.recordings]) * shown
         for name in ("displacement", "velocity")
@@ -107,7 +106,7 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     return {
         "displacement": (BY_SAMPLE, position, "m", "imposed displacement"),
         "velocity": (BY_SAMPLE, velocity, "m/s", "imposed velocity"),
-        "measured_force": (BY_SAMPLE, measured * shown, "N", "measured force"),
+        "measured_force": (BY_SAMPLE, data.measured * shown, "N", "measured force"),
         "simulated_force": (("model", *BY_SAMPLE), simulated * shown, "N", "simulated, with the fitted zero"),
         "force_noise": (
             ("test",),
