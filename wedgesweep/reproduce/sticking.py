@@ -6,7 +6,7 @@ import numpy as np
 
 from wedgesweep.reproduce.findings import STICKS, Finding, above, below, claim
 from wedgesweep.reproduce.runs import MM, Run, Runs
-from wedgesweep.reproduce.single_case import other_lean, record, single
+from wedgesweep.reproduce.single_case import mirrored_columns, record, single
 
 # A case that is stuck for a larger share of the time hardly moves.
 MOST = 0.9
@@ -60,7 +60,7 @@ def _longest(run: Run, hertz: int) -> dict[str, float]:
     stuck = run.cases("coulomb", beta)["stick_fraction"]
     longest = stuck[int(stuck.where(stuck < MOST, 0.0).fillna(0.0).values.argmax())]
     millimetres = round(float(longest["amplitude"]) * MM, 6)
-    mirrored = single(run, "coulomb", beta, millimetres, other_lean(run.config))
+    mirrored = single(run, "coulomb", beta, millimetres, mirrored_columns(run.config))
     return {
         f"share_{hertz}": float(longest.where(longest < MOST, 0.0)),
         f"input_{hertz}": millimetres,
