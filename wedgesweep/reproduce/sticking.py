@@ -85,8 +85,8 @@ def _bolster_face(run: Run) -> dict[str, float]:
     reason="The input from which coulomb keeps slipping is proportional to omega^{slope:.2f} (fitted over "
     "{frequencies} frequencies), the input at which the ratio exceeds 0.1 to omega^{moving_slope:.2f}, "
     "because the bolster is driven by its mass times a omega^2. A base acceleration of {acceleration:.4f} "
-    "m/s2 makes the bolster slip once from rest, to a position where it sticks; slip continues from about "
-    "{sustained:.2f} m/s2. An input of 0.3 mm has this acceleration at beta = {beta_of_onset:.2f} only. "
+    "m/s^2 makes the bolster slip once from rest, to a position where it sticks; slip continues from about "
+    "{sustained:.2f} m/s^2. An input of 0.3 mm has this acceleration at beta = {beta_of_onset:.2f} only. "
     "The regularised laws have no onset: at beta = 1.75 and the smallest input static-dynamic creeps with "
     "a ratio of {creep:.2f}.",
 )
