@@ -14,7 +14,7 @@ import numpy as np
 
 from wedgesweep.config import Case
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
 from wedgesweep.systems.suspension import parameters
 
@@ -25,7 +25,7 @@ ROUNDS, REPEATED = 15, 40
 OPEN = [Case("coulomb", beta, a) for beta, a in ((0.75, 4.75e-3), (0.9, 1e-3), (1.2, 1e-3), (1.3, 2.2e-3))]
 LIMIT = 5e-3
 STEPS, LADDER = (250, 500, 1000, 2000, 4000), (1e-3, 1e-4, 1e-5, 1e-6)
-DTYPE = dataset.record_dtype({"phase": 0, "harmonic": dataset.HARMONICS, "part": 2})
+DTYPE = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
 
 
 def records(cases, law, joints):

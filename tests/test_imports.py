@@ -43,9 +43,9 @@ FORBIDDEN = {
     ("sweep/",): tuple(
         f"wedgesweep.{name}" for name in ("figures", "report", "diagnose", "measured", "reproduce", "cli")
     ),
-    tuple(f"sweep/{name}.py" for name in ("dataset", "journal", "cases", "batch", "continuation")): (
-        "wedgesweep.sweep.run",
-    ),
+    tuple(
+        f"sweep/{name}.py" for name in ("variables", "dataset", "journal", "cases", "batch", "continuation")
+    ): ("wedgesweep.sweep.run",),
     ("figures/",): tuple(f"wedgesweep.{name}" for name in ("sweep", "report", "diagnose", "cli")),
     ("report/", "diagnosis_result.py"): ("wedgesweep.sweep.run", "wedgesweep.diagnose", "wedgesweep.cli"),
     ("validation/",): ("wedgesweep.diagnose", "wedgesweep.solvers", "wedgesweep.cli"),

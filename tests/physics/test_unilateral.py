@@ -15,6 +15,7 @@ from wedgesweep.simulate import Settings, respond
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.sweep import variables
 from wedgesweep.systems import compact
 from wedgesweep.systems.suspension import parameters
 from wedgesweep.systems.suspension.unilateral.contacts import Faces, Motion, Reactions
@@ -242,11 +243,10 @@ def test_a_steady_response_with_impacts_is_that_of_a_long_run():
     case = record("coulomb", 1e-3, 2.5)
     long = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=200)
     expected = respond(case, long, 3)[0].numbers
-    from wedgesweep.sweep import dataset
     from wedgesweep.sweep.cases import solve_cases
 
     found = Settings(method="event-driven", rtol=1e-8, duration=None, steady=True)
-    dtype = dataset.record_dtype({"phase": 0, "harmonic": 9, "part": 2})
+    dtype = variables.record_dtype({"phase": 0, "harmonic": 9, "part": 2})
     (one,) = solve_cases(case, np.array([0]), found, inf, dtype)
     assert one["period"] == 1
     assert one["settled_periods"] < 100

@@ -13,7 +13,7 @@ import pytest
 from tests.command import invoke
 from wedgesweep import config
 from wedgesweep.config import Case
-from wedgesweep.sweep import dataset, estimate, outcomes
+from wedgesweep.sweep import dataset, estimate, outcomes, variables
 from wedgesweep.sweep.chunks import CHUNK, Rows
 from wedgesweep.sweep.run import Sweep
 
@@ -149,7 +149,7 @@ def _sizes(rows, left, method, expected):
 
 def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
     sweep = Sweep(config.parse(MILLION.replace("= 1000 }", "= 300 }")), tmp_path / "x.nc")
-    records = dataset.blank(sweep.dtype, np.arange(sweep.count))
+    records = variables.blank(sweep.dtype, np.arange(sweep.count))
     records["status"], records["periodicity"], records["lift_off_fraction"] = 0, 0.0, 0.0
     records["status"][[5, 70_000]], records["message"][70_000] = 1, b"locks"
     records["periodicity"][:7] = 1.0

@@ -115,7 +115,7 @@ def _require_no_sweep(path: Path) -> None:
 
 def _print_numbers(ds: "xr.Dataset") -> None:
     from wedgesweep.sweep.cases import describe
-    from wedgesweep.sweep.dataset import OF_LIFT_OFF, VARIABLES
+    from wedgesweep.sweep.variables import OF_LIFT_OFF, VARIABLES
 
     law, beta, amplitude = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
     where = describe(law, beta, amplitude, ds["amplitude"].attrs["units"])

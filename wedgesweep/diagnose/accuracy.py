@@ -15,8 +15,9 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import chdtri
 
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import ADEQUATE
-from wedgesweep.diagnose.fit_data import Evaluation, FitData
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
 

@@ -122,12 +122,7 @@ def diagnose(
     finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
     progress("scores")
     scores = score_test.scores(search, base.fit, scans)
-    gain = None
-    if finding.best is not None and data.tests > 1:
-        progress("held-out tests")
-        gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
-        finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
-        gain = gain if finding.best is not None else None
+    finding, gain = on_held_out_tests(search, base, finding)
     progress("accuracy")
     levels = ladder(search, base, explanations)
     progress("next test")
@@ -204,6 +199,16 @@ def refit_cause(
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
     return finding, found
+
+
+def on_held_out_tests(search: Search, base: Explanation, finding: Finding) -> tuple[Finding, Gain | None]:
+    """The finding as tests that were left out of the fit leave it, and the gain on them."""
+    if finding.best is None or search.data.tests < 2:
+        return finding, None
+    search.progress("held-out tests")
+    gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
+    finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
+    return finding, gain if finding.best is not None else None
 
 
 def explain(search: Search) -> Explained:

@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point, Scenario, best_evaluation_per_test
+from wedgesweep.diagnose.evaluation import Evaluation, Point, Scenario, best_evaluation_per_test
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
 
 # Relative errors of simulations: negligible beside the noise of 4 % data, negligible in derivatives as well,

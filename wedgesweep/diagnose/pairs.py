@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import Evaluation
 from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import (

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.projector import Projector

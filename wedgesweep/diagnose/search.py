@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import work
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import Evaluation, FitData
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model

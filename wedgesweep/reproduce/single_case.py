@@ -11,7 +11,7 @@ from wedgesweep.config import Case, Config, from_document
 from wedgesweep.reproduce.runs import MM, Run
 from wedgesweep.response import NUMBERS
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.sweep.dataset import HARMONICS
+from wedgesweep.sweep.variables import HARMONICS
 
 # Changes of a config: keys and values by table.
 Changes = Mapping[str, Mapping[str, Any]]

@@ -3,7 +3,7 @@
 from typing import TypedDict
 
 from wedgesweep.config import Config
-from wedgesweep.sweep.dataset import OF_LIFT_OFF
+from wedgesweep.sweep.variables import OF_LIFT_OFF
 
 # What only datasets of unilateral joints have, and what other variables mean there.
 _OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)

@@ -17,7 +17,7 @@ from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset, journal, labels, provenance, transients
+from wedgesweep.sweep import dataset, journal, labels, provenance, transients, variables
 from wedgesweep.sweep.backend import Backend, Pool, local
 from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases
 from wedgesweep.sweep.chunks import Rows
@@ -72,13 +72,13 @@ class Sweep:
         return {
             "phase": self.settings.kept_periods * samples if self.settings.keep_waveforms else 0,
             "samples_per_period": samples,
-            "harmonic": dataset.HARMONICS,
+            "harmonic": variables.HARMONICS,
             "part": 2,
         }
 
     @property
     def dtype(self) -> np.dtype:
-        return dataset.record_dtype(self.sizes, self.settings.continuation)
+        return variables.record_dtype(self.sizes, self.settings.continuation)
 
     @property
     def rows(self) -> Rows:
@@ -312,7 +312,7 @@ def unfinished(out: Path) -> "xr.Dataset | None":
     if not path.exists():
         return None
     sweep = Sweep(parse(journal.header(path)["config"], str(path)), out)
-    records = dataset.blank(sweep.dtype, np.arange(sweep.count))
+    records = variables.blank(sweep.dtype, np.arange(sweep.count))
     done = journal.read(path, sweep.dtype)
     records[done["index"]] = done
     return sweep.assembled(records, datetime.now(UTC))

@@ -11,15 +11,8 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.fit_data import (
-    Comparison,
-    Evaluation,
-    Evaluator,
-    FitData,
-    NuisanceParameter,
-    Point,
-    Scenario,
-)
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import Evaluator, FitData
 from wedgesweep.diagnose.mixed.layout import Layout, MixedStart
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.natural_units import NaturalUnits

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation, Point
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance

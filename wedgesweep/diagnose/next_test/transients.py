@@ -5,7 +5,7 @@ from math import ceil, pi
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Point
+from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, scaled

@@ -6,7 +6,8 @@ from math import log
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation, Evaluator, Point
+from wedgesweep.diagnose.evaluation import Evaluation, Point
+from wedgesweep.diagnose.fit_data import Evaluator
 
 # Lowest level, over the fundamental of the displacement, and the factor from one level to the next.
 LOWEST, FACTOR = 0.12, 1.3

@@ -11,15 +11,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import (
-    Comparison,
-    Evaluation,
-    Evaluator,
-    FitData,
-    NuisanceParameter,
-    Point,
-    Scenario,
-)
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import Evaluator, FitData
 from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone, tone_phase
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY

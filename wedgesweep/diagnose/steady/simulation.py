@@ -12,7 +12,8 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TOLERANCE
-from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
+from wedgesweep.diagnose.steady.harmonic_fit import REMOVED, regressors
+from wedgesweep.diagnose.steady.spectra import SIMULATED
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 

@@ -14,14 +14,14 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.decorrelation import Decorrelation
-from wedgesweep.diagnose.fit_data import (
+from wedgesweep.diagnose.evaluation import (
     Evaluation,
-    Evaluator,
     NuisanceParameter,
     Point,
     Scenario,
     best_evaluation_per_test,
 )
+from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.release import Release
