@@ -85,7 +85,9 @@ LOOP, LOOPS = 20_000_000, 12
 def main():
     sweep = Sweep(ws.load_config(ROOT / "configs" / "quick.toml"), Path("quick.nc"))
     compile_once("radau")
-    lines = ["CPU s          a later case  in the kernel  page faults  before a first  this process  empty loop"]
+    lines = [
+        "CPU s          a later case  in the kernel  page faults  before a first  this process  empty loop"
+    ]
     began = time.process_time()
     cases, own = list(map(solved, chunks(sweep))), time.process_time() - began
     lines.append(told("in itself", cases, own, list(map(empty_loop, range(LOOPS)))))
