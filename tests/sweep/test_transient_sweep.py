@@ -209,6 +209,15 @@ def test_faults_of_other_kinds_are_told(given, told):
     assert told in str(caught.value)
 
 
+@pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])
+def test_the_unit_of_a_record_is_read_in_any_spelling_and_written_in_one(tmp_path, unit):
+    (tmp_path / "bump.csv").write_text("t,base\n0.0,1.0\n0.1,2.0\n0.2,1.0\n")
+    given = RECORD.replace('"mm"', f'"{unit}"\nquantity = "acceleration"')
+    found = config.parse(HEAD + given + TAIL, directory=tmp_path)
+    assert 'unit = "m/s^2"' in found.to_toml()
+    assert found.input.given.max() == 2.0
+
+
 def test_a_force_is_for_oscillators():
     with pytest.raises(config.ConfigError, match="driven by its side frame"):
         config.parse(RANDOM + "start_hz = 1.0\nstop_hz = 4.0\n" + TAIL)

@@ -103,7 +103,7 @@ def refined(fit: Fit) -> Accuracy:
 def _minimised(fit: Fit, size: float) -> Fit:
     """The fit under a model error, from where it is or with nuisance parameters as stated."""
     data = fit.model.data.with_model_error(size)
-    model = replace(fit.model, data=data)
+    model = fit.model.on(data)
     here = data.compared_again(fit.evaluation)
     stated, at_rest = data.start()
     priors = model.nuisance_weight.shape[1]

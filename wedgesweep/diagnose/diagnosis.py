@@ -8,7 +8,7 @@ from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.ladder import Rung, ladder
+from wedgesweep.diagnose.ladder import Level, ladder
 from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
@@ -70,7 +70,7 @@ class Diagnosis:
     gain: Gain | None
     next_test: NextTest | None
     thresholds: Thresholds
-    ladder: tuple[Rung, ...]
+    ladder: tuple[Level, ...]
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
     never_tried: tuple[tuple[str, ...], ...] = ()
@@ -129,7 +129,7 @@ def diagnose(
         finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
         gain = gain if finding.best is not None else None
     progress("accuracy")
-    rungs = ladder(search, base, explanations)
+    levels = ladder(search, base, explanations)
     progress("next test")
     next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
@@ -142,7 +142,7 @@ def diagnose(
         gain=gain,
         next_test=next_test,
         thresholds=thresholds,
-        ladder=rungs,
+        ladder=levels,
         calibration=calibration,
         untried=tuple(search.budget.untried),
         never_tried=search.budget.never_tried,

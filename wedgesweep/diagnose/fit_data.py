@@ -11,16 +11,13 @@ from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.natural_units import BENCH, NaturalUnits
-
-if TYPE_CHECKING:
-    from wedgesweep.diagnose.model import Model
 
 # An uncertain number of the measurement, not of the model: the gain of the sensor that recorded all inputs.
 INPUT_GAIN = "input_gain"
@@ -132,6 +129,19 @@ def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:
     """Index (T,) of the evaluation that fits each test best."""
     misfit = [np.where(each.found_tests, each.chi2_by_test, np.inf) for each in evaluations]
     return np.argmin(misfit, axis=0)
+
+
+class Evaluator(Protocol):
+    """Evaluates points of a hypothesis on its ``data``."""
+
+    @property
+    def data(self) -> "FitData": ...
+
+    def on(self, data: "FitData") -> "Evaluator":
+        """The same hypothesis on other data."""
+
+    def evaluate_all(self, points: Sequence[Point]) -> list[Evaluation]:
+        """Simulate many points at once, and compare them with the measurement."""
 
 
 class FitData(Protocol):
@@ -297,7 +307,7 @@ class FitData(Protocol):
         """Whether (T,) the response depends on how long the rig had run, which the records do not tell."""
         return np.zeros(self.tests, bool)
 
-    def search_nuisances(self, model: "Model", points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations of points, each test's nuisance parameters without a prior searched globally."""
         return model.evaluate_all(points)
 

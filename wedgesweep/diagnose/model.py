@@ -87,6 +87,10 @@ class Model:
         """The model with one of its parameters known."""
         return replace(self, held=(parameter, value))
 
+    def on(self, data: FitData) -> "Model":
+        """The same hypothesis on other data."""
+        return replace(self, data=data)
+
     def uncertain_starts(self) -> np.ndarray:
         """Uncertain parameters (1 + 2 u, u) as stated, and each of them well off to either side."""
         off = OFF * np.diag(self.prior_std)

@@ -84,17 +84,7 @@ class _Baseline(NamedTuple):
 
 
 def scores(search: Search, base: Fit, scans: Scans) -> list[Score]:
-    """Score of every effect of a search, in its order; those that were not detected come last.
-
-    Parameters
-    ----------
-    search : Search
-        Data and candidates.
-    base : Fit
-        The fitted base model.
-    scans : mapping of str to sequence of Evaluation
-        What was evaluated of each effect before.
-    """
+    """Score of every effect of a search, in its order; those that were not detected come last."""
     baseline = _Baseline(search, base, Projector(base))
     found = search.each(lambda effect: _score(baseline, effect, scans.get(effect, ())), search.effects)
     return [*found, *(_score_undetected(search, base, effect) for effect in search.undetected)]

@@ -40,7 +40,7 @@ from wedgesweep.measured.declarations import (
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
-from wedgesweep.units import UNITS
+from wedgesweep.units import UNITS, usual
 
 ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
@@ -179,13 +179,17 @@ def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[st
     return found, different
 
 
+def _unit(variable: Any) -> str:
+    return usual(str(getattr(variable, "units", "none")))
+
+
 def _columns(group: Any) -> dict[str, dict[str, str]]:
     """Name, unit, ``of`` and ``quantity`` of the variables of a test."""
     found = {}
     for name in (*UNITS, INPUT):
         if name in group.variables:
             own = group.variables[name]
-            told = {"column": name, "unit": getattr(own, "units", "none")}
+            told = {"column": name, "unit": _unit(own)}
             more = {key: getattr(own, key) for key in ("of", "quantity") if hasattr(own, key)}
             found[name] = told | more
     return found
@@ -237,7 +241,7 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
     columns = {
         name: np.ma.filled(variable[:].astype(float), np.nan) for name, variable in group.variables.items()
     }
-    units = {name: getattr(variable, "units", "none") for name, variable in group.variables.items()}
+    units = {name: _unit(variable) for name, variable in group.variables.items()}
     quantity = getattr(group.variables.get(INPUT), "quantity", None)
     problems.extend(f"{at}: {fault}" for fault in _variable_faults(columns, units, quantity))
     if len(problems) > before:

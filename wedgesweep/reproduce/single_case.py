@@ -25,8 +25,8 @@ def changed(config: Config, changes: Changes) -> Config:
     return from_document(document)
 
 
-def other_lean(config: Config) -> dict[str, dict[str, float]]:
-    """The change that reverses the lean of the columns."""
+def mirrored_columns(config: Config) -> dict[str, dict[str, float]]:
+    """The change that mirrors the column angle."""
     return {"suspension": {"column_angle_deg": -config.document["suspension"]["column_angle_deg"]}}
 
 

@@ -16,12 +16,13 @@ from wedgesweep.diagnose import work
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_data import (
     Evaluation,
+    Evaluator,
     NuisanceParameter,
     Point,
     Scenario,
     best_evaluation_per_test,
 )
-from wedgesweep.diagnose.model import TOLERANCE, Model
+from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.natural_units import NaturalUnits
@@ -206,7 +207,7 @@ class TransientData(SampledData):
             ]
         )
 
-    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations from several starts: where a mass rests before it moves, friction hides its place."""
         stated, at_rest = self.start()
         offsets = OFFSETS if len(points) <= FEW else (0.0,)

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style
 from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.figures.transient import picks
 
@@ -75,8 +75,8 @@ def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     for ax, law in zip(made.axes, laws, strict=True):
         _draw_decay(ax, chosen.sel(friction_law=law), style.law_style(law)["color"], ds)
         ax.set_title(law, fontsize=10)
-    style.label(made.axes, "time [s]", picks.displacement(ds), columns=2)
+    style.label(made.axes, "time [s]", labels.of(ds).displacement, columns=2)
     lines = "; dashed: dry friction alone, $4F/k$ a cycle" if np.isfinite(ds.attrs.get(LOSS, np.nan)) else ""
-    note = f"{picks.about(ds)}; yellow: stuck{lines}"
+    note = f"{labels.of(ds).sign}; yellow: stuck{lines}"
     made.title(f"Decay at scale {chosen['scale'].item():.3g}", note)
     return made
