@@ -215,6 +215,23 @@ def impact(y, mode, place, p):
 def closed_form(state, stop, p, keeping, recorder, counts):
     """Follow a mode that has a closed form to its event or ``stop``, or several modes, one after the other.
 
-    Returns whether it has one, the state reached, and the event or NO_EVENT; ``counts[2]`` counts the
-    events passed.
+    Returns whether it has one, the state reached, and the event, NO_EVENT or HANDED_OVER; ``counts[2]``
+    counts the events passed.
+    """
+
+
+# Two systems may take turns in following a motion: one that holds as long as a contact is closed, and one
+# for all motions.
+
+
+@declared
+def leaves(y, mode, p):
+    """Whether a mode that follows an event is for the other system: it then takes the event itself."""
+
+
+@declared
+def taken_over(t, y, mode, event, p):
+    """State and mode with which a system goes on, and whether they are unique.
+
+    ``mode``: numbers of the mode of the other system (an array); ``event`` that led there or NO_EVENT.
     """

@@ -23,6 +23,7 @@ from wedgesweep.hybrid.interface import (
     fastest,
     holds,
     initial_mode,
+    leaves,
     never_locks,
     observed,
     outruns,
@@ -35,7 +36,7 @@ from wedgesweep.hybrid.interface import (
 )
 from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
-from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
+from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
 from wedgesweep.solvers import explicit, implicit
 from wedgesweep.solvers.step import inside, slope
 
@@ -293,6 +294,18 @@ by_record(
 )
 
 
+def _leaves(y, mode, p):
+    """Whether another system goes on with a mode, if the system takes turns with one."""
+
+
+by_record(
+    _leaves,
+    lambda fields: (
+        (lambda y, mode, p: leaves(y, mode, p)) if provided(leaves, fields) else (lambda y, mode, p: False)
+    ),
+)
+
+
 @inner
 def _integrate_mode(state, stop, p, keeping, recorder, work):
     """Follow a mode by steps until its first event or ``stop``: the state there and the event.
@@ -365,8 +378,10 @@ def begin(t, y, p):
 def integrate(state, keep_from, stop, p, recorder, work):
     """Follow a run from event to event up to ``stop``, and keep the part from a time on.
 
-    Returns how it ended (OK, LOCKED, FAILED, CHATTERING) and the state reached.
+    Returns how it ended (OK, LOCKED, FAILED, CHATTERING, HANDED_OVER) and the state reached.
     """
+    if _leaves(state.y, state.mode, p):
+        return HANDED_OVER, state
     window = (stop - state.t) * fastest(p) / (2.0 * pi)
     if window > LONGEST_WINDOW:
         return FAILED, state
@@ -386,6 +401,8 @@ def integrate(state, keep_from, stop, p, recorder, work):
         if keeping:
             add_impact(recorder.sums[0], state.y, state.mode, number, p)
         y, mode, unique = transition(state.t, state.y, state.mode, number, p)
+        if _leaves(y, mode, p):
+            return HANDED_OVER, State(state.t, state.y, state.mode, number, state.step)
         state = State(state.t, y, mode, number, state.step)
         work.counts[2] += 1
         if not unique:
@@ -393,12 +410,3 @@ def integrate(state, keep_from, stop, p, recorder, work):
         if work.counts[2] > limit:
             return CHATTERING, state
     return OK, state
-
-
-@inner
-def run(t, y, keep_from, stop, p, recorder, work):
-    """As ``integrate``, from a state vector."""
-    state, unique = begin(t, y, p)
-    if not unique:
-        return LOCKED, state
-    return integrate(state, keep_from, stop, p, recorder, work)

@@ -66,7 +66,8 @@ GEOMETRY = (
 # Whether a contact between wedge and column or bolster can pull, or opens: then it is the effect lift_off.
 BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
 RESTITUTION = lift_off.EFFECT.quantities[0]
-# Mark of records of unilateral joints without other effects that have mechanics of their own.
+# Mark of records of unilateral joints without other effects that have mechanics of their own, and without a
+# series: while both contacts are closed they take turns with the base model.
 PLAIN: list[tuple] = [("plain_unilateral", np.int64)]
 
 # Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects;
@@ -101,6 +102,7 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
     own = [(quantity.name, np.float64) for quantity in SUSPENSION]
     geometry = [
         ("kit", np.int64),
+        ("opens", np.int64),  # whether contacts may open
         ("always_well_posed", np.int64),
         *((name, np.float64) for name in GEOMETRY),
     ]
@@ -154,7 +156,7 @@ def record(
     records.set_common(case, law, friction, (amplitude, omega))
     for name in known.EFFECTS:
         records.set_effect(p, name, records.with_neutral(name, effects.get(name, {})))
-    p["geometry"]["kit"] = _kit_of(p)
+    p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p), has_unilateral_joints(p)
     if is_regularised(p):
         _regularise(p, nominal)
     prepare(case)
@@ -277,6 +279,16 @@ def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
     kits = _kits(tuple(known.EFFECTS), bool(excitation.has_series(rows).any()))
     return records.converted(rows, kits[int(rows["geometry"]["kit"].max(initial=BASE))])
+
+
+def while_closed(rows: np.ndarray) -> np.ndarray | None:
+    """Compact records as those of the base model, which follows them while both contacts are closed.
+
+    None if they do not take turns with it.
+    """
+    if PLAIN[0][0] not in (rows.dtype.names or ()):
+        return None
+    return records.converted(rows, _kits(tuple(known.EFFECTS), False)[BASE])
 
 
 def has_own_mechanics(rows: np.ndarray) -> np.ndarray:

@@ -1,7 +1,8 @@
 """The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
 
-While both contacts are closed its equations, events and closed forms are those of bilateral joints. Records
-of this system have a part ``lift_off`` beside those of the suspension.
+While both contacts are closed its equations and events are those of bilateral joints. Without effects that
+have mechanics of their own the base model itself follows them then (see closed_form.py). Records of this
+system have a part ``lift_off`` beside those of the suspension.
 """
 
 from math import inf, nan
@@ -12,21 +13,20 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import hooks, travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
-from wedgesweep.hybrid.recorder import keep_constant
-from wedgesweep.hybrid.state import NO_EVENT, State
+from wedgesweep.hybrid.state import HANDED_OVER, NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
-from wedgesweep.systems.suspension import (
-    energy,
-    events,
-    filippov,
-    first_event,
-    linear_slip,
-    linear_slip_sums,
-    newton,
-    release,
-    transitions,
+from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
+from wedgesweep.systems.suspension.closed_form import stays_closed
+from wedgesweep.systems.suspension.modes import (
+    BOLSTER,
+    COLUMN,
+    VELOCITY,
+    X,
+    held,
+    mode_of,
+    with_branch,
+    with_segment,
 )
-from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, VELOCITY, X, held, with_branch, with_segment
 from wedgesweep.systems.suspension.unilateral import contacts, impact
 from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, moved
 from wedgesweep.systems.suspension.unilateral.modes import (
@@ -355,28 +355,23 @@ def normal_forces(t, y, mode, p):
     return column, bolster
 
 
-# Closed forms of the base model
+# Turns with the base model
 
 
 @implement(interface.closed_form, PLAIN)
-@inner
+@inlined
 def follow(state, stop, p, keeping, recorder, counts):
-    """Follow a mode with both contacts closed to its event or ``stop`` if it has a closed form."""
-    t, y, mode, last_event, step = state
-    if not closed(mode):
-        return False, state, NO_EVENT
-    short = State(t, (y[X], y[VELOCITY]), mode, last_event, step)
-    if stuck(mode, p):
-        if not release.is_known(short, p):
-            return False, state, NO_EVENT
-        end, event_place = release.release(short, stop, p)
-        if keeping:
-            keep_constant(t, end, y, mode, recorder, p)
-        return True, State(end, y, mode, last_event, step), event_place
-    free_motion = linear_slip.oscillator(y, mode, p)
-    if not free_motion.linear:
-        return False, state, NO_EVENT
-    end, x, velocity, event_place = first_event.slide(short, stop, free_motion, p)
-    if keeping:
-        linear_slip_sums.keep(short, end, free_motion, recorder, p)
-    return True, State(end, (x, velocity, 0.0, 0.0, 0.0, 0.0), mode, last_event, step), event_place
+    """Nothing of this system: the base model goes on while both contacts stay closed."""
+    if stays_closed(state.y, state.mode, p):
+        return True, state, HANDED_OVER
+    return False, state, NO_EVENT
+
+
+@implement(interface.taken_over, PLAIN)
+@inner
+def taken_over(t, y, mode, event, p):
+    """State and mode after an event at which the base model no longer knows that both contacts are closed."""
+    if event == NO_EVENT:
+        found, certain = initial_mode(t, y, p)
+        return y, found, certain
+    return transition(t, y, mode_of(mode), event, p)
