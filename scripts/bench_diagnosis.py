@@ -12,8 +12,7 @@ import time
 from itertools import pairwise
 from pathlib import Path
 
-from wedgesweep import measured
-from wedgesweep.config import toml
+from wedgesweep import measured, toml
 from wedgesweep.diagnose import diagnosis
 
 REPORT = Path(__file__).parent.parent / "docs" / "bench_diagnosis.txt"

@@ -31,7 +31,8 @@ from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search
 from wedgesweep.effects import EFFECTS
 from wedgesweep.measured import Measurement, read
-from wedgesweep.synthesize.campaign import Options, synthesize
+from wedgesweep.synthesize.campaign import synthesize
+from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.plan import Plan, PlannedTest
 
 MASS, STIFFNESS, DAMPING, FRICTION = 2.0, 500.0, 0.4, 0.3

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from tests.command import invoke
-from wedgesweep.config import load, toml
+from wedgesweep import toml
+from wedgesweep.config import load
 from wedgesweep.natural_units import FREQUENCY, LENGTH
 
 BOGIE = Path(__file__).parents[1] / "configs" / "bogie.toml"

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from wedgesweep import config as configs
 from wedgesweep import figures, measured
 from wedgesweep.config import Config, variants
-from wedgesweep.config.keys import hint
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError
+from wedgesweep.hints import hint
 from wedgesweep.measured import Measurement
 from wedgesweep.sweep.backend import count_jobs
 from wedgesweep.sweep.run import Progress, Sweep

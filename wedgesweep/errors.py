@@ -12,6 +12,10 @@ class InputError(Exception):
         return "\n".join(self.problems)
 
 
+class ConfigError(InputError):
+    """A config cannot run; ``problems`` lists all its faults."""
+
+
 class SweepError(Exception):
     """A sweep cannot start, go on, be stored or be read; the message says why."""
 

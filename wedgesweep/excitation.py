@@ -20,8 +20,12 @@ from wedgesweep.trigonometry import cosine, sine
 
 # Harmonics of a Fourier series that a record has room for.
 HARMONICS = 16
+# Share of the mean square acceleration above the highest order that the steps of a solver must resolve.
+# What lies above is as small as the noise of a record: it shifts an event, but causes none of its own.
+UNRESOLVED = 0.04
 SERIES_FIELDS = [
     ("count", np.int64),
+    ("resolved", np.int64),
     ("cosine", np.float64, (HARMONICS,)),
     ("sine", np.float64, (HARMONICS,)),
     *sampled_input.FIELDS,
@@ -43,16 +47,25 @@ def set_series(rows: np.ndarray, harmonics: np.ndarray) -> None:
     part = rows["series"]
     orders = np.arange(1, harmonics.shape[-1] + 1)
     part["count"] = np.maximum((orders * (harmonics != 0.0)).max(axis=-1), 1)
+    part["resolved"] = _resolved(harmonics)
     part["cosine"], part["sine"] = 0.0, 0.0
     part["cosine"][..., : orders.size] = harmonics.real
     part["sine"][..., : orders.size] = -harmonics.imag
+
+
+def _resolved(harmonics: np.ndarray) -> np.ndarray:
+    """Highest order that steps must resolve, shape (n,) for harmonics of shape (n, H)."""
+    orders = np.arange(1, harmonics.shape[-1] + 1)
+    power = np.abs(orders**2 * harmonics) ** 2
+    from_here_on = np.cumsum(power[..., ::-1], axis=-1)[..., ::-1]
+    return np.maximum((from_here_on > UNRESOLVED * from_here_on[..., :1]).sum(axis=-1), 1)
 
 
 def set_no_motion(rows: np.ndarray, length: float) -> None:
     """Let no input act in full records, shape (n,), in place; motions are compared with a length (m)."""
     rows["input"]["amplitude"] = length
     part = rows["series"]
-    part["count"], part["cosine"], part["sine"] = 2, 0.0, 0.0
+    part["count"], part["resolved"], part["cosine"], part["sine"] = 2, 1, 0.0, 0.0
 
 
 def has_series(rows: np.ndarray) -> np.ndarray:
@@ -102,7 +115,7 @@ def _highest(p):
     """Highest angular frequency (rad/s) of the input, or of the motions to expect."""
     if p.series.rows > 0:
         return max(p.series.fastest, p.input.omega)
-    return max(p.series.count, 1) * p.input.omega
+    return max(p.series.resolved, 1) * p.input.omega
 
 
 @term("series", off="2.0 * pi / p.input.omega", pi=pi)

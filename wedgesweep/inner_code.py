@@ -6,12 +6,27 @@ times as long for this package. A function made with ``InnerCompiler`` is not op
 part of the functions that Python calls (``compiled.compiled``), which are optimised as a whole.
 """
 
-from typing import Any
+from typing import Any, cast
 
+from llvmlite.binding import create_new_function_pass_manager
+from numba.core import compiler, event, sigutils, types
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
-from numba.core.compiler_machinery import register_pass
-from numba.core.typed_passes import NativeLowering
+from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import (
+    IRLegalization,
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+)
+from numba.core.untyped_passes import (
+    FixupArgs,
+    GenericRewrites,
+    IRProcessing,
+    ReconstructSSA,
+    TranslateByteCode,
+)
 
 
 class _InnerLibrary(JITCodeLibrary):
@@ -21,7 +36,14 @@ class _InnerLibrary(JITCodeLibrary):
     """
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        pass
+        """Move variables from memory to registers before the code is copied into callers."""
+        ll_module.data_layout = self._codegen._data_layout
+        passes = create_new_function_pass_manager()
+        passes.add_sroa_pass()
+        builder = self._codegen._pass_builder()
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
 
     def finalize(self) -> None:
         self._raise_if_finalized()
@@ -37,6 +59,21 @@ class _InnerLibrary(JITCodeLibrary):
         return list(dict.fromkeys([self, *self._linking_libraries]))
 
 
+def _refuse_arrays(state: Any) -> None:
+    """Refuse what would go wrong without reference counts: arrays that a function makes, or hands on."""
+    counted = state.targetctx.data_model_manager.lookup
+    calls = (expression for expression in state.calltypes if getattr(expression, "op", "") == "call")
+    made = [
+        state.calltypes[each].return_type
+        for each in calls
+        if isinstance(state.typemap[each.func.name], types.Dispatcher)
+    ]
+    for kind in (state.return_type, *made):
+        if counted(kind).contains_nrt_meminfo():
+            message = f"{state.func_id.func_qualname}: arrays are for functions marked allocating"
+            raise TypeError(message)
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _InnerLowering(NativeLowering):
     """Lowering to code without an address."""
@@ -44,6 +81,8 @@ class _InnerLowering(NativeLowering):
     _name = "inner_lowering"
 
     def run_pass(self, state: Any) -> bool:
+        if not state.flags.nrt:
+            _refuse_arrays(state)
         state.library = _InnerLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         super().run_pass(state)
@@ -60,12 +99,52 @@ class _InnerLowering(NativeLowering):
         return True
 
 
-class InnerCompiler(CompilerBase):
-    """numba's compiler, with the last step left to the callers."""
+class InnerCompiler(compiler.CompilerBase):
+    """numba's compiler, with the last step left to the callers.
+
+    It leaves out numba's passes for what these functions do without, each of which costs as much as lowering
+    a short function: closures, ``with``, array expressions, literals, raised exceptions.
+    """
 
     def define_pipelines(self) -> list:
-        pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        lowering = [step for step, _ in pipeline.passes].index(NativeLowering)
-        pipeline.passes[lowering] = (_InnerLowering, pipeline.passes[lowering][1])
+        pipeline = PassManager("inner")
+        for step in _PASSES:
+            pipeline.add_pass(step, step.__name__)
         pipeline.finalize()
         return [pipeline]
+
+
+_PASSES = (
+    TranslateByteCode,
+    FixupArgs,
+    IRProcessing,
+    GenericRewrites,
+    ReconstructSSA,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+    IRLegalization,
+    _InnerLowering,
+    NoPythonBackend,
+)
+
+
+class InnerDispatcher(CPUDispatcher):
+    """Compiles a function once for all constants among its arguments.
+
+    numba would compile it anew for each of them, and every compiled function would listen to the times of all
+    that it calls.
+    """
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        kws = {name: types.unliteral(kind) for name, kind in dict(kws).items()}
+        return super().get_call_template(tuple(map(types.unliteral, args)), kws)
+
+    def compile(self, sig: Any) -> Any:
+        arguments, result = sigutils.normalize_signature(sig)
+        known: Any = self.overloads.get(tuple(arguments))
+        if known is None:
+            # Those who announce compilation, or pause the garbage collector, listen.
+            with event.trigger_event("numba:compile", data={"dispatcher": self, "args": arguments}):
+                known = cast(Any, self)._compiler.compile(arguments, result)
+            self.add_overload(known)
+        return known.entry_point

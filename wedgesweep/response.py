@@ -6,7 +6,7 @@ from math import atan2, cos, inf, nan, pi, sin
 import numpy as np
 
 from wedgesweep import sensor
-from wedgesweep.compiled import compiled, inner, term
+from wedgesweep.compiled import allocating, compiled, inner, term
 from wedgesweep.effects.states import input_length
 from wedgesweep.solvers.trajectory import Trajectory
 
@@ -94,7 +94,7 @@ def _opens(p):
     return p.lift_off.restitution >= 0.0
 
 
-@inner
+@allocating
 def reduce(sums, x, velocity, periods, p, numbers, spectra):
     """Write the numbers, a record of ``NUMBERS``, and the spectra of displacement and velocity.
 
@@ -135,13 +135,13 @@ def reduce(sums, x, velocity, periods, p, numbers, spectra):
             numbers.peak_velocity = max(numbers.peak_velocity, abs(seen))
 
 
-@inner
+@allocating
 def channels(x, velocity, periods, p):
     """Deflection and velocity over whole periods of a kept window as the sensors show them."""
     return _sensed(x, velocity, 2.0 * pi / p.input.omega * periods / velocity.size, True, p)
 
 
-@inner
+@allocating
 def _sensed(x, velocity, step, periodic, p):
     seen = np.empty(x.size)
     for i in range(x.size):

@@ -7,7 +7,7 @@ from math import exp
 
 import numpy as np
 
-from wedgesweep.compiled import inner
+from wedgesweep.compiled import allocating, inner
 
 # Below this step over time constant the weights of ``_weights`` are summed as a series.
 SERIES_BELOW, SERIES_TERMS = 1.0, 20
@@ -32,7 +32,7 @@ def apply_to_spectra(spectra, p):
         spectra[1, i, 1] = (imaginary - lag * real) / (1.0 + lag * lag)
 
 
-@inner
+@allocating
 def _weights(ratio):
     """Weights of the samples at -1, 0, 1, 2 for one step of the lag, exact for cubics.
 
@@ -60,7 +60,7 @@ def _weights(ratio):
     )
 
 
-@inner
+@allocating
 def lagged(velocity, step, periodic, p):
     """Velocity channel of samples ``step`` (s) apart; without ``periodic`` it begins in balance."""
     if p.velocity_lag.time == 0.0:

@@ -1,7 +1,5 @@
 """The config: what it reads and how it resolves."""
 
-import subprocess
-import sys
 import tomllib
 from dataclasses import replace
 from math import pi, sqrt
@@ -135,13 +133,6 @@ def test_with_method_changes_the_solver_alone():
     assert other.solver == replace(read.solver, method="another")
     assert other.case_list() == read.case_list()
     assert read.solver.method == "radau"
-
-
-def test_importing_config_loads_neither_numba_nor_scipy_nor_xarray():
-    script = (
-        "import sys, wedgesweep.config; sys.exit(bool({'numba', 'scipy', 'xarray'} & sys.modules.keys()))"
-    )
-    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 
 @pytest.mark.parametrize("listed", [False, True])

@@ -9,7 +9,8 @@ import pytest
 from tests.diagnose import test_loops, test_transients
 from tests.diagnose.synthetic import drawn
 from tests.diagnose.test_loops import CELLS, RATE, diagnosed
-from wedgesweep.config import parse, toml
+from wedgesweep import toml
+from wedgesweep.config import parse
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.diagnosis import data_of, explain
 from wedgesweep.diagnose.fit_parameters import Hypothesis

@@ -120,7 +120,10 @@ TOML_FAULTS = {
         "measurement.model_error: 2.0 is out of range; it must be less than 1",
     ),
     "no model": (('model = "model.toml"\n', ""), 'measurement.model: missing; write model = "model.toml"'),
-    "absent model": (("model.toml", "none.toml"), "none.toml: No such file"),
+    "absent model": (
+        ("model.toml", "none.toml"),
+        "none.toml: No such file or directory; give the path of a config, from here",
+    ),
     "no time": (
         ('time = { column = "t", unit = "s" }\n', ""),
         'columns.time: missing; write time = { column = "t", unit = "s" }',
@@ -160,7 +163,10 @@ TOML_FAULTS = {
         ("[[measurement.test]]", '[[measurement.test]]\nfile = "one.csv"\n[[measurement.test]]'),
         "test[1].file: repeats test[0].file",
     ),
-    "absent data": (("one.csv", "two.csv"), "two.csv: No such file"),
+    "absent data": (
+        ("one.csv", "two.csv"),
+        "two.csv: No such file or directory; give the path of a data file, from here",
+    ),
     "unknown column": (('"d"', '"dd"'), 'one.csv:1: no column "dd" (displacement); did you mean "d"?'),
     "another frequency": (("20.0", "20.2"), "test[0].frequency_hz: 20.2, but "),
     "a harmonic's frequency": (("20.0", "10.0"), "one.csv vibrates at 20"),
@@ -168,6 +174,10 @@ TOML_FAULTS = {
 }
 CSV_FAULTS = {
     "empty": ([], "one.csv:1: empty; the first line must hold the names"),
+    "no header": (
+        lines()[1:],
+        "one.csv:1: numbers, where the header is expected; write the names of the columns above",
+    ),
     "header only": (["t,d,v"], "one.csv: no data below the header"),
     "duplicate header": (
         [f"{line},{'d' if i == 0 else 1}" for i, line in enumerate(lines())],
@@ -187,8 +197,8 @@ CSV_FAULTS = {
         edited(9, joined(lambda c: ["0.0060", *c[1:]])),
         "one.csv:9: time stands still (0.006 fol",
     ),
-    "gap": (edited(99, lambda cells: []), "one.csv:99: a gap of 1 samples after 0.096"),
-    "gap at the end": (edited(510, lambda cells: []), "one.csv:510: a gap of 1 samples after 0.507"),
+    "gap": (edited(99, lambda cells: []), "one.csv:99: a gap of 1 sample after 0.096"),
+    "gap at the end": (edited(510, lambda cells: []), "one.csv:510: a gap of 1 sample after 0.507"),
     "uneven": (edited(50, joined(lambda c: ["0.0484", *c[1:]])), "one.csv:50: sampling not constant (0.0014"),
     "few samples": (lines()[:6], "one.csv:6: ends after 5 samples"),
     "few periods": (lines(periods=3.9), "one.csv: covers 3.9 periods of 20 Hz; at least 4 are needed"),
@@ -272,6 +282,15 @@ def test_faults_of_the_model(tmp_path, old, new, words):
     assert "model.toml" in found[0]
 
 
+@pytest.mark.parametrize(
+    ("old", "key"),
+    [("model.toml", "measurement.model"), ("one.csv", "measurement.test[0].file")],
+)
+def test_a_missing_file_is_told_with_the_key_that_names_it(tmp_path, old, key):
+    path = fixture_measured.write(tmp_path, MEASURED.replace(old, "none"))
+    assert problems(path)[0].startswith(f"{path}: {key}: {tmp_path}/none: No such file")
+
+
 def test_all_faults_are_told_at_once(tmp_path):
     text = MEASURED.replace("0.3", "-1.0") + '[[measurement.test]]\nfile = "absent.csv"\n'
     csv = edited(5, joined(lambda c: ["0.0001", *c[1:]]))
@@ -315,7 +334,7 @@ def test_rounded_stamps_are_an_even_grid(rate, decimals):
     assert np.abs(grid - times).max() < 0.6 * 10.0**-decimals
     # One sample missing shows all the same.
     assert even_grid(np.round(np.delete(times, 1700), decimals), str, faults).size == 0
-    assert faults[0].startswith("1700: a gap of 1 samples")
+    assert faults[0].startswith("1700: a gap of 1 sample ")
 
 
 def test_stamps_of_limited_digits_and_of_a_slow_clock():

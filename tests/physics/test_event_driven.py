@@ -120,6 +120,18 @@ def test_the_closed_form_misses_no_event():
     assert dips > 300
 
 
+def test_slip_off_a_held_jump_is_no_event():
+    """A face held at its jump slips off where velocity and rate are those of the jump, but for rounding.
+
+    A run that took this for an event switched for ever.
+    """
+    record = parameters.record("static-dynamic", 4.031402889932369e-3, 0.410062893081761 * OMEGA_N)
+    numbers = respond(record, rtol=1e-10).numbers
+    assert numbers["amplitude_ratio"] == pytest.approx(
+        respond(record, solve=radau.solve).numbers["amplitude_ratio"], rel=1e-7
+    )
+
+
 @pytest.mark.parametrize("amplitude", [0.026e-3, 0.03e-3, 0.033e-3, 0.0365e-3, 0.05e-3, 0.2e-3, 2e-3])
 def test_extremes_are_those_of_the_waveforms(amplitude):
     """Also of slips that last a tenth of a period: their first acceleration is zero, with a sign of noise."""

@@ -77,3 +77,22 @@ def test_both_solvers_agree_under_set_valued_friction():
     assert one.sticks.any()
     assert not one.sticks.all()
     assert np.abs(one.x - other.x).max() < 1e-6 * np.ptp(one.x)
+
+
+def test_noise_in_high_orders_needs_no_short_steps():
+    noisy = np.zeros(16, complex)
+    noisy[:3], noisy[3:] = SHAPE, 2e-4 * np.exp(1j * np.arange(13))
+    record = case(noisy)
+    # Second and third order carry 12 and 15 % of the mean square acceleration, the noise 0.7 %.
+    assert record["series"]["resolved"][0] == 3
+    every = record.copy()
+    every["series"]["resolved"] = 16
+    there, here = steady(every), steady(record)
+    assert np.abs(here - there).max() < 1e-7 * np.abs(there).max()
+
+
+def test_an_order_that_carries_acceleration_is_resolved():
+    strong = np.append(-1j, np.zeros(15))
+    strong[15] = 1e-3  # a quarter of the fundamental's acceleration
+    assert case(strong)["series"]["resolved"][0] == 16
+    assert case(excitation.SINE)["series"]["resolved"][0] == 1

@@ -167,7 +167,7 @@ def test_figures_of_sines_are_not_offered(folder):
         ("duration_s = 4.0", "duration_s = 1e8", "input.duration_s: 1e+08 s with frequencies up to 6 Hz"),
         ("fade_s = 0.2", "sampling_hz = 1e9", "input.sampling_hz: more than 2e+07 samples"),
         ("amplitude_m_per_s2 = 4.0", "", "input.amplitude_mm: missing; write amplitude_mm"),
-        ("scale = [0.5, 1.0, 2.0]", "beta = 1.0", "sweep.beta: unknown key"),
+        ("scale = [0.5, 1.0, 2.0]", "beta = 1.0", "sweep.beta: no key of a [sweep] beside an [input]"),
         ("scale = [0.5, 1.0, 2.0]", "scale = 0.0", "sweep.scale: 0.0 is out of range"),
         ("rtol = 1e-8", 'settle = "steady"', "solver.settle: an [input] does not repeat; remove it"),
         (HEAD, "", None),

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.command import invoke
-from wedgesweep.config import toml
+from wedgesweep import toml
 
 Numbers = dict[str, dict[str, float]]
 # Below and above resonance; all wedges stay pressed, none stands still. (Hz, mm)

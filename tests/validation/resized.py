@@ -4,7 +4,8 @@ import csv
 import tomllib
 from pathlib import Path
 
-from wedgesweep.config import load, toml
+from wedgesweep import toml
+from wedgesweep.config import load
 from wedgesweep.natural_units import LENGTH, TIME, VELOCITY
 
 DIMENSIONS = {"time": TIME, "displacement": LENGTH, "velocity": VELOCITY}

@@ -9,10 +9,12 @@ from wedgesweep.effects import EFFECTS
 from wedgesweep.validation import judge, ranges, sets, strength
 from wedgesweep.validation.__main__ import main
 from wedgesweep.validation.shares import Share
+from wedgesweep.validation.time_records import TIME_KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
 RIGS_RECORDS = DOCS / "validation-rigs-records.jsonl"
+TIME_RECORDS = DOCS / "validation-time-records.jsonl"
 RIGS = ("imperfect", "errors-only", "random-rig", "oscillator")
 
 
@@ -129,7 +131,9 @@ def test_coverage_allows_for_full_turns_of_angles():
 
 
 @pytest.mark.parametrize(
-    ("seed", "records", "kinds"), [(13, RECORDS, ()), (51, RIGS_RECORDS, RIGS)], ids=["bench", "rigs"]
+    ("seed", "records", "kinds"),
+    [(13, RECORDS, ()), (51, RIGS_RECORDS, RIGS), (61, TIME_RECORDS, TIME_KINDS)],
+    ids=["bench", "rigs", "time"],
 )
 def test_the_results_page_is_what_the_records_say(seed, records, kinds, capsys):
     only = [word for kind in kinds for word in ("--only", kind)]

@@ -59,7 +59,8 @@ def test_damping_that_differs_by_direction_is_missing(tmp_path):
     asymmetry = abs(fitted["parameters"]["directional_damping.asymmetry"]["value"])
     assert mean * (1.0 - asymmetry) == pytest.approx(167.0, rel=0.02)
     assert mean * (1.0 + asymmetry) == pytest.approx(240.0, rel=0.02)
-    # On blocks that were left out.
-    assert found.gain["gain"] > 0.2
+    # On blocks that were left out: the published share of the error, and most of what is not noise.
+    assert single["accuracy_held_out"] < 3.11 / 4.08 * base["accuracy_held_out"]
+    assert found.gain["excess_removed"] > 0.5
     # To within the noise nothing explains it, so nothing is named.
     assert found.verdict == "none-of-mine"

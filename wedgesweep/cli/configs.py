@@ -11,7 +11,7 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
-from wedgesweep.cli.options import CONFIG, OutputPath, require_kind
+from wedgesweep.cli.options import CONFIG, STANDARD_OUTPUT, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
 from wedgesweep.files import write_text
 from wedgesweep.kinds import CONFIG as CONFIG_FILE
@@ -20,14 +20,15 @@ from wedgesweep.kinds import DIAGNOSIS, SWEEP, is_measured, kind_of
 if TYPE_CHECKING:
     from wedgesweep.config import Config
 
-STANDARD_OUTPUT = Path("-")
-
 
 @click.command()
 @click.argument("path", default="wedgesweep.toml", type=OutputPath(allow_dash=True))
 @click.option("--force", is_flag=True, help="Overwrite an existing file.")
 def init(path: Path, force: bool) -> None:
-    """Write a commented config with every key to PATH (default: wedgesweep.toml; - prints it)."""
+    """Write a commented config with every key.
+
+    PATH is wedgesweep.toml by default; - prints it.
+    """
     from wedgesweep import config
 
     if path.exists() and not force:
@@ -41,7 +42,10 @@ def init(path: Path, force: bool) -> None:
     "-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File to write; default: print."
 )
 def schema(output: Path) -> None:
-    """Write the JSON schema of configs, which lets editors check and complete them."""
+    """Write the JSON schema of configs, for editors.
+
+    With it they check and complete what is typed.
+    """
     from wedgesweep import config
 
     _put(json.dumps(config.schema(), indent=2) + "\n", output)

@@ -58,9 +58,9 @@ def diagnose(
     reported: bool,
     calibrate: bool,
 ) -> None:
-    """Find the physical effects that the model of the data in MEASURED misses.
+    """Find the physical effects that a model misses.
 
-    MEASURED is a measured.toml with its CSV files, or the same as one netCDF file.
+    MEASURED is a measured.toml with its CSV files, or the same as one netCDF file; it names the model.
     """
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs

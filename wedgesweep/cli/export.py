@@ -6,11 +6,9 @@ from pathlib import Path
 
 import click
 
-from wedgesweep.cli.options import DATASET, OutputPath
+from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, OutputPath
 from wedgesweep.cli.plot import read_dataset
 from wedgesweep.files import written
-
-STANDARD_OUTPUT = Path("-")
 
 
 @click.command()
@@ -25,10 +23,10 @@ STANDARD_OUTPUT = Path("-")
     "--variables", metavar="A,B,...", help="Variables to write; default: all with one value a case."
 )
 def export(path: Path, output: Path | None, variables: str | None) -> None:
-    """Write the dataset OUT as CSV: a row for each case, units in the header, SI numbers.
+    """Write the dataset OUT as CSV, a row for each case.
 
-    Cases that failed have their status and message, and no numbers. Of an unfinished run the others are
-    not_run.
+    Numbers are in SI units, which the header states. Cases that failed have their status and message, and no
+    numbers. Of an unfinished run the others are not_run.
     """
     from wedgesweep.sweep import table
 

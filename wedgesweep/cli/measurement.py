@@ -12,21 +12,12 @@ if TYPE_CHECKING:
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
 LOOP_HEADINGS = ("file", "duration", "samples", "low-pass", "noise", "of velocity", "blocks")
+LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
 TRANSIENT_HEADINGS = (
-    *(
-        "file",
-        "duration",
-        "samples",
-        "periods",
-        "windows",
-        "largest",
-        "noise",
-        "its correlation",
-        "taken from",
-    ),
+    *("file", "duration", "samples", "periods", "windows"),
+    *("largest", "noise", "its correlation", "taken from"),
 )
 TRANSIENT_UNITS = ("", "s", "", "natural", "", "mm", "mm", "to the next sample", "")
-LOOP_UNITS = ("", "s", "", "Hz", "of force", "", "of cycles")
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -106,7 +97,7 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
             f"{test.time.size}",
             f"{own.low_pass.cutoff:.4g}",
             f"{own.noise:.3g} N ({100.0 * own.noise / float(own.force.std()):.2g} %)",
-            f"{1e3 * own.motion.velocity_noise:.3g} mm/s",
+            f"{1e3 * own.motion.noise[1]:.3g} mm/s",
             f"{len(own.blocks)}",
         )
         for test, own in zip(measurement.tests, loop_data(measurement).recordings, strict=True)
@@ -146,19 +137,15 @@ def _amplitude(test: "TestRecord", size: float) -> str:
 
 def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
     """Noise per response, and the harmonics of the first one."""
+    from wedgesweep.measured.kinds import SHOWN
     from wedgesweep.measured.noise_estimate import estimate_noise
 
-    told, harmonics = [], None
-    for samples, unit, size in (
-        (test.displacement, "mm", 1e-3),
-        (test.velocity, "mm/s", 1e-3),
-        (test.acceleration, "m/s^2", 1.0),
-    ):
-        if samples is not None:
-            noise = estimate_noise(test.time, samples, frequency)
-            told.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
-            harmonics = noise.harmonics if harmonics is None else harmonics
-    return ", ".join(told), _runs(harmonics or ())
+    found = {name: estimate_noise(test.time, each, frequency) for name, each in test.responses.items()}
+    told = []
+    for name, noise in found.items():
+        size, unit = SHOWN[name]
+        told.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
+    return ", ".join(told), _runs(next(iter(found.values())).harmonics)
 
 
 def _runs(orders: tuple[int, ...]) -> str:

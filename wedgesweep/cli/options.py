@@ -15,6 +15,9 @@ from wedgesweep.kinds import confusion
 CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
 DATASET = click.argument("path", metavar="OUT", type=click.Path(path_type=Path))
 
+# A path that stands for the standard output.
+STANDARD_OUTPUT = Path("-")
+
 N_JOBS = click.option(
     "--n-jobs",
     type=click.IntRange(min=1),
@@ -41,7 +44,7 @@ class OutputPath(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        if self.allow_dash and path == Path("-"):
+        if self.allow_dash and path == STANDARD_OUTPUT:
             return path
         if not path.parent.is_dir():
             self.fail(f"'{path.parent}' is not a directory.", param, ctx)

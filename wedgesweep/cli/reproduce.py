@@ -26,10 +26,10 @@ from wedgesweep.cli.progress import ProgressReport
 @N_JOBS
 @click.pass_context
 def reproduce(ctx: click.Context, output: Path, only: str | None, n_jobs: int | None) -> None:
-    """Run the paper's 1,800 cases, check its claims, and search what may explain the experiment.
+    """Run the paper's cases, and check its claims.
 
-    Exits with code 1 if a verdict differs from the recorded one. Finished cases are stored: rerun the same
-    command to resume.
+    Also searches what may explain the experiment that the paper compares itself with. Exits with code 1 if a
+    verdict differs from the recorded one. Finished cases are stored: rerun the same command to resume.
     """
     from wedgesweep.reproduce import reproduce as run_all
     from wedgesweep.sweep.backend import count_jobs

@@ -21,7 +21,10 @@ VERSIONS = ("wedgesweep", "python", "numpy", "scipy", "numba")
 @DATASET
 @click.pass_context
 def status(ctx: click.Context, path: Path) -> None:
-    """Show how far the sweep with dataset OUT is, and which cases failed."""
+    """Show how far a sweep is, and which cases failed.
+
+    OUT is the dataset that it writes, or has written.
+    """
     if path.is_dir():
         message = f"{path}: a directory; give the dataset of a run"
         raise Failure(message)

@@ -31,8 +31,8 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
     _print_share(
         found.lifted,
         len(found),
-        f"{'lifts' if found.lifted == 1 else 'lift'} off, which the model leaves out: "
-        "outside of its validity (variable lift_off_fraction)",
+        f"{'lies' if found.lifted == 1 else 'lie'} outside of the model's validity: a joint that it holds "
+        "would lift off (variable lift_off_fraction)",
     )
     failed = found.failures
     for place in failed[:LISTED].tolist():
@@ -44,4 +44,5 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
 
 def _print_share(count: int, total: int, what: str) -> None:
     if count:
-        click.echo(f"  {count} of {formatting.counted(total, 'case')} {what}: {100.0 * count / total:.3g} %")
+        share = f"{count} of {formatting.counted(total, 'case')} ({100.0 * count / total:.3g} %)"
+        click.echo(f"  {share} {what}")

@@ -87,16 +87,16 @@ def synthesize(
     n_jobs: int | None,
     **options: Any,
 ) -> None:
-    """Make synthetic measured data of the system in CONFIG, with its effects and its one friction law.
+    """Make synthetic measured data of a known system.
 
-    Writes measured.toml, a CSV file per test, model.toml (CONFIG without its effects) and truth.json. The
-    same seed gives the same data.
+    The system is that of CONFIG, with its effects and its one friction law. Writes measured.toml, a CSV file
+    per test, model.toml (CONFIG without its effects) and truth.json. The same seed gives the same data.
     """
     from wedgesweep import config
     from wedgesweep.sweep.backend import count_jobs
     from wedgesweep.synthesize import plan
-    from wedgesweep.synthesize.campaign import Options
     from wedgesweep.synthesize.campaign import synthesize as make
+    from wedgesweep.synthesize.options import Options
 
     settings, tests = config.load(config_path), plan.load(plan_path)
     directory = output or Path(f"{config_path.stem}-measured")

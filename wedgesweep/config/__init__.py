@@ -6,13 +6,15 @@ from math import isnan, sqrt
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import __version__
-from wedgesweep.config import toml
+from wedgesweep import __version__, toml
+from wedgesweep.config import commented
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases
 from wedgesweep.config.contradictions import contradictions
+from wedgesweep.config.declarations import root
 from wedgesweep.config.model import OSCILLATOR, UNIT_FREQUENCY, Config
-from wedgesweep.errors import InputError
+from wedgesweep.errors import ConfigError
 from wedgesweep.files import read_text
+from wedgesweep.inputs import record
 from wedgesweep.kinds import CONFIG, confusion
 
 __all__ = ["AmplitudeUnit", "Case", "Cases", "Config", "ConfigError", "from_document", "load", "parse"]
@@ -21,10 +23,6 @@ log = logging.getLogger(__name__)
 
 # With this effect a suspension may have no equilibrium.
 SOFTENING = "cubic_stiffness"
-
-
-class ConfigError(InputError):
-    """A config cannot run; ``problems`` lists all its faults."""
 
 
 def load(path: str | Path) -> Config:
@@ -58,8 +56,6 @@ def parse(text: str, source: str = "<config>", directory: Path = Path()) -> Conf
 
 def from_document(given: Mapping[str, Any], source: str = "<config>", directory: Path = Path()) -> Config:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
-    from wedgesweep.config.declarations import root
-
     problems: list[str] = []
     document = root("input" in given).read(given, "", problems)
     problems += contradictions(document)
@@ -79,8 +75,6 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
 
 def _located(recorded: dict[str, Any], directory: Path) -> list[str]:
     """Fill in the full path and the digest of a recorded input; what is wrong with its file."""
-    from wedgesweep.inputs import record
-
     recorded["file"] = str((directory / recorded["file"]).resolve())
     try:
         recorded["sha256"] = record.digest(Path(recorded["file"]))
@@ -108,8 +102,6 @@ def _require_rest(found: Config, source: str) -> None:
 
 def schema() -> dict[str, Any]:
     """JSON schema of a config (draft 2020-12), for editors."""
-    from wedgesweep.config.declarations import root
-
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": f"urn:wedgesweep:config:{__version__}",
@@ -120,7 +112,4 @@ def schema() -> dict[str, Any]:
 
 def template() -> str:
     """A config with every key, commented."""
-    from wedgesweep.config import commented
-    from wedgesweep.config.declarations import root
-
     return commented.template(root())

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from wedgesweep.config import inputs, toml
+from wedgesweep import toml
+from wedgesweep.config import inputs
 from wedgesweep.config.keys import Key
 from wedgesweep.config.tables import GridOrList, Table, TableList
 
@@ -45,13 +46,31 @@ def _entry(key: Key, path: str, mark: str) -> str:
         lists = "".join(_entry(each, f"{at}.", "# ") for each in only_listed)
         return f"{_entry(key.grid, path, mark)}\n# Instead of a grid, cases one by one:\n{lists}"
     if isinstance(key, inputs.ByKind):
-        return inputs.template()
+        return _kinds(key)
     if isinstance(key, TableList):
         return f"{mark}[[{at}]]\n{_body(key.item, f'{at}.', mark)}"
     if not isinstance(key, Table):
         written = f"{key.key} = {toml.inline(CHOSEN[at])}" if at in CHOSEN else key.written
-        return f"{mark}{written}  # {'; '.join(filter(None, (key.meaning, key.limits)))}\n"
+        return f"{mark}{written}  # {_about(key)}\n"
     body = _body(key, f"{at}.", mark)
     holds_only_tables = all(isinstance(each, Table) for each in key.keys.values())
     header = "" if holds_only_tables else f"{mark}[{at}]\n"
     return f"\n# {key.meaning}\n{REASONS.get(at, '')}{header}{body}"
+
+
+def _about(key: Key) -> str:
+    return "; ".join(filter(None, (key.meaning, key.limits)))
+
+
+def _kinds(key: inputs.ByKind) -> str:
+    """All kinds of a table, commented out."""
+    scale = inputs.SCALE
+    lines = [
+        f"\n# {key.meaning}:\n# then [sweep] holds only friction_law and scale, and [solver] no settle\n"
+    ]
+    lines.append(f"# sweep.{scale.written}  # {scale.meaning}\n")
+    for name, kind in key.kinds.items():
+        lines.append(f"# kind {name}: {kind.meaning}\n# [{key.key}]\n# {inputs.KIND} = {toml.inline(name)}\n")
+        inner = (each for group in kind.groups[1:] for each in group)
+        lines += (f"# {each.written}  # {_about(each)}\n" for each in inner)
+    return "".join(lines)

@@ -5,6 +5,10 @@ from math import inf, nan
 from typing import Any
 
 from wedgesweep.config.input_contradictions import input_contradictions
+from wedgesweep.effects import lift_off, with_lift_off
+from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
+from wedgesweep.systems.oscillator.parameters import OF_BASE, effect_names
+from wedgesweep.systems.suspension.parameters import UNILATERAL
 
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
@@ -50,8 +54,6 @@ def _named_laws(sweep: Mapping[str, Any]) -> list[str]:
 
 def _laws(document: Mapping[str, Any]) -> Iterator[str]:
     """Laws that a suspension does not have."""
-    from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
-
     if "oscillator" in document:
         return
     for law in set(OSCILLATOR_LAWS).intersection(_named_laws(document.get("sweep", {}))):
@@ -88,8 +90,6 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
     if not on_belt and 0.0 in forces:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
-    from wedgesweep.systems.oscillator.parameters import OF_BASE, effect_names
-
     if OF_BASE in document.get("effects", {}) and sweep.get("excitation") == "force":
         yield f"effects.{OF_BASE}: under a force the base does not move; remove it"
     for name in document.get("effects", {}):
@@ -99,9 +99,6 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
 
 def _joints(document: Mapping[str, Any]) -> Iterator[str]:
     """What unilateral joints need, or do not go with."""
-    from wedgesweep.effects import lift_off, with_lift_off
-    from wedgesweep.systems.suspension.parameters import UNILATERAL
-
     suspension, friction = document.get("suspension", {}), document.get("friction", {})
     effects, unilateral = document.get("effects", {}), suspension.get("joints") == UNILATERAL
     if not unilateral and "restitution" in suspension:

@@ -111,7 +111,14 @@ LISTED = table(
     ),
 )
 
-SCALED = table("sweep", "the cases under [input]: every law at every scale", LAWS_KEY, SCALE, OMEGA_N_KEY)
+SCALED = table(
+    "sweep",
+    "the cases under [input]: every law at every scale",
+    LAWS_KEY,
+    SCALE,
+    OMEGA_N_KEY,
+    unknown="no key of a [sweep] beside an [input]",
+)
 
 SOLVER = table(
     "solver",

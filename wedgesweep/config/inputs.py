@@ -5,18 +5,18 @@ from dataclasses import dataclass
 from math import nan
 from typing import Any
 
-from wedgesweep.config import toml
-from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole, hint, show
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole
 from wedgesweep.config.series import Series
 from wedgesweep.config.tables import Table, table
+from wedgesweep.hints import hint, show
 from wedgesweep.inputs.units import RECORDED, UNITS
 from wedgesweep.quantity import Quantity
 
 KIND = "kind"
 
 
-def _positive(key: str, meaning: str, default: float = nan, **more: Any) -> Number:
-    return Number.of(Quantity(key, default, meaning, above=0.0), **more)
+def _positive(key: str, meaning: str, **more: Any) -> Number:
+    return Number.of(Quantity(key, nan, meaning, above=0.0), **more)
 
 
 def _any(key: str, meaning: str, default: float = nan, **more: Any) -> Number:
@@ -177,18 +177,3 @@ SCALE = Series(
     item=_positive("scale", "scale"),
     default=[1.0],
 )
-
-
-def template(mark: str = "# ") -> str:
-    """TOML text of all kinds, commented out."""
-    lines = [
-        f"\n# {INPUT.meaning}:\n# then [sweep] holds only friction_law and scale, and [solver] no settle\n"
-    ]
-    lines.append(f"{mark}sweep.{SCALE.written}  # {SCALE.meaning}\n")
-    for name, kind in KINDS.items():
-        lines.append(f"# kind {name}: {kind.meaning}\n{mark}[input]\n{mark}{KIND} = {toml.inline(name)}\n")
-        for group in kind.groups[1:]:
-            for key in group:
-                about = "; ".join(filter(None, (key.meaning, key.limits)))
-                lines.append(f"{mark}{key.written}  # {about}\n")
-    return "".join(lines)

@@ -6,32 +6,19 @@ the TOML path, the fault and a valid alternative to ``problems``, and returns No
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import inf, isfinite
 from typing import Any, Self
 
 import numpy as np
 
-from wedgesweep.config import toml
+from wedgesweep import toml
+from wedgesweep.hints import hint, show
 from wedgesweep.quantity import Quantity
 
 # Numbers beyond these, 0 aside, are of no rig, and their products are no numbers.
 LARGEST, SMALLEST = 1e15, 1e-15
-
-
-def show(value: Any) -> str:
-    """Format a value for an error message, shortened."""
-    text = toml.inline(value)
-    return text if len(text) <= 40 else f"{text[:37]}..."
-
-
-def hint(name: str, valid: Iterable[str]) -> str:
-    """Suggest the nearest valid name, or list all of them."""
-    valid = tuple(valid)
-    close = get_close_matches(name.lower(), valid, n=1, cutoff=0.55)
-    return f'did you mean "{close[0]}"?' if close else f"valid here: {', '.join(valid)}"
 
 
 @dataclass(frozen=True, kw_only=True)

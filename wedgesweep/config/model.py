@@ -5,28 +5,28 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from wedgesweep.config import toml
+from wedgesweep import toml
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
-from wedgesweep.natural_units import natural_units
+from wedgesweep.effects import EFFECTS, lift_off
+from wedgesweep.friction.quantities import FRICTION
+from wedgesweep.inputs.kinds import made as input_of
+from wedgesweep.inputs.sampled import Input
+from wedgesweep.inputs.transient import transient as transient_of
+from wedgesweep.natural_units import NaturalUnits, natural_units
+from wedgesweep.quantity import Quantity
+from wedgesweep.simulate import Settings, Transient
+from wedgesweep.systems.oscillator import parameters as oscillator
+from wedgesweep.systems.suspension import parameters as suspension
 
 OSCILLATOR = "oscillator"
-# The effect that is the same as unilateral joints.
-LIFT_OFF = "lift_off"
 # What beta refers to where there is no spring: 1 Hz, in rad/s.
 UNIT_FREQUENCY = 2.0 * pi
-
-# Imports that load numba or scipy come late, so that `wedgesweep --help` does not wait for them.
-if TYPE_CHECKING:
-    from wedgesweep.inputs.sampled import Input
-    from wedgesweep.natural_units import NaturalUnits
-    from wedgesweep.quantity import Quantity
-    from wedgesweep.simulate import Settings, Transient
 
 
 @dataclass(frozen=True)
@@ -42,28 +42,25 @@ class Config:
     @cached_property
     def suspension(self) -> dict[str, Any]:
         """SI numbers of the suspension; ``joints`` and ``restitution`` where they are unilateral."""
-        from wedgesweep.systems.suspension.parameters import RESTITUTION, SUSPENSION, UNILATERAL
-
         given = self.document["suspension"]
-        if given.get("joints") != UNILATERAL:
-            return _si(SUSPENSION, given)
-        restitution = given.get(RESTITUTION.key, RESTITUTION.default)
-        return {**_si(SUSPENSION, given), "joints": given["joints"], "restitution": restitution}
+        numbers = _si(suspension.SUSPENSION, given)
+        if given.get("joints") != suspension.UNILATERAL:
+            return numbers
+        restitution = given.get(suspension.RESTITUTION.key, suspension.RESTITUTION.default)
+        return {**numbers, "joints": given["joints"], "restitution": restitution}
 
     @property
     def opens(self) -> bool:
         """Whether the joints of a suspension are unilateral, so that wedges may lift off."""
-        unilateral = self.document.get("suspension", {}).get("joints") == "unilateral"
-        return unilateral or LIFT_OFF in self.document["effects"]
+        unilateral = self.document.get("suspension", {}).get("joints") == suspension.UNILATERAL
+        return unilateral or lift_off.NAME in self.document["effects"]
 
-    def natural_units(self, travel: float | None = None, omega: float | None = None) -> "NaturalUnits":
+    def natural_units(self, travel: float | None = None, omega: float | None = None) -> NaturalUnits:
         """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
         if self.system == OSCILLATOR:
             own = self.oscillator
             return natural_units(own["mass"], own["spring"], travel=travel, omega=omega)
-        from wedgesweep.systems.suspension.parameters import natural_units_of
-
-        return natural_units_of(self.suspension, travel)
+        return suspension.natural_units_of(self.suspension, travel)
 
     @property
     def system(self) -> str:
@@ -73,12 +70,10 @@ class Config:
     @cached_property
     def oscillator(self) -> dict[str, Any]:
         """SI numbers of the oscillator, and its contact."""
-        from wedgesweep.systems.oscillator.parameters import BELT_VELOCITY, BRISTLES
-        from wedgesweep.systems.oscillator.parameters import OSCILLATOR as QUANTITIES
-
         given = self.document[OSCILLATOR]
-        more = [each for each in (BELT_VELOCITY, *BRISTLES) if each.key in given]
-        return {**_si((*QUANTITIES, *more), given), "contact": given["contact"]}
+        optional = (oscillator.BELT_VELOCITY, *oscillator.BRISTLES)
+        more = [each for each in optional if each.key in given]
+        return {**_si((*oscillator.OSCILLATOR, *more), given), "contact": given["contact"]}
 
     @property
     def possible_effects(self) -> tuple[str, ...]:
@@ -88,22 +83,19 @@ class Config:
         rubs, more friction of its surface is another level of friction; if not, there is nothing that the
         effects on the law of friction could change. Under a force the base is at rest.
         """
-        from wedgesweep.effects import EFFECTS
-        from wedgesweep.systems.oscillator import parameters
-
         if self.system != OSCILLATOR:
             return tuple(name for name in EFFECTS if name in self.effects or self._may_have(name))
         rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
-        without = {parameters.LATERAL} if rubs else {*parameters.OF_FRICTION}
+        without = {oscillator.LATERAL} if rubs else {*oscillator.OF_FRICTION}
         if self.oscillator["spring"] == 0.0:
-            without.update(parameters.OF_SPRING)
+            without.update(oscillator.OF_SPRING)
         if self.forced:
-            without.add(parameters.OF_BASE)
-        return tuple(name for name in parameters.effect_names() if name not in without)
+            without.add(oscillator.OF_BASE)
+        return tuple(name for name in oscillator.effect_names() if name not in without)
 
     def _may_have(self, effect: str) -> bool:
         """Whether the model of a suspension can have a further effect, as far as its joints are concerned."""
-        if effect != LIFT_OFF and not self.opens:
+        if effect != lift_off.NAME and not self.opens:
             return True
         added = self.document["effects"] | {effect: {}}
         return not any(contradictions(self.document | {"effects": added}))
@@ -117,14 +109,10 @@ class Config:
 
     @cached_property
     def friction(self) -> dict[str, float]:
-        from wedgesweep.friction.quantities import FRICTION
-
         return _si(FRICTION, self.document["friction"])
 
     @cached_property
     def effects(self) -> dict[str, dict[str, float]]:
-        from wedgesweep.effects import EFFECTS
-
         given = self.document["effects"]
         return {name: _si(EFFECTS[name].quantities, values) for name, values in given.items()}
 
@@ -133,9 +121,7 @@ class Config:
         return of_sweep(self.document["sweep"], self.transient)
 
     @cached_property
-    def solver(self) -> "Settings":
-        from wedgesweep.simulate import Settings
-
+    def solver(self) -> Settings:
         given = self.document["solver"]
         return Settings(
             method=given["method"],
@@ -159,19 +145,15 @@ class Config:
         return "input" in self.document
 
     @cached_property
-    def input(self) -> "Input":
+    def input(self) -> Input:
         """The input at scale 1; raises ConfigError if a recording cannot be read."""
-        from wedgesweep.inputs.sampled import made
+        return input_of(self.document["input"], self.sweep.omega_n)
 
-        return made(self.document["input"], self.sweep.omega_n)
-
-    def _transient(self) -> "Transient":
+    def _transient(self) -> Transient:
         """How the input is run."""
-        from wedgesweep.inputs.transient import transient
-
         absolute = self.system == OSCILLATOR and self.oscillator["contact"] != "base"
         rate = self.document["input"].get("sampling_hz")
-        return transient(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR)
+        return transient_of(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR)
 
     def case_list(self) -> list[Case]:
         """All cases, which may be many: ``sweep.case`` makes one of them."""
@@ -214,8 +196,6 @@ class Config:
         self, effects: Mapping[str, Mapping[str, float]], law: str, amplitude: float = 1.0, omega: float = 1.0
     ) -> np.ndarray:
         """Parameter record, shape (1,), with other effects (SI); amplitude in m or N, omega in rad/s."""
-        from wedgesweep.systems import oscillator, suspension
-
         if self.system == OSCILLATOR:
             own = self.oscillator
             return oscillator.record(law, amplitude, omega, own, self.friction, effects, self.excitation)
@@ -292,14 +272,12 @@ class Config:
 
     def _regularised(self) -> str | None:
         """Set-valued friction that effects make smooth."""
-        from wedgesweep.systems.suspension import parameters
-
         law = "coulomb"
         if self.system == OSCILLATOR or law not in self.sweep.laws:
             return None
-        if not parameters.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
+        if not suspension.is_regularised(self.record(Case(law, 1.0, 1.0))[0]):
             return None
-        width = parameters.regularised_velocity(self.suspension) * 1e3
+        width = suspension.regularised_velocity(self.suspension) * 1e3
         return (
             f"{law}: with cross_slip or column_compliance the faces may stick one at a time; "
             f"friction is regularised, a ramp up to mu_d over {width:g} mm/s"
@@ -310,5 +288,5 @@ class Config:
         return sha256(self.to_toml().encode()).hexdigest()
 
 
-def _si(quantities: Iterable["Quantity"], given: Mapping[str, float]) -> dict[str, float]:
+def _si(quantities: Iterable[Quantity], given: Mapping[str, float]) -> dict[str, float]:
     return {each.name: given[each.key] * each.factor for each in quantities}

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.config.keys import Choice, Key, Number, Whole, show
+from wedgesweep.config.keys import Choice, Key, Number, Whole
 from wedgesweep.config.tables import Table, table
+from wedgesweep.hints import show
 from wedgesweep.quantity import Quantity
 
 

@@ -4,16 +4,21 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from wedgesweep.config.keys import Key, hint, show
+from wedgesweep.config.keys import Key
+from wedgesweep.hints import hint, show
 
 Group = tuple[Key, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Table(Key):
-    """Keys in groups; keys of a group exclude each other, and the first one has the default."""
+    """Keys in groups; keys of a group exclude each other, and the first one has the default.
+
+    ``unknown`` says what a key is that the table does not have.
+    """
 
     groups: tuple[Group, ...]
+    unknown: str = "unknown key"
 
     @property
     def keys(self) -> dict[str, Key]:
@@ -33,7 +38,7 @@ class Table(Key):
             return {}
         at = f"{path}." if path else ""
         unknown = (name for name in value if name not in self.keys)
-        problems.extend(f"{at}{name}: unknown key; {hint(name, self.keys)}" for name in unknown)
+        problems.extend(f"{at}{name}: {self.unknown}; {hint(name, self.keys)}" for name in unknown)
         read = {}
         for group in self.groups:
             for key in _in_force(group, value, at, problems):

@@ -1,7 +1,8 @@
 """Other configs made of one: with another solver, or of a single case."""
 
-from wedgesweep.config import Config, ConfigError, from_document
+from wedgesweep.config import Config, from_document
 from wedgesweep.config.contradictions import contradictions
+from wedgesweep.errors import ConfigError
 
 
 def with_method(config: Config, method: str) -> Config:

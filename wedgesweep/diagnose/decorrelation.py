@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag
 
 # Samples in a row whose correlation is known; farther ones count as independent.
 MOST = 400
@@ -20,20 +19,14 @@ class Decorrelation(NamedTuple):
 def decorrelation(
     known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarray], least: float
 ) -> Decorrelation:
-    """Combinations of the known samples (k,); those of the others are zero.
+    """As many combinations of the known samples (k,), in their places; those of the others are zero.
 
-    ``covariance`` gives that of two samples by their distance; no variance is less than ``least``.
+    ``covariance`` gives that of some rows (r,) with one another; no variance is less than ``least``.
     """
-    size = known.size
-    matrix, std = np.zeros((size, size)), np.zeros(size)
+    matrix, std = np.zeros((known.size, known.size)), np.zeros(known.size)
     rows = np.flatnonzero(known)
-    parts = np.array_split(rows, max(-(-rows.size // MOST), 1)) if rows.size else []
-    done = []
-    for part in parts:
-        distance = np.abs(part[:, None] - part)
-        variance, vectors = np.linalg.eigh(covariance(distance))
-        done.append((np.sqrt(np.maximum(variance, least)), vectors.T))
-    if done:
-        std[: rows.size] = np.concatenate([each[0] for each in done])
-        matrix[: rows.size, rows] = block_diag(*[each[1] for each in done])
+    for part in np.array_split(rows, max(-(-rows.size // MOST), 1)):
+        variance, vectors = np.linalg.eigh(covariance(part))
+        std[part] = np.sqrt(np.maximum(variance, least))
+        matrix[np.ix_(part, part)] = vectors.T
     return Decorrelation(matrix, std)

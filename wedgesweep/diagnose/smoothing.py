@@ -29,6 +29,8 @@ SETTLING = 2.5
 MEDIAN = 0.6745
 # Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
 OUTLIER, CLIPPINGS = 4.0, 4
+# Share of a record that must be free of outliers and their neighbours for the latter to be left out.
+LEAST_KEPT = 0.25
 # Ends of a 95 % interval in standard deviations.
 TWO_SIDED = 1.96
 # Frequencies at which a filter's gain is known.
@@ -75,16 +77,9 @@ class LowPass:
         frequency, once = signal.sosfreqz(self._sections, GRID, fs=self.rate)
         return frequency, np.abs(once) ** 2
 
-    def power(self, std: float, factors: tuple[float, float, float]) -> np.ndarray:
-        """Power (GRID + 1,) of filtered white noise from 0 to half the rate.
-
-        ``factors``: of the noise, of its derivative and of its second derivative in the sum of them.
-        """
-        frequency = np.linspace(0.0, pi, GRID + 1)
-        _, once = signal.sosfreqz(self._sections, frequency)
-        rate = self.rate * frequency
-        through = np.hypot(factors[0] - factors[2] * rate**2, factors[1] * rate)
-        return (std * through * np.abs(once) ** 2) ** 2
+    def gain(self, size: int) -> np.ndarray:
+        """Gain (size // 2 + 1,) at the frequencies of a real Fourier transform of so many samples."""
+        return np.abs(signal.sosfreqz(self._sections, 2.0 * pi * np.fft.rfftfreq(size))[1]) ** 2
 
 
 def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
@@ -97,19 +92,25 @@ def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
     return make_interp_spline(places, values, k=5, axis=-1)(places, order) * rate**order
 
 
-def white_noise(values: np.ndarray, rate: float) -> float:
+def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:
     """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.
 
     It is the upper end of its 95 % interval: in a short record an estimate that is too low would look like a
-    misfit. The jumps of dry friction are outliers, which do not count as noise.
+    misfit. Outliers do not count as noise. Where they are ``jumps`` of dry friction, nor does what the filter
+    makes of them nearby; noise that comes and goes must not be taken for them.
     """
     low_pass = LowPass(HIGHEST * rate, rate)
     above = np.abs(values - low_pass(values))
     share = low_pass.noise_above(1.0)
     size = float(np.median(above)) / MEDIAN
+    near = np.ones(2 * low_pass.settling + 1)
     for _ in range(CLIPPINGS):
-        size = float(np.sqrt(np.mean(above[above <= OUTLIER * size] ** 2)))
-    return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * values.size * share**2))
+        kept = above <= OUTLIER * size
+        if jumps:
+            clear = np.convolve(~kept, near, mode="same") < 0.5
+            kept = clear if clear.mean() > LEAST_KEPT else kept
+        size = float(np.sqrt(np.mean(above[kept] ** 2)))
+    return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * kept.sum() * share**2))
 
 
 def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
@@ -144,15 +145,18 @@ def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
 class Motion:
     """An imposed motion on an even grid (m, m/s, m/s^2, shape (n,) each).
 
-    ``velocity_noise`` (m/s): std of a velocity; ``acceleration_noise`` (m/s^2): of what of an acceleration
-    passes the filter in which forces are compared.
+    ``noise`` (m, m/s, m/s^2): standard deviation of each of them.
     """
 
     displacement: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
-    velocity_noise: float
-    acceleration_noise: float
+    noise: tuple[float, float, float]
+
+    @property
+    def parts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement and its two derivatives."""
+        return self.displacement, self.velocity, self.acceleration
 
 
 def motion(displacement: np.ndarray, std: float, low_pass: LowPass) -> Motion:
@@ -163,4 +167,10 @@ def motion(displacement: np.ndarray, std: float, low_pass: LowPass) -> Motion:
     wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
     smooth = wide(displacement)
     velocity, acceleration = (derivative(smooth, low_pass.rate, order) for order in (1, 2))
-    return Motion(smooth, velocity, acceleration, wide.noise(std, 1), low_pass.noise(std, 2))
+    return Motion(smooth, velocity, acceleration, noise_of_motion(std, low_pass))
+
+
+def noise_of_motion(std: float, low_pass: LowPass) -> tuple[float, float, float]:
+    """Noise of a motion and its two derivatives, for white noise of this ``std`` (m); see ``motion``."""
+    wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
+    return wide.noise(std), wide.noise(std, 1), wide.noise(std, 2)

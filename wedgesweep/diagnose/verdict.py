@@ -9,16 +9,10 @@ from scipy.special import chdtrc
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import confounded, parts
 
-NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = (
-    "nothing-missing",
-    "named",
-    "consistent-with",
-    "tied",
-    "data-insufficient",
-    "none-of-mine",
-)
+NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = VERDICTS
 # Explanations whose penalised misfits are closer than this cannot be told apart.
 GAP = 10.0
 # Least p-value of a base model from which nothing need be missing.

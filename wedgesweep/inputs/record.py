@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.config import ConfigError
+from wedgesweep.csv_files import columns as csv_columns
+from wedgesweep.errors import ConfigError
 from wedgesweep.files import read_bytes
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.inputs.units import RECORDED
-from wedgesweep.measured import csv_columns
 
 # Distances between samples may differ by this share.
 EVEN = 1e-3

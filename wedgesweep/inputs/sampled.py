@@ -1,9 +1,7 @@
 """An input as samples, and how its motion is stored."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil, pi
-from typing import Any
 
 import numpy as np
 
@@ -67,20 +65,3 @@ def faded(t: np.ndarray, fade: float) -> np.ndarray:
         return np.ones(t.size)
     share = np.clip(np.minimum(t, t[-1] - t) / fade, 0.0, 1.0)
     return 0.5 - 0.5 * np.cos(pi * share)
-
-
-def made(given: Mapping[str, Any], natural: float) -> Input:
-    """The input of a table [input], for a model of a natural frequency (rad/s).
-
-    Raises ConfigError if a recording cannot be read.
-    """
-    from wedgesweep.inputs import ramp, random, record, release, sine_sweep
-
-    kinds = {
-        "sine-sweep": sine_sweep.made,
-        "random": random.made,
-        "ramp": ramp.made,
-        "record": record.made,
-        "release": release.made,
-    }
-    return kinds[given["kind"]](given, natural)

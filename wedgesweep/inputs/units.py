@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from wedgesweep import units
+
 
 class Unit(NamedTuple):
     """What a key with this ending tells: the quantity, what turns a number into SI, and the SI unit."""
@@ -18,13 +20,10 @@ UNITS = {
     "m_per_s2": Unit("acceleration", 1.0, "m s-2"),
     "N": Unit("force", 1.0, "N"),
 }
-# Units of quantities in SI, and those that a recording may be in.
+# Units of quantities in SI, and those that a recording may be in: a config writes m/s2 for m/s^2.
 SI = {each.quantity: each.si for each in UNITS.values()}
 RECORDED = {
-    "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
-    "velocity": {"m/s": 1.0, "mm/s": 1e-3},
-    "acceleration": {"m/s2": 1.0, "mm/s2": 1e-3, "g": 9.80665},
-    "force": {"N": 1.0, "kN": 1e3},
+    quantity: {unit.replace("^", ""): size for unit, size in units.UNITS[quantity].items()} for quantity in SI
 }
 
 

@@ -3,7 +3,9 @@
 from pathlib import Path
 
 from wedgesweep.kinds import NETCDF_SUFFIXES
+from wedgesweep.measured import netcdf, toml_and_csv
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
+from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
 
 __all__ = ["MeasuredError", "Measurement", "TestRecord", "read"]
 
@@ -28,9 +30,6 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     MeasuredError
         Lists everything that is wrong: in the file, in the data of each test and in the model.
     """
-    from wedgesweep.measured import netcdf, toml_and_csv
-    from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
-
     reader = netcdf if path.suffix in NETCDF_SUFFIXES else toml_and_csv
     measurement = reader.read(path, model)
     if faults := noise_faults(measurement) or amplitude_faults(measurement):

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.config.keys import hint, show
+from wedgesweep.csv_files.columns import NOTHING, Content
 from wedgesweep.files import regular
-from wedgesweep.measured.csv_columns import NOTHING, Content
+from wedgesweep.hints import hint, show
 from wedgesweep.processes import apart
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"

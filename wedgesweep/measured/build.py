@@ -16,7 +16,6 @@ from wedgesweep.measured.declarations import (
     LOOP,
     STEADY,
     TRANSIENT,
-    UNITS,
     units,
 )
 from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
@@ -26,6 +25,7 @@ from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.quality import trend_faults
 from wedgesweep.measured.stationarity import stationarity_faults, without_trend
 from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
+from wedgesweep.units import UNITS
 
 # Bounds of a channel in SI units, and the variation that is rounding, over its size.
 LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13

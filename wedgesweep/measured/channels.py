@@ -24,6 +24,16 @@ STRAY = "stray_vibration"
 FORCE = "force"
 
 
+def faults(
+    by_kind: Mapping[str, Mapping[str, Mapping[str, Any]]], gain_std: float, model: Config | None
+) -> list[str]:
+    """Faults of the channels of each kind of test, as "key: fault"; without any, those beside the model."""
+    found = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
+    if found or model is None:
+        return found
+    return [fault for kind, own in by_kind.items() for fault in excitation_faults(own, model, kind)]
+
+
 def channel_faults(
     columns: Mapping[str, Mapping[str, Any]], gain_std: float, kind: str = STEADY
 ) -> list[str]:

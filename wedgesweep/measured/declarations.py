@@ -5,20 +5,15 @@ from dataclasses import dataclass
 from math import inf, isfinite, nan
 from typing import Any
 
-from wedgesweep.config import toml
-from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, show
+from wedgesweep import toml
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole
 from wedgesweep.config.tables import Table, TableList, table
+from wedgesweep.csv_files.dialect import DECIMALS, DELIMITERS
 from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
-from wedgesweep.measured.csv_dialect import DIALECT
+from wedgesweep.hints import show
 from wedgesweep.quantity import Quantity
+from wedgesweep.units import UNITS
 
-UNITS = {
-    "time": {"s": 1.0, "ms": 1e-3},
-    "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
-    "velocity": {"m/s": 1.0, "mm/s": 1e-3},
-    "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": 9.80665},
-    "force": {"N": 1.0, "kN": 1e3},
-}
 # Channels that show the response, and what a recorded input may be.
 RESPONSES = ("displacement", "velocity", "acceleration", "force")
 INPUT = "input"
@@ -198,6 +193,16 @@ COLUMNS = table(
     _channel("force", "force on the mass", "f", "N", optional=True),
     _channel(INPUT, "input as recorded", "u", "mm", QUANTITY, optional=True),
     example="measurement.columns",
+)
+
+DIALECT = table(
+    "csv",
+    "how the CSV files are written; what is left out is detected",
+    Choice(key="delimiter", meaning="separator of the columns", choices=tuple(DELIMITERS), optional=True),
+    Choice(key="decimal", meaning="decimal sign", choices=tuple(DECIMALS), optional=True),
+    Whole.of(Quantity("skip_rows", 0, "lines above the header", minimum=0)),
+    Text(key="encoding", meaning="encoding of the text", optional=True, example="latin-1"),
+    default={},
 )
 
 UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain, PARAMETERS), default={})

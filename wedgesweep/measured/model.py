@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from wedgesweep.config import Config, ConfigError, load, parse
+from wedgesweep.config import Config, load, parse
+from wedgesweep.errors import ConfigError
 
 
 def load_model(path: Path, problems: list[str]) -> tuple[Config | None, str]:

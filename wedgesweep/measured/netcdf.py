@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.config.keys import Number, hint, show
+from wedgesweep.config.keys import Number
 from wedgesweep.config.tables import Table
 from wedgesweep.files import json_object, regular, written
-from wedgesweep.measured import overrides
+from wedgesweep.hints import hint, show
+from wedgesweep.measured import channels, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.channels import channel_faults, excitation_faults, keys_faults, model_faults
 from wedgesweep.measured.declarations import (
     DETREND,
     INPUT,
@@ -36,11 +36,11 @@ from wedgesweep.measured.declarations import (
     TRANSIENT,
     UNCERTAIN,
     UNDRIVEN,
-    UNITS,
 )
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
+from wedgesweep.units import UNITS
 
 ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
@@ -142,12 +142,10 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
         problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
         gain_std = 0.0
-    faults = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
-    if config is not None and not (problems or faults):
-        faults = [fault for kind, own in by_kind.items() for fault in excitation_faults(own, config, kind)]
+    faults = channels.faults(by_kind, gain_std, None if problems else config)
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
-        problems += [f"{path}: model: {fault}" for fault in model_faults(config, columns, by_kind)]
+        problems += [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         for test in complete:
             problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
     if problems or config is None:
@@ -235,7 +233,7 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
     at = f"{path}: {group.path.lstrip('/')}"
     before = len(problems)
     given = _checked(TEST, {"file": group.name, **_read_numbers(_attributes(group))}, at, problems)
-    problems.extend(f"{at}: {fault}" for fault in keys_faults(given, group.variables, model))
+    problems.extend(f"{at}: {fault}" for fault in channels.keys_faults(given, group.variables, model))
     columns = {
         name: np.ma.filled(variable[:].astype(float), np.nan) for name, variable in group.variables.items()
     }
@@ -244,8 +242,8 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
     problems.extend(f"{at}: {fault}" for fault in _variable_faults(columns, units, quantity))
     if len(problems) > before:
         return None
-    channels = Channels(columns, units, at, lambda sample: f"{at}: sample {sample}")
-    return build_record(Path(given["file"]).stem, given, channels, at, problems)
+    recorded = Channels(columns, units, at, lambda sample: f"{at}: sample {sample}")
+    return build_record(Path(given["file"]).stem, given, recorded, at, problems)
 
 
 def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from copy import deepcopy
 from typing import Any
 
-from wedgesweep.config import Config, ConfigError, from_document
-from wedgesweep.config.keys import hint
+from wedgesweep.config import Config, from_document
+from wedgesweep.errors import ConfigError
+from wedgesweep.hints import hint
 
 # Numbers of a run and not of the mechanical system.
 NOT_OF_THE_SYSTEM = ("title", "sweep", "solver")

@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from wedgesweep.formatting import counted
+
 # Tolerated deviation of a stamp from the grid besides its rounding, over the sampling interval.
 JITTER = 0.01
 DRIFT = 0.05
@@ -85,7 +87,7 @@ def _step_fault(stamps: np.ndarray, where: Callable[[int], str]) -> str | None:
     i = int(wrong[0])
     if steps[i] > 1.5 * step:
         missing = round(steps[i] / step) - 1
-        told = f"a gap of {missing} samples after {stamps[i]:.12g}"
+        told = f"a gap of {counted(missing, 'sample')} after {stamps[i]:.12g}"
         return f"{where(i + 1)}: {told}; samples must follow each other every {step:.6g}"
     told = f"{steps[i]:.6g} from the sample before, {step:.6g} elsewhere"
     return f"{where(i + 1)}: sampling not constant ({told}); resample evenly, or write more decimals"

@@ -32,12 +32,12 @@ def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
         return [f"{file}: no vibration stands out of the noise; state frequency_hz in {at}"]
     samples = test.sampling_rate / found
     if samples < FEWEST_SAMPLES:
-        told = f"has {samples:.3g} samples per period of {found:.6g} Hz"
-        return [f"{file}: {told}; at least {FEWEST_SAMPLES} are needed"]
+        told = f"has {samples:.3g} samples per period of {found:.6g} Hz; at least {FEWEST_SAMPLES} are needed"
+        return [f"{file}: {told}: sample faster, or correct the unit of time"]
     periods = test.duration * found
     if periods < FEWEST_PERIODS - WHOLE:
-        told = f"covers {periods:.3g} periods of {found:.6g} Hz"
-        return [f"{file}: {told}; at least {FEWEST_PERIODS} are needed"]
+        told = f"covers {periods:.3g} periods of {found:.6g} Hz; at least {FEWEST_PERIODS} are needed"
+        return [f"{file}: {told}: record longer, or correct the unit of time"]
     estimate = frequency.estimate_near(test.time, test.leading, found, frequency.LOBE / periods)
     return _drift(estimate, periods, file) or _contradiction(test, estimate, file, at)
 

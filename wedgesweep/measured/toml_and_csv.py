@@ -1,18 +1,24 @@
 """measured.toml and its CSV files."""
 
+import errno
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from wedgesweep.config import Config, toml
-from wedgesweep.config.keys import show
+from wedgesweep import toml
+from wedgesweep.config import Config
+from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.files import read_text
-from wedgesweep.measured import arrays, channels, csv_columns, overrides
+from wedgesweep.hints import show
+from wedgesweep.measured import arrays, channels, overrides
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import INPUT, ROOT, STEADY, columns_of
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
+
+ABSENT = os.strerror(errno.ENOENT)
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
@@ -20,20 +26,15 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     problems: list[str] = []
     given = _document(path, problems)
     measurement = given.get("measurement", {})
-    if model is None and "model" in measurement:
-        model = path.parent / measurement["model"]
     columns = measurement.get("columns", {})
     by_kind = _columns_by_kind(measurement)
-    if not problems:
-        for kind, own in by_kind.items():
-            told = channels.channel_faults(own, measurement["input_gain_std"], kind)
-            problems += [f"{path}: {_at(fault)}" for fault in told]
+    complete = not problems
+    model = model or _stated_model(path, measurement, problems)
     config, law = load_model(model, problems) if model else (None, "")
+    if complete:
+        told = channels.faults(by_kind, measurement["input_gain_std"], config)
+        problems += [f"{path}: {_at(fault)}" for fault in told]
     if config is not None:
-        if not problems:
-            for kind, own in by_kind.items():
-                told = channels.excitation_faults(own, config, kind)
-                problems += [f"{path}: {_at(fault)}" for fault in told]
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         problems += _override_faults(path, measurement, config)
     tests = _tests(path, measurement, config, problems)
@@ -54,6 +55,17 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         input_gain_std=measurement["input_gain_std"],
         model_error=measurement["model_error"],
     )
+
+
+def _stated_model(path: Path, measurement: Mapping[str, Any], problems: list[str]) -> Path | None:
+    """The file of the model that a measured.toml names, if it is there."""
+    if "model" not in measurement:  # a fault of the document
+        return None
+    model = path.parent / measurement["model"]
+    if not model.exists():
+        problems.append(f"{path}: measurement.model: {model}: {ABSENT}; give the path of a config, from here")
+        return None
+    return model
 
 
 def _columns_by_kind(measurement: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -140,6 +152,9 @@ def _repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]]
 def _test(
     file: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
 ) -> list[TestRecord]:
+    if not file.exists():
+        problems.append(f"{at}.file: {file}: {ABSENT}; give the path of a data file, from here")
+        return []
     columns = measurement["columns"]
     wanted = {channel: each["column"] for channel, each in columns.items()}
     units = {channel: each["unit"] for channel, each in columns.items()}

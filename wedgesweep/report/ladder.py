@@ -83,7 +83,7 @@ def held_out(rung: Mapping[str, Any]) -> str:
 
 
 def _told(rung: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
-    meanings = phrases.listing([phrases.meaning(effect, document) for effect in rung["effects"]])
+    meanings = phrases.meanings(rung["effects"], document)
     verb = "explains" if len(rung["effects"]) == 1 else "explain"
     beside = [f"without: {phrases.accuracy(base['accuracy'])}"]
     if predicted := held_out(rung):

@@ -65,7 +65,7 @@ def _overall(result: DiagnosisResult) -> str:
     return (
         f"With start phases, amplitudes and uncertain parameters fitted to {tests}, the base model leaves a "
         f"misfit of Q = {q} on {dof} degrees of freedom, where noise alone leaves about {dof} ({p}). That is "
-        f"an error of {phrases.times_noise(misfit['chi2_base'], dof)}."
+        f"an error of {phrases.error_of(result, 'base')} times the noise."
     )
 
 

@@ -128,14 +128,11 @@ def accuracy(size: float | None) -> str:
     return NOISE if size == 0.0 else formatting.error(size)
 
 
-def over_noise(q: float | None, dof: float) -> str:
-    """The error that a misfit stands for, in standard deviations of the noise."""
+def error_of(result: DiagnosisResult, model: str) -> str:
+    """The error of a model, "base" or "extended", in standard deviations of the noise."""
+    misfit = result.document["misfit"]
+    q, dof = misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"])
     return number(None if q is None or dof <= 0 else sqrt(q / dof))
-
-
-def times_noise(q: float | None, dof: float) -> str:
-    """The same with its unit."""
-    return f"{over_noise(q, dof)} times the noise"
 
 
 def these_tests(result: DiagnosisResult) -> str:

@@ -89,7 +89,6 @@ def _row(test: Mapping[str, Any], keys: Sequence[str], models: tuple[str, ...]) 
 
 
 def _overall(result: DiagnosisResult, kind: str) -> str:
-    misfit, count = result.document["misfit"], result.data.sizes["test"]
-    tests = formatting.counted(count, "block" if kind == "loop" else "test")
-    error = phrases.times_noise(misfit["chi2_base"], misfit["dof"])
-    return f"{COMPARED[kind].format(tests=tests)}, the base model leaves an error of {error}."
+    tests = formatting.counted(result.data.sizes["test"], "block" if kind == "loop" else "test")
+    error = phrases.error_of(result, "base")
+    return f"{COMPARED[kind].format(tests=tests)}, the base model leaves an error of {error} times the noise."

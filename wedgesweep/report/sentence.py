@@ -110,7 +110,7 @@ def _tied(result: DiagnosisResult) -> str:
 
 
 def _rival(rival: Mapping[str, Any], document: Mapping[str, Any]) -> str:
-    meanings = phrases.listing([phrases.meaning(effect, document) for effect in rival["effects"]])
+    meanings = phrases.meanings(rival["effects"], document)
     behind = formatting.number(rival["gap"], 2)
     return f"{meanings} ({phrases.combination(rival['effects'])}, behind by {behind})"
 
@@ -218,18 +218,17 @@ def _cause(cause: Mapping[str, Any], document: Mapping[str, Any]) -> str:
 
 
 def _error(result: DiagnosisResult, model: str) -> str:
-    misfit = result.document["misfit"]
-    error = phrases.times_noise(misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"]))
+    error = f"{phrases.error_of(result, model)} times the noise"
     allowed = result.document["method"].get("model_error")
     return f"{error} and a model error of {phrases.accuracy(allowed)}" if allowed else error
 
 
 def _improvement(result: DiagnosisResult) -> str:
     """Error before and after, on all tests and on held-out ones."""
-    before, after = _error(result, "base"), _error(result, "extended")
+    before, after = phrases.error_of(result, "base"), _error(result, "extended")
     it = "the first" if result.verdict == "tied" else "it" if len(result.added) == 1 else "they"
     verb = "reduces" if it != "they" else "reduce"
-    return f"{it} {verb} the error from {before.split(' times the noise')[0]} to {after}{_gain(result)}"
+    return f"{it} {verb} the error from {before} to {after}{_gain(result)}"
 
 
 def _gain(result: DiagnosisResult) -> str:

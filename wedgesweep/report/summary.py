@@ -36,10 +36,7 @@ def table(result: DiagnosisResult) -> Markup:
     head = ("", "before", "after" if result.document["causes"] else "best attempt")[: 1 + len(models)]
     allowed = phrases.allowed(result.document)
     rows: list[Sequence[object]] = [
-        [
-            f"error, times the {allowed}",
-            *(_times_noise(result, model) for model in models),
-        ],
+        [f"error, times the {allowed}", *(phrases.error_of(result, model) for model in models)],
         ["error, share of the response", *_accuracies(result)],
     ]
     gain, test = result.gain, result.document["next_test"]
@@ -51,11 +48,6 @@ def table(result: DiagnosisResult) -> Markup:
     step = next_test.NOTHING_TO_MEASURE[result.verdict]
     rows.append(["next step", Spanning(step if test is None else phrases.next_test(test))])
     return html.table("Error of the model", head, rows)
-
-
-def _times_noise(result: DiagnosisResult, model: str) -> str:
-    misfit = result.document["misfit"]
-    return phrases.over_noise(misfit[f"chi2_{model}"], misfit.get(f"dof_{model}", misfit["dof"]))
 
 
 def _accuracies(result: DiagnosisResult) -> list[str]:

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import config
-from wedgesweep.config import Config, ConfigError
-from wedgesweep.errors import MismatchError, SweepError
+from wedgesweep.config import Config
+from wedgesweep.errors import ConfigError, MismatchError, SweepError
 from wedgesweep.sweep.run import Progress, Sweep
 
 CONFIG_NAMES = ("paper", "paper-y0", "breakaway")

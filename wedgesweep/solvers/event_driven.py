@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep import response
-from wedgesweep.compiled import borrowed, compiled, inner
+from wedgesweep.compiled import allocating, borrowed, compiled
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, OK
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
@@ -126,7 +126,7 @@ def run_batch(
     _run_all(prepared(compact(parameters)), parameters, settle_periods, settings, room, batch)
 
 
-@inner
+@allocating
 def _settled(y, near, settle_periods, settings, search):
     """Settle the case of a search; y moves along.
 
@@ -171,7 +171,7 @@ def _run_all(cases, parameters, settle_periods, settings, room, batch):
             _reduce(i, parameters[i], periods, room, batch)
 
 
-@inner
+@allocating
 def _reduce(i, p, periods, room, batch):
     """Write the results of the kept periods of a case."""
     n = periods * room.samples_per_period

@@ -7,7 +7,7 @@ from math import inf, isfinite
 
 import numpy as np
 
-from wedgesweep.compiled import inner
+from wedgesweep.compiled import allocating
 from wedgesweep.hybrid.interface import active, cycle, growth, perturbation, rate, stiff_error
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
 from wedgesweep.solvers.linear_algebra import inverted
@@ -50,7 +50,7 @@ TIGHTER, ON_RAMP = 0.1, 3000.0
 LARGEST_GROWTH = 0.5
 
 
-@inner
+@allocating
 def _derivatives(t, y, k1, mode, p):
     """The rate's derivatives by the active states (n, n) and by time (n,), from differences."""
     n, moves = len(y), active(p)
@@ -70,7 +70,7 @@ def _derivatives(t, y, k1, mode, p):
     return by_state, by_time
 
 
-@inner
+@allocating
 def _inverse(by_state, places, h):
     """Inverse of the matrix of all stages, of the active states."""
     n = places.size
@@ -82,7 +82,7 @@ def _inverse(by_state, places, h):
     return inverted(matrix)[0]
 
 
-@inner
+@allocating
 def _active_places(p):
     moves = active(p)
     places, count = np.empty(len(moves), np.int64), 0
@@ -93,7 +93,7 @@ def _active_places(p):
     return places[:count]
 
 
-@inner
+@allocating
 def step(t, h, y, k1, mode, p, rtol):
     """As ``explicit.step``."""
     n, places = len(y), _active_places(p)

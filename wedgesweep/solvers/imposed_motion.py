@@ -50,10 +50,10 @@ def forces(
         part = np.empty((rows.size, velocity.size))
         _follow_all(cases, places[rows], motion, step, part)
         found[rows] = part
-    return _with_jumps(found, velocity)
+    return with_jumps(found, velocity)
 
 
-def _with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+def with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Forces (n, k) in which a jump at a reversal between two samples counts for its share of the interval.
 
     Otherwise the time of each reversal would be rounded to the grid.

@@ -7,13 +7,13 @@ from math import exp, log
 
 import numpy as np
 
-from wedgesweep.compiled import inner
+from wedgesweep.compiled import allocating
 
 # Squarings of a matrix after which the norm of its power tells the spectral radius to 1e-8.
 SQUARINGS = 32
 
 
-@inner
+@allocating
 def inverted(matrix):
     """Inverse and determinant of a matrix (n, n), which is overwritten.
 
@@ -42,7 +42,7 @@ def inverted(matrix):
     return inverse, determinant
 
 
-@inner
+@allocating
 def spectral_radius(matrix):
     """Largest modulus of the eigenvalues of a matrix (n, n): the limit of |A^k|^(1/k) (Gelfand)."""
     n = matrix.shape[0]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep import response, sensor
-from wedgesweep.compiled import borrowed, compiled, inner
+from wedgesweep.compiled import allocating, borrowed, compiled
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
@@ -159,7 +159,7 @@ def _respond_all(cases, rows, accuracy, room, found, motion):
             _reduce(i, kept, room, found, motion[i])
 
 
-@inner
+@allocating
 def _reduce(i, periods, room, found, motion):
     """Write the results of the kept periods; ``motion`` (2, samples): displacement x - y and its rate."""
     n = periods * room.samples_per_period

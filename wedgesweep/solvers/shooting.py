@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.linear_algebra import inverted, spectral_radius
@@ -58,7 +58,7 @@ class Shooting(NamedTuple):
     records: bool
 
 
-@inlined
+@allocating
 def shooting(cases, number, accuracy, memory, records):
     """A search for the steady state of one of the cases; ``accuracy``: its tolerance and limit of periods."""
     size, clocks, cycle = cases.scales[number], cases.clocks[number], cases.cycle[number]
@@ -103,7 +103,7 @@ def _distance(a, b, size):
     return largest
 
 
-@inner
+@allocating
 def _moving(y, periods, shooting):
     """Which states at phase 0 affect those some periods later, y; a clock does if it was reset in between."""
     moves = shooting.memory.free[: y.size].copy()
@@ -113,7 +113,7 @@ def _moving(y, periods, shooting):
     return moves
 
 
-@inner
+@allocating
 def _run(y, periods, keeping, shooting):
     """Run some periods; y moves along. Returns the outcome.
 
@@ -130,7 +130,7 @@ def _run(y, periods, keeping, shooting):
     return outcome
 
 
-@inner
+@allocating
 def monodromy(y, image, periods, moves, jacobian, shooting):
     """Write J at y, whose image is known; returns the outcome and the periods run."""
     jacobian[:] = 0.0
@@ -151,7 +151,7 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
     return OK, run
 
 
-@inner
+@allocating
 def _places(moves):
     """Indices of the states that move."""
     places, count = np.empty(moves.size, np.int64), 0
@@ -162,7 +162,7 @@ def _places(moves):
     return places[:count]
 
 
-@inner
+@allocating
 def _part(jacobian, moves):
     """J of the states that move."""
     places = _places(moves)
@@ -183,7 +183,7 @@ def known(matrix):
     return True
 
 
-@inner
+@allocating
 def _newton_matrix(part):
     """Inverse and determinant of I - J."""
     matrix = np.empty(part.shape)
@@ -193,7 +193,7 @@ def _newton_matrix(part):
     return inverted(matrix)
 
 
-@inner
+@allocating
 def _stable_and_regular(jacobian, moves):
     """Whether J is known, the response stable by it, and its position determined."""
     if not known(jacobian):
@@ -210,7 +210,7 @@ def _stable_and_regular(jacobian, moves):
     return spectral_radius(part) < UNSTABLE and margin >= SINGULAR
 
 
-@inner
+@allocating
 def _newton_step(y, image, jacobian, moves, size):
     """Newton's next state."""
     places = _places(moves)
@@ -224,7 +224,7 @@ def _newton_step(y, image, jacobian, moves, size):
     return following
 
 
-@inner
+@allocating
 def _update(jacobian, y, image, before, image_before, size):
     """Broyden's update of J from two states and their images, unless they are too close to tell."""
     step, square = np.empty(size.size), 0.0
@@ -248,7 +248,7 @@ def _leave_out_closed(moves, y, shooting):
         moves[i] = moves[i] and not (shooting.cases.impacts and y[i] == 0.0)
 
 
-@inner
+@allocating
 def newton_shooting(y, periods, jacobian, most, shooting):
     """Newton's method from y for a state that comes back; J is computed where it is unknown or out of date.
 
@@ -304,7 +304,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     return False, OK, run
 
 
-@inner
+@allocating
 def _shoot(y, periods, jacobian, most, shooting):
     """Newton's method from y for a response of some periods, or of a divisor of them."""
     found, outcome, run = newton_shooting(y, periods, jacobian, most, shooting)
@@ -324,7 +324,7 @@ def _shoot(y, periods, jacobian, most, shooting):
     return Found(OK, periods, run, periods)
 
 
-@inner
+@allocating
 def _extrapolated(y, last, before, moves):
     """Limit of three successive states (Aitken); the last of them where they do not converge.
 
@@ -339,7 +339,7 @@ def _extrapolated(y, last, before, moves):
     return limit
 
 
-@inner
+@allocating
 def _creep(y, moves, past, count, shooting):
     """Extrapolate the creep of states that a contact holds at phase 0; returns the periods run.
 
@@ -355,7 +355,7 @@ def _creep(y, moves, past, count, shooting):
     return 1
 
 
-@inner
+@allocating
 def settle(y, periods, jacobian, shooting):
     """Find a state at phase 0 that repeats, from y (rest where it is NaN) and J (NaN: unknown).
 

@@ -13,7 +13,7 @@ from wedgesweep.sweep.cases import compile_once, solve_cases
 from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
-SECONDS = 1.0
+SECONDS = 0.3
 GOLDEN = 0.6180339887498949
 
 
@@ -32,7 +32,7 @@ class Estimate:
 
 
 def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
-    """Time a few cases spread over the sweep, for a second, and extrapolate to ``n_jobs`` jobs."""
+    """Time a few cases spread over the sweep, for a moment, and extrapolate to ``n_jobs`` jobs."""
     compile_once(sweep.settings.method, sweep.kit, sweep.config.system)
     _load(sweep)
     started = perf_counter()

@@ -8,9 +8,9 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import __version__
-from wedgesweep.config import Config, toml
-from wedgesweep.config.keys import show
+from wedgesweep import __version__, toml
+from wedgesweep.config import Config
+from wedgesweep.hints import show
 
 PACKAGE = Path(__file__).parents[1]
 SAME_RESULTS = ("numpy", "scipy", "numba")

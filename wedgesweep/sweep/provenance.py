@@ -3,6 +3,7 @@
 import json
 import subprocess
 from datetime import datetime
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -36,12 +37,19 @@ def attributes(config: Config, started: datetime, command: str) -> dict[str, str
         "config_sha256": config.sha256,
         "fingerprint": json.dumps(fingerprint(config)),
         "wedgesweep_version": __version__,
-        "package_versions": json.dumps({name: version(name) for name in PACKAGES}),
+        "package_versions": _package_versions(),
         **({"comment": config.remark} if config.remark else {}),
         **({"git_commit": commit} if commit else {}),
     }
 
 
+@cache
+def _package_versions() -> str:
+    """Versions of the packages that a result depends on, as JSON."""
+    return json.dumps({name: version(name) for name in PACKAGES})
+
+
+@cache  # of the code as it was loaded; asking git and the packages takes longer than a small sweep
 def git_commit(package: Path = PACKAGE) -> str | None:
     """Return the commit of the checkout that holds the package, with "-dirty" appended if files have changed.
 

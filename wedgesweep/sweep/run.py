@@ -24,7 +24,8 @@ from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.workers import Workers, interrupts_ignored
-from wedgesweep.systems import has_own_mechanics, kits, oscillator
+from wedgesweep.systems import has_own_mechanics, kits
+from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
 
 # Not needed until there are results; it takes a third of a second to load.
@@ -192,11 +193,10 @@ class Sweep:
             self.journal_path.unlink()
         return result
 
-    def run_here(self, case_timeout: float | None = None) -> "xr.Dataset":
+    def run_here(self) -> "xr.Dataset":
         """Run all cases one after the other in this process; nothing is stored."""
         started = datetime.now(UTC)
-        indices = np.arange(self.count)
-        return self.assembled(self.solve(indices, case_timeout), started)
+        return self.assembled(self.solve(np.arange(self.count)), started)
 
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
         """Solve the cases with these indices (in a continuation: whole lines) in this process."""

@@ -1,6 +1,6 @@
 """Makes a directory of measured data from a config and a plan of tests."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,15 +9,16 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
-from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT, UNITS
+from wedgesweep.measured.declarations import STEADY
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
-from wedgesweep.synthesize import files, noise, other_tables, recorded_input
+from wedgesweep.synthesize import documents, files, noise, other_tables, recorded_input
 from wedgesweep.synthesize.files import Table
-from wedgesweep.synthesize.motion import RTOL, Motion, steady
+from wedgesweep.synthesize.motion import Motion, steady
 from wedgesweep.synthesize.names import FORCE, QUANTITIES
+from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
 from wedgesweep.systems import kits
@@ -28,27 +29,6 @@ STUCK = 1e-3
 
 class SynthesisError(InputError):
     """The data cannot be made."""
-
-
-@dataclass(frozen=True)
-class Options:
-    """How the data are made; ``level``, ``input_level`` and ``amplitude_error`` are relative std.
-
-    ``record_input``: quantity of the input that is recorded; its amplitude is then not stated.
-
-    If ``sampling_hz`` is None, each test has a different rate, which does not divide the period: near 2 kHz
-    for a rig like the bench.
-    """
-
-    noise: str = "white"
-    level: float = 0.04
-    seed: int = 0
-    periods: float = 8.4
-    sampling_hz: float | None = None
-    settle_periods: int = 60
-    amplitude_error: float = 1e-3
-    record_input: str | None = None
-    input_level: float = 0.01
 
 
 def synthesize(
@@ -79,8 +59,9 @@ def synthesize(
         for test in truth.tests
     ]
     model = Config(config.document | {"effects": {}, "title": "base model"})
-    measured = _measured(directory.name, config, plan, options)
-    files.write(directory, measured, model, tables, _told(truth, steady, motions, options))
+    measured = documents.measured(directory.name, config, plan, options)
+    told = documents.truth_document(truth, steady, motions, options)
+    files.write(directory, measured, model, tables, told)
     return [
         f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
         for i, (test, motion) in enumerate(zip(steady.tests, motions, strict=True))
@@ -181,66 +162,3 @@ def _input(truth: Truth, test: TrueTest, time: np.ndarray, options: Options) -> 
         truth.record(test), clock.start + first * clock.step + time, options.record_input
     )
     return exact + options.input_level * exact.std() * test.random.normal(size=exact.size)
-
-
-def _measured(title: str, config: Config, plan: Plan, options: Options) -> dict[str, Any]:
-    """The document of measured.toml."""
-    tests = []
-    for i, test in enumerate(plan.tests):
-        told: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
-        if test.kind != STEADY:
-            undriven = options.record_input is not None and test.kind == TRANSIENT and not test.driven
-            tests.append({**told, "kind": test.kind, **({"undriven": True} if undriven else {})})
-            continue
-        told["frequency_hz"] = test.frequency_hz
-        if test.known and options.record_input is None:
-            told[config.amplitude_unit.key] = test.amplitude
-            told["amplitude_std"] = test.amplitude_std or options.amplitude_error
-        tests.append(told)
-    motion = config.simulated_motion[0]
-    velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated", "of": motion}
-    columns: dict[str, dict[str, Any]] = {
-        "time": {"column": "t", "unit": "s"},
-        "displacement": {"column": "d", "unit": "mm", "of": motion},
-    }
-    kinds = {test.kind for test in plan.tests}
-    if kinds != {LOOP}:
-        columns["velocity"] = velocity
-    if LOOP in kinds:
-        columns["force"] = {"column": "F", "unit": "N"}
-    if options.record_input is not None and any(t.driven or t.kind == STEADY for t in plan.tests):
-        unit = next(iter(UNITS[options.record_input]))
-        columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}
-    head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
-    return {"measurement": {**head, "test": tests}}
-
-
-def _told(truth: Truth, steady: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
-    """The document of truth.json: what a diagnosis should find, in the keys and units of a config."""
-    tests: list[dict[str, Any]] = [
-        {
-            "frequency_hz": test.plan.frequency_hz,
-            f"amplitude_{test.plan.unit}": test.amplitude,
-            f"nominal_amplitude_{test.plan.unit}": test.plan.amplitude,
-            "phase_deg": test.phase_deg,
-            "stray_vibration_phase_deg": test.stray_phase_deg,
-            "sampling_hz": test.sampling_hz,
-            "settle_periods": motion.settle_periods,
-        }
-        for test, motion in zip(steady.tests, motions, strict=True)
-    ]
-    tests += [
-        {"kind": test.plan.kind, "motion": test.plan.motion, "sampling_hz": test.sampling_hz}
-        for test in truth.tests
-        if test.plan.kind != STEADY
-    ]
-    return {
-        "effects": truth.config.document["effects"],
-        "friction_law": truth.law,
-        "uncertain": truth.factors,
-        "noise": options.noise,
-        "level": options.level,
-        "seed": options.seed,
-        "solver": {"method": "radau", "rtol": RTOL},
-        "tests": tests,
-    }

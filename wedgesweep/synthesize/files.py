@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.config import Config, toml
+from wedgesweep import toml
+from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.files import beside
 

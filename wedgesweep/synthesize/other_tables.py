@@ -1,7 +1,5 @@
 """Tables of tests that are not steady: what the sensors record of transients and loops."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from wedgesweep.measured.declarations import LOOP
@@ -9,10 +7,8 @@ from wedgesweep.sampled_input import from_samples
 from wedgesweep.synthesize import loops, noise, transients
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.names import FORCE, QUANTITIES
+from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.truth import TrueTest, Truth
-
-if TYPE_CHECKING:
-    from wedgesweep.synthesize.campaign import Options
 
 # Default sampling rate over that of a steady test, which is shorter.
 SLOWER = 0.25
@@ -20,7 +16,7 @@ SLOWER = 0.25
 BETTER = 0.003
 
 
-def table(truth: Truth, test: TrueTest, options: "Options") -> Table:
+def table(truth: Truth, test: TrueTest, options: Options) -> Table:
     """Channels with offset and noise, as in the CSV file."""
     rate = options.sampling_hz or round(SLOWER * test.sampling_hz, 3)
     if test.plan.kind == LOOP:

@@ -6,7 +6,7 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-from wedgesweep.config import toml
+from wedgesweep import toml
 from wedgesweep.config.keys import Choice, Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError

@@ -11,11 +11,11 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from wedgesweep import __version__
-from wedgesweep.config import toml
+from wedgesweep import __version__, toml
 from wedgesweep.effects import EFFECTS
+from wedgesweep.files import write_text
 from wedgesweep.sweep.provenance import git_commit
-from wedgesweep.validation import time_records, unmodelled
+from wedgesweep.validation import time_records, unmodelled_data
 from wedgesweep.validation.baselines import BASELINES
 from wedgesweep.validation.draft import Draft, draw
 from wedgesweep.validation.judge import Record
@@ -70,9 +70,7 @@ def record_of(one: DataSet, out: Path) -> Record:
 
 def write(file: Path, document: Any) -> None:
     """Write a JSON file completely or not at all."""
-    partial = file.with_suffix(".partial")
-    partial.write_text(json.dumps(document, indent=1) + "\n")
-    os.replace(partial, file)
+    write_text(file, json.dumps(document, indent=1) + "\n")
 
 
 class _Clock:
@@ -110,7 +108,7 @@ def _run(one: DataSet, out: Path) -> Record:
     write(directory / DRAFT, asdict(draft))
     clock.lap("draw")
     if draft.unmodelled:
-        unmodelled.make(draft, one.noise_seed, directory / DATA)
+        unmodelled_data.make(draft, one.noise_seed, directory / DATA)
     else:
         _synthesize(draft, spreads, one.noise_seed, directory)
     write(directory / DRAFT, asdict(draft))

@@ -11,6 +11,7 @@ from wedgesweep.validation.baselines import LISTED
 from wedgesweep.validation.goals import Sets, goals
 from wedgesweep.validation.judge import Record
 from wedgesweep.validation.shares import Share, share
+from wedgesweep.validation.time_records import TIME_KINDS
 
 # Edges of the bins of excess chi-squared.
 EDGES = (0.0, 100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0, 6400.0, 12_800.0, float("inf"))
@@ -39,7 +40,7 @@ def text(sets: Sets, heading: str, wanted: int) -> str:
         f"{heading}: {finished} sets, {len(sets.failures)} failed.",
         *([f"Not complete: {wanted} sets were wanted."] if finished < wanted else []),
         *_not_showing(sets),
-        "12 tests of 8 periods, 4 % noise of four kinds, three friction laws; 95 % Wilson intervals.",
+        *_steady_tests(sets),
         *_times(sets),
         f"\n{'':52} {'required':18} {'reached':28}",
         *(str(goal) for goal in goals(sets) if goal.has_sets),
@@ -66,6 +67,13 @@ def _of_the_bench(sets: Sets) -> list[str]:
 def _not_showing(sets: Sets) -> list[str]:
     names = ", ".join(f"{record['name']} ({'+'.join(record['truth'])})" for record in sets.not_showing)
     return [f"Not counted, as the effect does not show (excess < 100): {names}."] if names else []
+
+
+def _steady_tests(sets: Sets) -> list[str]:
+    """How the sets of steady tests were measured."""
+    steady = any(record["kind"] not in TIME_KINDS for record in sets.all)
+    tests = "12 tests of 8 periods, 4 % noise of four kinds, three friction laws; " if steady else ""
+    return [f"{tests}95 % Wilson intervals."]
 
 
 def _times(sets: Sets) -> list[str]:

@@ -1,113 +1,122 @@
 """Noise of a measured force: what a smooth function of the motion cannot explain.
 
-The function knows no mechanics: it is free in the displacement, in the velocity of either sign, in the
-acceleration, and in the distance since the last reversal, so that it can take the shape of any friction. What
-it leaves is noise, or physics that is none of these; both are told alike, and the spectrum is that of both.
+The function knows no mechanics but the force of the model on trial: it is free in the displacement, in the
+velocity of either sign, in the acceleration, and in the distance since the last reversal, so that it can take
+the shape of any friction. What it leaves is noise, or physics that is none of these; both are told alike, and
+the spectrum is that of both.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
-from math import pi
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion
+from wedgesweep.solvers.imposed_motion import with_jumps
 
 FROM_MOTION = "what no smooth function of the motion explains"
 # Knots over the displacement and over the velocity of either sign.
 PLACES, SPEEDS = 13, 7
 # Distances since a reversal over which friction may build up, over the range of the motion.
 DISTANCES = (0.003, 0.01, 0.03, 0.1, 0.3)
-# Share of singular values below which a combination of functions is left out.
-DEPENDENT = 1e-9
+# Share of a column's size that earlier ones must leave of it.
+DEPENDENT = 1e-6
 # Samples for each function, below which some of them are left out.
-ENOUGH = 12
-# Compared samples to either side of a reversal that are left out here beyond those that no fit compares: the
-# functions jump at samples, and friction between them.
-FARTHER = 3
+ENOUGH = 4
+# Variance by noise of the motion, over its median, beyond which a force is too near a reversal.
+NEAR = 4.0
+# Compared samples to either side of a reversal that are left out here as well, as friction may build up there
+# as no function does, and the share of samples that must be left then.
+FARTHER, ENOUGH_LEFT = 4, 0.5
 # Part of the record at least that must be free of reversals.
 LEAST_CLEAR = 0.2
 
 
-@dataclass(frozen=True)
-class MotionNoise:
-    """Force (N) that noise of the displacement, of some ``std`` (m), makes of an ``impedance``.
+class KnownNoise(NamedTuple):
+    """Noise of compared forces that is known from elsewhere.
 
-    The latter holds the force by displacement (N/m), velocity (N s/m) and acceleration (kg). The force has
-    passed a filter, of which every so many samples are compared (``low_pass.stride``).
+    ``passed_on`` (L, k): covariance that comes from noise of the motion; ``white`` (N): standard deviation of
+    white noise, which frequencies above the filter show; ``counted`` (k,): samples that count.
     """
 
-    low_pass: LowPass
-    impedance: tuple[float, float, float]
-    std: float
+    passed_on: np.ndarray
+    white: float
+    counted: np.ndarray
 
-    @cached_property
-    def _power(self) -> np.ndarray:
-        """Power up to half the sampling rate, of all samples."""
-        return self.low_pass.power(self.std, self.impedance)
-
-    def power(self, frequency: np.ndarray) -> np.ndarray:
-        """Power at frequencies in rad a compared sample."""
-        stride = self.low_pass.stride
-        grid = np.linspace(0.0, stride * pi, self._power.size)
-        return np.interp(frequency, grid, self._power) / stride
-
-    def covariance(self, distance: np.ndarray) -> np.ndarray:
-        """Covariance of two compared samples by their distance."""
-        values = np.fft.irfft(self._power)[: self._power.size : self.low_pass.stride]
-        return np.where(distance < values.size, values[np.minimum(distance, values.size - 1)], 0.0)
-
-
-def impedance(motion: Motion, force: np.ndarray, mass: float) -> tuple[float, float, float]:
-    """Force (n,) by displacement, velocity and acceleration, whatever makes it; dry friction is set apart.
-
-    Damping may differ by direction, and counts by its mean square.
-    The acceleration's part is that of the ``mass`` (kg, negative if the force counts the other way), as
-    inertia and stiffness look alike in a sine.
-    """
-    x, v = motion.displacement, motion.velocity
-    columns = np.column_stack([x, v, np.abs(v), np.sign(v), np.ones(x.size)])
-    size = np.linalg.norm(columns, axis=0)
-    fitted = np.linalg.lstsq(columns / size, force - mass * motion.acceleration, rcond=None)[0] / size
-    return float(fitted[0]), float(np.hypot(fitted[1], fitted[2])), mass
+    def clear(self, velocity: np.ndarray) -> np.ndarray:
+        """Samples (k,) that are far enough from reversals of a velocity (k,), unless few are left then."""
+        variance = self.passed_on[0] + self.white**2
+        quiet = self.counted & (variance <= NEAR * np.median(variance[self.counted]))
+        turns = np.diff(np.sign(velocity), append=0.0) != 0.0
+        far = quiet & (np.convolve(turns, np.ones(2 * FARTHER + 1), mode="same") < 0.5)
+        return far if far.sum() >= ENOUGH_LEFT * quiet.sum() else quiet
 
 
 def of_force(
-    motion: Motion, force: np.ndarray, places: np.ndarray, clear: np.ndarray, known: MotionNoise
+    motion: Motion,
+    low_pass: LowPass,
+    model: np.ndarray,
+    force: np.ndarray,
+    places: np.ndarray,
+    known: KnownNoise,
 ) -> NoiseSpectrum:
-    """The noise of a force (k,) that was filtered, at some places (k,) of a motion.
+    """The noise of a filtered force (k,) at some places (k,) of a motion, but for what the motion's adds.
 
-    ``clear`` (k,): those that are away from reversals, where noise of the motion turns a jump of friction
-    into an outlier. ``known``: the noise that comes from that of the motion, which is not counted again.
+    ``model`` (n,): the force of a model along the motion.
     """
-    clear = np.convolve(clear, np.ones(2 * FARTHER + 1), mode="same") > 2 * FARTHER + 0.5
-    columns = known.low_pass(_functions(motion).T)[:, places].T
-    columns = columns[:, : max(int(clear.sum()) // ENOUGH, 4)]
-    u, size, _ = np.linalg.svd(columns[clear], full_matrices=False)
-    basis = u[:, size > DEPENDENT * size[0]]
-    left = force[clear] - basis @ (basis.T @ force[clear])
-    left *= np.sqrt(left.size / max(left.size - basis.shape[1], 1))
+    clear = known.clear(motion.velocity[places])
+    columns = low_pass(_functions(motion, model))[:, places].T
     whole = np.zeros(force.size)
-    whole[clear] = left
+    whole[clear] = _left(columns[clear], force[clear])
     # Samples that are left out carry their share of the power.
     share = max(float(clear.mean()), LEAST_CLEAR)
-    return of_noise([whole / np.sqrt(share)], FROM_MOTION, known.power)
+    counted = float(clear.mean()) / share
+
+    def power(frequency: np.ndarray) -> np.ndarray:
+        passed_on = motion_noise.power(known.passed_on, clear, frequency)
+        return counted * (passed_on + known.white**2)
+
+    found = of_noise([whole / np.sqrt(share)], FROM_MOTION, power)
+    return replace(found, white=found.white + known.white**2)
 
 
-def _functions(motion: Motion) -> np.ndarray:
-    """Functions of the motion, (n, k), the most important ones first."""
+def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """What the first columns (n, k) leave of a force (n,), as many of them as cross-validation asks for.
+
+    Generalised cross-validation (Golub, Heath and Wahba, 1979) weighs what a column explains against what it
+    would explain of noise.
+    """
+    basis = _orthonormal(columns)[:, : max(force.size // ENOUGH, 1)]
+    along = basis.T @ force
+    sizes = np.arange(along.size + 1)
+    rest = force @ force - np.r_[0.0, np.cumsum(along**2)]
+    best = int(np.argmin(rest / (force.size - sizes) ** 2))
+    left = force - basis[:, :best] @ along[:best]
+    return left * np.sqrt(force.size / (force.size - best))
+
+
+def _orthonormal(columns: np.ndarray) -> np.ndarray:
+    """Orthonormal columns (n, k) with the span of the first k columns each; dependent ones are left out."""
+    size = np.linalg.norm(columns, axis=0)
+    q, r = np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))
+    return q[:, np.abs(np.diag(r)) > DEPENDENT]
+
+
+def _functions(motion: Motion, model: np.ndarray) -> np.ndarray:
+    """Functions of the motion, (k, n), the most important ones first; jumps count for their share."""
     x, a = _scaled(motion.displacement), _scaled(motion.acceleration)
     v = motion.velocity / np.abs(motion.velocity).max()
     sign = np.sign(v)
-    simple = [np.ones(x.size), sign, v, x, a, np.linspace(-1.0, 1.0, x.size)]
+    simple = [np.ones(x.size), model, sign, v, x, sign * x, a, np.linspace(-1.0, 1.0, x.size), np.abs(v)]
     since = _since_reversal(motion)
     history = [sign * np.exp(-since / distance) for distance in DISTANCES]
     both = _hats(x, PLACES)
     speeds = _hats(np.abs(v), SPEEDS)
-    columns = [*simple, *history, *both, *(each * (v > 0.0) for each in speeds)]
-    columns += [*(each * (v < 0.0) for each in speeds), *(each * sign for each in both), np.abs(a)]
-    return np.column_stack(columns)
+    rows = [*simple, *history, *both, *(each * (v > 0.0) for each in speeds)]
+    rows += [*(each * (v < 0.0) for each in speeds), *(each * sign for each in both), np.abs(a)]
+    return with_jumps(np.array(rows), motion.velocity)
 
 
 def _scaled(values: np.ndarray) -> np.ndarray:

@@ -67,23 +67,29 @@ class LoopData(SampledData):
     def law(self) -> str:  # type: ignore[override]
         return self.recordings[0].law
 
-    def independent(self, values: Sequence[np.ndarray]) -> np.ndarray:
-        """Values (..., k) of each recording as independent combinations of each block, (..., T, m)."""
-        parts = []
-        for number, block in self.chosen:
-            own = self.recordings[number]
-            part = values[number][..., own.blocks[block]]
-            known = np.where(own.known[own.blocks[block]], part, 0.0)
-            parts.append(known @ own.decorrelated[block].matrix.T)
-        return self._wide(parts)
-
-    def in_samples(self, values: np.ndarray) -> np.ndarray:
-        """Independent combinations (..., T, m) as forces at the compared samples."""
+    def _combined(self, values: np.ndarray, back: bool) -> np.ndarray:
+        """Independent combinations of forces (..., T, m), or forces of such combinations."""
         found = np.zeros_like(values)
         for t, (number, block) in enumerate(self.chosen):
             matrix = self.recordings[number].decorrelated[block].matrix
-            found[..., t, : len(matrix)] = values[..., t, : len(matrix)] @ matrix
+            own = slice(0, len(matrix))
+            found[..., t, own] = values[..., t, own] @ (matrix if back else matrix.T)
         return found
+
+    def decorrelated(self, values: np.ndarray) -> np.ndarray:
+        return self._combined(values, back=False)
+
+    def correlated(self, values: np.ndarray) -> np.ndarray:
+        return self._combined(values, back=True)
+
+    def renewed(self, scenario: Scenario) -> Self:
+        """The data with the noise of the motion as the force in a scenario passes it on."""
+        (values,), zeros = self.known_values([scenario], OF_MOTION), self._zeros([scenario])
+        needed = {number for number, _ in self.chosen}
+        found = tuple(
+            own.renewed(values, zeros[i][0]) if i in needed else own for i, own in enumerate(self.recordings)
+        )
+        return replace(self, recordings=found)
 
     def padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
         """Values (..., k) of each recording as blocks (..., T, m), zeros after the end of a block."""
@@ -101,7 +107,7 @@ class LoopData(SampledData):
 
     @cached_property
     def recorded(self) -> np.ndarray:
-        return self.independent([own.force for own in self.recordings])
+        return np.where(self.seen, self.padded([own.force for own in self.recordings]), 0.0)
 
     @cached_property
     def noise(self) -> np.ndarray:
@@ -121,7 +127,7 @@ class LoopData(SampledData):
 
     @cached_property
     def shifted(self) -> np.ndarray:
-        return self.independent([np.ones(own.force.size) for own in self.recordings])
+        return self.seen.astype(float)
 
     @property
     def _zeros_are_free(self) -> bool:
@@ -166,7 +172,7 @@ class LoopData(SampledData):
             own.simulated(values, zeros[i]) if i in needed else nothing
             for i, own in enumerate(self.recordings)
         ]
-        return self.independent(forces)
+        return self.padded(forces)
 
     def _zeros(self, scenarios: Sequence[Scenario]) -> list[np.ndarray]:
         """What to add to the displacement (m) in each block of each recording, (n, blocks) each."""

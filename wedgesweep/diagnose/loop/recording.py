@@ -1,9 +1,10 @@
 """A recorded loop as it is compared: smoothed motion, force at independent samples, and blocks of cycles."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Self
 
 import numpy as np
 
@@ -11,31 +12,41 @@ from wedgesweep import systems
 from wedgesweep.config import Config
 from wedgesweep.diagnose.decorrelation import Decorrelation, decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.loop.force_noise import MotionNoise, impedance, of_force
+from wedgesweep.diagnose.loop import motion_noise
+from wedgesweep.diagnose.loop.force_noise import KnownNoise, of_force
+from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.errors import InputError
 from wedgesweep.solvers import imposed_motion
 
-# Below so many standard deviations of its noise the velocity has no sign, and friction is not known.
+# Below so many standard deviations of its noise the velocity has no sign. Where it stays there for more than
+# one compared sample the mass may rest, and friction is not known.
 AT_REST = 3.0
-# Compared samples to either side that the filter lets such a sample spoil.
-REACH = 2
+# Change of a part of the motion for its derivative, over its largest value, where it has no noise.
+LEAST_CHANGE = 1e-9
+# Fewest samples with a known friction that make a loop.
+FEWEST_KNOWN = 24
 # A reversal counts if the velocity goes beyond this share of its peak on both sides.
 REVERSAL = 0.1
 # Blocks of a record that are left out in turn, at most.
 MOST_BLOCKS = 12
+# Error of a simulation over the rms of the force, which counts as noise.
+SIMULATED = 1e-4
+NO_NOISE = NoiseSpectrum(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
     """One test.
 
-    ``model``: the base model with the numbers of the test; ``places`` (k,): samples of the motion at which
-    the ``force`` (k,) is compared; ``spectrum`` of its noise there, beside what noise of the motion has
-    ``passed_on``; ``known`` (k,): whether friction is; it is not where the mass rests or turns; ``blocks``:
-    slices of the k samples, whole cycles each; ``least``: variance (N^2) of a compared number.
+    ``model``: the base model with the numbers of the test; ``noise_of_displacement`` (m); ``places`` (k,):
+    samples of the motion at which the ``force`` (k,) is compared; ``spectrum`` of its noise there, beside
+    what noise of the motion has ``passed_on`` (L, k), see ``motion_noise.covariance``; ``known`` (k,):
+    whether friction is, which it is not where the mass may rest; ``blocks``: slices of the k samples, whole
+    cycles each; ``white`` (N): noise of the force at the places as frequencies above the filter show it;
+    ``differences``: what repeats leave of the force at the places.
     """
 
     name: str
@@ -43,51 +54,101 @@ class Recording:
     law: str
     low_pass: LowPass
     motion: Motion
+    noise_of_displacement: float
     places: np.ndarray
     force: np.ndarray
-    spectrum: NoiseSpectrum
-    passed_on: MotionNoise
-    least: float
     known: np.ndarray
     blocks: tuple[slice, ...]
+    white: float = 0.0
+    differences: tuple[np.ndarray, ...] = ()
+    spectrum: NoiseSpectrum = NO_NOISE
+    passed_on: np.ndarray | None = None
 
     @property
     def noise(self) -> float:
         """Standard deviation (N) of a compared force."""
-        return float(np.sqrt(self._covariance(np.zeros(1, int))[0]))
+        own = self._passed_on[0][self.known]
+        return float(np.sqrt(self.spectrum.covariance(np.zeros(1, int))[0] + own.mean()))
 
-    def _covariance(self, distance: np.ndarray) -> np.ndarray:
-        """Covariance (N^2) of two compared forces by their distance."""
-        return self.spectrum.covariance(distance) + self.passed_on.covariance(distance)
+    @property
+    def _passed_on(self) -> np.ndarray:
+        return np.zeros((1, self.places.size)) if self.passed_on is None else self.passed_on
+
+    def _covariance(self, rows: np.ndarray) -> np.ndarray:
+        """Covariance (N^2) of some compared forces (r,) with one another, (r, r)."""
+        distance = np.abs(rows[:, None] - rows)
+        return self.spectrum.covariance(distance) + motion_noise.between(self._passed_on, rows)
 
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
         """Independent combinations of the compared forces of each block."""
-        return tuple(decorrelation(self.known[block], self._covariance, self.least) for block in self.blocks)
+        return tuple(self._decorrelated(block) for block in self.blocks)
+
+    def _decorrelated(self, block: slice) -> Decorrelation:
+        least = (SIMULATED * float(self.force.std())) ** 2
+        return decorrelation(self.known[block], lambda rows: self._covariance(block.start + rows), least)
 
     @property
     def half_range(self) -> float:
         """Half the range (m) of the motion."""
         return 0.5 * float(np.ptp(self.motion.displacement))
 
+    def renewed(self, values: Values, zeros: np.ndarray) -> Self:
+        """The test with the noise that its force has beside that of a scenario.
+
+        ``zeros`` (blocks,): what to add to the displacement (m) in each block.
+        """
+        found = self.with_noise_of_motion(values, zeros)
+        assert found.passed_on is not None
+        if self.differences:
+            return replace(found, spectrum=of_noise(self.differences, FROM_REPEATS))
+        model = np.nan_to_num(self._forces([values], zeros[None], self.motion.parts)[0])
+        known = KnownNoise(found.passed_on, self.white, self.known)
+        return replace(
+            found,
+            spectrum=of_force(self.motion, self.low_pass, model, self.force, self.places, known),
+        )
+
+    def with_noise_of_motion(self, values: Values, zeros: np.ndarray) -> Self:
+        """The test with the noise that the force of a scenario has by that of the motion."""
+        derivatives = self._derivatives(values, zeros[None])
+        passed_on = motion_noise.covariance(
+            self.low_pass, self.places, self.noise_of_displacement, derivatives
+        )
+        return replace(self, passed_on=passed_on)
+
+    def _derivatives(self, values: Values, zeros: np.ndarray) -> Derivatives:
+        """Derivatives of the force of a scenario, over as much as noise changes each part of the motion."""
+        parts = self.motion.parts
+        force = np.nan_to_num(self._forces([values], zeros, parts)[0])
+        found = []
+        for order, own in enumerate(parts):
+            change = max(self.motion.noise[order], LEAST_CHANGE * float(np.abs(own).max()))
+            above, below = (
+                self._forces([values], zeros, (*parts[:order], own + step, *parts[order + 1 :]))[0]
+                for step in (change, -change)
+            )
+            found.append(np.nan_to_num((above - below) / (2.0 * change)))
+        return Derivatives((found[0], found[1], found[2]), motion_noise.jumps(force))
+
     def simulated(self, scenarios: list[Values], zeros: np.ndarray) -> np.ndarray:
         """Forces (n, k) under the values of n scenarios; NaN where they are not determined.
 
         ``zeros`` (n, blocks): what to add to the displacement (m) in each block.
         """
+        return self._compared(self._forces(scenarios, zeros, self.motion.parts))
+
+    def _forces(
+        self, scenarios: list[Values], zeros: np.ndarray, parts: tuple[np.ndarray, ...]
+    ) -> np.ndarray:
+        """Forces (n, N) along a motion of some displacement, velocity and acceleration (N,)."""
         rows = np.concatenate(
             [self.model.record_with(merge(self.model.effects, each), self.law, 0.0) for each in scenarios]
         )
-        own = self.motion
-        sign = _sign(self.model)
-        forces = imposed_motion.forces(
-            rows,
-            sign * (own.displacement + zeros[:, self._block]),
-            sign * own.velocity,
-            sign * own.acceleration,
-            1.0 / self.low_pass.rate,
-        )
-        return self._compared(forces)
+        sign, (displacement, velocity, acceleration) = _sign(self.model), parts
+        places = sign * (displacement + zeros[:, self._block])
+        step = 1.0 / self.low_pass.rate
+        return imposed_motion.forces(rows, places, sign * velocity, sign * acceleration, step)
 
     @cached_property
     def _block(self) -> np.ndarray:
@@ -141,19 +202,15 @@ def recording(
     if not places.size:
         told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
         raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
-    smooth, clear = low_pass(force), ~slow(own, low_pass)[places]
-    compared = smooth[places]
-    passed_on = MotionNoise(low_pass, impedance(own, smooth, _sign(model) * mass), noise)
-    if differences:
-        left = [low_pass(each)[ends : -ends : low_pass.stride] for each in differences]
-        found = of_noise(left, FROM_REPEATS, passed_on.power)
-    else:
-        found = of_force(own, compared, places, clear, passed_on)
-    # White noise of the force; errors at reversals have a wide spectrum.
-    least = low_pass.noise(white_noise(force, rate)) ** 2 + (mass * own.acceleration_noise) ** 2
+    compared, known = low_pass(force)[places], ~at_rest(own, low_pass)[places]
+    if known.sum() < FEWEST_KNOWN:
+        told = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
+        raise InputError([f"{name}: {told}; move it faster, or measure it with less noise"])
     blocks = _blocks(own.velocity[places])
-    noises = found, passed_on, least
-    return Recording(name, model, law, low_pass, own, places, compared, *noises, clear, blocks)
+    white = low_pass.noise(white_noise(force, rate, jumps=True))
+    left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)
+    found = Recording(name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left)
+    return found.renewed({}, np.zeros(len(blocks)))
 
 
 def moving_mass(model: Config, law: str) -> float:
@@ -166,11 +223,15 @@ def _sign(model: Config) -> float:
     return 1.0 if model.system == "oscillator" else -1.0
 
 
-def slow(motion: Motion, low_pass: LowPass) -> np.ndarray:
-    """Whether (n,) the mass rests or turns at or near a sample: noise shifts the time of a turn."""
-    within = AT_REST * motion.velocity_noise + 0.5 * np.abs(motion.acceleration) / low_pass.rate
-    slow = np.abs(motion.velocity) <= within
-    return np.convolve(slow, np.ones(2 * REACH * low_pass.stride + 1), mode="same") > 0.5
+def at_rest(motion: Motion, low_pass: LowPass) -> np.ndarray:
+    """Whether (n,) the mass may rest at or near a sample: its velocity has no sign for a while."""
+    slow = np.abs(motion.velocity) <= AT_REST * motion.noise[1]
+    edges = np.flatnonzero(np.diff(np.r_[False, slow, False].astype(int)))
+    found = np.zeros(slow.size, bool)
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        if last - first > low_pass.stride:
+            found[max(first - low_pass.stride, 0) : last + low_pass.stride] = True
+    return found
 
 
 def _blocks(velocity: np.ndarray) -> tuple[slice, ...]:

@@ -7,14 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.loop.force_noise import MotionNoise
 from wedgesweep.diagnose.loop.loop_data import LoopData
-from wedgesweep.diagnose.loop.recording import Recording, moving_mass, slow
+from wedgesweep.diagnose.loop.recording import Recording, at_rest, moving_mass
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.smoothing import WIDER, LowPass, Motion, highest_cutoff
+from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, noise_of_motion
 from wedgesweep.measured.declarations import LOOP
 
 # Amplitudes over the largest one measured; frequencies over those measured, or over the natural frequency.
@@ -32,14 +31,12 @@ class _Machine(NamedTuple):
     """How forces are compared.
 
     ``variance`` (N^2) of a compared force beside others of some ``rms`` (N); without a measured loop, where
-    noise is a share of any force, beside others of unit rms, and ``rms`` is None. ``impedance``: what turns
-    noise of the motion into force.
+    noise is a share of any force, beside others of unit rms, and ``rms`` is None.
     """
 
     low_pass: LowPass
     variance: float
     rms: float | None
-    impedance: tuple[float, float, float]
 
     def noise(self, rms: float) -> float:
         """Variance of a compared force beside others of some rms."""
@@ -79,8 +76,7 @@ def _frequencies(known: Sensors, measured: LoopData | None, low_pass: LowPass) -
 def _measured(data: LoopData) -> _Machine:
     """Forces as those of the tests at hand, of which the one with the most noise counts."""
     own = max(data.recordings, key=lambda each: each.noise)
-    variance = float(own.spectrum(np.zeros(1))[0]) + own.least
-    return _Machine(own.low_pass, variance, float(own.force.std()), own.passed_on.impedance)
+    return _Machine(own.low_pass, float(own.spectrum(np.zeros(1))[0]), float(own.force.std()))
 
 
 def _unmeasured(best: Fit, known: Sensors) -> _Machine:
@@ -89,7 +85,7 @@ def _unmeasured(best: Fit, known: Sensors) -> _Machine:
     mass, std = moving_mass(own.model, own.law), known.spectra[0].std
     force = mass * known.omega**2 * float(known.rms[0])
     low_pass = LowPass(highest_cutoff(std, force, mass, known.rate), known.rate)
-    return _Machine(low_pass, low_pass.noise(known.share) ** 2, None, (0.0, 0.0, mass))
+    return _Machine(low_pass, low_pass.noise(known.share) ** 2, None)
 
 
 def _recording(
@@ -97,36 +93,31 @@ def _recording(
 ) -> Recording:
     """A loop that was not recorded; its force is the one under the values of the best explanation."""
     low_pass, std = machine.low_pass, known.spectra[0].std
-    wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
     ends, omega = low_pass.settling, 2.0 * pi * frequency
     time = np.arange(round(CYCLES / frequency * known.rate) + 2 * ends) / known.rate
     motion = Motion(
         amplitude * np.sin(omega * time),
         amplitude * omega * np.cos(omega * time),
         -amplitude * omega**2 * np.sin(omega * time),
-        wide.noise(std, 1),
-        low_pass.noise(std, 2),
+        noise_of_motion(std, low_pass),
     )
     step = max(low_pass.stride, (time.size - 2 * ends) // COMPARED)
     places = np.arange(ends, time.size - ends, step)
-    nothing = np.zeros(places.size)
     empty = Recording(
         name="",
         model=known.model,
         law=known.law,
         low_pass=low_pass,
         motion=motion,
+        noise_of_displacement=std,
         places=places,
-        force=nothing,
-        spectrum=NoiseSpectrum(0.0, 0.0, 0.0),
-        passed_on=MotionNoise(low_pass, machine.impedance, 0.0),
-        least=0.0,
-        known=~slow(motion, low_pass)[places],
+        force=np.zeros(places.size),
+        known=~at_rest(motion, low_pass)[places],
         blocks=(slice(0, places.size),),
     )
     force = np.nan_to_num(empty.simulated([dict(values)], np.zeros((1, 1)))[0])
     rms = float(force[empty.known].std()) if empty.known.any() else 0.0
     # Each compared number stands for all those between it and the next.
     variance = machine.noise(rms) * low_pass.stride / step
-    variance += float(MotionNoise(low_pass, machine.impedance, std).covariance(np.zeros(1, int))[0])
-    return replace(empty, force=force, spectrum=NoiseSpectrum(0.0, 0.0, variance), least=1e-6 * variance)
+    noisy = empty.with_noise_of_motion(dict(values), np.zeros(1))
+    return replace(noisy, force=force, spectrum=NoiseSpectrum(0.0, 0.0, variance))

@@ -75,10 +75,12 @@ def _(data: TransientData) -> Sensors:
 
 @sensors.register
 def _(data: LoopData) -> Sensors:
-    own = _median(data.recordings, lambda each: each.passed_on.std / float(each.motion.displacement.std()))
+    own = _median(
+        data.recordings, lambda each: each.noise_of_displacement / float(each.motion.displacement.std())
+    )
     rms = np.array([own.motion.displacement.std()])
     travel = max(0.5 * float(np.ptp(each.motion.displacement)) for each in data.recordings)
-    noise = NoiseSpectrum(0.0, 0.0, max(own.passed_on.std, 1e-9 * travel) ** 2)
+    noise = NoiseSpectrum(0.0, 0.0, max(own.noise_of_displacement, 1e-9 * travel) ** 2)
     return Sensors(data.model, data.law, own.low_pass.rate, (noise,), rms, travel)
 
 

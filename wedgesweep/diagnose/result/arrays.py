@@ -5,20 +5,17 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from wedgesweep import __version__
 from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.result import sampled
+from wedgesweep.diagnose.result import sampled, stored
+from wedgesweep.diagnose.result.stored import BY_MODEL, BY_TEST, Variables
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.steady import waveforms
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.sweep import labels
 
 CHANNELS = ("displacement", "velocity")
-# Dimensions, values, unit and meaning of a variable.
-Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
-BY_TEST, BY_MODEL = ("test",), ("model", "test")
 PARTS = ("harmonic", "part")
 
 
@@ -50,28 +47,15 @@ def dataset(found: Diagnosis) -> xr.Dataset:
         **_inputs(arrays),
         **_energies(arrays),
         **_dwells(arrays),
-        **_misfit(arrays),
-    }
-    data_variables = {
-        name: (dims, values, {"units": unit, "long_name": meaning})
-        for name, (dims, values, unit, meaning) in variables.items()
+        **_forces(arrays),
     }
     coordinates = {
-        "test": list(data.names),
-        "model": ["base", "extended"],
         "channel": list(CHANNELS[: data.shape[0]]),
         "harmonic": np.arange(1, data.shape[1] + 1),
         "part": ["real", "imaginary"],
         "phase": np.arange(waveforms.PHASES) / waveforms.PHASES,
     }
-    attributes = {
-        "title": found.measurement.title,
-        "verdict": found.finding.verdict,
-        "law": data.law,
-        "wedgesweep_version": __version__,
-        **labels.attributes(data.model),
-    }
-    return xr.Dataset(data_variables, coordinates, attributes)
+    return stored.dataset(found, variables, coordinates, **labels.attributes(data.model))
 
 
 def parts(found: Diagnosis) -> dict[str, xr.Dataset]:
@@ -83,22 +67,8 @@ def parts(found: Diagnosis) -> dict[str, xr.Dataset]:
 
 def _overview(found: Diagnosis, data: MixedData) -> xr.Dataset:
     """Misfit of all tests of several kinds."""
-    q = np.array([fit.evaluation.chi2_by_test for fit in (found.base.fit, found.extended)])
     kinds = [part.kind for part in data.present for _ in part.names]
-    return xr.Dataset(
-        {
-            "q": (BY_MODEL, q, {"units": "1", "long_name": "squared misfit over noise"}),
-            "dof": (BY_TEST, data.dof, {"units": "1", "long_name": "degrees of freedom"}),
-        },
-        {"test": list(data.names), "model": ["base", "extended"], "test_kind": (BY_TEST, kinds)},
-        {
-            "title": found.measurement.title,
-            "kind": data.kind,
-            "verdict": found.finding.verdict,
-            "law": data.law,
-            "wedgesweep_version": __version__,
-        },
-    )
+    return stored.dataset(found, {}, {"test_kind": (BY_TEST, kinds)}, kind=data.kind)
 
 
 def _arrays(found: Diagnosis, data: HarmonicData) -> Arrays:
@@ -196,19 +166,12 @@ def _dwells(arrays: Arrays) -> Variables:
     }
 
 
-def _misfit(arrays: Arrays) -> Variables:
+def _forces(arrays: Arrays) -> Variables:
     base = arrays.fits[0]
     force = waveforms.residual_force(arrays.data, base, waveforms.measured_from_phase_zero(arrays.data, base))
     body = "mass" if arrays.data.model.system == "oscillator" else "bolster"
     return {
-        "leftover_force": (("test", "phase"), force, "N", f"force on the {body} that the base model lacks"),
-        "q": (
-            BY_MODEL,
-            np.array([fit.evaluation.chi2_by_test for fit in arrays.fits]),
-            "1",
-            "squared misfit over noise",
-        ),
-        "dof": (BY_TEST, arrays.data.dof, "1", "degrees of freedom"),
+        "leftover_force": (("test", "phase"), force, "N", f"force on the {body} that the base model lacks")
     }
 
 

@@ -47,7 +47,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
         "not_testable": hidden,
-        "next_test": _following(found.next_test),
+        "next_test": _next_test(found.next_test),
         "ladder": [_rung(each) for each in found.ladder],
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
@@ -192,16 +192,16 @@ def _gain(gain: Gain | None) -> dict[str, Any]:
     }
 
 
-def _following(following: NextTest | None) -> dict[str, Any] | None:
-    if following is None:
+def _next_test(test: NextTest | None) -> dict[str, Any] | None:
+    if test is None:
         return None
     return {
-        "kind": following.kind,
-        **({} if following.motion is None else {"motion": following.motion}),
-        **following.numbers,
-        "separates": list(following.separates),
-        "distance": following.distance,
-        "pairs": [{"separates": list(each.names), "distance": each.distance} for each in following.pairs],
+        "kind": test.kind,
+        **({} if test.motion is None else {"motion": test.motion}),
+        **test.numbers,
+        "separates": list(test.separates),
+        "distance": test.distance,
+        "pairs": [{"separates": list(each.names), "distance": each.distance} for each in test.pairs],
     }
 
 

@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from wedgesweep import effects
-from wedgesweep.config import toml
+from wedgesweep import effects, toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.result.estimates import uncertain

@@ -5,17 +5,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from wedgesweep import __version__
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.result import stored
 from wedgesweep.diagnose.result.estimates import finite
+from wedgesweep.diagnose.result.stored import Variables
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.sweep import labels
 
-# Dimensions, values, unit and meaning of a variable.
-Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
 BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
 CHANNELS, CHANNEL_UNIT = ("displacement", "velocity", "acceleration"), "m, m/s or m/s^2"
 
@@ -50,7 +49,7 @@ def _of_loops(data: LoopData) -> list[dict[str, Any]]:
             "noise_force_N": finite(own.noise),
             "noise_from": own.spectrum.source,
             "noise_correlation": finite(own.spectrum.correlation),
-            "noise_velocity_mm_per_s": finite(1e3 * own.motion.velocity_noise),
+            "noise_velocity_mm_per_s": finite(1e3 * own.motion.noise[1]),
         }
         for own in recordings
     ]
@@ -89,36 +88,17 @@ def _noise(own: Release) -> dict[str, Any]:
 
 def dataset(found: Diagnosis, data: LoopData | TransientData) -> xr.Dataset:
     """Measured and simulated samples (SI units), NaN where nothing is compared."""
-    fits = list(_fits(found).values())
-    simulated = np.array([data.with_zero(fit.evaluation) for fit in fits])
-    variables = _loops(data, simulated) if isinstance(data, LoopData) else _transients(data, simulated)
-    q = np.array([fit.evaluation.chi2_by_test for fit in fits])
-    variables["q"] = (("model", "test"), q, "1", "squared misfit over noise")
-    variables["dof"] = (("test",), data.dof, "1", "degrees of freedom")
-    coordinates = {"test": list(data.names), "model": list(_fits(found))}
-    if isinstance(data, TransientData):
-        coordinates["channel"] = [CHANNELS[order] for order in _orders(data)]
-    return xr.Dataset(
-        {
-            name: (dims, values, {"units": unit, "long_name": meaning})
-            for name, (dims, values, unit, meaning) in variables.items()
-        },
-        coordinates,
-        {
-            "title": found.measurement.title,
-            "kind": data.kind,
-            "verdict": found.finding.verdict,
-            "law": data.law,
-            "wedgesweep_version": __version__,
-            **labels.attributes(data.model),
-        },
-    )
+    simulated = np.array([data.with_zero(fit.evaluation) for fit in _fits(found).values()])
+    about = {"kind": data.kind, **labels.attributes(data.model)}
+    if isinstance(data, LoopData):
+        return stored.dataset(found, _loops(data, simulated), {}, **about)
+    channels = [CHANNELS[order] for order in _orders(data)]
+    return stored.dataset(found, _transients(data, simulated), {"channel": channels}, **about)
 
 
 def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     """Forces along the imposed motion."""
     shown = np.where(data.seen, 1.0, np.nan)
-    measured, simulated = data.in_samples(data.measured), data.in_samples(simulated)
     position, velocity = (
         data.padded([getattr(own.motion, name)[own.places] for own in data.recordings]) * shown
         for name in ("displacement", "velocity")
@@ -126,7 +106,7 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
     return {
         "displacement": (BY_SAMPLE, position, "m", "imposed displacement"),
         "velocity": (BY_SAMPLE, velocity, "m/s", "imposed velocity"),
-        "measured_force": (BY_SAMPLE, measured * shown, "N", "measured force"),
+        "measured_force": (BY_SAMPLE, data.measured * shown, "N", "measured force"),
         "simulated_force": (("model", *BY_SAMPLE), simulated * shown, "N", "simulated, with the fitted zero"),
         "force_noise": (
             ("test",),

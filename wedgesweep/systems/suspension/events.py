@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from wedgesweep import friction
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.effects import ageing, guide_friction, presliding, travel
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
 from wedgesweep.systems.suspension.filippov import WIDTH, both_sides
@@ -58,7 +58,7 @@ def _slip_events(t, y, mode, p, out):
         out[2 * DIRECTION if mode.direction > 0 else 2 * DIRECTION + 1] = mode.direction * y[VELOCITY]
 
 
-@inner
+@allocating
 def _held_events(t, y, mode, p, out):
     """Write the events of the jumps that hold a velocity: the sides must point at the jump."""
     sides = np.empty((2, WIDTH))

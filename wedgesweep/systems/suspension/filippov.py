@@ -7,7 +7,7 @@ are resolved one after the other, so that all their velocities stay.
 
 import numpy as np
 
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.systems.suspension.energy import friction_power
 from wedgesweep.systems.suspension.faces import slip_rate
 from wedgesweep.systems.suspension.modes import AXES, HELD, branch, held, side, with_branch
@@ -26,7 +26,7 @@ def _vertex(mode, bits, order, p):
     return mode
 
 
-@inner
+@allocating
 def both_sides(t, y, mode, first, p, out):
     """Write both sides of the jump of axis ``first``, shape (2, WIDTH), the other jumps resolved.
 
@@ -66,7 +66,7 @@ def _resolve(axis, t, y, low, high, p):
         low[i] = share * low[i] + (1.0 - share) * high[i]
 
 
-@inner
+@allocating
 def filippov_forces(t, y, mode, p):
     """Forces and friction power (W) of a mode with held velocities, and whether they are unique."""
     sides = np.empty((2, WIDTH))

@@ -154,7 +154,8 @@ def _earlier(found, piece, later, span, at_zero):
 @inlined
 def _begins_at(state, o):
     """Event function that is zero where a mode begins; -1 if none is."""
-    if state.y[1] == 0.0 or state.last_event == o.event:
+    # Either event of the face: the lower one ends the mode, and after the other one it slips off a held jump.
+    if state.y[1] == 0.0 or state.last_event // 2 == o.event // 2:
         return SLIP
     return state.last_event - COLUMN_NORMAL + COLUMN_FORCE if state.last_event >= COLUMN_NORMAL else -1
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero
 from wedgesweep.hybrid.state import HANDED_OVER, LOCKED, NO_EVENT
 from wedgesweep.systems.suspension.events import EVENTS, events
@@ -115,7 +115,7 @@ def release_between(forward, backward, t, stop, p):
     return moment, UP if rising < falling else DOWN
 
 
-@inner
+@allocating
 def scanned_release(state, stop, p):
     """As ``release``, from samples: for any base motion and for normal forces of either sign."""
     out = np.empty(EVENTS)

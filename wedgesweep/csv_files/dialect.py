@@ -11,9 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from wedgesweep.config.keys import Choice, Text, Whole
-from wedgesweep.config.tables import table
-from wedgesweep.quantity import Quantity
+from wedgesweep.units import UNITS
 
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 DECIMALS = {"point": ".", "comma": ","}
@@ -38,16 +36,6 @@ NO_TEXT = "holds null characters, so that it is no text; export it as CSV"
 LINE_END = re.compile(r"\r\n|\n|\r")
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
-
-DIALECT = table(
-    "csv",
-    "how the CSV files are written; what is left out is detected",
-    Choice(key="delimiter", meaning="separator of the columns", choices=tuple(DELIMITERS), optional=True),
-    Choice(key="decimal", meaning="decimal sign", choices=tuple(DECIMALS), optional=True),
-    Whole.of(Quantity("skip_rows", 0, "lines above the header", minimum=0)),
-    Text(key="encoding", meaning="encoding of the text", optional=True, example="latin-1"),
-    default={},
-)
 
 
 @dataclass(frozen=True)
@@ -179,8 +167,6 @@ def bare(cell: str) -> str:
 
 
 def _is_unit(cell: str) -> bool:
-    from wedgesweep.measured.declarations import UNITS
-
     bracketed = cell[:1] + cell[-1:] in ("[]", "()")
     return bracketed or any(bare(cell) in units for units in UNITS.values())
 

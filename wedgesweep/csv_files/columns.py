@@ -1,5 +1,6 @@
 """Numbers of the columns of a CSV file; faults name their line."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from math import isfinite
@@ -8,11 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.config.keys import hint, show
+from wedgesweep.csv_files import dialect as csv_dialect
+from wedgesweep.csv_files.dialect import Dialect
 from wedgesweep.files import read_bytes
-from wedgesweep.measured import csv_dialect
-from wedgesweep.measured.csv_dialect import Dialect
+from wedgesweep.hints import hint, show
 
+# A number with either decimal sign.
+DECIMAL = re.compile(r"[+-]?\d*[.,]?\d+([eE][+-]?\d+)?")
 # Number of faulty lines that are listed per file; the others are counted.
 LISTED = 3
 
@@ -77,6 +80,9 @@ def _header_faults(
     place, header = csv_dialect.header(lines, stated)
     if dialect is not None:
         place, header = dialect.header, list(dialect.names)
+    if dialect is None and any(header) and all(DECIMAL.fullmatch(name) for name in header):
+        told = f"write the names of the columns above them, such as {', '.join(wanted.values())}"
+        return [f"{place + 1}: numbers, where the header is expected; {told}"]
     if not any(header):
         return [f"{place + 1}: empty; the first line must hold the names of the columns"]
     repeated = [name for name, times in Counter(header).items() if times > 1 and name in wanted.values()]
@@ -109,13 +115,15 @@ def _numbers(
     for number, line in zip(numbers.tolist(), lines, strict=True):
         cells = csv_dialect.split(line, dialect.delimiter)
         if len(cells) != len(dialect.names):
-            faults.append(f"{path}:{number}: {len(cells)} cells; the header has {len(dialect.names)}")
+            told = f"{len(cells)} cells; the header has {len(dialect.names)}, and so must each line"
+            faults.append(f"{path}:{number}: {told}")
             continue
         row = [_number(cells[place], dialect.decimal) for place in places.values()]
         for place, value in zip(places.values(), row, strict=True):
             if value is None:
                 wrong = show(cells[place]) if cells[place] else "an empty cell"
-                faults.append(f"{path}:{number}: {dialect.names[place]}: {wrong} is not a finite number")
+                told = f"{dialect.names[place]}: {wrong} is not a finite number; write one"
+                faults.append(f"{path}:{number}: {told}")
         rows.append(row)
     problems.extend(faults[:LISTED])
     if len(faults) > LISTED:

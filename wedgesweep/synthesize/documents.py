@@ -1,0 +1,74 @@
+"""The documents of a campaign: measured.toml, and truth.json beside it."""
+
+from typing import Any
+
+from wedgesweep.config import Config
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
+from wedgesweep.synthesize.motion import RTOL, Motion
+from wedgesweep.synthesize.options import Options
+from wedgesweep.synthesize.plan import Plan
+from wedgesweep.synthesize.truth import Truth
+from wedgesweep.units import UNITS
+
+
+def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[str, Any]:
+    """The document of measured.toml."""
+    tests = []
+    for i, test in enumerate(plan.tests):
+        told: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
+        if test.kind != STEADY:
+            undriven = options.record_input is not None and test.kind == TRANSIENT and not test.driven
+            tests.append({**told, "kind": test.kind, **({"undriven": True} if undriven else {})})
+            continue
+        told["frequency_hz"] = test.frequency_hz
+        if test.known and options.record_input is None:
+            told[config.amplitude_unit.key] = test.amplitude
+            told["amplitude_std"] = test.amplitude_std or options.amplitude_error
+        tests.append(told)
+    motion = config.simulated_motion[0]
+    velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated", "of": motion}
+    columns: dict[str, dict[str, Any]] = {
+        "time": {"column": "t", "unit": "s"},
+        "displacement": {"column": "d", "unit": "mm", "of": motion},
+    }
+    kinds = {test.kind for test in plan.tests}
+    if kinds != {LOOP}:
+        columns["velocity"] = velocity
+    if LOOP in kinds:
+        columns["force"] = {"column": "F", "unit": "N"}
+    if options.record_input is not None and any(t.driven or t.kind == STEADY for t in plan.tests):
+        unit = next(iter(UNITS[options.record_input]))
+        columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}
+    head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
+    return {"measurement": {**head, "test": tests}}
+
+
+def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
+    """The document of truth.json: what a diagnosis should find, in the keys and units of a config."""
+    tests: list[dict[str, Any]] = [
+        {
+            "frequency_hz": test.plan.frequency_hz,
+            f"amplitude_{test.plan.unit}": test.amplitude,
+            f"nominal_amplitude_{test.plan.unit}": test.plan.amplitude,
+            "phase_deg": test.phase_deg,
+            "stray_vibration_phase_deg": test.stray_phase_deg,
+            "sampling_hz": test.sampling_hz,
+            "settle_periods": motion.settle_periods,
+        }
+        for test, motion in zip(steady.tests, motions, strict=True)
+    ]
+    tests += [
+        {"kind": test.plan.kind, "motion": test.plan.motion, "sampling_hz": test.sampling_hz}
+        for test in truth.tests
+        if test.plan.kind != STEADY
+    ]
+    return {
+        "effects": truth.config.document["effects"],
+        "friction_law": truth.law,
+        "uncertain": truth.factors,
+        "noise": options.noise,
+        "level": options.level,
+        "seed": options.seed,
+        "solver": {"method": "radau", "rtol": RTOL},
+        "tests": tests,
+    }

@@ -1,0 +1,24 @@
+"""How measured data are made from a config and a plan of tests."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Options:
+    """How the data are made; ``level``, ``input_level`` and ``amplitude_error`` are relative std.
+
+    ``record_input``: quantity of the input that is recorded; its amplitude is then not stated.
+
+    If ``sampling_hz`` is None, each test has a different rate, which does not divide the period: near 2 kHz
+    for a rig like the bench.
+    """
+
+    noise: str = "white"
+    level: float = 0.04
+    seed: int = 0
+    periods: float = 8.4
+    sampling_hz: float | None = None
+    settle_periods: int = 60
+    amplitude_error: float = 1e-3
+    record_input: str | None = None
+    input_level: float = 0.01
