@@ -220,18 +220,15 @@ def closed_form(state, stop, p, keeping, recorder, counts):
     """
 
 
-# Two systems may take turns in following a motion: one that holds as long as a contact is closed, and one
-# for all motions.
+# Two systems may take turns in following a motion: one that holds while contacts are closed, and one for all
+# motions.
 
 
 @declared
 def leaves(y, mode, p):
-    """Whether a mode that follows an event is for the other system: it then takes the event itself."""
+    """Whether a mode is for the other system to follow."""
 
 
 @declared
-def taken_over(t, y, mode, event, p):
-    """State and mode with which a system goes on, and whether they are unique.
-
-    ``mode``: numbers of the mode of the other system (an array); ``event`` that led there or NO_EVENT.
-    """
+def taken_over(t, y, mode, p):
+    """Mode with which a system goes on, and whether it is unique; ``mode``: an array, the other system's."""

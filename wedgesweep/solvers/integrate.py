@@ -380,13 +380,13 @@ def integrate(state, keep_from, stop, p, recorder, work):
 
     Returns how it ended (OK, LOCKED, FAILED, CHATTERING, HANDED_OVER) and the state reached.
     """
-    if _leaves(state.y, state.mode, p):
-        return HANDED_OVER, state
     window = (stop - state.t) * fastest(p) / (2.0 * pi)
     if window > LONGEST_WINDOW:
         return FAILED, state
     limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + window)
     while state.t < stop:
+        if _leaves(state.y, state.mode, p):
+            return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
         done, state, number = _closed_form(state, end, p, keeping, recorder, work.counts)
@@ -401,8 +401,6 @@ def integrate(state, keep_from, stop, p, recorder, work):
         if keeping:
             add_impact(recorder.sums[0], state.y, state.mode, number, p)
         y, mode, unique = transition(state.t, state.y, state.mode, number, p)
-        if _leaves(y, mode, p):
-            return HANDED_OVER, State(state.t, state.y, state.mode, number, state.step)
         state = State(state.t, y, mode, number, state.step)
         work.counts[2] += 1
         if not unique:

@@ -3,8 +3,8 @@
 Drivers of the map (shooting, batches) see records as bytes and the map as an address, so that one compiled
 driver serves the records of all systems and kits.
 
-Contacts that may open take turns with contacts that are closed: as long as all are closed the smaller system
-of these has the same motion, and is faster.
+Contacts that may open take turns with contacts that hold: as long as all are closed, the smaller system of
+these has the same motion, and is faster.
 """
 
 from functools import cache
@@ -100,9 +100,8 @@ def _first_state(start, y, handed, p):
 def _handed_state(start, y, handed, p):
     if isnan(handed[TIME]):
         return begin(start, y, p)
-    event = np.int64(handed[EVENT])
-    y, mode, unique = taken_over(handed[TIME], y, handed[MODE:], event, p)
-    return State(handed[TIME], y, mode, event, handed[STEP]), unique
+    mode, unique = taken_over(handed[TIME], y, handed[MODE:], p)
+    return State(handed[TIME], y, mode, np.int64(handed[EVENT]), handed[STEP]), unique
 
 
 by_record(

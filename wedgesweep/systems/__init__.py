@@ -30,7 +30,7 @@ def compact(parameters: np.ndarray) -> np.ndarray:
 
 
 def while_closed(records: np.ndarray) -> np.ndarray | None:
-    """Compact records as those of the system that follows them while contacts are closed; None without."""
+    """Compact records for the system that follows them while their contacts are closed; None without one."""
     if "suspension" not in (records.dtype.names or ()):
         return None
     return suspension.while_closed(records)

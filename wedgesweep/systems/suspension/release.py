@@ -54,9 +54,12 @@ def _lowest(t, held):
 
 
 @inner
-def _breakaway_input(y, direction, p):
-    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative."""
-    mode = slipping(direction, 0, 1, p)
+def _breakaway_input(y, direction, segment, p):
+    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative.
+
+    ``segment`` of the travel of the bolster.
+    """
+    mode = slipping(direction, segment, 1, p)
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
     load = loads(0.0, y, mode, p)
@@ -68,9 +71,9 @@ def _breakaway_input(y, direction, p):
 
 
 @inlined
-def is_known(y, p):
-    """Whether both faces keep their load until the bolster breaks away, in either direction."""
-    forward, backward = _breakaway_input(y, 1, p), _breakaway_input(y, -1, p)
+def is_known(y, segment, p):
+    """Whether both faces keep their load until a stuck bolster breaks away, in either direction."""
+    forward, backward = _breakaway_input(y, 1, segment, p), _breakaway_input(y, -1, segment, p)
     return p.geometry.always_well_posed != 0 and forward < backward
 
 
@@ -79,10 +82,12 @@ def release(state, stop, p):
     """Time at which a stuck bolster breaks away, and the event.
 
     The event is NO_EVENT if nothing happens before ``stop``, LOCKED where breakaway is not unique, and
-    HANDED_OVER where a contact may open. The bolster sticks between two base accelerations. With positive
-    normal forces these are known, and so are the phases at which a harmonic base motion reaches them.
+    HANDED_OVER where a contact of unilateral joints may open. The bolster sticks between two base
+    accelerations. With positive normal forces these are known, and so are the phases at which a harmonic base
+    motion reaches them.
     """
-    forward, backward = _breakaway_input(state.y, 1, p), _breakaway_input(state.y, -1, p)
+    segment = state.mode.segment
+    forward, backward = _breakaway_input(state.y, 1, segment, p), _breakaway_input(state.y, -1, segment, p)
     if not (p.geometry.always_well_posed and forward < backward):
         if p.geometry.opens:
             return state.t, HANDED_OVER

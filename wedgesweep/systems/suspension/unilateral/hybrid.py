@@ -1,8 +1,8 @@
 """The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
 
-While both contacts are closed its equations and events are those of bilateral joints. Without effects that
-have mechanics of their own the base model itself follows them then (see closed_form.py). Records of this
-system have a part ``lift_off`` beside those of the suspension.
+While both contacts are closed its equations and events are those of bilateral joints. If no state can lock,
+bilateral joints themselves follow the motion then (see while_closed.py). Records of this system have a part
+``lift_off`` beside those of the suspension.
 """
 
 from math import inf, nan
@@ -13,10 +13,8 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import hooks, travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
-from wedgesweep.hybrid.state import HANDED_OVER, NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
-from wedgesweep.systems.suspension.closed_form import stays_closed
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
@@ -52,9 +50,8 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     momentum,
     velocities,
 )
+from wedgesweep.systems.suspension.while_closed import stays_closed
 
-# Records with this field have no effects with mechanics of their own.
-PLAIN = "plain_unilateral"
 # Pairs of event functions are those of the suspension; the gaps stand where it has the sign of z'.
 COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 9
 TRAVEL, EVENTS = 10, 12
@@ -355,23 +352,26 @@ def normal_forces(t, y, mode, p):
     return column, bolster
 
 
-# Turns with the base model
+# Turns with bilateral joints
 
 
-@implement(interface.closed_form, PLAIN)
+@implement(interface.leaves, UNILATERAL)
 @inlined
-def follow(state, stop, p, keeping, recorder, counts):
-    """Nothing of this system: the base model goes on while both contacts stay closed."""
-    if stays_closed(state.y, state.mode, p):
-        return True, state, HANDED_OVER
-    return False, state, NO_EVENT
+def leaves(y, mode, p):
+    """Whether bilateral joints can go on."""
+    return stays_closed(y, mode, p)
 
 
-@implement(interface.taken_over, PLAIN)
+@implement(interface.taken_over, UNILATERAL)
 @inner
-def taken_over(t, y, mode, event, p):
-    """State and mode after an event at which the base model no longer knows that both contacts are closed."""
-    if event == NO_EVENT:
-        found, certain = initial_mode(t, y, p)
-        return y, found, certain
-    return transition(t, y, mode_of(mode), event, p)
+def taken_over(t, y, mode, p):
+    """Mode where bilateral joints no longer know that both contacts are closed, and whether it is unique.
+
+    A mode that a jump of friction holds is the same for both, as after an event of this system.
+    """
+    now = mode_of(mode)
+    if p.friction.set_valued:
+        return initial_mode(t, y, p)
+    if held(now):
+        return now, True
+    return resolve(t, y, Touching(True, True, now.column, now.bolster), now.segment, p)
