@@ -26,6 +26,7 @@ from wedgesweep.hybrid.interface import (
     leaves,
     never_locks,
     observed,
+    opened,
     outruns,
     provided,
     rate,
@@ -276,6 +277,23 @@ by_record(
 )
 
 
+def _least_aim(h, mode, p):
+    """Least length (s) of a step that aims at an expected event."""
+
+
+@inlined
+def _least_aim_at_impact(h, mode, p):
+    """A flight between two impacts may be far shorter than a step."""
+    first, second = opened(mode, p)
+    return SHORTEST * 2.0 * pi / fastest(p) if first or second else LEAST_SHARE * h
+
+
+by_record(
+    _least_aim,
+    lambda fields: _least_aim_at_impact if provided(opened, fields) else (lambda h, mode, p: LEAST_SHARE * h),
+)
+
+
 def _closed_form(state, stop, p, keeping, recorder, counts):
     """The closed form of a mode, if the system has one."""
 
@@ -325,7 +343,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         h = _after_event(h, p)
     while t < stop:
         h = min(h, longest)
-        aim = max((1.0 + PAST_EXPECTED) * expected, LEAST_SHARE * h)
+        aim = max((1.0 + PAST_EXPECTED) * expected, _least_aim(h, mode, p))
         taken = min(h, stop - t, to_event, aim)
         if implicitly:
             step, within, ahead, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)

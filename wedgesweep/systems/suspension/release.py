@@ -54,7 +54,7 @@ def _lowest(t, held):
 
 
 @inner
-def _breakaway_input(y, direction, segment, p):
+def breakaway_input(y, direction, segment, p):
     """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative.
 
     ``segment`` of the travel of the bolster.
@@ -73,7 +73,7 @@ def _breakaway_input(y, direction, segment, p):
 @inlined
 def is_known(y, segment, p):
     """Whether both faces keep their load until a stuck bolster breaks away, in either direction."""
-    forward, backward = _breakaway_input(y, 1, segment, p), _breakaway_input(y, -1, segment, p)
+    forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
     return p.geometry.always_well_posed != 0 and forward < backward
 
 
@@ -87,7 +87,7 @@ def release(state, stop, p):
     motion reaches them.
     """
     segment = state.mode.segment
-    forward, backward = _breakaway_input(state.y, 1, segment, p), _breakaway_input(state.y, -1, segment, p)
+    forward, backward = breakaway_input(state.y, 1, segment, p), breakaway_input(state.y, -1, segment, p)
     if not (p.geometry.always_well_posed and forward < backward):
         if p.geometry.opens:
             return state.t, HANDED_OVER

@@ -5,7 +5,7 @@ bilateral joints themselves follow the motion then (see while_closed.py). Record
 ``lift_off`` beside those of the suspension.
 """
 
-from math import inf, nan
+from math import inf, nan, sqrt
 from typing import NamedTuple
 
 from wedgesweep import excitation, friction
@@ -52,9 +52,10 @@ from wedgesweep.systems.suspension.unilateral.motion import (
 )
 from wedgesweep.systems.suspension.while_closed import stays_closed
 
-# Pairs of event functions are those of the suspension; the gaps stand where it has the sign of z'.
-COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 9
-TRAVEL, EVENTS = 10, 12
+# Pairs of event functions are those of the suspension. The gaps stand where it has the sign of z' and the
+# time at rest: in two pairs, as one gap may close at once after the other.
+COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 12
+TRAVEL, EVENTS = 10, 13
 
 
 @implement(interface.event_count, UNILATERAL)
@@ -98,13 +99,14 @@ def free(y, p):
 
 
 class Acting(NamedTuple):
-    """Accelerations (m/s^2) of bolster and column, and reactions (N) of both faces.
+    """Accelerations (m/s^2) of bolster, column and both gaps, and reactions (N) of both faces.
 
     Friction is not told while both contacts are closed: no event needs it.
     """
 
     acceleration: float
     column_acceleration: float
+    gains: tuple
     column: float
     column_friction: float
     bolster: float
@@ -133,15 +135,17 @@ def rate(t, y, mode, p):
     """dy/dt, and what acts."""
     if closed(mode):
         (velocity, acceleration), both = transitions.rate(t, y, mode, p)
-        acting = Acting(acceleration, both.column_acceleration, both.column, nan, both.bolster, nan)
+        none = (0.0, 0.0)
+        acting = Acting(acceleration, both.column_acceleration, none, both.column, nan, both.bolster, nan)
         return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), acting
     motion, now = _apart(t, y, mode, p)
-    acting = Acting(motion.rise, nan, now.column, now.column_friction, now.bolster, now.bolster_friction)
     column_rate, column_gain, bolster_rate, bolster_gain = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
         column_rate, column_gain = gap_state(y, COLUMN_RATE), motion.gap
     if mode.bolster_sign == 0:
         bolster_rate, bolster_gain = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
+    gains, (column, along_column, bolster, along_bolster) = (column_gain, bolster_gain), now
+    acting = Acting(motion.rise, nan, gains, column, along_column, bolster, along_bolster)
     return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), acting
 
 
@@ -208,11 +212,32 @@ def all_events(now, t, y, mode, p, out):
         _apart_events(now, y, mode, p, out)
 
 
+@inlined
+def _time_to_close(gap, rate, gain):
+    """Time (s) in which a gap closes at a constant acceleration; inf: never.
+
+    One that opens now has no acceleration yet but rounding errors.
+    """
+    square = rate * rate - 2.0 * gap * gain
+    if square < 0.0 or (rate >= 0.0 and gain >= 0.0) or gap == rate == 0.0:
+        return inf
+    if rate < 0.0:
+        return 2.0 * gap / (sqrt(square) - rate)
+    return (rate + sqrt(square)) / -gain
+
+
 @implement(interface.expected_event, UNILATERAL)
 @inlined
 def expected_event(now, t, y, mode, p):
-    """Time (s) in which a face would reach the end of its branch; not told while a contact is open."""
-    return events.expected_event(now, t, y, mode, p) if closed(mode) else inf
+    """Time (s) in which a face would reach the end of its branch, or an open one would close."""
+    if closed(mode):
+        return events.expected_event(now, t, y, mode, p)
+    column, bolster = inf, inf
+    if mode.column_sign == 0:
+        column = _time_to_close(y[COLUMN_GAP], y[COLUMN_RATE], now.gains[0])
+    if mode.bolster_sign == 0:
+        bolster = _time_to_close(y[BOLSTER_GAP], y[BOLSTER_RATE], now.gains[1])
+    return min(column, bolster)
 
 
 @implement(interface.event, UNILATERAL)
@@ -282,9 +307,9 @@ def _after_slip(t, y, mode, place, p):
 @inner
 def transition(t, y, mode, place, p):
     """State and mode after an event, and whether they are unique (if not: locked)."""
-    if place >= TRAVEL:
+    if place in (TRAVEL, TRAVEL + 1):
         return y, with_segment(mode, travel.next_segment(mode.segment, place % 2, p)), True
-    if place >= COLUMN_CLOSES:
+    if place in (COLUMN_CLOSES, BOLSTER_CLOSES):
         after = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
         found, certain = resolve(t, after.y, touching(after.y, p), mode.segment, p)
         return after.y, found, certain and after.unique
