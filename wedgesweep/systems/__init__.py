@@ -33,7 +33,7 @@ def while_closed(records: np.ndarray) -> np.ndarray | None:
     """Compact records for the system that follows them while their contacts are closed; None without one."""
     if "suspension" not in (records.dtype.names or ()):
         return None
-    return suspension.while_closed(records)
+    return suspension_parameters.while_closed(records)
 
 
 def is_oscillator(parameters: np.ndarray) -> bool:
