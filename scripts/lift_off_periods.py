@@ -30,13 +30,15 @@ BESIDE, SAME = 1e-8, 1e-6
 LONGEST, CHAOTIC = 1500, 5e-3
 
 
-def without_period(study):
-    """Records of the cases whose period was not found, and how many there are in all."""
+def without_period(name, study):
+    """Records of the cases whose period was not found; prints how many cases have which period (0: none)."""
     cases, settings = study.records(), study.solver
     settings = replace(settings, duration=None, steady=True, max_periods=MOST_PERIODS)
     dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
     found = solve_cases(cases, np.arange(len(cases)), settings, inf, dtype)
-    return cases[found["period"] == 0], len(cases)
+    periods, counts = np.unique(found["period"][found["status"] == 0], return_counts=True)
+    print(name, "joints, cases by period:", dict(zip(periods.tolist(), counts.tolist(), strict=True)))
+    return cases[found["period"] == 0]
 
 
 class Pair:
@@ -89,8 +91,9 @@ def kind(period, exponent):
 
 def main() -> None:
     """Print what each case does, and how many do so."""
-    cases, number = without_period(changed(config.load(PAPER), joints.UNILATERAL))
-    print(f"{len(cases)} of {number} cases have no period of up to 8")
+    study = config.load(PAPER)
+    without_period("bilateral", changed(study, {"solver": {"method": "event-driven"}}))
+    cases = without_period("unilateral", changed(study, joints.UNILATERAL))
     kinds: dict[str, int] = {}
     for i in range(len(cases)):
         period, exponent = followed(cases[i : i + 1])
