@@ -15,7 +15,6 @@ import numpy as np
 from numba import types
 
 from wedgesweep.compiled import Pointer, borrowed, by_record, compiled, inlined, inner
-from wedgesweep.effects.states import MASS
 from wedgesweep.hybrid import accumulators
 from wedgesweep.hybrid.interface import (
     clocks,
@@ -165,7 +164,7 @@ class Cases(NamedTuple):
     ``records`` (n, bytes) for ``period_map``; natural sizes of the states and whether they only count time
     (n, S), the input's period (s) and whether all of the input repeats after it (n,). ``impacts``: whether
     velocities may jump. ``turns`` (n,): whether a case is run by ``closed_map`` and ``closed_records`` while
-    its contacts are closed.
+    its contacts are closed; these have the first ``closed_states`` of its states.
     """
 
     period_map: Any
@@ -178,6 +177,7 @@ class Cases(NamedTuple):
     turns: Any
     closed_map: Any
     closed_records: Any
+    closed_states: int
 
 
 def prepared(records: np.ndarray) -> Cases:
@@ -195,6 +195,7 @@ def prepared(records: np.ndarray) -> Cases:
         np.zeros(n, np.bool_),
         period_map(smaller.dtype),
         _as_bytes(smaller),
+        states if closed is None else count_states(closed),
     )
     describe(records, found.scales, found.clocks, found.cycle, found.repeats)
     if closed is not None:
@@ -233,11 +234,11 @@ def which_never_lock(records, proved):
 def run_case(cases, number, first, periods, y, keeping, memory):
     """Run a case from phase 0 of period ``first``; the states y (n,) move along. Returns how it ended.
 
-    A case that takes turns begins with closed contacts if all states but those of the mass are zero.
+    A case that takes turns begins with closed contacts if its gaps, and their rates, are zero.
     """
     memory.handed[TIME] = np.nan
     closed = cases.turns[number]
-    for i in range(len(MASS), y.size):
+    for i in range(cases.closed_states, y.size):
         closed = closed and y[i] == 0.0
     for _ in range(EVENTS_PER_PERIOD * (1 + periods)):
         if closed:

@@ -114,7 +114,6 @@ class _Run:
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
         self.all_scales, fastest = system.scales(self.cases[0])
-        self._use(self.cases[0])
         self.period = 2.0 * pi / fastest
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
         self.sums = accumulators.empty()
@@ -124,8 +123,9 @@ class _Run:
     def trajectory(self, start: Sequence[float] | np.ndarray, settled: float | None) -> Trajectory:
         """Follow the modes to the end of the window."""
         y = self._full(np.asarray(start, dtype=float)[: self.all_scales.size])
-        if not y[2:].any():
-            self._use(self.cases[-1])
+        self._use(self.cases[-1])
+        if y[self.scales.size :].any():
+            self._use(self.cases[0])
         y = y[: self.scales.size]
         mode, unique = system.initial_mode(0.0, y, self.case)
         self._require(unique, 0.0)
