@@ -117,8 +117,6 @@ def write(dataset: "xr.Dataset", path: Path) -> None:
 
 def read(path: Path) -> "xr.Dataset":
     """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
-    import xarray as xr
-
     if problem := confusion(path, SWEEP):
         raise SweepError(problem)
     try:
@@ -126,6 +124,8 @@ def read(path: Path) -> "xr.Dataset":
     except OSError as error:
         message = f"{path}: {str(error.strerror).lower()}"
         raise SweepError(message) from error
+    import xarray as xr
+
     try:
         return xr.load_dataset(path, engine="netcdf4")
     except Exception as error:  # netCDF4 and the decoding of damaged content raise nearly anything
