@@ -94,6 +94,11 @@ def _flag_values(name: str) -> np.ndarray:
     return np.arange(first, first + len(meanings), dtype=np.int8)
 
 
+def journal_of(out: Path) -> Path:
+    """Where the journal of an unfinished sweep is that will write a dataset."""
+    return out.with_name(out.name + ".partial")
+
+
 def write(dataset: "xr.Dataset", path: Path) -> None:
     """Write netCDF to a temporary file beside ``path``, and move it there when it is complete."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
