@@ -6,7 +6,8 @@ import pytest
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
-from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, FROM_SPECTRUM, of_noise, of_record
+from wedgesweep.diagnose.noise_bins import of_record
+from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, FROM_SPECTRUM, of_noise
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import MeasuredError, read

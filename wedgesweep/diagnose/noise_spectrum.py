@@ -1,10 +1,10 @@
-"""The spectrum of the noise in a record, where the record itself, or repeats of it, must tell.
+"""The spectrum of the noise in records, where the records themselves, or repeats of them, must tell.
 
 Noise is taken to be red and white: S(w) = a/(1 + r^2 - 2 r cos w) + b, with w in rad a sample. Its three
-numbers fit the periodogram by Whittle's likelihood (Whittle, 1953, Arkiv foer Matematik 2, 423) at the
-frequencies at which noise is all there is: those that stand out are of the motion. That assumes that the
-noise at the motion's frequencies goes on as it is above them. Of several r that fit about as well the one
-with most noise counts, as an estimate that is too low would look like a misfit.
+numbers fit the periodogram by Whittle's likelihood (Whittle, 1953, Arkiv foer Matematik 2, 423) at bins in
+which noise is all there is (``noise_bins.py``). A sensor has noise of one shape, so that r and b/a are those
+of all tests together; its level may differ from test to test, as ranges of amplifiers do. Of several r that
+fit about as well the one with most noise counts, as an estimate that is too low would look like a misfit.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,24 +20,16 @@ POLES = np.array([0.0, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.995,
 UPDATES = 150
 # Relative width of the bands over which bins are averaged before they are fitted.
 WIDTH = 0.02
-# A frequency stands out if its power is this many times the noise, and so do its neighbours; found in rounds.
-STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
-# Power over the noise of a line above the motion that is told of.
-LINE = 30.0
-# Standard deviations by which the mean of some bins exceeds the noise if they are skirts of the motion.
-SKIRT = 2.0
-# Bands by which the first one that counts as noise is moved up at most.
-UPWARDS = 4
-# Bands in an octave, over one of which power that falls by more than this is of the motion.
-BANDS, STEEP = 2, 12.0
-# Least share of the bins above the motion, and least number of bins, that must count as noise.
-LEAST_KEPT, FEWEST = 0.25, 8
-# Log-likelihood that colour must gain over white noise, and its loss at which another pole fits as well.
-COLOURED, AS_WELL = 3.0, 0.5
+# Log-likelihood that colour must gain over white noise.
+COLOURED = 3.0
 # Standard deviations by which the level is raised: one end of a 95 % interval.
 ONE_END = 1.96
 # Variance of a bin that a Hann window leaves over that of independent ones.
 CORRELATED = 1.5
+# Share of the frequencies, the highest ones, whose power tells the level of a record at first.
+HIGH = 0.25
+# Frequencies (rad a sample) over which noise is compared.
+GRID = np.arange(1, 257) * pi / 256
 # Where the level comes from, as it is told.
 FROM_REPEATS, FROM_SPECTRUM = "repeats", "frequencies without motion"
 
@@ -81,57 +73,27 @@ class NoiseSpectrum:
         return self.pole * variance / max(variance + self.white, 1e-300)
 
 
-def _shape(pole: float | np.ndarray, frequency: np.ndarray) -> np.ndarray:
-    return 1.0 / (1.0 + pole**2 - 2.0 * pole * np.cos(frequency))
+class NoiseBins(NamedTuple):
+    """Bins in which noise is all there is: frequency (rad a sample), power, and known power, (b,) each.
 
+    ``known``: power that comes on top of the noise to be told.
+    """
 
-def of_record(samples: np.ndarray) -> NoiseSpectrum:
-    """The noise in samples (n,) of a motion."""
-    frequency, power = periodogram(samples)
-    enough = max(FEWEST, power.size // 4)
-    first = min(_faded(frequency, power), power.size - enough)
-    kept = _without_lines(frequency, power, first)
-    for _ in range(UPWARDS):
-        following = int(np.searchsorted(frequency, frequency[first] * 2.0 ** (1.0 / BANDS)))
-        if following > power.size - enough:
-            break
-        above = _without_lines(frequency, power, following)
-        noise = _fit(frequency, power, above, 4.0 * AS_WELL)(frequency[first:following])
-        excess = power[first:following] / noise
-        # Skirts of the motion exceed what the noise above them leads one to expect.
-        if np.minimum(excess, STANDS_OUT).mean() < 1.0 + SKIRT / sqrt(following - first):
-            break
-        first, kept = following, above
-    found = _fit(frequency, power, kept, AS_WELL)
-    strong = frequency[power > LINE * found(frequency)].max(initial=frequency[first])
-    return NoiseSpectrum(found.red, found.pole, found.white, float(strong))
+    frequency: np.ndarray
+    power: np.ndarray
+    known: np.ndarray
 
+    @classmethod
+    def of(cls, frequency: np.ndarray, power: np.ndarray, known: np.ndarray | None = None) -> "NoiseBins":
+        return cls(frequency, power, np.zeros(frequency.size) if known is None else known)
 
-def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.ndarray:
-    """Bins from the first on in which no line stands out."""
-    kept = above = np.arange(power.size) >= first
-    for _ in range(ROUNDS):
-        ratio = power / _fit(frequency, power, kept, as_well=0.0)(frequency)
-        before, kept = kept, above & ~_spread(ratio > STANDS_OUT)
-        if kept.sum() < max(LEAST_KEPT * above.sum(), FEWEST):
-            return before
-        if np.array_equal(before, kept):
-            break
-    return kept
+    def up_to(self, highest: float) -> "NoiseBins":
+        """Those below a frequency (rad a sample)."""
+        return NoiseBins(*(each[self.frequency < highest] for each in self))
 
-
-def _faded(frequency: np.ndarray, power: np.ndarray) -> int:
-    """The first bin above which the power no longer falls as steeply as that of a motion does."""
-    bands = np.floor(BANDS * np.log2(frequency / frequency[0])).astype(int)
-    names, sizes = np.unique(bands, return_counts=True)
-    if sizes[-1] < sizes[-2]:  # the last one is not complete
-        bands[bands == names[-1]], names = names[-2], names[:-1]
-    median = np.array([np.median(power[bands == name]) for name in names])
-    steep = np.zeros(names.size, bool)
-    steep[:-BANDS] = median[:-BANDS] > STEEP * median[BANDS:]
-    highest = int(np.searchsorted(names, bands[int(np.argmax(power))]))
-    last = max(int(np.flatnonzero(steep).max(initial=-1)), highest)
-    return int(np.searchsorted(bands, names[last], side="right"))
+    def above(self, lowest: float) -> "NoiseBins":
+        """Those from a frequency (rad a sample) on."""
+        return NoiseBins(*(each[self.frequency >= lowest] for each in self))
 
 
 def of_noise(
@@ -143,11 +105,8 @@ def of_noise(
     """
     both = [periodogram(each) for each in records]
     frequency, power = (np.concatenate(each) for each in zip(*both, strict=True))
-    order = np.argsort(frequency, kind="stable")
-    frequency, power = frequency[order], power[order]
-    floor = np.zeros(frequency.size) if known is None else known(frequency)
-    found = _fit(frequency, power, np.ones(order.size, bool), AS_WELL, floor)
-    return NoiseSpectrum(found.red, found.pole, found.white, source=source)
+    floor = None if known is None else known(frequency)
+    return replace(fit([[NoiseBins.of(frequency, power, floor)]], LIKELY)[0], source=source)
 
 
 def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -160,9 +119,54 @@ def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return frequency[2:], power[2:]
 
 
-def _spread(marked: np.ndarray) -> np.ndarray:
-    """Marked bins with their neighbours."""
-    return np.convolve(marked, np.ones(2 * NEIGHBOURS + 1), mode="same") > 0.5
+class Choice(NamedTuple):
+    """Which of the noises that fit about as well is taken.
+
+    Of all poles within a ``loss`` of log-likelihood it is the one with most noise, with levels raised by what
+    they are uncertain, or with the ``least``. It is white noise, unless colour gains more than ``coloured``.
+    """
+
+    loss: float
+    least: bool = False
+    coloured: float = COLOURED
+
+
+# The best fit, one that errs to the safe side, and both ends of a 95 % interval of the pole.
+BEST, LIKELY = Choice(0.0), Choice(0.5)
+LEAST, MOST = Choice(2.0, least=True), Choice(2.0)
+
+
+def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[NoiseSpectrum]:
+    """Noise of one shape in several tests, each of a level of its own, from the bins of each."""
+    own = [_bands(each) for each in tests]
+    bands = _Bands(*(np.concatenate(each) for each in zip(*own, strict=True)))
+    member = np.repeat(np.eye(len(own)), [each.bins.size for each in own], axis=0)
+    bins = bands.bins @ member
+    mean = (bands.bins * bands.power) @ member / bins
+    bands = bands._replace(known=bands.known + member @ (1e-12 * mean + 1e-300))
+    found = _fitted(bands, member, np.array([_at_first(each) for each in own]))
+    best = _chosen(found, choice)
+    uncertain = ONE_END * np.sqrt(CORRELATED / bins)
+    level = found.level[best] * (1.0 if choice.loss == 0.0 or choice.least else 1.0 + uncertain)
+    red, white, pole = found.red[best], found.white[best], float(POLES[best])
+    if best == 0:
+        red, white = 0.0, red + white
+    return [NoiseSpectrum(float(each * red), pole, float(each * white)) for each in level]
+
+
+def _chosen(found: "_Fitted", choice: Choice) -> int:
+    """The place of a pole; that of white noise, which comes first, unless colour is seen."""
+    loss = found.loss - found.loss.min()
+    if loss[0] <= choice.coloured:
+        return 0
+    elsewhere = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
+    elsewhere = elsewhere * found.level[:, 0]
+    good = np.flatnonzero(loss <= choice.loss)
+    return int(good[np.argmin(elsewhere[good]) if choice.least else np.argmax(elsewhere[good])])
+
+
+def _shape(pole: float | np.ndarray, frequency: np.ndarray) -> np.ndarray:
+    return 1.0 / (1.0 + pole**2 - 2.0 * pole * np.cos(frequency))
 
 
 class _Bands(NamedTuple):
@@ -174,56 +178,52 @@ class _Bands(NamedTuple):
     bins: np.ndarray
 
 
-def _bands(frequency: np.ndarray, power: np.ndarray, known: np.ndarray) -> _Bands:
-    """Bins by rising frequency in bands, over which no spectrum changes much."""
-    first = np.flatnonzero(np.diff(np.floor(np.log(frequency) / WIDTH), prepend=-np.inf))
-    bins = np.diff(np.r_[first, frequency.size])
-    mean = [np.add.reduceat(each, first) / bins for each in (frequency, power, known)]
-    return _Bands(mean[0], mean[1], mean[2], bins)
+def _bands(given: Sequence[NoiseBins]) -> _Bands:
+    """Bins of one test in bands, over which no spectrum changes much; each kind of them by itself."""
+    found = []
+    for each in given:
+        frequency, power, known = (values[np.argsort(each.frequency, kind="stable")] for values in each)
+        first = np.flatnonzero(np.diff(np.floor(np.log(frequency) / WIDTH), prepend=-np.inf))
+        bins = np.diff(np.r_[first, frequency.size])
+        mean = [np.add.reduceat(values, first) / bins for values in (frequency, power, known)]
+        found.append((*mean, bins))
+    return _Bands(*(np.concatenate(each) for each in zip(*found, strict=True)))
 
 
-def _fit(
-    frequency: np.ndarray,
-    power: np.ndarray,
-    kept: np.ndarray,
-    as_well: float,
-    floor: np.ndarray | None = None,
-) -> NoiseSpectrum:
-    """Fit to the kept bins; of poles that fit about as well the one with most noise elsewhere.
+def _at_first(bands: _Bands) -> float:
+    """Level of a test from its highest frequencies."""
+    high = bands.frequency >= (1.0 - HIGH) * bands.frequency.max()
+    return max(float((bands.bins * bands.power)[high].sum() / bands.bins[high].sum()), 1e-300)
 
-    ``floor``: power that is known and comes on top.
-    """
-    known = np.zeros(frequency.size) if floor is None else floor
-    own = _bands(frequency[kept], power[kept], known[kept])
-    mean = float(power[kept].mean())
-    own = own._replace(known=own.known + 1e-12 * mean + 1e-300)
-    here, least, bins, shape = own.power, own.known, own.bins, _shape(POLES[:, None], own.frequency)
-    red, white = 0.5 * mean * bins.sum() / (bins * shape).sum(axis=1), np.full(POLES.size, 0.5 * mean)
+
+class _Fitted(NamedTuple):
+    """For each pole: red a and white b (r,), level (r, T) of each test, and minus the log-likelihood (r,)."""
+
+    red: np.ndarray
+    white: np.ndarray
+    level: np.ndarray
+    loss: np.ndarray
+
+
+def _fitted(bands: _Bands, member: np.ndarray, level: np.ndarray) -> _Fitted:
+    """Maximum likelihood for each pole; ``member`` (b, T): 1 for bands of a test, ``level`` (T,) at first."""
+    bins, shape = bands.bins, _shape(POLES[:, None], bands.frequency)
+    high = _shape(POLES, np.array(pi))[:, None]
+    red, white = 0.5 / high, np.full((POLES.size, 1), 0.5)
+    levels = np.tile(level, (POLES.size, 1))
+
+    def factor(part: np.ndarray, to: np.ndarray) -> np.ndarray:
+        """By how much a part (r, b) of the power should grow, with the bands summed ``to`` (b, k) places."""
+        total = levels @ member.T * (red * shape + white) + bands.known
+        rises, falls = bins * bands.power * part / total**2, bins * part / total
+        return np.asarray((rises @ to) / np.maximum(falls @ to, 1e-300))
+
+    everywhere = np.ones((bins.size, 1))
     for _ in range(UPDATES):
-        level = red[:, None] * shape + white[:, None] + least
-        red *= (bins * here * shape / level**2).sum(axis=1) / (bins * shape / level).sum(axis=1)
-        level = red[:, None] * shape + white[:, None] + least
-        white *= (bins * here / level**2).sum(axis=1) / (bins / level).sum(axis=1)
-    loss = _loss(own, red[:, None] * shape + white[:, None] + least)
-    alone = _white(own)
-    raised = 1.0 + ONE_END * sqrt(CORRELATED / kept.sum()) if as_well else 1.0
-    if _loss(own, alone + least) <= loss.min() + COLOURED:
-        return NoiseSpectrum(0.0, 0.0, raised * alone)
-    elsewhere = red * _shape(POLES[:, None], frequency).mean(axis=1) + white
-    good = np.flatnonzero(loss <= loss.min() + as_well)
-    best = int(good[np.argmax(elsewhere[good])])
-    return NoiseSpectrum(float(raised * red[best]), float(POLES[best]), float(raised * white[best]))
-
-
-def _loss(own: _Bands, level: np.ndarray) -> np.ndarray:
-    """Minus Whittle's log-likelihood of noise of some level (..., b)."""
-    return (own.bins * (own.power / level + np.log(level))).sum(axis=-1) / CORRELATED
-
-
-def _white(own: _Bands) -> float:
-    """White noise that fits bands best on top of what is known."""
-    white = float((own.bins * own.power).sum() / own.bins.sum())
-    for _ in range(UPDATES):
-        level = white + own.known
-        white *= float((own.bins * own.power / level**2).sum() / (own.bins / level).sum())
-    return white
+        red = red * factor(levels @ member.T * shape, everywhere)
+        white = white * factor(levels @ member.T, everywhere)
+        if level.size > 1:
+            levels = levels * factor(red * shape + white, member)
+    total = levels @ member.T * (red * shape + white) + bands.known
+    loss = (bins * (bands.power / total + np.log(total))).sum(axis=-1) / CORRELATED
+    return _Fitted(red[:, 0], white[:, 0], levels, loss)

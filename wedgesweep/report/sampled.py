@@ -40,8 +40,9 @@ COLUMNS = {
 NOISE = {
     "repeats": "The noise is what differs between repeats of a test, which assumes that the rig did not "
     "change from one to the next.",
-    "frequencies without motion": "The noise is read where the motion has no frequencies, which assumes that "
-    "it is as smooth a function of frequency where the motion has some.",
+    "frequencies without motion": "The noise is read where the motion has no frequencies, where it is over, "
+    "and from what two channels do not share. This assumes noise of one shape for a sensor in all tests, "
+    "a smooth function of frequency.",
     "what no smooth function of the motion explains": "The noise is what no smooth function of displacement, "
     "velocity, acceleration and distance from the last reversal explains, which assumes that what is missing "
     "in the model is such a function; anything else counts as noise.",

@@ -11,7 +11,7 @@ from wedgesweep.compiled import allocating, borrowed, compiled
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
-from wedgesweep.solvers.period_map import memory, prepared
+from wedgesweep.solvers.period_map import memory, prepared, run_case
 from wedgesweep.solvers.shooting import copy, known, run_map, settle, shooting
 from wedgesweep.systems import grouped, state_count
 
@@ -234,9 +234,9 @@ def _sample_all(cases, parameters, rows, spans, room, out):
             copy(out.state[i, : y.size], y)
         outcome = OK
         if spans[0] > 0:
-            outcome = cases.period_map(0, spans[0], y, cases.records[k], False, room)
+            outcome = run_case(cases, k, 0, spans[0], y, False, room)
         if outcome == OK:
-            outcome = cases.period_map(spans[0], spans[1], y, cases.records[k], True, room)
+            outcome = run_case(cases, k, spans[0], spans[1], y, True, room)
         out.state[i] = 0.0
         copy(y, out.state[i, : y.size])
         if outcome != OK:

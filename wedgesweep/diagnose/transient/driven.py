@@ -8,7 +8,8 @@ import numpy as np
 from scipy import signal
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_record
+from wedgesweep.diagnose.noise_bins import of_record
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples

@@ -54,20 +54,21 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     """Prepare the windows of a record, of which there should be so many at least."""
     rate, skipped = record.rate, record.driven.settling if record.driven else 0
     passed_on = _passed_on(record)
-    record = record._replace(channels=record.channels[:, skipped : record.channels.shape[1] - skipped])
     channels = record.channels
     period, top = _period(record, model), highest_compared(record, model)
     displacement = _displacement(record, 2.0 * pi / period)
     rest, length = _extent(displacement)
-    total = channels.shape[1] / period
+    compared = channels.shape[1] - 2 * skipped
+    total = compared / period
     count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
-    size = channels.shape[1] // count
+    size = compared // count
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
     acting = None if record.driven is None else record.driven.acting
     found = []
     for place in range(count):
-        first = place * size
+        # What is skipped will do for bristles to forget how they started.
+        first = skipped + place * size
         grid = Grid(min(ceil(LEAD * period), first), size, 2.0 * pi * rate / period)
         start = first - grid.lead
         own = channels[:, first : first + size]
@@ -78,14 +79,14 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 model=model,
                 law=law,
                 step=1.0 / rate,
-                begins=(skipped + first) / rate,
+                begins=first / rate,
                 number=record.number,
                 channels=own,
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
                 coefficients=min(max(ceil(top * size / pi), FEWEST_COMPARED), size),
                 grid=grid,
-                input=nothing(span) if acting is None else at(acting, (skipped + start) / rate),
+                input=nothing(span) if acting is None else at(acting, start / rate),
                 input_noise=record.driven.input_noise(record.shares) if record.driven else None,
                 length=max(float(np.abs(displacement[start : first + size] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),

@@ -1,0 +1,161 @@
+"""Bins of the spectrum of a record in which noise is all there is.
+
+Those of the motion stand out, or fall with frequency as steeply as a motion does and noise does not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep.diagnose.noise_spectrum import (
+    BEST,
+    LIKELY,
+    Choice,
+    NoiseBins,
+    NoiseSpectrum,
+    fit,
+    periodogram,
+)
+
+# A frequency stands out if its power is this many times the noise, and so do its neighbours; found in rounds.
+STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
+# Power over the noise of a line above the motion that is told of.
+LINE = 30.0
+# Standard deviations by which the mean of some bins exceeds the noise if they are skirts of the motion.
+SKIRT = 2.0
+# The noise of which there may be as much, where skirts of the motion are looked for.
+UNSURE = Choice(2.0)
+# Where no choice is made for white noise.
+ANY = Choice(2.0, coloured=0.0)
+# The lowest frequency (rad a sample) from which bins are looked at downwards, in so many bands.
+HIGHEST, STEPS = 0.75 * pi, 16
+# Bands by which the first one that counts as noise is moved up at most.
+UPWARDS = 4
+# Bands in an octave, over one of which power that falls by more than this is of the motion.
+BANDS, STEEP = 2, 12.0
+# Least share of the bins above the motion, and least number of bins, that must count as noise.
+LEAST_KEPT, FEWEST = 0.25, 8
+# A record is looked at in so many parts. Its quiet end or beginning is those whose rms is at most so many
+# times the least one. There must be so many of them, and the rms of all over that of the record at most this.
+PARTS, ALIKE, ENOUGH, QUIET = 8, 2.0, 2, 0.1
+
+
+class OwnNoise(NamedTuple):
+    """What a record shows of its noise by itself.
+
+    ``bins`` of noise; ``first``: the lowest frequency (rad a sample) that was looked at for them;
+    ``highest``: the highest one at which the motion stands out; ``main``: that at which it is largest.
+    """
+
+    bins: NoiseBins
+    first: float
+    highest: float
+    main: float
+
+
+def of_record(samples: np.ndarray) -> NoiseSpectrum:
+    """The noise in samples (n,) of a motion, by themselves."""
+    own = noise_bins(samples)
+    return replace(fit([[own.bins]], LIKELY)[0], highest=own.highest)
+
+
+def noise_bins(samples: np.ndarray) -> OwnNoise:
+    """The bins of samples (n,) of a motion in which noise is all there is."""
+    frequency, power = periodogram(samples)
+    enough = max(FEWEST, power.size // 4)
+    first = min(_faded(frequency, power), power.size - enough)
+    kept = _without_lines(frequency, power, first)
+    for _ in range(UPWARDS):
+        following = int(np.searchsorted(frequency, frequency[first] * 2.0 ** (1.0 / BANDS)))
+        if following > power.size - enough:
+            break
+        above = _without_lines(frequency, power, following)
+        noise = _fitted(frequency, power, above, UNSURE)(frequency[first:following])
+        excess = power[first:following] / noise
+        # Skirts of the motion exceed what the noise above them leads one to expect.
+        if np.minimum(excess, STANDS_OUT).mean() < 1.0 + SKIRT / sqrt(following - first):
+            break
+        first, kept = following, above
+    found = _fitted(frequency, power, kept, LIKELY)
+    strong = frequency[power > LINE * found(frequency)].max(initial=frequency[first])
+    bins, main = NoiseBins.of(frequency[kept], power[kept]), frequency[int(np.argmax(power))]
+    return OwnNoise(bins, float(frequency[first]), float(strong), float(main))
+
+
+def quiet_bins(samples: np.ndarray) -> NoiseBins | None:
+    """Bins of noise in the quiet end or beginning of a record (n,); None if it has none.
+
+    There the motion is over, or has not begun, and the noise shows at the motion's own frequencies.
+    """
+    parts = np.array_split(samples - samples.mean(), PARTS)
+    rms = np.array([each.std() for each in parts])
+    loud = rms > ALIKE * max(rms.min(), 1e-300)
+    before, after = int(np.argmax(loud)), int(np.argmax(loud[::-1]))
+    if not loud.any() or max(before, after) < ENOUGH:
+        return None
+    quiet = np.concatenate(parts[:before] if before > after else parts[PARTS - after :])
+    if quiet.std() > QUIET * samples.std():
+        return None
+    return noise_bins(quiet).bins
+
+
+def without_skirts(own: Sequence[OwnNoise], others: Sequence[Sequence[NoiseBins]]) -> list[OwnNoise]:
+    """Bins of several tests, from the highest ones downwards as far as noise of one shape explains them.
+
+    ``others``: what else tells the noise of each. Kinks of a motion, where dry friction changes its sign,
+    have skirts that fall with frequency not much faster than noise. They rise downwards by more than it may.
+    """
+    edges = HIGHEST * 2.0 ** (-np.arange(STEPS) / BANDS)
+    first = [max(each.first, edges[0]) for each in own]
+    stopped = [False] * len(own)
+    for low, high in zip(edges[1:], edges[:-1], strict=True):
+        known = zip(own, first, others, strict=True)
+        noise = fit([[each.bins.above(begin), *more] for each, begin, more in known], ANY)
+        for t, (each, expected) in enumerate(zip(own, noise, strict=True)):
+            frequency, power, _ = each.bins.above(max(low, each.first)).up_to(high)
+            excess = power / expected(frequency)
+            if stopped[t] or not excess.size:
+                continue
+            stopped[t] = np.minimum(excess, STANDS_OUT).mean() > 1.0 + SKIRT / sqrt(excess.size)
+            first[t] = high if stopped[t] else max(low, each.first)
+    both = zip(own, first, strict=True)
+    return [each._replace(bins=each.bins.above(begin), first=begin) for each, begin in both]
+
+
+def _fitted(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, choice: Choice) -> NoiseSpectrum:
+    return fit([[NoiseBins.of(frequency[kept], power[kept])]], choice)[0]
+
+
+def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.ndarray:
+    """Bins from the first on in which no line stands out."""
+    kept = above = np.arange(power.size) >= first
+    for _ in range(ROUNDS):
+        ratio = power / _fitted(frequency, power, kept, BEST)(frequency)
+        before, kept = kept, above & ~_spread(ratio > STANDS_OUT)
+        if kept.sum() < max(LEAST_KEPT * above.sum(), FEWEST):
+            return before
+        if np.array_equal(before, kept):
+            break
+    return kept
+
+
+def _faded(frequency: np.ndarray, power: np.ndarray) -> int:
+    """The first bin above which the power no longer falls as steeply as that of a motion does."""
+    bands = np.floor(BANDS * np.log2(frequency / frequency[0])).astype(int)
+    names, sizes = np.unique(bands, return_counts=True)
+    if sizes[-1] < sizes[-2]:  # the last one is not complete
+        bands[bands == names[-1]], names = names[-2], names[:-1]
+    median = np.array([np.median(power[bands == name]) for name in names])
+    steep = np.zeros(names.size, bool)
+    steep[:-BANDS] = median[:-BANDS] > STEEP * median[BANDS:]
+    highest = int(np.searchsorted(names, bands[int(np.argmax(power))]))
+    last = max(int(np.flatnonzero(steep).max(initial=-1)), highest)
+    return int(np.searchsorted(bands, names[last], side="right"))
+
+
+def _spread(marked: np.ndarray) -> np.ndarray:
+    """Marked bins with their neighbours."""
+    return np.convolve(marked, np.ones(2 * NEIGHBOURS + 1), mode="same") > 0.5

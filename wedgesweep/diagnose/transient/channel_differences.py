@@ -1,0 +1,103 @@
+"""What two channels of a record do not share: their noise, at the frequencies of the motion as well.
+
+Velocity is the derivative of displacement, whatever moves. With a window w that ends at zero, weighted sums
+say so without differentiating any noise: sum(w v) = -sum(w' x). What is left between the two is noise of the
+one, and noise of the other times the frequency. A sensor may have a gain, and lag by a first-order filter;
+both are fitted, once for all tests.
+"""
+
+from collections.abc import Sequence
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+# The lowest frequencies, in which a window sees a mean or a drift.
+LOWEST = 2
+# Amplitude over the largest one of bins that tell the gain.
+MOVING = 0.1
+
+
+class Difference(NamedTuple):
+    """Difference of two channels of a test by frequency (rad a sample), (f,).
+
+    ``power``: of a sample of the higher derivative; ``share``: of the noise of the lower one in it.
+    """
+
+    frequency: np.ndarray
+    power: np.ndarray
+    share: np.ndarray
+
+
+class _Sums(NamedTuple):
+    """Weighted sums (f,) of the higher derivative, as the lower one predicts them, and of its change."""
+
+    frequency: np.ndarray
+    higher: np.ndarray
+    predicted: np.ndarray
+    change: np.ndarray
+
+
+def differences(pairs: Sequence[tuple[np.ndarray, np.ndarray]], orders: int, rate: float) -> list[Difference]:
+    """Differences of two channels in each test.
+
+    Parameters
+    ----------
+    pairs : sequence of two ndarray, shape (n,) each
+        A channel of each test, and another one that is a derivative of it.
+    orders : int
+        The order of that derivative, 1 or 2.
+    rate : float
+        Sampling rate (Hz).
+    """
+    tests = [_sums(lower * rate**orders, higher, orders) for lower, higher in pairs]
+    columns = np.concatenate([np.column_stack([each.predicted, each.change]) for each in tests])
+    measured = np.concatenate([each.higher for each in tests])
+    # Elsewhere the columns are noise, and noise would make the gain too small.
+    moving = np.concatenate([np.abs(each.higher) > MOVING * np.abs(each.higher).max() for each in tests])
+    matrix, values = (
+        np.concatenate([each.real, each.imag])[np.r_[moving, moving]] for each in (columns, measured)
+    )
+    size = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    gain, lag = np.linalg.lstsq(matrix / size, values, rcond=None)[0] / size
+    left = np.split(measured - columns @ [gain, lag], np.cumsum([each.higher.size for each in tests])[:-1])
+    found = []
+    for each, rest in zip(tests, left, strict=True):
+        own = 1.0 + (lag * each.frequency) ** 2
+        share = (gain * (rate * each.frequency) ** orders) ** 2 / own
+        found.append(Difference(each.frequency, np.abs(rest) ** 2 / own, share))
+    return found
+
+
+def _sums(lower: np.ndarray, higher: np.ndarray, orders: int) -> _Sums:
+    """Sums under a Hann window, over its rms; the first and last samples, at its ends, count half."""
+    lower, higher = lower - lower.mean(), higher - higher.mean()
+    size = lower.size - 1
+    angle = 2.0 * pi * np.arange(size + 1) / size
+    window = 0.5 * (1.0 - np.cos(angle)), pi / size * np.sin(angle), 2.0 * (pi / size) ** 2 * np.cos(angle)
+    count = size // 2 + 1
+    frequency = 2.0 * pi * np.arange(count) / size
+    turning = -1j * frequency
+
+    def sums(values: np.ndarray, derivative: int) -> np.ndarray:
+        """Sums of values times a derivative of the window, which turns at each frequency, with its sign."""
+        own = [_transformed(values * each) for each in window]
+        if derivative == 0:
+            return own[0]
+        if derivative == 1:
+            return -(own[1] + turning * own[0])
+        return own[2] + 2.0 * turning * own[1] + turning**2 * own[0]
+
+    rms = np.sqrt((window[0] ** 2).sum())
+    kept = slice(LOWEST, None)
+    return _Sums(
+        frequency[kept],
+        *(each[kept] / rms for each in (sums(higher, 0), sums(lower, orders), sums(higher, 1))),
+    )
+
+
+def _transformed(values: np.ndarray) -> np.ndarray:
+    """Fourier sums (f,) of values (n + 1,), of which the first and the last one are at the same phase."""
+    folded = values[:-1].copy()
+    folded[0] = 0.5 * (values[0] + values[-1])
+    return np.fft.rfft(folded)

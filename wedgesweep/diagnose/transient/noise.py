@@ -1,0 +1,235 @@
+"""The noise of each channel of transients, from all that their records show of it.
+
+A sensor has noise of one shape in all tests; its level may differ. It shows above the motion's frequencies,
+and at them in the quiet end or beginning of a record and in what two channels do not share. Repeats of a test
+tell it by themselves.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from wedgesweep.diagnose import repeats
+from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
+from wedgesweep.diagnose.noise_spectrum import (
+    BEST,
+    FROM_REPEATS,
+    LEAST,
+    MOST,
+    Choice,
+    NoiseBins,
+    NoiseSpectrum,
+    fit,
+    of_noise,
+)
+from wedgesweep.diagnose.transient.channel_differences import Difference, differences
+from wedgesweep.diagnose.transient.jumps import continuous
+from wedgesweep.measured import TestRecord
+
+# Order of an acceleration, whose jumps are no noise.
+ACCELERATION = 2
+# Sampling rates that differ by less than this are the same.
+SAME_RATE = 1e-3
+# Bins tell the noise near the motion if there are so many below so many times its frequency.
+NEAR, FEWEST = 4.0, 8
+# Rounds in which the noise of each channel is told from that of the others.
+ROUNDS = 3
+
+# Channels (n,) of a test, by the order of the derivative of the displacement that each is.
+Channels = Mapping[int, np.ndarray]
+# A test, and the order of one of its channels. The noise of each.
+Key = tuple[int, int]
+Spectra = dict[Key, NoiseSpectrum]
+
+
+class Shared(NamedTuple):
+    """The difference of two channels in a test, which are derivatives of ``lower`` and ``higher`` order."""
+
+    lower: int
+    higher: int
+    difference: Difference
+
+    def told(self, order: int, other: NoiseSpectrum) -> NoiseBins:
+        """What it tells of the channel of an order, by the noise of the other one."""
+        frequency, power, share = self.difference
+        if order == self.higher:
+            return NoiseBins(frequency, power, share * other(frequency))
+        return NoiseBins(frequency, power / share, other(frequency) / share)
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseEvidence:
+    """What tests of one sampling rate (Hz) show of the noise of their channels.
+
+    ``tests``: channels of each test, by its number; ``of``: the motion that the channel of each order shows.
+    """
+
+    tests: Mapping[int, Channels]
+    of: Mapping[int, str]
+    rate: float
+
+    @cached_property
+    def own(self) -> dict[Key, OwnNoise]:
+        """Bins above the motion."""
+        return {(t, order): noise_bins(each) for t, its in self.tests.items() for order, each in its.items()}
+
+    @cached_property
+    def quiet(self) -> dict[Key, NoiseBins]:
+        """Bins of the quiet part of a record that has one."""
+        found = {(t, order): quiet_bins(self.tests[t][order]) for t, order in self.own}
+        return {key: bins for key, bins in found.items() if bins is not None}
+
+    @cached_property
+    def shared(self) -> dict[int, list[Shared]]:
+        """Differences of channels that follow one another, by test."""
+        found: dict[int, list[Shared]] = {t: [] for t in self.tests}
+        orders = sorted(self.of)
+        for lower, higher in pairwise(orders):
+            both = [t for t, its in self.tests.items() if lower in its and higher in its]
+            if not both or self.of[lower] != self.of[higher]:
+                continue
+            pairs = [(self.tests[t][lower], self.tests[t][higher]) for t in both]
+            for t, each in zip(both, differences(pairs, higher - lower, self.rate), strict=True):
+                found[t].append(Shared(lower, higher, each))
+        return found
+
+    def others(self, key: Key, first: float, known: Spectra) -> list[NoiseBins]:
+        """Bins below a frequency (rad a sample) that tell the noise of a channel beside its own ones.
+
+        Differences tell it where the noise of the other channel is known.
+        """
+        t, order = key
+        found = [self.quiet[key].up_to(first)] if key in self.quiet else []
+        for each in self.shared[t]:
+            other = {each.lower: each.higher, each.higher: each.lower}.get(order)
+            if other is not None and (t, other) in known:
+                found.append(each.told(order, known[t, other]).up_to(first))
+        return [each for each in found if each.frequency.size]
+
+    def without_skirts(self, order: int, known: Spectra) -> dict[Key, OwnNoise]:
+        """Own bins of one channel, without those of the motion that only noise of the same shape unmasks."""
+        own = {key: each for key, each in self.own.items() if key[1] == order}
+        others = [self.others(key, each.first, known) for key, each in own.items()]
+        return dict(zip(own, without_skirts(list(own.values()), others), strict=True))
+
+    def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, choice: Choice) -> Spectra:
+        """Noise of one channel from its own bins and all others."""
+        bins = self._bins(own, known)
+        if not _near_the_motion(bins, own.values()):
+            choice = choice._replace(coloured=0.0)
+        return _by_key(own, fit(bins, choice))
+
+    @cached_property
+    def told(self) -> "Told":
+        """Noise of all channels: as much as each may have while the others have as little as they may."""
+        own: list[dict[Key, OwnNoise]] = []
+        best: Spectra = {}
+        for order in self.of:
+            own.append(self.without_skirts(order, best))
+            best |= self.fitted(own[-1], best, BEST)
+        for _ in range(ROUNDS):
+            for each in own:
+                best |= self.fitted(each, best, BEST)
+        most = best
+        for _ in range(ROUNDS):
+            least = {key: one for each in own for key, one in self.fitted(each, most, LEAST).items()}
+            most = {key: one for each in own for key, one in self.fitted(each, least, MOST).items()}
+        return Told(most, least, own)
+
+    @cached_property
+    def far(self) -> list[dict[Key, OwnNoise]]:
+        """Channels whose noise is only told well above the motion, with their own bins."""
+        bins = [self._bins(its, self.told.least) for its in self.told.own]
+        both = zip(bins, self.told.own, strict=True)
+        return [its for each, its in both if not _near_the_motion(each, its.values())]
+
+    def _bins(self, own: Mapping[Key, OwnNoise], known: Spectra) -> list[list[NoiseBins]]:
+        return [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
+
+    def beside(self, left: Mapping[Key, Sequence[NoiseBins]]) -> Spectra:
+        """Noise of channels that is only told far above the motion, by what an explanation leaves of them.
+
+        That is noise, or more. It can show that there is less noise than there might be, and never that there
+        is more: physics that is missing would pass for noise.
+        """
+        found: Spectra = {}
+        for own in self.far:
+            bins = self._bins(own, self.told.least)
+            more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
+            spectra = _by_key(own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST))
+            for key, its in own.items():
+                most, at = self.told.most[key], np.array(its.main)
+                found[key] = spectra[key] if spectra[key](at) < most(at) else most
+        return found
+
+
+class Told(NamedTuple):
+    """Noise of all channels: the ``most`` and the ``least``, and ``own`` bins of each channel."""
+
+    most: Spectra
+    least: Spectra
+    own: list[dict[Key, OwnNoise]]
+
+
+def _by_key(own: Mapping[Key, OwnNoise], spectra: Sequence[NoiseSpectrum]) -> Spectra:
+    return {key: each.up_to(own[key].highest) for key, each in zip(own, spectra, strict=True)}
+
+
+def _near_the_motion(tests: Sequence[Sequence[NoiseBins]], own: Iterable[OwnNoise]) -> bool:
+    """Whether bins of several tests reach down to where the motion is.
+
+    If not, that noise is white above it says little about what it is there.
+    """
+    pairs = zip(tests, own, strict=True)
+    return sum(each.up_to(NEAR * its.main).frequency.size for bins, its in pairs for each in bins) >= FEWEST
+
+
+def evidence_of_noise(
+    tests: Sequence[Channels], of: Mapping[int, str], rates: Sequence[float]
+) -> tuple[NoiseEvidence, ...]:
+    """What tests show of the noise of their channels; those that were sampled alike together.
+
+    Parameters
+    ----------
+    tests : sequence of mapping of int to ndarray, shape (n,)
+        Samples of each channel, by the order of the derivative of the displacement that it is.
+    of : mapping of int to str
+        The motion that each channel shows.
+    rates : sequence of float
+        Sampling rates (Hz).
+    """
+    found = []
+    for rows in _sampled_alike(rates):
+        alike = {t: _smooth(tests[t]) for t in rows}
+        orders = sorted({order for its in alike.values() for order in its})
+        found.append(NoiseEvidence(alike, {order: of[order] for order in orders}, rates[rows[0]]))
+    return tuple(found)
+
+
+def _sampled_alike(rates: Sequence[float]) -> list[list[int]]:
+    """Places of rates that are the same but for their last digits."""
+    groups: dict[float, list[int]] = {}
+    for place, rate in enumerate(rates):
+        alike = next((each for each in groups if abs(rate - each) < SAME_RATE * each), rate)
+        groups.setdefault(alike, []).append(place)
+    return list(groups.values())
+
+
+def _smooth(channels: Channels) -> Channels:
+    """Channels without the jumps of an acceleration."""
+    return {order: continuous(each) if order == ACCELERATION else each for order, each in channels.items()}
+
+
+def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> Spectra:
+    """Noise of tests that were run more than once, by what does not repeat."""
+    found: Spectra = {}
+    for rows in repeats.groups(tests):
+        for order in channels[rows[0]]:
+            left = repeats.differences([channels[row][order] for row in rows])
+            noise = of_noise(left, FROM_REPEATS)
+            found |= {(row, order): noise for row in rows}
+    return found
