@@ -53,7 +53,7 @@ def measure(contender, records, rtol, exact):
     return Timed(rtol, errors(ratios[: len(records)], exact).max(), len(several) / took)
 
 
-def climb(contender, records, exact):
+def down_to_accuracy(contender, records, exact):
     """Tolerances down to the first that meets the finest accuracy."""
     found = []
     for rtol in contender.ladder:
@@ -151,7 +151,7 @@ def bench(law):
     for name, contender in taking_part.items():
         some = contender.cases
         reference = (own if contender.smoothed else exact)[some]
-        results[name] = climb(contender, records[some], reference)
+        results[name] = down_to_accuracy(contender, records[some], reference)
         cases[name] = reference.size
     compare_few(records, taking_part[contenders.LOOP], exact)
     ratios = {accuracy: table(law, accuracy, results, cases) for accuracy in ACCURACIES}

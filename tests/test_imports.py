@@ -158,6 +158,8 @@ UNLOADED = {
         *OPTIONAL,
         *("scipy", "numba", "numpy", "wedgesweep.config"),
     ),
+    "from wedgesweep.sweep import dataset, variables": (*OPTIONAL, "numba", "scipy", "wedgesweep.config"),
+    "from wedgesweep.sweep import outcomes, table": ("matplotlib", "numba", "scipy", "wedgesweep.config"),
     "import wedgesweep.config": (*OPTIONAL, "wedgesweep.solvers.radau", "wedgesweep.solvers.event_driven"),
 }
 

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.fft import dct
 from scipy.signal import lfilter
 
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
 from wedgesweep.diagnose.noise_bins import of_record, quiet_bins
-from wedgesweep.diagnose.noise_spectrum import periodogram
+from wedgesweep.diagnose.noise_spectrum import NoiseBins, periodogram
 from wedgesweep.diagnose.transient.channel_differences import differences
-from wedgesweep.diagnose.transient.noise import noise_of_channels
+from wedgesweep.diagnose.transient.noise import evidence_of_noise
 
 # Samples in a natural period of 1 s, and natural circular frequency in rad a sample.
 RATE = 60.0
@@ -36,6 +37,13 @@ def decay(friction, samples=480, start=1.0):
     return x, v
 
 
+def acceleration(friction, samples=480, start=1.0):
+    """Acceleration of the same mass, which jumps where friction changes its sign."""
+    x, v = decay(friction, samples, start)
+    swinging = np.arange(samples) / RATE < 0.5 * np.ceil((abs(start) / friction - 1.0) / 2.0)
+    return np.where(swinging, -((2.0 * np.pi) ** 2) * (x + friction * np.sign(v)), 0.0)
+
+
 def power(std, pole, frequency):
     """Power of noise whose samples are correlated by ``pole``."""
     return std**2 * (1.0 - pole**2) / (1.0 + pole**2 - 2.0 * pole * np.cos(frequency))
@@ -43,6 +51,15 @@ def power(std, pole, frequency):
 
 def noisy(clean, pole, rng, level=LEVEL):
     return clean + level * clean.std() * coloured(rng, clean.size, pole)
+
+
+def noise_of_channels(tests, of, rates):
+    """Noise of each channel of tests, by its order."""
+    found = [{} for _ in tests]
+    for each in evidence_of_noise(tests, of, rates):
+        for (t, order), noise in each.told.most.items():
+            found[t][order] = noise
+    return found
 
 
 def ratios(pole, seed, orders):
@@ -148,6 +165,41 @@ def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     alone = [of_record(noisy(v, 0.0, rng))(AT[1]) / power(LEVEL * v.std(), 0.0, AT[1]) for _ in range(12)]
     assert max(alone) > 10.0
     assert ratios(0.0, 0, (0, 1))[..., 1].max() < 6.0
+
+
+def short_accelerations(pole, seed):
+    """Accelerations of four periods, with noise, and as they are without it."""
+    rng, clean = np.random.default_rng(seed), [acceleration(0.04, 240), acceleration(0.03, 240, 0.5)]
+    tests = [{2: noisy(each, pole, rng)} for each in clean]
+    (evidence,) = evidence_of_noise(tests, {2: "relative"}, [RATE] * 2)
+    return evidence, tests, clean
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_white_noise_far_above_the_motion_may_be_red_at_it(seed):
+    evidence, _, clean = short_accelerations(0.9, seed)
+    for t, each in enumerate(clean):
+        assert evidence.told.most[t, 2](AT[1]) > 0.2 * power(LEVEL * each.std(), 0.9, AT[1])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_an_explanation_leaves_shows_that_there_is_less_noise(seed):
+    evidence, tests, clean = short_accelerations(0.0, seed)
+    assert evidence.far
+    frequency = np.pi * np.arange(4, 80) / 240
+
+    def beside(more):
+        left = [its[2] - each + more for its, each in zip(tests, clean, strict=True)]
+        bins = [NoiseBins.of(frequency, dct(each, norm="ortho")[4:80] ** 2) for each in left]
+        return evidence.beside({(t, 2): [each] for t, each in enumerate(bins)})
+
+    right, wrong = beside(0.0), beside(30.0 * np.cos(2.0 * np.pi * np.arange(240) / RATE))
+    for t, each in enumerate(clean):
+        true, most = (LEVEL * each.std()) ** 2, evidence.told.most[t, 2](AT[1])
+        assert most > 5.0 * true
+        assert right[t, 2](AT[1]) < 2.5 * true
+        # What does not look like noise never makes more of it.
+        assert wrong[t, 2](AT[1]) <= most
 
 
 @pytest.mark.parametrize("pole", [0.0, 0.9, 0.97])

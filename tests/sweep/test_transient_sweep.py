@@ -7,9 +7,9 @@ import xarray as xr
 from tests.command import invoke
 from wedgesweep import config, figures
 from wedgesweep.figures.transient import loop, ring_down
-from wedgesweep.sweep import outcomes
+from wedgesweep.sweep import unfinished
 from wedgesweep.sweep.journal import Journal
-from wedgesweep.sweep.run import Sweep, unfinished
+from wedgesweep.sweep.run import Sweep
 
 HEAD = """\
 [oscillator]
@@ -99,8 +99,8 @@ def test_an_interrupted_sweep_is_resumed(folder):
     part = Sweep(config.load("release.toml"), folder / "part.nc")
     with Journal(part.journal_path, part.dtype, part.journal_header) as journal:
         journal.append(records)
-    assert outcomes.of_journal(part.journal_path)[1].amplitude == 1.0
-    drawn = unfinished(folder / "part.nc")
+    assert unfinished.outcomes_of(folder / "part.nc")[1].amplitude == 1.0
+    drawn = unfinished.dataset_of(folder / "part.nc")
     assert (drawn["status"] == 0).sum() == 2
     assert "2 ok, 4 remaining" in invoke("status", "part.nc")
     resumed = part.run(n_jobs=1)

@@ -47,12 +47,13 @@ class OwnNoise(NamedTuple):
     """What a record shows of its noise by itself.
 
     ``bins`` of noise; ``first``: the lowest frequency (rad a sample) that was looked at for them;
-    ``highest``: the highest one at which the motion stands out.
+    ``highest``: the highest one at which the motion stands out; ``main``: that at which it is largest.
     """
 
     bins: NoiseBins
     first: float
     highest: float
+    main: float
 
 
 def of_record(samples: np.ndarray) -> NoiseSpectrum:
@@ -80,7 +81,8 @@ def noise_bins(samples: np.ndarray) -> OwnNoise:
         first, kept = following, above
     found = _fitted(frequency, power, kept, LIKELY)
     strong = frequency[power > LINE * found(frequency)].max(initial=frequency[first])
-    return OwnNoise(NoiseBins.of(frequency[kept], power[kept]), float(frequency[first]), float(strong))
+    bins, main = NoiseBins.of(frequency[kept], power[kept]), frequency[int(np.argmax(power))]
+    return OwnNoise(bins, float(frequency[first]), float(strong), float(main))
 
 
 def quiet_bins(samples: np.ndarray) -> NoiseBins | None:

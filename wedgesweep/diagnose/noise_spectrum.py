@@ -147,7 +147,7 @@ def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[Noi
     found = _fitted(bands, member, np.array([_at_first(each) for each in own]))
     best = _chosen(found, choice)
     uncertain = ONE_END * np.sqrt(CORRELATED / bins)
-    level = found.level[best] * (1.0 if choice == BEST or choice.least else 1.0 + uncertain)
+    level = found.level[best] * (1.0 if choice.loss == 0.0 or choice.least else 1.0 + uncertain)
     red, white, pole = found.red[best], found.white[best], float(POLES[best])
     if best == 0:
         red, white = 0.0, red + white

@@ -21,14 +21,6 @@ from wedgesweep.systems import example
 SUSPENSION = "suspension"
 
 
-def describe(law: str, beta: float, amplitude: float, unit: str = "m") -> str:
-    """Describe a case in words; amplitude in m or N, or without a unit the scale of an input."""
-    if not unit:
-        return f"{law}, scale {amplitude:.6g}"
-    size = f"{amplitude * 1e3:.6g} mm" if unit == "m" else f"{amplitude:.6g} {unit}"
-    return f"{law}, beta {beta:.6g}, amplitude {size}"
-
-
 def is_compiled(method: str, kit: int = 0, system: str = SUSPENSION) -> bool:
     """Whether the compiled code of a solver is cached, for records of a system that need a kit of parts."""
     return compiled_mark(f"{method}-{system}-{kit}").exists()

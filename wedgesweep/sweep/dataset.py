@@ -94,6 +94,11 @@ def _flag_values(name: str) -> np.ndarray:
     return np.arange(first, first + len(meanings), dtype=np.int8)
 
 
+def journal_of(out: Path) -> Path:
+    """Where the journal of an unfinished sweep is that will write a dataset."""
+    return out.with_name(out.name + ".partial")
+
+
 def write(dataset: "xr.Dataset", path: Path) -> None:
     """Write netCDF to a temporary file beside ``path``, and move it there when it is complete."""
     compressed = {"zlib": True, "complevel": 1, "shuffle": True}
@@ -117,8 +122,6 @@ def write(dataset: "xr.Dataset", path: Path) -> None:
 
 def read(path: Path) -> "xr.Dataset":
     """Load a dataset from a netCDF file; raises SweepError if there is none or it is damaged."""
-    import xarray as xr
-
     if problem := confusion(path, SWEEP):
         raise SweepError(problem)
     try:
@@ -126,6 +129,8 @@ def read(path: Path) -> "xr.Dataset":
     except OSError as error:
         message = f"{path}: {str(error.strerror).lower()}"
         raise SweepError(message) from error
+    import xarray as xr
+
     try:
         return xr.load_dataset(path, engine="netcdf4")
     except Exception as error:  # netCDF4 and the decoding of damaged content raise nearly anything

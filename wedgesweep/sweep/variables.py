@@ -110,6 +110,7 @@ TRANSIENT = (
     Variable("normal_force_column", "N", "normal force on the column face", TIME, "f4"),
     Variable("normal_force_bolster", "N", "normal force on the bolster face", TIME, "f4"),
     Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", TIME, "i1"),
+    *OF_LIFT_OFF,
 )
 
 # Additional variables of a continuation; all others belong to its sweep up in beta. Two responses are

@@ -15,7 +15,7 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep import response
+from wedgesweep import formatting, response
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers import radau
@@ -23,7 +23,7 @@ from wedgesweep.solvers.trajectory import CaseError, Window
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.backend import loky
 from wedgesweep.sweep.batch import solve_batch
-from wedgesweep.sweep.cases import compile_once, describe
+from wedgesweep.sweep.cases import compile_once
 from wedgesweep.sweep.run import Sweep
 
 RTOL, TIGHTER = 1e-9, 1e-10
@@ -124,7 +124,7 @@ def _task(sweep: Sweep, stored: dict[str, np.ndarray], index: int) -> _Task:
         whole = period * -(-window.periods // period)
         window, start = replace(window, settle_periods=period, periods=whole), _state(sweep, index)
     return _Task(
-        describe(*case, "N" if sweep.config.forced else "m"),
+        formatting.case(*case, "N" if sweep.config.forced else "m"),
         record,
         window,
         start,

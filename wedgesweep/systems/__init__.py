@@ -41,6 +41,13 @@ def is_oscillator(parameters: np.ndarray) -> bool:
     return "oscillator" in (parameters.dtype.names or ())
 
 
+def opens(parameters: np.ndarray) -> np.ndarray:
+    """Whether contacts of records, shape (n,), may open."""
+    if is_oscillator(parameters):
+        return np.zeros(len(parameters), bool)
+    return suspension_parameters.has_unilateral_joints(parameters)
+
+
 def _kits(parameters: np.ndarray) -> np.ndarray:
     return parameters["oscillator" if is_oscillator(parameters) else "geometry"]["kit"]
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.driven import QUANTITIES_OF_MOTION, Driven, factors
-from wedgesweep.diagnose.transient.noise import noise_of_channels, with_repeats
+from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.windows import FEWEST, Recorded, windows
@@ -15,7 +15,7 @@ def transient_data(measurement: Measurement) -> TransientData:
     """Windows of all tests."""
     tests = measurement.tests
     channels = [_channels(measurement, test) for test in tests]
-    spectra = _spectra(measurement, channels)
+    evidence, spectra = _noise(measurement, channels)
     fewest = FEWEST if len(tests) == 1 else 1
     found: list[Release] = []
     for number, test in enumerate(tests):
@@ -27,7 +27,11 @@ def transient_data(measurement: Measurement) -> TransientData:
         record = _as_simulated(record, measurement)
         found += windows(record, model, measurement.law, fewest)
     return TransientData(
-        tuple(found), dict(measurement.uncertain), measurement.model_error, measurement.input_gain_std
+        tuple(found),
+        dict(measurement.uncertain),
+        measurement.model_error,
+        measurement.input_gain_std,
+        evidence=evidence,
     )
 
 
@@ -63,15 +67,20 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
     return record._replace(channels=channels, shares=shares)
 
 
-def _spectra(measurement: Measurement, channels: list[np.ndarray]) -> list[list[NoiseSpectrum]]:
-    """Noise of each channel of each test."""
+def _noise(
+    measurement: Measurement, channels: list[np.ndarray]
+) -> tuple[tuple[NoiseEvidence, ...], list[list[NoiseSpectrum]]]:
+    """What tells the noise, and the noise of each channel of each test."""
     tests, orders = measurement.tests, range(len(QUANTITIES_OF_MOTION))
     declared = [measurement.columns.get(name, {}) for name in QUANTITIES_OF_MOTION]
     of = {order: declared[order].get("of", "relative") for order in orders}
-    by_order = [
+    by_order: list[Channels] = [
         dict(zip(map(QUANTITIES_OF_MOTION.index, _names(measurement, test)), own, strict=True))
         for test, own in zip(tests, channels, strict=True)
     ]
-    found = noise_of_channels(by_order, of, [test.sampling_rate for test in tests])
-    found = with_repeats(found, tests, by_order)
-    return [[its[order] for order in sorted(its)] for its in found]
+    evidence = evidence_of_noise(by_order, of, [test.sampling_rate for test in tests])
+    found = {key: each for one in evidence for key, each in one.told.most.items()}
+    repeated = from_repeats(tests, by_order)
+    found |= {key: each.up_to(found[key].highest) for key, each in repeated.items()}
+    spectra = [[found[t, order] for order in sorted(its)] for t, its in enumerate(by_order)]
+    return evidence, spectra

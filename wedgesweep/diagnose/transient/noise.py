@@ -5,7 +5,7 @@ and at them in the quiet end or beginning of a record and in what two channels d
 tell it by themselves.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -34,6 +34,8 @@ from wedgesweep.measured import TestRecord
 ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
 SAME_RATE = 1e-3
+# Bins tell the noise near the motion if there are so many below so many times its frequency.
+NEAR, FEWEST = 4.0, 8
 # Rounds in which the noise of each channel is told from that of the others.
 ROUNDS = 3
 
@@ -60,7 +62,7 @@ class Shared(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _Evidence:
+class NoiseEvidence:
     """What tests of one sampling rate (Hz) show of the noise of their channels.
 
     ``tests``: channels of each test, by its number; ``of``: the motion that the channel of each order shows.
@@ -116,11 +118,13 @@ class _Evidence:
 
     def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, choice: Choice) -> Spectra:
         """Noise of one channel from its own bins and all others."""
-        spectra = fit([[its.bins, *self.others(key, its.first, known)] for key, its in own.items()], choice)
-        return {key: each.up_to(own[key].highest) for key, each in zip(own, spectra, strict=True)}
+        bins = self._bins(own, known)
+        if not _near_the_motion(bins, own.values()):
+            choice = choice._replace(coloured=0.0)
+        return _by_key(own, fit(bins, choice))
 
     @cached_property
-    def spectra(self) -> Spectra:
+    def told(self) -> "Told":
         """Noise of all channels: as much as each may have while the others have as little as they may."""
         own: list[dict[Key, OwnNoise]] = []
         best: Spectra = {}
@@ -134,13 +138,60 @@ class _Evidence:
         for _ in range(ROUNDS):
             least = {key: one for each in own for key, one in self.fitted(each, most, LEAST).items()}
             most = {key: one for each in own for key, one in self.fitted(each, least, MOST).items()}
-        return most
+        return Told(most, least, own)
+
+    @cached_property
+    def far(self) -> list[dict[Key, OwnNoise]]:
+        """Channels whose noise is only told well above the motion, with their own bins."""
+        bins = [self._bins(its, self.told.least) for its in self.told.own]
+        both = zip(bins, self.told.own, strict=True)
+        return [its for each, its in both if not _near_the_motion(each, its.values())]
+
+    def _bins(self, own: Mapping[Key, OwnNoise], known: Spectra) -> list[list[NoiseBins]]:
+        return [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
+
+    def beside(self, left: Mapping[Key, Sequence[NoiseBins]]) -> Spectra:
+        """Noise of channels that is only told far above the motion, by what an explanation leaves of them.
+
+        That is noise, or more. It can show that there is less noise than there might be, and never that there
+        is more: physics that is missing would pass for noise.
+        """
+        found: Spectra = {}
+        for own in self.far:
+            bins = self._bins(own, self.told.least)
+            more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
+            spectra = _by_key(own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST))
+            for key, its in own.items():
+                most, at = self.told.most[key], np.array(its.main)
+                found[key] = spectra[key] if spectra[key](at) < most(at) else most
+        return found
 
 
-def noise_of_channels(
+class Told(NamedTuple):
+    """Noise of all channels: the ``most`` and the ``least``, and ``own`` bins of each channel."""
+
+    most: Spectra
+    least: Spectra
+    own: list[dict[Key, OwnNoise]]
+
+
+def _by_key(own: Mapping[Key, OwnNoise], spectra: Sequence[NoiseSpectrum]) -> Spectra:
+    return {key: each.up_to(own[key].highest) for key, each in zip(own, spectra, strict=True)}
+
+
+def _near_the_motion(tests: Sequence[Sequence[NoiseBins]], own: Iterable[OwnNoise]) -> bool:
+    """Whether bins of several tests reach down to where the motion is.
+
+    If not, that noise is white above it says little about what it is there.
+    """
+    pairs = zip(tests, own, strict=True)
+    return sum(each.up_to(NEAR * its.main).frequency.size for bins, its in pairs for each in bins) >= FEWEST
+
+
+def evidence_of_noise(
     tests: Sequence[Channels], of: Mapping[int, str], rates: Sequence[float]
-) -> list[dict[int, NoiseSpectrum]]:
-    """Noise of each channel of tests, by the order of its derivative.
+) -> tuple[NoiseEvidence, ...]:
+    """What tests show of the noise of their channels; those that were sampled alike together.
 
     Parameters
     ----------
@@ -149,16 +200,14 @@ def noise_of_channels(
     of : mapping of int to str
         The motion that each channel shows.
     rates : sequence of float
-        Sampling rates (Hz). Tests that were sampled alike have noise of one shape.
+        Sampling rates (Hz).
     """
-    found: list[dict[int, NoiseSpectrum]] = [{} for _ in tests]
+    found = []
     for rows in _sampled_alike(rates):
         alike = {t: _smooth(tests[t]) for t in rows}
         orders = sorted({order for its in alike.values() for order in its})
-        evidence = _Evidence(alike, {order: of[order] for order in orders}, rates[rows[0]])
-        for (t, order), each in evidence.spectra.items():
-            found[t][order] = each
-    return found
+        found.append(NoiseEvidence(alike, {order: of[order] for order in orders}, rates[rows[0]]))
+    return tuple(found)
 
 
 def _sampled_alike(rates: Sequence[float]) -> list[list[int]]:
@@ -175,15 +224,12 @@ def _smooth(channels: Channels) -> Channels:
     return {order: continuous(each) if order == ACCELERATION else each for order, each in channels.items()}
 
 
-def with_repeats(
-    found: list[dict[int, NoiseSpectrum]], tests: Sequence[TestRecord], channels: Sequence[Channels]
-) -> list[dict[int, NoiseSpectrum]]:
-    """Noise of tests that were run more than once by what does not repeat; that of the others as found."""
-    found = [dict(each) for each in found]
+def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> Spectra:
+    """Noise of tests that were run more than once, by what does not repeat."""
+    found: Spectra = {}
     for rows in repeats.groups(tests):
         for order in channels[rows[0]]:
             left = repeats.differences([channels[row][order] for row in rows])
             noise = of_noise(left, FROM_REPEATS)
-            for row in rows:
-                found[row][order] = noise.up_to(found[row][order].highest)
+            found |= {(row, order): noise for row in rows}
     return found

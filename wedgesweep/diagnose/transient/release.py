@@ -4,7 +4,8 @@ Compared are the cosine coefficients of the window (DCT-II) up to the highest fr
 have: under noise whose spectrum is smooth they are all but independent.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
 from typing import NamedTuple
@@ -15,7 +16,7 @@ from scipy.fft import dct, idct
 from wedgesweep.config import Config
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.fit_parameters import Values
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.noise_spectrum import FROM_SPECTRUM, NoiseBins, NoiseSpectrum
 from wedgesweep.diagnose.transient.input_noise import (
     InputNoise,
     converted,
@@ -23,6 +24,7 @@ from wedgesweep.diagnose.transient.input_noise import (
     decorrelated,
     disturbed,
 )
+from wedgesweep.diagnose.transient.noise import Key
 from wedgesweep.effects import merge
 from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
@@ -32,6 +34,8 @@ from wedgesweep.systems import state_count
 ACCELERATION = 2
 # Zero of an accelerometer over the rms of what it shows, as good as unknown.
 UNKNOWN = 1e3
+# Coefficients, the lowest ones, that a zero and a start take most of.
+LEFT = 4
 # Error of a simulation over the rms of the motion, which counts as noise.
 SIMULATED = 1e-5
 
@@ -121,11 +125,30 @@ class Release:
         return found
 
     @cached_property
-    def noise(self) -> np.ndarray:
-        """Standard deviation (C, K) of each coefficient, with the input's noise spread as its motion is."""
+    def by_input(self) -> np.ndarray:
+        """Variance (C, K) of each coefficient by the input's noise, spread as its motion is."""
         grid = np.linspace(0.0, pi, self.passed_on.shape[1])
-        passed = [np.interp(self._frequency, grid, each) for each in self.passed_on]
-        return np.sqrt(self._own_variance + passed)
+        return np.array([np.interp(self._frequency, grid, each) for each in self.passed_on])
+
+    @cached_property
+    def noise(self) -> np.ndarray:
+        """Standard deviation (C, K) of each coefficient."""
+        return np.sqrt(self._own_variance + self.by_input)
+
+    def noise_in(self, left: np.ndarray) -> dict[Key, NoiseBins]:
+        """What an explanation leaves of the coefficients (C, K) as bins of noise, by test and order."""
+        both = zip(self._orders, left[:, LEFT:] ** 2, self.by_input[:, LEFT:], strict=True)
+        bins = {order: NoiseBins(self._frequency[LEFT:], power, known) for order, power, known in both}
+        return {(self.number, order): each for order, each in bins.items()}
+
+    def with_noise(self, told: Mapping[Key, NoiseSpectrum]) -> "Release":
+        """The window with noise that is told anew, but not where repeats had told it."""
+        own = zip(self.spectra, self.orders, strict=False)
+        spectra = tuple(
+            told.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
+            for each, order in own
+        )
+        return replace(self, spectra=spectra)
 
     def decorrelation(
         self, values: Values, start: np.ndarray, gain: float, tolerance: float

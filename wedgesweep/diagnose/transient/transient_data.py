@@ -23,7 +23,9 @@ from wedgesweep.diagnose.evaluation import (
 )
 from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
+from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.natural_units import NaturalUnits
 
@@ -46,7 +48,7 @@ class TransientData(SampledData):
     """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other.
 
     ``decorrelations``: combinations with independent noise of the first coefficients of each channel of each
-    test; without them coefficients count as independent.
+    test; without them coefficients count as independent. ``evidence``: what tells the noise of the channels.
     """
 
     releases: tuple[Release, ...]
@@ -55,6 +57,7 @@ class TransientData(SampledData):
     gain_std: float = 0.0
     resampled: np.ndarray | None = None
     decorrelations: tuple[tuple[Decorrelation, ...], ...] | None = None
+    evidence: tuple[NoiseEvidence, ...] = ()
 
     kind = "transient"
 
@@ -114,14 +117,32 @@ class TransientData(SampledData):
         return found
 
     def renewed(self, scenario: Scenario) -> Self:
-        """The data with the noise of the input as the response in a scenario passes it on."""
-        if not any(own.driven for own in self.releases):
-            return self
-        (values,) = self.known_values([scenario], OF_INPUT)
-        starts, gains = self.starts(scenario.point), self._gain(scenario.point)
-        own = zip(self.releases, starts, gains, strict=True)
+        """The data with the noise that a scenario leaves room for.
+
+        Noise of the input is passed on as its response does. Noise of a channel that is told far above its
+        motion only is no more than what it leaves.
+        """
+        data = self._with_noise_beside(scenario)
+        if not any(own.driven for own in data.releases):
+            return data
+        (values,) = data.known_values([scenario], OF_INPUT)
+        starts, gains = data.starts(scenario.point), data._gain(scenario.point)
+        own = zip(data.releases, starts, gains, strict=True)
         found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
-        return replace(self, decorrelations=found)
+        return replace(data, decorrelations=found)
+
+    def _with_noise_beside(self, scenario: Scenario) -> Self:
+        """The data with less noise where a scenario shows that there is less."""
+        if not any(each.far for each in self.evidence):
+            return self
+        left = self.without_zero(self.measured - np.nan_to_num(self.simulated([scenario])[0]))
+        bins: dict[Key, list[NoiseBins]] = {}
+        for own, row in zip(self.releases, left, strict=True):
+            shape = own.compared.shape
+            for key, each in own.noise_in(row[: own.compared.size].reshape(shape)).items():
+                bins.setdefault(key, []).append(each)
+        told = {key: each for one in self.evidence for key, each in one.beside(bins).items()}
+        return replace(self, releases=tuple(own.with_noise(told) for own in self.releases))
 
     @cached_property
     def size(self) -> np.ndarray:

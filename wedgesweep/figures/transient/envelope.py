@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, labels, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.figures.transient import picks
 
@@ -49,5 +49,7 @@ def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     style.label(made.axes, label, labels.of(ds).displacement)
     handles, names = made.axes[0].get_legend_handles_labels()
     made.legend(handles[::-1], names[::-1], columns=COUNT)
-    made.title("Response and its envelope", labels.of(ds).sign)
+    made.title(
+        "Response and its envelope", "; ".join(filter(None, (labels.of(ds).sign, validity.shares(ds))))
+    )
     return made
