@@ -67,7 +67,7 @@ def random_case(number):
     generator = np.random.default_rng([SEED, number])
     law = LAW_NAMES[number % len(LAW_NAMES)]
     amplitude, beta = 10.0 ** generator.uniform(-5.0, -2.3), generator.uniform(0.15, 3.0)
-    lean = float(generator.choice([-8.0, -4.0, 4.0, 8.0]))
+    column_angle = float(generator.choice([-8.0, -4.0, 4.0, 8.0]))
     preload, guide = float(generator.choice([-1.0, 0.0, 0.0, 3.0])), float(generator.choice([0.0, 0.0, 0.3]))
     dynamic = generator.uniform(0.1, 0.35)
     static = dynamic * generator.uniform(1.0, 1.5)
@@ -75,12 +75,13 @@ def random_case(number):
         law,
         amplitude,
         beta * OMEGA_N,
-        suspension={"column_angle": lean * pi / 180.0, "wedge_preload": preload},
+        suspension={"column_angle": column_angle * pi / 180.0, "wedge_preload": preload},
         friction={"dynamic": dynamic, "static": static},
         effects={"guide_friction": {"force": guide}},
     )
-    words = f"{law}, beta {beta:.4f}, {amplitude * 1e3:.4f} mm, lean {lean:+g}, preload {preload:g} N"
-    return record, f"{number:3} {words}, guide {guide:g} N, mu {dynamic:.3f}/{static:.3f}"
+    words = f"{law}, beta {beta:.4f}, {amplitude * 1e3:.4f} mm, column angle {column_angle:+g} deg"
+    forces = f"preload {preload:g} N, guide {guide:g} N"
+    return record, f"{number:3} {words}, {forces}, mu {dynamic:.3f}/{static:.3f}"
 
 
 def ratio(solve, record, rtol):

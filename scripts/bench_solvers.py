@@ -29,8 +29,8 @@ GOALS = {
 LIBRARY = "the fastest library"
 
 
-class Rung(NamedTuple):
-    """One tolerance of a contender's ladder."""
+class Timed(NamedTuple):
+    """Error and speed of a contender at one tolerance."""
 
     rtol: float
     error: float
@@ -50,17 +50,17 @@ def measure(contender, records, rtol, exact):
         started = process_time()
         ratios = contender.ratios(several, rtol)
         took = min(took, process_time() - started)
-    return Rung(rtol, errors(ratios[: len(records)], exact).max(), len(several) / took)
+    return Timed(rtol, errors(ratios[: len(records)], exact).max(), len(several) / took)
 
 
-def climb(contender, records, exact):
-    """Rungs down to the first that meets the finest accuracy."""
-    rungs = []
+def down_to_accuracy(contender, records, exact):
+    """Tolerances down to the first that meets the finest accuracy."""
+    found = []
     for rtol in contender.ladder:
-        rungs.append(measure(contender, records, rtol, exact))
-        if rungs[-1].error <= min(ACCURACIES):
+        found.append(measure(contender, records, rtol, exact))
+        if found[-1].error <= min(ACCURACIES):
             break
-    return rungs
+    return found
 
 
 def compiled(law, records):
@@ -104,19 +104,19 @@ def number(value):
 def table(law, accuracy, results, cases):
     """Print who meets an accuracy and how fast; rates over that of plain Radau and of the fastest library."""
     chosen = {}
-    for name, rungs in results.items():
-        met = [rung for rung in rungs if rung.error <= accuracy]
-        chosen[name] = met[0] if met else min(rungs, key=lambda rung: rung.error)
-    fits = {name: rung.rate for name, rung in chosen.items() if rung.error <= accuracy}
+    for name, found in results.items():
+        met = [one for one in found if one.error <= accuracy]
+        chosen[name] = met[0] if met else min(found, key=lambda one: one.error)
+    fits = {name: one.rate for name, one in chosen.items() if one.error <= accuracy}
     plain = fits.get(contenders.PLAIN, np.nan)
     rivals = [fits[name] for name in libraries.installed()[0] if name in fits]
     library = max(rivals, default=np.nan)
     print(f"\n{law}, accuracy {accuracy:.0e}")
     print(f"{'':26}cases  rtol    error  cases/s   x plain x library")
-    for name, rung in chosen.items():
-        line = f"{name:26}{cases[name]:5} {rung.rtol:.0e} {rung.error:8.1e}"
+    for name, one in chosen.items():
+        line = f"{name:26}{cases[name]:5} {one.rtol:.0e} {one.error:8.1e}"
         if name in fits:
-            line += f" {number(rung.rate):>8} {number(rung.rate / plain):>9} {number(rung.rate / library):>9}"
+            line += f" {number(one.rate):>8} {number(one.rate / plain):>9} {number(one.rate / library):>9}"
         else:
             line += " never this accurate"
         print(line)
@@ -151,7 +151,7 @@ def bench(law):
     for name, contender in taking_part.items():
         some = contender.cases
         reference = (own if contender.smoothed else exact)[some]
-        results[name] = climb(contender, records[some], reference)
+        results[name] = down_to_accuracy(contender, records[some], reference)
         cases[name] = reference.size
     compare_few(records, taking_part[contenders.LOOP], exact)
     ratios = {accuracy: table(law, accuracy, results, cases) for accuracy in ACCURACIES}

@@ -1,8 +1,9 @@
 """What a second process costs a Radau sweep: CPU seconds in this process, in one worker and in two.
 
 CPU seconds of a case grow if workers are in each other's way (caches, memory, threads of libraries, system
-calls); what a worker spends outside of cases is its start. Wall times of a busy machine say neither. Every
-third case of configs/quick.toml; writes docs/bench_workers.txt.
+calls), or if the machine gives two processes less than twice as much: a loop that touches no memory shows how
+much less. What a worker spends outside of cases is its start. Wall times of a busy machine say none of this.
+Every third case of configs/quick.toml; writes docs/bench_workers.txt.
 """
 
 import os
@@ -50,40 +51,55 @@ def solved(chunk):
     )
 
 
+def empty_loop(_):
+    """CPU seconds of a loop that touches no memory."""
+    began = time.process_time()
+    for _ in range(LOOP):
+        pass
+    return time.process_time() - began
+
+
 def chunks(sweep):
     for case in range(0, sweep.count, STEP):
         index = np.array([case])
         yield Chunk(sweep.config.records(index), index, sweep.settings, 60.0, sweep.dtype)
 
 
-def told(name, cases, own):
-    """One line: what a case takes, and what a worker takes before its first one."""
+def told(name, cases, own, loops):
+    """One line: what a case takes, what a worker takes before its first one, and what the loop takes."""
     warm = [case for case in cases if case.case in WARM]
     cpu, system, faults = (np.mean([getattr(case, name) for case in warm]) for name in Solved._fields[2:5])
     workers = {case.process for case in cases}
     start = max(
         min(case.process_cpu - case.cpu for case in cases if case.process == each) for each in workers
     )
-    return f"{name:>13} {cpu:13.3f} {system:14.4f} {faults:12.0f} {start:22.2f} {own:13.2f}"
+    loop = np.mean(loops)
+    return f"{name:>13} {cpu:13.3f} {system:14.4f} {faults:12.0f} {start:16.2f} {own:13.2f} {loop:11.3f}"
 
 
 # Cases late enough that every worker has loaded its code before.
 WARM = range(12, 1000)
+LOOP, LOOPS = 20_000_000, 12
 
 
 def main():
     sweep = Sweep(ws.load_config(ROOT / "configs" / "quick.toml"), Path("quick.nc"))
     compile_once("radau")
-    lines = ["CPU s          a later case  in the kernel  page faults  before its first case  this process"]
+    lines = [
+        "CPU s          a later case  in the kernel  page faults  before a first  this process  empty loop"
+    ]
     began = time.process_time()
-    lines.append(told("in itself", list(map(solved, chunks(sweep))), time.process_time() - began))
+    cases, own = list(map(solved, chunks(sweep))), time.process_time() - began
+    lines.append(told("in itself", cases, own, list(map(empty_loop, range(LOOPS)))))
     for count in (1, 2):
         began = time.process_time()
         with loky(count, dict) as pool:
             # joblib would solve in this process for one job: a pool of two, with one task at a time.
             parallel = pool.parallel() if count > 1 else joblib.Parallel(2, pre_dispatch=1, batch_size=1)
             cases = list(parallel(joblib.delayed(solved)(chunk) for chunk in chunks(sweep)))
-        lines.append(told(f"{count} at a time", cases, time.process_time() - began))
+            own = time.process_time() - began
+            loops = list(parallel(joblib.delayed(empty_loop)(i) for i in range(LOOPS)))
+        lines.append(told(f"{count} at a time", cases, own, loops))
         get_reusable_executor().shutdown()
     print("\n".join(lines))
     REPORT.write_text("\n".join(lines) + "\n")

@@ -20,7 +20,7 @@ from time import process_time
 import numpy as np
 
 from wedgesweep import config
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
 
 PYTHON, MODEL = "/usr/bin/python3", Path(__file__).parent / "siconos_model.py"
@@ -46,7 +46,7 @@ kept_periods = 2
 def solved():
     """Records of the study's cases that lift off and have settled in the same window, and their cases."""
     study = config.parse(STUDY)
-    dtype = dataset.record_dtype({"phase": 0, "harmonic": dataset.HARMONICS, "part": 2})
+    dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
     rows = study.records()
     found = solve_cases(rows, np.arange(len(rows)), study.solver, inf, dtype)
     opens = (found["lift_off_fraction"] > 0.0) & (found["periodicity"] < SETTLED)

@@ -10,7 +10,7 @@ import workload
 
 from wedgesweep.simulate import Settings, respond
 from wedgesweep.solvers import event_driven
-from wedgesweep.sweep import batch, dataset
+from wedgesweep.sweep import batch, variables
 
 LADDER = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
 DECADES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
@@ -55,13 +55,13 @@ def loop_alone(cases, rtol):
 def to_records(cases, rtol):
     """batch.solve_batch: all that a sweep stores of a case."""
     sizes = {"phase": 0, "samples_per_period": SAMPLES_PER_PERIOD}
-    dtype = dataset.record_dtype({**sizes, "harmonic": dataset.HARMONICS, "part": 2})
+    dtype = variables.record_dtype({**sizes, "harmonic": variables.HARMONICS, "part": 2})
     settings = _settings("event-driven", rtol)
     return batch.solve_batch(cases, np.arange(len(cases)), settings, dtype)[0]["amplitude_ratio"]
 
 
 def _our_radau(record, rtol):
-    numbers = respond(record, _settings("radau", rtol), dataset.HARMONICS)[0].numbers
+    numbers = respond(record, _settings("radau", rtol), variables.HARMONICS)[0].numbers
     return numbers["amplitude_ratio"]
 
 

@@ -13,7 +13,7 @@ from wedgesweep import config
 from wedgesweep.config import Config
 from wedgesweep.reproduce import joints
 from wedgesweep.reproduce.single_case import changed
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
 
 PAPER = Path(__file__).parents[1] / "configs" / "paper.toml"
@@ -23,11 +23,11 @@ NAMES = (*joints.KEPT, "minimum_normal_force")
 
 def solved(study: Config) -> xr.Dataset:
     """All cases of a study, with the event-driven solver."""
-    dtype = dataset.record_dtype({"phase": 0, "harmonic": dataset.HARMONICS, "part": 2})
+    dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
     cases = study.records()
     found = solve_cases(cases, np.arange(len(cases)), study.solver, inf, dtype)
     shape, coordinates = study.case_coordinates()
-    return xr.Dataset({name: (dataset.GRID, found[name].reshape(shape)) for name in NAMES}, coordinates)
+    return xr.Dataset({name: (variables.GRID, found[name].reshape(shape)) for name in NAMES}, coordinates)
 
 
 def row(law: str, beta: float, held: xr.Dataset, opens: xr.Dataset) -> str:

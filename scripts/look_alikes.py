@@ -203,11 +203,11 @@ def diagnosed(made: LookAlike) -> DiagnosisResult:
 def line(found: DiagnosisResult) -> str:
     """Verdict, causes, and how accurate the base model and the best explanations are."""
     causes = " + ".join(cause["effect"] for cause in found.causes) or "-"
-    rungs = [
-        f"{' + '.join(rung['effects']) or 'model on trial'} {rung['accuracy']:.2%}"
-        for rung in found.document["ladder"]
+    levels = [
+        f"{' + '.join(level['effects']) or 'model on trial'} {level['accuracy']:.2%}"
+        for level in found.document["ladder"]
     ]
-    return f"{found.verdict}: {causes}; accuracy: {', '.join(rungs)}"
+    return f"{found.verdict}: {causes}; accuracy: {', '.join(levels)}"
 
 
 if __name__ == "__main__":

@@ -211,8 +211,8 @@ def extensions(folder: Path, recording: str, force: float) -> dict[str, Extensio
     found = {}
     for effect in FURTHER:
         document = diagnose(folder, Frame(friction=force), recording, DISCS, [effect], LEVEL).document
-        for rung in document["ladder"]:
-            found["+".join(rung["effects"])] = Extension(rung["accuracy"], rung["accuracy_held_out"])
+        for level in document["ladder"]:
+            found["+".join(level["effects"])] = Extension(level["accuracy"], level["accuracy_held_out"])
     return found
 
 

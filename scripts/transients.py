@@ -15,7 +15,9 @@ import numpy as np
 from wedgesweep import config, sampled_input, simulate
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.systems import oscillator, state_count, suspension
+from wedgesweep.systems import state_count
+from wedgesweep.systems.oscillator import parameters as oscillator
+from wedgesweep.systems.suspension import parameters as suspension
 
 CLOSE = 1e-6
 EFFECTS = (
@@ -47,13 +49,13 @@ def sine_and_samples(system):
         omega *= 3.0
         case = suspension.record("static-dynamic", 3e-3, omega)
     rest = np.zeros((1, state_count()))
-    sine = periodic.samples(case, rest, 0, periods, count, 1e-9)[0]
+    sine = periodic.sampled(case, rest, 0, periods, count, 1e-9).x
     step = 2.0 * pi / omega / count
     given = sampled_input.from_samples(
         3e-3 * np.sin(omega * step * np.arange(2 * periods * count)), step, fastest=omega
     )
     sampled_input.set_sampled(case, given, 3e-3, omega, periods * 2.0 * pi / omega)
-    return sine, periodic.samples(case, rest, 0, 1, periods * count, 1e-9)[0]
+    return sine, periodic.sampled(case, rest, 0, 1, periods * count, 1e-9).x
 
 
 def document(number):

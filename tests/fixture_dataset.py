@@ -7,7 +7,7 @@ inputs stick, large ones slip, and the laws differ. One case failed; large input
 import numpy as np
 import xarray as xr
 
-from wedgesweep.sweep.dataset import HARMONICS, STATUSES, VARIABLES
+from wedgesweep.sweep.variables import HARMONICS, STATUSES, VARIABLES
 
 LAWS = ("coulomb", "static-dynamic", "exponential")
 BETAS = (0.1, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.75, 2.2, 2.6, 3.0, *np.linspace(3.1, 3.8, 8))

@@ -208,26 +208,26 @@ def _document(verdict, data, causes, attempt, rivals, known):
 def _ladder(verdict, attempt):
     """Base model, single effects, and pairs where the attempt is one or nothing is adequate."""
     if verdict == "nothing-missing":
-        return [_rung(([], 0.0)), _rung((["stribeck"], 0.0), (["guide_friction"], 0.0))]
+        return [_level(([], 0.0)), _level((["stribeck"], 0.0), (["guide_friction"], 0.0))]
     left = 0.012 if verdict == "none-of-mine" else 0.0
     single = attempt if len(attempt) == 1 else ["stribeck"]
     other = "guide_friction" if single == ["stribeck"] else "stribeck"
     singles = [(single, left if single == attempt else 0.08), ([other], 0.14), (["end_stop"], 0.3)]
-    rungs = [_rung(([], 0.35)), _rung(*singles)]
+    levels = [_level(([], 0.35)), _level(*singles)]
     if len(attempt) == 2 or left:
         pair = attempt if len(attempt) == 2 else ["stribeck", "velocity_lag"]
-        rungs.append(
-            _rung((pair, 0.8 * left), (["stribeck", "end_stop"], 0.011), (["stribeck", "ageing"], None))
+        levels.append(
+            _level((pair, 0.8 * left), (["stribeck", "end_stop"], 0.011), (["stribeck", "ageing"], None))
         )
-    return rungs
+    return levels
 
 
-def _rung(*rated):
+def _level(*rated):
     (effects, best), *others = rated
     rivals = [{"effects": each, "accuracy": size} for each, size in others]
     distinct = rivals[0]["accuracy"] / best if rivals and best else None
-    rung = {"effects": effects, "accuracy": best, "accuracy_held_out": 1.25 * best}
-    return {**rung, "distinct": distinct, "rivals": rivals}
+    level = {"effects": effects, "accuracy": best, "accuracy_held_out": 1.25 * best}
+    return {**level, "distinct": distinct, "rivals": rivals}
 
 
 def _cause(effect, numbers):

@@ -13,7 +13,7 @@ import xarray as xr
 import wedgesweep as ws
 from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
 from wedgesweep import config
-from wedgesweep.errors import InputError, MismatchError
+from wedgesweep.errors import InputError, MismatchError, SweepError
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "api.md").read_text()
@@ -71,6 +71,8 @@ def test_a_config_is_the_same_from_a_file_and_from_its_tables(tmp_path):
 
 def test_a_sweep_is_stored_and_resumed_or_left_in_memory(tmp_path):
     settings = config.parse(FAST)
+    with pytest.raises(SweepError, match="end it in"):
+        ws.run_sweep(settings, tmp_path / "small.png")
     ds = ws.run_sweep(settings, tmp_path / "small.nc", n_jobs=1)
     assert_same_numbers(ws.run_sweep(settings), ds)
     told = []

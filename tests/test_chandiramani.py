@@ -147,7 +147,7 @@ def test_set_valued_friction_sticks_at_20_and_30_hz():
         for hertz, amplitude in ((20.0, 0.04e-3), (20.0, 0.05e-3), (30.0, 0.018e-3), (30.0, 0.022e-3)):
             rows = scenarios.excited(alone(lean), hertz, np.array([amplitude]))
             stuck[lean, hertz, amplitude] = scenarios.respond(rows, TIGHT).stuck[0]
-    # PHYSICS.md, claim 6; with the other lean the same cases are stuck nearly always.
+    # PHYSICS.md, claim 6; with the other column angle the same cases are stuck nearly always.
     expected = [0.58, 0.15, 0.56, 0.24]
     assert [stuck[key] for key in stuck if key[0] > 0] == pytest.approx(expected, abs=6e-3)
     assert all(stuck[key] > 0.9 for key in stuck if key[0] < 0)

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ import xarray as xr
 from tests import fixture_dataset, fixture_diagnosis, small_sweep
 from tests.command import invoke
 from tests.small_sweep import CONFIG, LOCKED
-from wedgesweep import config, figures
+from wedgesweep import config, endings, figures
 from wedgesweep.cli import cli, messages
 from wedgesweep.cli.failure import _failure
 from wedgesweep.cli.humanize import duration, size
@@ -213,7 +214,8 @@ def test_outputs_that_cannot_be_are_refused_before_any_case(here):
         "folder": "is a directory",
         "mine.nc": "mine.nc: not a netCDF dataset",
         "measured.nc": "measured.nc: not the dataset of a sweep",
-        "few.toml": "few.toml: a config, where the dataset of a run is wanted",
+        "few.toml": "few.toml: netCDF is written, and .toml is the ending of TOML; end it in .nc",
+        "study.png": "study.png: netCDF is written, and .png is the ending of a figure; end it in .nc",
         "/proc/x.nc": "/proc/x.nc.partial: No such file",
     }.items():
         for fresh in ((), ("--fresh",)):
@@ -222,6 +224,26 @@ def test_outputs_that_cannot_be_are_refused_before_any_case(here):
             assert "16 cases" not in told
     assert (here / "mine.nc").read_text() == "mine"
     assert (here / "few.toml").read_text() == FEW
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (("export", "few.nc", "-o", "few.nc"), "few.nc: CSV is written, and .nc is the ending of netCDF"),
+        (("init", "study.nc"), "study.nc: TOML is written, and .nc is the ending of netCDF; end it in .toml"),
+        (("schema", "-o", "schema.html"), "schema.html: JSON is written, and .html is the ending of a page"),
+    ],
+)
+def test_what_is_written_does_not_get_the_ending_of_another_format(here, command, words):
+    (here / "few.nc").write_text("mine")
+    assert words in invoke(*command, code=2)
+    assert (here / "few.nc").read_text() == "mine"
+    assert not any((here / name).exists() for name in ("study.nc", "schema.html"))
+
+
+@pytest.mark.parametrize("name", ["study", "study.v2", "study.NC", "study.h5", "study.partial"])
+def test_any_other_name_of_a_dataset_will_do(name):
+    assert endings.mismatch(Path(name), endings.NETCDF) is None
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

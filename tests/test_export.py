@@ -9,7 +9,7 @@ import xarray as xr
 
 from tests import fixture_dataset, small_sweep
 from tests.command import invoke
-from wedgesweep.sweep.dataset import STATUSES
+from wedgesweep.sweep.variables import STATUSES
 
 CASES = ["friction_law", "beta", "frequency [Hz]", "amplitude [m]"]
 

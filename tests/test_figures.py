@@ -15,8 +15,8 @@ from wedgesweep.figures import (
     cases,
     catalogue,
     friction_laws,
+    maps,
     response,
-    stick_map,
     validity,
 )
 from wedgesweep.friction import LAWS
@@ -290,7 +290,7 @@ def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_thei
 def test_stick_map_cells_enclose_their_centres():
     for centres in (np.array([0.1, 0.3, 0.4, 1.75]), np.array([0.005, 0.015, 0.1, 4.75])):
         for logarithmic in (False, True):
-            edges = stick_map.cell_edges(centres, logarithmic)
+            edges = maps.cell_edges(centres, logarithmic)
             assert ((edges[:-1] < centres) & (centres < edges[1:])).all()
 
 

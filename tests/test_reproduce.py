@@ -21,7 +21,7 @@ from wedgesweep.reproduce.findings import (
     untested,
 )
 from wedgesweep.reproduce.runs import Run, Runs
-from wedgesweep.reproduce.single_case import other_lean, single
+from wedgesweep.reproduce.single_case import mirrored_columns, single
 
 SETTLED = {"solver": {"settle_periods": 60}}
 BY_NUMBER = {claim.number: claim for claim in claims.CLAIMS}
@@ -148,11 +148,11 @@ def test_a_failed_case_makes_no_number(runs):
     assert [row["cases"] for row in rows if row["inputs"] == "all"] == [79, 80, 79]
 
 
-def test_frictionless_ratios_and_other_lean_are_those_of_table_1(runs):
+def test_frictionless_ratios_and_those_of_mirrored_columns_are_those_of_table_1(runs):
     run = runs.paper
     found = [suspension.frictionless_ratio(run, beta) for beta in (run.beta_of(20.0), 3.0)]
     assert found == pytest.approx([2.58, 1.20], abs=0.005)
-    assert BY_NUMBER[2].find(runs).numbers["other_lean"] == pytest.approx(-0.9342939466)
+    assert BY_NUMBER[2].find(runs).numbers["mirrored"] == pytest.approx(-0.9342939466)
 
 
 def test_single_cases_follow_what_is_changed(runs):
@@ -161,12 +161,12 @@ def test_single_cases_follow_what_is_changed(runs):
     assert coulomb["amplitude_ratio"] == pytest.approx(0.368, abs=5e-4)
     static_dynamic = single(run, "static-dynamic", 1.472, 0.05, SETTLED)
     assert static_dynamic["amplitude_ratio"] == pytest.approx(1.032, abs=1e-3)
-    stuck = single(run, "coulomb", 1.472, 0.04, SETTLED | other_lean(run.config))
+    stuck = single(run, "coulomb", 1.472, 0.04, SETTLED | mirrored_columns(run.config))
     assert 0.92 < stuck["stick_fraction"] < 0.96
 
 
 def test_a_single_case_that_locks_is_nan(runs):
-    locking = {**other_lean(runs.paper.config), "friction": {"dynamic": 0.5}}
+    locking = {**mirrored_columns(runs.paper.config), "friction": {"dynamic": 0.5}}
     assert np.isnan(single(runs.paper, "coulomb", 1.1, 2.0, locking)["amplitude_ratio"])
 
 

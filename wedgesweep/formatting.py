@@ -14,6 +14,14 @@ def counted(count: int, noun: str, plural: str = "") -> str:
     return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
 
 
+def case(law: str, beta: float, amplitude: float, unit: str = "m") -> str:
+    """A case in words; amplitude in m or N, or without a unit the scale of an input."""
+    if not unit:
+        return f"{law}, scale {amplitude:.6g}"
+    size = f"{amplitude * 1e3:.6g} mm" if unit == "m" else f"{amplitude:.6g} {unit}"
+    return f"{law}, beta {beta:.6g}, amplitude {size}"
+
+
 def number(value: float | None, digits: int = 3) -> str:
     """Write a number with significant digits and thousands apart; one that is not finite becomes a dash."""
     if value is None or not isfinite(value):

@@ -6,6 +6,8 @@ from pathlib import Path
 from wedgesweep.files import read_bytes, regular
 
 CONFIG, MEASURED, SWEEP, DIAGNOSIS, DATASET = "config", "measured", "sweep", "diagnosis", "dataset"
+# What `check` takes.
+CONFIG_OR_MEASURED = "config or measured"
 # What each is, and what it is good for.
 WORDS = {
     CONFIG: ("a config", "'wedgesweep run' runs it, and a measured.toml names it as its model"),
@@ -14,7 +16,12 @@ WORDS = {
     DATASET: ("a dataset", "'wedgesweep status' tells whether a run wrote it"),
     DIAGNOSIS: ("the result of a diagnosis", "'wedgesweep plot' draws it, and its extended.toml is a config"),
 }
-WANTED = {CONFIG: "a config (TOML)", MEASURED: "a measurement", SWEEP: "the dataset of a run"}
+WANTED = {
+    CONFIG: "a config (TOML)",
+    MEASURED: "a measurement",
+    CONFIG_OR_MEASURED: "a config (TOML) or a measurement",
+    SWEEP: "the dataset of a run",
+}
 # netCDF 4 is HDF5.
 NETCDF = (b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
 NETCDF_SUFFIXES = (".nc", ".nc4")

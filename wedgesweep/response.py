@@ -10,7 +10,7 @@ from wedgesweep.compiled import allocating, compiled, inner, term
 from wedgesweep.effects.states import input_length
 from wedgesweep.solvers.trajectory import Trajectory
 
-# The numbers of a response (see dataset.VARIABLES), a record.
+# The numbers of a response (see variables.VARIABLES), a record.
 NUMBERS = np.dtype(
     [
         (name, np.float64)
@@ -164,7 +164,7 @@ def _reduce_and_sense(sums, samples, periods, p, numbers, spectra):
 
 @dataclass(frozen=True)
 class Response:
-    """What a run comes to: variables of dataset.VARIABLES by name (SI units).
+    """What a run comes to: variables of variables.VARIABLES by name (SI units).
 
     ``spectra`` have shape (harmonics, 2), real and imaginary parts; ``waveforms`` shape (samples,).
     """

@@ -8,3 +8,13 @@ UNITS = {
     "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": 9.80665},
     "force": {"N": 1.0, "kN": 1e3},
 }
+
+# Other spellings, and those used here.
+SPELLINGS = {"/s2": "/s^2", "\u00b2": "^2", "\u00b5": "u", "\u03bc": "u"}
+
+
+def usual(unit: str) -> str:
+    """A unit in the spelling used here: m/s2 is m/s^2, and a micro sign is u."""
+    for other, own in SPELLINGS.items():
+        unit = unit.replace(other, own)
+    return unit

@@ -45,7 +45,7 @@ def response(config, effects, given, quantity):
     sampled = from_samples(given, float(TIMES[1]), quantity)
     record = config.record_with(merge(config.effects, effects), config.case_list()[0].law, 1.0, 16.0)
     set_sampled(record, sampled, 0.01 if quantity != "force" else 5.0, 16.0, SAMPLES / RATE)
-    found = periodic.samples(record, np.zeros((1, state_count())), 0, 1, SAMPLES * FINE, 1e-10)
+    found = periodic.sampled(record, np.zeros((1, state_count())), 0, 1, SAMPLES * FINE, 1e-10)
     return -np.array([found[0][0], found[1][0]])
 
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from wedgesweep.diagnose import cross_validation, diagnosis, score_test, verdict
-from wedgesweep.diagnose.fit_data import Comparison, FitData, NuisanceParameter
+from wedgesweep.diagnose.evaluation import Comparison, NuisanceParameter
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import tight_refit
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
 from wedgesweep.diagnose.search import Search

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LEANING, drawn, searched
+from tests.diagnose.synthetic import LEANING, drawn, searched, steady_test
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.offer import SEPARATED, choice
+from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.steady import next_test, simulation
 from wedgesweep.diagnose.steady.next_test import ACCELERATIONS, FREQUENCIES, Conditions, rig_of
 from wedgesweep.solvers.periodic import at_rest
@@ -46,7 +47,7 @@ def suspects():
 
 def test_the_next_test_makes_every_suspect_move(suspects):
     """Next to breakaway Coulomb predictions are as far apart as one likes, and as hard to fit."""
-    test = next_test.recommend(suspects)
+    test = steady_test(suspects)
     assert test.distance >= SEPARATED
     assert set(test.separates) == {"friction_level", "bolster_stiffness"}
     assert test.pairs == ((test.separates, test.distance),)
@@ -59,12 +60,12 @@ def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     assert not next_test._predict(
         locking, Conditions(np.array([60.0]), np.array([1e-3])), rig_of(locking.model.data)
     ).found.any()
-    assert next_test.recommend([*suspects, locking]) == next_test.recommend(suspects)
-    assert next_test.recommend([suspects[0], locking]) is None
+    assert steady_test([*suspects, locking]) == steady_test(suspects)
+    assert steady_test([suspects[0], locking]) is None
 
 
 def test_one_suspect_needs_no_test(suspects):
-    assert next_test.recommend(suspects[:1]) is None
+    assert recommend(suspects[:1]) is None
 
 
 def test_the_cheapest_test_is_chosen_that_would_do_with_a_neighbour_s_amplitude():

@@ -9,7 +9,7 @@ from scipy.special import chdtrc
 from tests.diagnose.synthetic import MODEL, base_of
 from wedgesweep import config, excitation
 from wedgesweep.diagnose.diagnosis import diagnose
-from wedgesweep.diagnose.fit_data import Scenario
+from wedgesweep.diagnose.evaluation import Scenario
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.steady import simulation

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import MODEL, drawn
+from tests.diagnose.synthetic import MODEL, drawn, steady_test
 from tests.scaling import BENCH_SIZE, FROUDE, HEAVIER, SIZES
 from wedgesweep import config
 from wedgesweep.diagnose import diagnosis, verdict
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.steady import next_test, simulation
+from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.measured import Measurement, TestRecord
 
@@ -38,7 +38,7 @@ class Answer:
             data = drawn(effects, size=size)
             explained = diagnosis.explain(Search.of(data, candidates))
             self.base, self.explanations = explained.base, explained.explanations
-            self.next = next_test.recommend([each.fit for each in self.explanations[:3]])
+            self.next = steady_test([each.fit for each in self.explanations[:3]])
         self.finding = verdict.decide(self.base, self.explanations, verdict.DEFAULT)
 
     def numbers(self, explanation):

@@ -28,7 +28,7 @@ def rows(phase):
 def test_input_and_tone_meet_as_in_the_record(begin):
     """Records that begin anywhere, under a tone of any phase, have the harmonics that are simulated."""
     at_rest = periodic.at_rest(3).state
-    x, velocity, _ = periodic.samples(rows(1.9), at_rest, 30, 10, PER_PERIOD, 1e-8)
+    x, velocity = periodic.sampled(rows(1.9), at_rest, 30, 10, PER_PERIOD, 1e-8)[:2]
     count = round(PERIODS * PER_PERIOD)
     signals = -np.stack([x, velocity], axis=1)
     signals += (

@@ -8,7 +8,8 @@ from scipy.signal import lfilter
 from scipy.stats import gamma
 
 from wedgesweep.diagnose.steady import tone
-from wedgesweep.diagnose.steady.spectra import COMPARED, spectrum
+from wedgesweep.diagnose.steady.harmonic_fit import COMPARED
+from wedgesweep.diagnose.steady.spectra import spectrum
 
 RATE = 2000.0
 

@@ -29,7 +29,7 @@ def recorded(phases, seed):
     stray = {"stray_vibration": {"acceleration": ACCELERATION, "frequency": TONE}}
     rows = simulation.records(model, "static-dynamic", stray, 2.0 * pi * FREQUENCIES, AMPLITUDES)
     rows["stray_vibration"]["phase"] = phases
-    x, velocity, _ = periodic.samples(rows, periodic.at_rest(3).state, 40, 9, PER_PERIOD, 1e-8)
+    x, velocity = periodic.sampled(rows, periodic.at_rest(3).state, 40, 9, PER_PERIOD, 1e-8)[:2]
     count = round(PERIODS * PER_PERIOD)
     signals = -np.stack([x, velocity], axis=1)[..., :count]
     signals += NOISE * signals.std(axis=2, keepdims=True) * rng.normal(size=signals.shape)

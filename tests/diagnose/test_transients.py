@@ -54,7 +54,7 @@ def free_motion(config, effects, start, rate, samples, rtol=1e-10):
     excitation.set_no_motion(record, max(abs(start[0]), 1e-6))
     state = np.zeros((1, state_count()))
     state[0, :2] = np.array(start) * (1.0 if config.system == "oscillator" else -1.0)
-    x = periodic.samples(record, state, 0, -(-samples // 16), per_period, rtol)[0][0]
+    x = periodic.sampled(record, state, 0, -(-samples // 16), per_period, rtol).x[0]
     return -x[::fine][:samples]
 
 

@@ -10,7 +10,7 @@ from tests.command import invoke
 from tests.diagnose.synthetic import drawn
 from wedgesweep import config
 from wedgesweep import measured as measurements
-from wedgesweep.diagnose.fit_data import Point, Scenario
+from wedgesweep.diagnose.evaluation import Point, Scenario
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnosis_result import read

@@ -1,5 +1,6 @@
 """Recorded inputs, further channels and numbers that differ from test to test."""
 
+import netCDF4
 import numpy as np
 import pytest
 
@@ -45,6 +46,21 @@ def test_an_absolute_acceleration_alone_is_a_response(tmp_path):
     assert found.tests[0].displacement is None
     assert found.columns["acceleration"]["of"] == "absolute"
     np.testing.assert_allclose(found.tests[0].acceleration, 1e-3 * vibration()[1], rtol=1e-5)
+
+
+@pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])
+def test_units_are_read_in_any_spelling_and_written_in_one(tmp_path, unit):
+    channel = f'acceleration = {{ column = "d", unit = "{unit}" }}'
+    text = RECORDED.replace('displacement = { column = "d", unit = "mm" }', channel)
+    found = read(tmp_path, text)
+    assert found.columns["acceleration"]["unit"] == "m/s^2"
+    np.testing.assert_allclose(found.tests[0].acceleration, vibration()[1], rtol=1e-5)
+    write_netcdf(found, tmp_path / "all.nc")
+    with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:
+        assert file["tests/0000/acceleration"].units == "m/s^2"
+        file["tests/0000/acceleration"].units = unit
+    again = measured.read(tmp_path / "all.nc")
+    np.testing.assert_array_equal(again.tests[0].acceleration, found.tests[0].acceleration)
 
 
 def test_a_test_has_numbers_of_its_own(tmp_path):

@@ -3,6 +3,8 @@
 import numpy as np
 
 from wedgesweep.compiled import compiled
+from wedgesweep.hybrid import interface
+from wedgesweep.systems.suspension import release
 from wedgesweep.systems.suspension.unilateral import contacts, impact, modes, motion
 
 
@@ -48,3 +50,24 @@ def largest_gain(number, case):
         after = motion.kinetic_energy(motion.velocities(now.y, p), p)
         worst = max(worst, after / before - 1.0 if now.unique else np.inf)
     return worst
+
+
+@compiled
+def taken_by_closed(t, y, closed):
+    """Whether bilateral joints would follow a state of the mass, and their mode."""
+    p = closed[0]
+    mode, unique = interface.initial_mode(t, y, p)
+    return not interface.leaves(y, mode, p), mode, unique
+
+
+@compiled
+def contacts_at(t, y, opening):
+    """Mode of unilateral joints with both contacts closed, and whether it is unique."""
+    return interface.initial_mode(t, (y[0], y[1], 0.0, 0.0, 0.0, 0.0), opening[0])
+
+
+@compiled
+def breakaway_inputs(y, closed):
+    """Base accelerations below and above which a bolster at rest breaks away; NaN if a face opens before."""
+    forward = release.breakaway_input(y, 1, 0, closed[0])
+    return forward, release.breakaway_input(y, -1, 0, closed[0])

@@ -278,7 +278,7 @@ def test_a_foreign_tone_shows_at_its_frequency_and_has_a_phase_of_its_own():
             "static-dynamic", NOT_PERIODIC, {"acceleration": 1.0, "frequency": tone}, 1e-4, beta
         )
         record["stray_vibration"]["phase"] = phase
-        x, _, _ = periodic.samples(record, cold, 20, 20, 64, 1e-8)
+        x = periodic.sampled(record, cold, 20, 20, 64, 1e-8).x
         spectra.append(np.fft.rfft(x[0]) / x.size * 2)
     at_tone = [spectrum[110] for spectrum in spectra]
     assert abs(at_tone[0]) > 1e-6

@@ -276,7 +276,7 @@ def test_a_run_begins_in_the_direction_that_the_input_drives_through_a_compliant
 
 @pytest.mark.parametrize("phase", [0.5, 2.0, 4.0])
 def test_a_start_to_one_side_that_soon_turns_to_the_other_is_resolved(phase):
-    """A foreign tone pulls down for microseconds, until the input that begins at 0 has outgrown it."""
+    """A spurious tone pulls down for microseconds, until the input that begins at 0 has outgrown it."""
     effects = {
         "directional_friction": {"asymmetry": 0.01},
         "stray_vibration": {"acceleration": 1.3e-3, "frequency": 8.0, "phase": phase},

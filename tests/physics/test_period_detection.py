@@ -60,6 +60,6 @@ def test_faces_that_do_not_slip_in_every_period_are_not_taken_to_rest_for_ever()
     found = periodic.respond(row, nothing, periodic.Accuracy(TOLERANCE, 200, TOLERANCE), 256, 8)
     periods = int(found.warm.period[0])
     assert periods == 2
-    x, _, _ = periodic.samples(row, nothing.state, 200, periods, 256, TOLERANCE)
+    x = periodic.sampled(row, nothing.state, 200, periods, 256, TOLERANCE).x
     fourier = -2.0 * np.fft.rfft(x[0])[periods : 9 * periods : periods] / x.size  # displacement is -x
     np.testing.assert_allclose(found.spectra[0, 0], fourier, atol=1e-3 * np.abs(fourier).max())

@@ -96,7 +96,7 @@ def distorted(amplitude, share=1.0):
 
 def halves(row, state, periods=100):
     """How far the two halves (m) of two periods are apart, a hundred periods after a state."""
-    x, _, _ = periodic.samples(row, state, periods, 2, 256, 1e-9)
+    x = periodic.sampled(row, state, periods, 2, 256, 1e-9).x
     return np.abs(x[0, :256] - x[0, 256:]).max()
 
 

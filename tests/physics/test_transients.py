@@ -9,7 +9,7 @@ import transients
 from wedgesweep import config, excitation, sampled_input
 from wedgesweep.compiled import compiled
 from wedgesweep.sweep.run import Sweep
-from wedgesweep.systems import oscillator
+from wedgesweep.systems.oscillator import parameters as oscillator
 
 SOLVERS = ("event-driven", "radau")
 MASS, SPRING = 2.0, 800.0

@@ -15,6 +15,7 @@ from wedgesweep.simulate import Settings, respond
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.trajectory import CaseError, Window
+from wedgesweep.sweep import variables
 from wedgesweep.systems import compact
 from wedgesweep.systems.suspension import parameters
 from wedgesweep.systems.suspension.unilateral.contacts import Faces, Motion, Reactions
@@ -210,6 +211,26 @@ def test_a_bouncing_block_comes_to_rest_at_the_known_time():
     assert np.all(seen[t > 3.0 * fall][:, (COLUMN_GAP, COLUMN_RATE)] == 0.0)
 
 
+def test_two_faces_that_hit_in_turn_ever_faster_close():
+    """Rates fall by a factor with each pair of impacts, in flights down to 1e-20 s; both solvers end them."""
+    suspension = {
+        "wedge_mass": 0.1225,
+        "bolster_mass": 0.987,
+        "wedge_preload": 1.195,
+        "column_angle": -0.07,
+        "wedge_spring": 1600.7,
+    }
+    case = record("coulomb", 0.00099, 0.9188, 0.4, {"dynamic": 0.2474}, **suspension)
+    window, found = Window(case["input"]["omega"][0], 0, 3, 64), []
+    for solver in (event_driven, radau):
+        run = solver.solve(case, window, rtol=1e-9, time_limit=120.0)
+        found.append((run.samples.x, run.sums["impacts"][0], run.sums["struck"][0]))
+    assert found[0][1] > 80
+    assert found[1][1] == pytest.approx(found[0][1], abs=4)
+    assert found[1][0] == pytest.approx(found[0][0], abs=1e-6 * np.abs(found[0][0]).max())
+    assert found[1][2] == pytest.approx(found[0][2], rel=1e-6)
+
+
 CASES = [("coulomb", 2.5, 1e-3, 0.3), ("exponential", 1.2, 1e-3, 0.0), ("static-dynamic", 1.0, 1e-3, 0.3)]
 
 
@@ -242,11 +263,10 @@ def test_a_steady_response_with_impacts_is_that_of_a_long_run():
     case = record("coulomb", 1e-3, 2.5)
     long = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=200)
     expected = respond(case, long, 3)[0].numbers
-    from wedgesweep.sweep import dataset
     from wedgesweep.sweep.cases import solve_cases
 
     found = Settings(method="event-driven", rtol=1e-8, duration=None, steady=True)
-    dtype = dataset.record_dtype({"phase": 0, "harmonic": 9, "part": 2})
+    dtype = variables.record_dtype({"phase": 0, "harmonic": 9, "part": 2})
     (one,) = solve_cases(case, np.array([0]), found, inf, dtype)
     assert one["period"] == 1
     assert one["settled_periods"] < 100

@@ -14,8 +14,8 @@ from wedgesweep.friction import LAW_NAMES
 from wedgesweep.response import NUMBERS
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
-from wedgesweep.sweep import cases, chunks, dataset
-from wedgesweep.sweep.dataset import STATUSES
+from wedgesweep.sweep import cases, chunks, variables
+from wedgesweep.sweep.variables import STATUSES
 from wedgesweep.systems.suspension import parameters
 
 EVENT_DRIVEN = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
@@ -157,8 +157,8 @@ SHORT = Settings("event-driven", 1e-7, None, settle_periods=3, kept_periods=2, s
 
 
 def solved(record, settings=SHORT):
-    sizes = {"phase": 64, "harmonic": dataset.HARMONICS, "part": 2}
-    return cases.solve_cases(record, np.array([0]), settings, 60.0, dataset.record_dtype(sizes))[0]
+    sizes = {"phase": 64, "harmonic": variables.HARMONICS, "part": 2}
+    return cases.solve_cases(record, np.array([0]), settings, 60.0, variables.record_dtype(sizes))[0]
 
 
 @strategies.composite

@@ -12,10 +12,10 @@ from wedgesweep import response
 from wedgesweep.cli import cli
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
-from wedgesweep.sweep import batch, chunks, continuation, dataset, journal
-from wedgesweep.sweep.dataset import DISTINCT, STATUSES
+from wedgesweep.sweep import batch, chunks, continuation, dataset, journal, variables
+from wedgesweep.sweep.variables import DISTINCT, STATUSES
 
-CONTINUED = {variable.name for variable in dataset.CONTINUED}
+CONTINUED = {variable.name for variable in variables.CONTINUED}
 # Friction that falls steeply: below 0.05 mm there is a motion over two periods beside one over a single one.
 STEEP = """\
 title = "friction that falls steeply"

@@ -12,8 +12,8 @@ import xarray as xr
 from tests import small_sweep
 from wedgesweep import config
 from wedgesweep.errors import SweepError
-from wedgesweep.sweep import dataset, provenance
-from wedgesweep.sweep.dataset import STATUSES, VARIABLES
+from wedgesweep.sweep import dataset, provenance, variables
+from wedgesweep.sweep.variables import STATUSES, VARIABLES
 
 FEW = small_sweep.CONFIG.replace("1.1, ", "")
 
@@ -36,7 +36,7 @@ def test_variables_have_the_declared_dimensions_units_and_names(ds):
     assert set(ds.data_vars) == {variable.name for variable in VARIABLES}
     for variable in VARIABLES:
         found = ds[variable.name]
-        assert found.dims == (*dataset.GRID, *variable.dims)
+        assert found.dims == (*variables.GRID, *variable.dims)
         assert found.attrs["long_name"] == variable.long_name
         assert found.attrs.get("units", "") == variable.units
         assert variable.dtype == "str" or found.dtype == np.dtype(variable.dtype)
@@ -125,8 +125,8 @@ def test_read_says_what_it_cannot_read(tmp_path, sweep):
 
 
 def test_blank_records_have_no_numbers():
-    dtype = dataset.record_dtype({"phase": 4, "harmonic": 9, "part": 2})
-    blank = dataset.blank(dtype, np.array([3, 5]))
+    dtype = variables.record_dtype({"phase": 4, "harmonic": 9, "part": 2})
+    blank = variables.blank(dtype, np.array([3, 5]))
     assert blank["index"].tolist() == [3, 5]
     assert {STATUSES[value] for value in blank["status"]} == {"not_run"}
     assert all(np.isnan(blank[v.name]).all() for v in VARIABLES if v.dtype[0] == "f")

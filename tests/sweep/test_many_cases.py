@@ -13,7 +13,7 @@ import pytest
 from tests.command import invoke
 from wedgesweep import config
 from wedgesweep.config import Case
-from wedgesweep.sweep import dataset, outcomes
+from wedgesweep.sweep import dataset, estimate, outcomes, variables
 from wedgesweep.sweep.chunks import CHUNK, Rows
 from wedgesweep.sweep.run import Sweep
 
@@ -66,6 +66,27 @@ def test_check_answers_at_once(tmp_path, text):
     assert time.process_time() - began < 2.0  # with Python's start a second more
     assert _peak() - peak < 20e6
     assert f"{config.parse(text).sweep.count} = 1 friction law x" in told
+
+
+@pytest.mark.parametrize(("solver", "factor"), [("settle_periods = 37", 4.0), ("settle_periods = 1", 1.0)])
+def test_radau_is_timed_by_a_part_of_the_periods(tmp_path, monkeypatch, solver, factor):
+    """Of 40 periods 10 are run, 3 of which are kept; few periods are run whole."""
+    grid = GRID.format(betas=2, amplitudes=2).replace('"event-driven"', '"radau"')
+    text = re.sub("settle_periods = .*", solver, grid)
+    sweep, settled = Sweep(config.parse(text), tmp_path / "few.nc"), []
+
+    def solved(records, indices, settings, limit, dtype):
+        settled.append(settings.settle_periods)
+        found = np.zeros(len(indices), dtype)
+        found["index"], found["wall_time"] = indices, 2.0
+        return found
+
+    monkeypatch.setattr(estimate, "solve_cases", solved)
+    monkeypatch.setattr(estimate, "compile_once", lambda *_: None)
+    cost = estimate.estimate(sweep, n_jobs=2)
+    assert settled == [1, *[7 if factor > 1.0 else 1] * 4]  # the first one loads the compiled code
+    assert cost.seconds == 4 * 2.0 * factor / 2
+    assert sorted(cost.sampled["index"]) == [0, 1, 2, 3]
 
 
 def test_a_list_of_many_numbers_is_read_in_a_moment():
@@ -128,7 +149,7 @@ def _sizes(rows, left, method, expected):
 
 def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
     sweep = Sweep(config.parse(MILLION.replace("= 1000 }", "= 300 }")), tmp_path / "x.nc")
-    records = dataset.blank(sweep.dtype, np.arange(sweep.count))
+    records = variables.blank(sweep.dtype, np.arange(sweep.count))
     records["status"], records["periodicity"], records["lift_off_fraction"] = 0, 0.0, 0.0
     records["status"][[5, 70_000]], records["message"][70_000] = 1, b"locks"
     records["periodicity"][:7] = 1.0

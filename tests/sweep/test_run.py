@@ -19,8 +19,8 @@ from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.response import Response
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import cases, journal
-from wedgesweep.sweep.dataset import STATUSES
 from wedgesweep.sweep.run import CaseFailedError
+from wedgesweep.sweep.variables import STATUSES
 
 TIMED_OUT = STATUSES.index("time_limit")
 

@@ -7,9 +7,9 @@ import xarray as xr
 from tests.command import invoke
 from wedgesweep import config, figures
 from wedgesweep.figures.transient import loop, ring_down
-from wedgesweep.sweep import outcomes
+from wedgesweep.sweep import unfinished
 from wedgesweep.sweep.journal import Journal
-from wedgesweep.sweep.run import Sweep, unfinished
+from wedgesweep.sweep.run import Sweep
 
 HEAD = """\
 [oscillator]
@@ -99,8 +99,8 @@ def test_an_interrupted_sweep_is_resumed(folder):
     part = Sweep(config.load("release.toml"), folder / "part.nc")
     with Journal(part.journal_path, part.dtype, part.journal_header) as journal:
         journal.append(records)
-    assert outcomes.of_journal(part.journal_path)[1].amplitude == 1.0
-    drawn = unfinished(folder / "part.nc")
+    assert unfinished.outcomes_of(folder / "part.nc")[1].amplitude == 1.0
+    drawn = unfinished.dataset_of(folder / "part.nc")
     assert (drawn["status"] == 0).sum() == 2
     assert "2 ok, 4 remaining" in invoke("status", "part.nc")
     resumed = part.run(n_jobs=1)
@@ -207,6 +207,15 @@ def test_faults_of_other_kinds_are_told(given, told):
     with pytest.raises(config.ConfigError) as caught:
         config.parse(HEAD + given + TAIL)
     assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])
+def test_the_unit_of_a_record_is_read_in_any_spelling_and_written_in_one(tmp_path, unit):
+    (tmp_path / "bump.csv").write_text("t,base\n0.0,1.0\n0.1,2.0\n0.2,1.0\n")
+    given = RECORD.replace('"mm"', f'"{unit}"\nquantity = "acceleration"')
+    found = config.parse(HEAD + given + TAIL, directory=tmp_path)
+    assert 'unit = "m/s^2"' in found.to_toml()
+    assert found.input.given.max() == 2.0
 
 
 def test_a_force_is_for_oscillators():

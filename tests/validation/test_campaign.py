@@ -94,8 +94,8 @@ def test_verdicts_are_judged():
 
 
 def test_the_leading_cause_is_judged_by_the_ladder():
-    def led(*rungs):
-        return judge.leads_ladder({"truth": ["stribeck"], "ladder": [{"effects": list(r)} for r in rungs]})
+    def led(*levels):
+        return judge.leads_ladder({"truth": ["stribeck"], "ladder": [{"effects": list(r)} for r in levels]})
 
     assert led((), ("stribeck",), ("ageing", "preload"))
     assert led((), ("ageing",), ("preload", "stribeck"))

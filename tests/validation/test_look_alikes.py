@@ -52,7 +52,7 @@ def test_the_cause_is_named(name):
 def test_nothing_is_named_where_candidates_only_come_close(name):
     found = found_in(name)
     assert (found.verdict, found.causes) == ("none-of-mine", [])
-    best = [sorted(rung["effects"]) for rung in found.document["ladder"][1:]]
+    best = [sorted(level["effects"]) for level in found.document["ladder"][1:]]
     assert best[: len(CLOSE[name])] == CLOSE[name]
 
 

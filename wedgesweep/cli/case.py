@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.messages import log
@@ -114,11 +115,10 @@ def _require_no_sweep(path: Path) -> None:
 
 
 def _print_numbers(ds: "xr.Dataset") -> None:
-    from wedgesweep.sweep.cases import describe
-    from wedgesweep.sweep.dataset import OF_LIFT_OFF, VARIABLES
+    from wedgesweep.sweep.variables import OF_LIFT_OFF, VARIABLES
 
     law, beta, amplitude = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
-    where = describe(law, beta, amplitude, ds["amplitude"].attrs["units"])
+    where = formatting.case(law, beta, amplitude, ds["amplitude"].attrs["units"])
     click.echo(f"{where}, {ds['frequency'].item():.6g} Hz")
     for variable in VARIABLES + OF_LIFT_OFF:
         if variable.dims or variable.name in ("status", "message") or variable.name not in ds:

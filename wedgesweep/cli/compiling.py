@@ -1,4 +1,4 @@
-"""Announces compilation whenever numba has to compile: for half a minute nothing else would be heard."""
+"""Announces compilation whenever numba has to compile: for a minute nothing else would be heard."""
 
 from time import perf_counter
 from typing import Any
@@ -8,7 +8,7 @@ from wedgesweep.cli.messages import log
 
 # Compilation that takes less (s) is not worth a word; later there is one in so many seconds.
 WORTH, AGAIN = 1.0, 15.0
-FIRST = "compiling the solver (once: some 20 s of CPU time, for a diagnosis half a minute)"
+FIRST = "compiling the solver (once: 20 s of CPU time, for a diagnosis a minute)"
 
 _listener: Any = None
 

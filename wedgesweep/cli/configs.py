@@ -13,16 +13,16 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, STANDARD_OUTPUT, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
+from wedgesweep.endings import JSON, TOML
 from wedgesweep.files import write_text
-from wedgesweep.kinds import CONFIG as CONFIG_FILE
-from wedgesweep.kinds import DIAGNOSIS, SWEEP, is_measured, kind_of
+from wedgesweep.kinds import CONFIG_OR_MEASURED, DIAGNOSIS, SWEEP, is_measured, kind_of
 
 if TYPE_CHECKING:
     from wedgesweep.config import Config
 
 
 @click.command()
-@click.argument("path", default="wedgesweep.toml", type=OutputPath(allow_dash=True))
+@click.argument("path", default="wedgesweep.toml", type=OutputPath(TOML, allow_dash=True))
 @click.option("--force", is_flag=True, help="Overwrite an existing file.")
 def init(path: Path, force: bool) -> None:
     """Write a commented config with every key.
@@ -39,7 +39,11 @@ def init(path: Path, force: bool) -> None:
 
 @click.command()
 @click.option(
-    "-o", "--output", default="-", type=OutputPath(allow_dash=True), help="File to write; default: print."
+    "-o",
+    "--output",
+    default="-",
+    type=OutputPath(JSON, allow_dash=True),
+    help="File to write; default: print.",
 )
 def schema(output: Path) -> None:
     """Write the JSON schema of configs, for editors.
@@ -62,7 +66,7 @@ def check(config_path: Path) -> None:
     from wedgesweep import config
 
     if kind_of(config_path) in (SWEEP, DIAGNOSIS):
-        require_kind(config_path, CONFIG_FILE)
+        require_kind(config_path, CONFIG_OR_MEASURED)
     if is_measured(config_path):
         from wedgesweep import measured
 

@@ -8,6 +8,7 @@ import click
 
 from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, OutputPath
 from wedgesweep.cli.plot import read_dataset
+from wedgesweep.endings import CSV
 from wedgesweep.files import written
 
 
@@ -16,7 +17,7 @@ from wedgesweep.files import written
 @click.option(
     "-o",
     "--output",
-    type=OutputPath(allow_dash=True),
+    type=OutputPath(CSV, allow_dash=True),
     help="CSV file to write, - to print; default: OUT's name with .csv, in the current directory.",
 )
 @click.option(

@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from wedgesweep.cli.failure import Failure
+from wedgesweep.endings import mismatch
 from wedgesweep.kinds import confusion
 
 CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
@@ -37,15 +38,18 @@ class FiniteRange(click.FloatRange):
 
 
 class OutputPath(click.Path):
-    """A file to write, checked before any work is done."""
+    """A file to write in some format (see ``endings``), checked before any work is done."""
 
-    def __init__(self, **options: bool) -> None:
+    def __init__(self, written: str | None = None, **options: bool) -> None:
         super().__init__(dir_okay=False, writable=True, path_type=Path, **options)
+        self.written = written
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         if self.allow_dash and path == STANDARD_OUTPUT:
             return path
+        if self.written and (problem := mismatch(path, self.written)):
+            self.fail(problem, param, ctx)
         if not path.parent.is_dir():
             self.fail(f"'{path.parent}' is not a directory.", param, ctx)
         if not os.access(path.parent, os.W_OK):

@@ -117,14 +117,16 @@ def _read(path: Path) -> "xr.Dataset | DiagnosisResult":
 
 def read_dataset(path: Path) -> "xr.Dataset":
     """Read the dataset of a run, also of one that has not finished."""
-    from wedgesweep.sweep import dataset, run
+    from wedgesweep.sweep import dataset
 
-    unfinished = run.unfinished(path)
-    if unfinished is None:
+    if not dataset.journal_of(path).exists():
         return dataset.read_sweep(path)
-    done = int((unfinished["status"] != Outcome.NOT_RUN).sum())
-    log.warning(f"{path}: unfinished; {done} of {unfinished['status'].size} cases are there")
-    return unfinished
+    from wedgesweep.sweep import unfinished
+
+    found = unfinished.dataset_of(path)
+    done = int((found["status"] != Outcome.NOT_RUN).sum())
+    log.warning(f"{path}: unfinished; {done} of {found['status'].size} cases are there")
+    return found
 
 
 class Pick(NamedTuple):

@@ -16,6 +16,7 @@ from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, OutputPath, comm
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
+from wedgesweep.endings import NETCDF
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ BACKENDS = ("threads", "loky", "dask")
 @click.option(
     "-o",
     "--output",
-    type=OutputPath(),
+    type=OutputPath(NETCDF),
     help="Dataset to write; default: CONFIG's name with .nc, in the current directory.",
 )
 @N_JOBS

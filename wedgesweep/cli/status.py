@@ -28,8 +28,9 @@ def status(ctx: click.Context, path: Path) -> None:
     if path.is_dir():
         message = f"{path}: a directory; give the dataset of a run"
         raise Failure(message)
-    partial = path.with_name(path.name + ".partial")
-    ctx.exit(_unfinished(partial) if partial.exists() else _finished(path))
+    from wedgesweep.sweep.dataset import journal_of
+
+    ctx.exit(_unfinished(path) if journal_of(path).exists() else _finished(path))
 
 
 def _finished(path: Path) -> int:
@@ -43,18 +44,20 @@ def _finished(path: Path) -> int:
     return print_summary(ds)
 
 
-def _unfinished(partial: Path) -> int:
+def _unfinished(path: Path) -> int:
     from wedgesweep import config
-    from wedgesweep.sweep import journal, outcomes
+    from wedgesweep.sweep import journal, unfinished
+    from wedgesweep.sweep.dataset import journal_of
     from wedgesweep.sweep.fingerprint import differences, fingerprint
 
+    partial = journal_of(path)
     header = journal.header(partial)
     settings = config.parse(header["config"], str(partial))
     click.echo(f"{partial}: unfinished\ntitle: {settings.title}")
     _print_versions(header)
     for difference in differences(header, fingerprint(settings)):
         click.echo(f"cannot be resumed: {difference}")
-    return print_outcomes(outcomes.of_journal(partial), total=settings.sweep.count)
+    return print_outcomes(unfinished.outcomes_of(path), total=settings.sweep.count)
 
 
 def _fingerprint(ds: "xr.Dataset") -> dict[str, str]:

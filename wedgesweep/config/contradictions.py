@@ -110,8 +110,6 @@ def _joints(document: Mapping[str, Any]) -> Iterator[str]:
         key, held = f"effects.{lift_off.NAME}", "remove it"
         if unilateral:
             yield f'{key}: joints = "unilateral" says the same; remove one of them'
-    if "input" in document:
-        yield f"{key}: inputs that do not repeat need held joints; {held.replace('joints = ', 'write ')}"
     if suspension.get("wedge_mass_kg") == 0.0:
         yield "suspension.wedge_mass_kg: a wedge that lifts off needs a mass; it must be greater than 0"
     if suspension.get("column_angle_deg") == 0.0:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import nan
 from typing import Any
 
-from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Unit, Whole
 from wedgesweep.config.series import Series
 from wedgesweep.config.tables import Table, table
 from wedgesweep.hints import hint, show
@@ -124,7 +124,7 @@ RECORD = _kind(
     Text(key="sha256", meaning="digest of the file; filled in when the config is read", optional=True),
     Text(key="column", meaning="header of the input's column", example="base"),
     Choice(key="quantity", meaning="what it is", choices=tuple(RECORDED), default="displacement"),
-    Choice(
+    Unit(
         key="unit",
         meaning="its unit",
         choices=tuple(dict.fromkeys(unit for units in RECORDED.values() for unit in units)),

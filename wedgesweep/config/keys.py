@@ -16,6 +16,7 @@ import numpy as np
 from wedgesweep import toml
 from wedgesweep.hints import hint, show
 from wedgesweep.quantity import Quantity
+from wedgesweep.units import usual
 
 # Numbers beyond these, 0 aside, are of no rig, and their products are no numbers.
 LARGEST, SMALLEST = 1e15, 1e-15
@@ -115,6 +116,21 @@ class Choice(Key):
     @property
     def limits(self) -> str:
         return f"one of {', '.join(self.choices)}" if len(self.choices) > 1 else ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unit(Choice):
+    """A unit in any spelling; an unknown one is answered by all valid ones: similar names are other units."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> str | None:
+        if isinstance(value, str) and usual(value) in self.choices:
+            return usual(value)
+        problems.append(f"{path}: unknown unit {show(value)}; valid here: {', '.join(self.choices)}")
+        return None
+
+    def shape(self) -> dict[str, Any]:
+        without_sign = [unit.replace("^", "") for unit in self.choices if "^" in unit]
+        return {"enum": [*self.choices, *without_sign]}
 
 
 @dataclass(frozen=True, kw_only=True)

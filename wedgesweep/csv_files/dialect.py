@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from wedgesweep.units import UNITS
+from wedgesweep.units import UNITS, usual
 
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 DECIMALS = {"point": ".", "comma": ","}
@@ -161,9 +161,9 @@ def _units(rows: Sequence[Sequence[str]], columns: Sequence[int], width: int) ->
 
 
 def bare(cell: str) -> str:
-    """A unit without its brackets, with u for micro."""
+    """A unit without its brackets, in its usual spelling."""
     inner = cell.strip().removeprefix("[").removesuffix("]").removeprefix("(").removesuffix(")").strip()
-    return inner.replace("\u00b5", "u").replace("\u03bc", "u")
+    return usual(inner)
 
 
 def _is_unit(cell: str) -> bool:

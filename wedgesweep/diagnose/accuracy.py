@@ -15,8 +15,9 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import chdtri
 
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import ADEQUATE
-from wedgesweep.diagnose.fit_data import Evaluation, FitData
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
 
@@ -103,7 +104,7 @@ def refined(fit: Fit) -> Accuracy:
 def _minimised(fit: Fit, size: float) -> Fit:
     """The fit under a model error, from where it is or with nuisance parameters as stated."""
     data = fit.model.data.with_model_error(size)
-    model = replace(fit.model, data=data)
+    model = fit.model.on(data)
     here = data.compared_again(fit.evaluation)
     stated, at_rest = data.start()
     priors = model.nuisance_weight.shape[1]

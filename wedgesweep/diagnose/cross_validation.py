@@ -8,8 +8,9 @@ import numpy as np
 from scipy.special import ndtr, stdtrit
 
 from wedgesweep.diagnose import accuracy
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import PENALTY
-from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations

@@ -8,7 +8,7 @@ from wedgesweep.diagnose import cross_validation, score_test, verdict
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.ladder import Rung, ladder
+from wedgesweep.diagnose.ladder import Level, ladder
 from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
@@ -70,7 +70,7 @@ class Diagnosis:
     gain: Gain | None
     next_test: NextTest | None
     thresholds: Thresholds
-    ladder: tuple[Rung, ...]
+    ladder: tuple[Level, ...]
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
     never_tried: tuple[tuple[str, ...], ...] = ()
@@ -122,14 +122,9 @@ def diagnose(
     finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
     progress("scores")
     scores = score_test.scores(search, base.fit, scans)
-    gain = None
-    if finding.best is not None and data.tests > 1:
-        progress("held-out tests")
-        gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
-        finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
-        gain = gain if finding.best is not None else None
+    finding, gain = on_held_out_tests(search, base, finding)
     progress("accuracy")
-    rungs = ladder(search, base, explanations)
+    levels = ladder(search, base, explanations)
     progress("next test")
     next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
@@ -142,7 +137,7 @@ def diagnose(
         gain=gain,
         next_test=next_test,
         thresholds=thresholds,
-        ladder=rungs,
+        ladder=levels,
         calibration=calibration,
         untried=tuple(search.budget.untried),
         never_tried=search.budget.never_tried,
@@ -204,6 +199,16 @@ def refit_cause(
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
     return finding, found
+
+
+def on_held_out_tests(search: Search, base: Explanation, finding: Finding) -> tuple[Finding, Gain | None]:
+    """The finding as tests that were left out of the fit leave it, and the gain on them."""
+    if finding.best is None or search.data.tests < 2:
+        return finding, None
+    search.progress("held-out tests")
+    gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
+    finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
+    return finding, gain if finding.best is not None else None
 
 
 def explain(search: Search) -> Explained:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.model import Model
 
 # Step as a share of a parameter's scale. Shorter steps pick up the error of the simulation, which looks like

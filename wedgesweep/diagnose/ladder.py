@@ -35,7 +35,7 @@ class Rated:
 
 
 @dataclass(frozen=True)
-class Rung:
+class Level:
     """Explanations of the same number of effects, the most accurate first."""
 
     rated: tuple[Rated, ...]
@@ -59,15 +59,15 @@ class Rung:
         return rival / best
 
 
-def ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Rung, ...]:
-    """Rate the base model and every explanation; a rung for each number of effects that was tried.
+def ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
+    """Rate the base model and every explanation; a level for each number of effects that was tried.
 
     The best of each size also predict tests that are left out of their fit.
     """
     allowed = [base, *filter(verdict.eligible, explanations)]
     rough = search.each(_rough, allowed)
     sizes = sorted({len(each.effects) for each in rough})
-    return tuple(_rung(search, [each for each in rough if len(each.effects) == size]) for size in sizes)
+    return tuple(_level(search, [each for each in rough if len(each.effects) == size]) for size in sizes)
 
 
 def _rough(each: Explanation) -> Rated:
@@ -75,7 +75,7 @@ def _rough(each: Explanation) -> Rated:
     return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
 
 
-def _rung(search: Search, rough: Sequence[Rated]) -> Rung:
+def _level(search: Search, rough: Sequence[Rated]) -> Level:
     """The explanations of one size; the leading ones, and all that would lead, are refined."""
     order = sorted(rough, key=_order)
     chosen = [each for each in order[:REFINED] if each.accuracy <= FACTOR * order[0].accuracy]
@@ -85,7 +85,7 @@ def _rung(search: Search, rough: Sequence[Rated]) -> Rung:
         waiting = [each for each in order if all(each.explanation is not one.explanation for one in done)]
         order = sorted([*done, *waiting], key=_order)
         chosen = [each for each in order[:COMPARED] if each in waiting]
-    return Rung((_tested(search, order[0]), *order[1:]))
+    return Level((_tested(search, order[0]), *order[1:]))
 
 
 def _tested(search: Search, best: Rated) -> Rated:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation, Point
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.jacobian import conservative_jacobian
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations

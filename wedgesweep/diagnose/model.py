@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 from scipy.special import chdtrc
 
-from wedgesweep.diagnose.fit_data import Evaluation, FitData, Point, Scenario, best_evaluation_per_test
+from wedgesweep.diagnose.evaluation import Evaluation, Point, Scenario, best_evaluation_per_test
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
 
 # Relative errors of simulations: negligible beside the noise of 4 % data, negligible in derivatives as well,
@@ -86,6 +87,10 @@ class Model:
     def holding(self, parameter: int, value: float) -> "Model":
         """The model with one of its parameters known."""
         return replace(self, held=(parameter, value))
+
+    def on(self, data: FitData) -> "Model":
+        """The same hypothesis on other data."""
+        return replace(self, data=data)
 
     def uncertain_starts(self) -> np.ndarray:
         """Uncertain parameters (1 + 2 u, u) as stated, and each of them well off to either side."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.jacobian import Jacobian, jacobian
 from wedgesweep.diagnose.model import Model
 

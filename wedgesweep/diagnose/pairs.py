@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import Evaluation
 from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import (
@@ -92,19 +92,7 @@ class PairSearch(NamedTuple):
 
 
 def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: Scans) -> list[Explanation]:
-    """Fit pairs of effects, and return them best first.
-
-    Parameters
-    ----------
-    search : Search
-        Data and candidates.
-    base : Fit
-        The fitted base model.
-    singles : sequence of Explanation
-        Best fit of each effect by itself.
-    scans : mapping of str to sequence of Evaluation
-        Evaluations of each effect over its range.
-    """
+    """Fit pairs of effects, and return them best first; ``singles``: best fit of each effect by itself."""
     known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
     job = PairSearch(search, base, known)
     leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:PARTNERS]
@@ -280,7 +268,7 @@ def begin(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
     """Starts of a combination on a subset of the tests: the best one, or all of them if ``diverse``."""
     fit, subset, second = combination.first.fit, combination.first.subset, combination.second
     model = search.model(*fit.effects, *second.fit.effects, tolerance=ROUGH)
-    model = replace(model, data=subset.model.data)
+    model = model.on(subset.model.data)
     first_x = fit.x[: fit.model.size]
 
     def evaluated(points: np.ndarray) -> list[Evaluation]:

@@ -44,7 +44,7 @@ def with_renewed_covariance(explained: Explained) -> Explained:
 
 
 def _compared_again(search: Search, each: Explanation) -> Explanation:
-    model = replace(each.fit.model, data=search.data)
+    model = each.fit.model.on(search.data)
     evaluation = search.data.compared_again(each.fit.evaluation)
     return search.explanation(replace(each.fit, model=model, evaluation=evaluation))
 

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import INPUT_GAIN, Comparison, Evaluation, FitData, Scenario
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Scenario
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, FitData
 
 
 class NoStart(NamedTuple):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.projector import Projector
@@ -84,17 +84,7 @@ class _Baseline(NamedTuple):
 
 
 def scores(search: Search, base: Fit, scans: Scans) -> list[Score]:
-    """Score of every effect of a search, in its order; those that were not detected come last.
-
-    Parameters
-    ----------
-    search : Search
-        Data and candidates.
-    base : Fit
-        The fitted base model.
-    scans : mapping of str to sequence of Evaluation
-        What was evaluated of each effect before.
-    """
+    """Score of every effect of a search, in its order; those that were not detected come last."""
     baseline = _Baseline(search, base, Projector(base))
     found = search.each(lambda effect: _score(baseline, effect, scans.get(effect, ())), search.effects)
     return [*found, *(_score_undetected(search, base, effect) for effect in search.undetected)]

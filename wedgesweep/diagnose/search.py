@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import work
+from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
-from wedgesweep.diagnose.fit_data import Evaluation, FitData
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
@@ -216,7 +217,7 @@ def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) 
 
 def _aligned(fit: Fit) -> Fit:
     """The fit on data that know what it tells of the records' start, continued where that matters."""
-    model = replace(fit.model, data=fit.model.data.aligned_to(fit.evaluation))
+    model = fit.model.on(fit.model.data.aligned_to(fit.evaluation))
     if model.data.repeats(fit.effects):
         return replace(fit, model=model)
     return with_extra_nuisances(minimise(model, model.evaluate(fit.point)))
@@ -316,7 +317,7 @@ def _chi2(each: Fit | Evaluation) -> float:
 
 def _held_as_stated(model: Model, evaluation: Evaluation) -> Evaluation:
     """Where an evaluation leads while nuisance parameters stay as stated."""
-    strict = replace(model, data=model.data.held_as_stated())
+    strict = model.on(model.data.held_as_stated())
     found = minimise(strict, strict.evaluate(evaluation.point), HELD_ITERATIONS)
     return model.evaluate(found.point)
 

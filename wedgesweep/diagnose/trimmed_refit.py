@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Point
+from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.least_squares import lm_step, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations

@@ -1,4 +1,4 @@
-"""A foreign tone in the acceleration of the side frame (or of the table under it).
+"""A spurious tone in the acceleration of the side frame (or of the table under it).
 
 Its phase is another one in every measurement (``stray_vibration_phase`` of a case, 0 unless set), and
 the response is not periodic in the forcing.
@@ -21,7 +21,7 @@ EFFECT = Effect(
     name="stray_vibration",
     family="excitation",
     branch=EXPERIMENTAL,
-    meaning="a foreign tone in the acceleration of the {base}",
+    meaning="a spurious tone in the acceleration of the {base}",
     quantities=(
         Quantity("acceleration_m_per_s2", 0.0, "amplitude of the tone", minimum=0.0, search=(0.0, 20.0)),
         Quantity(

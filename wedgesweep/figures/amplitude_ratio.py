@@ -81,6 +81,27 @@ def _amplitude_norm(amplitudes: np.ndarray) -> LogNorm:
     return LogNorm(low, high) if high > low else LogNorm(0.5 * low, 2.0 * high)
 
 
+def _explain(made: Panels, ds: xr.Dataset, norm: LogNorm, missing: bool) -> None:
+    """Draw the scale of the amplitudes, the legend of the marks, and the title."""
+    words, alone = labels.of(ds), ""
+    if ds.sizes["amplitude"] > 1:
+        bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), words.amplitude)
+        style.decimal_ticks(bar.ax.yaxis)
+    else:
+        alone = f", {words.size(ds['amplitude'].item(), 4)}"
+    marks = validity.handles(ds)
+    made.legend(marks, [str(mark.get_label()) for mark in marks])
+    notes = (
+        f"ratios below {LOWEST} are not shown",
+        "$\\times$ no result (failed or not run)" if missing else "",
+        validity.shares(ds),
+    )
+    made.title(
+        f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}{alone}",
+        "; ".join(filter(None, notes)),
+    )
+
+
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, the input amplitude as colour, the frictionless response dashed."""
     names = cases.laws(ds)
@@ -104,21 +125,5 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     if axes[0].get_legend_handles_labels()[0]:
         axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
     style.label(axes, style.BETA, words.ratio)
-    alone = ""
-    if ds.sizes["amplitude"] > 1:
-        bar = made.colorbar(ScalarMappable(norm, style.SEQUENTIAL), words.amplitude)
-        style.decimal_ticks(bar.ax.yaxis)
-    else:
-        alone = f", {words.size(ds['amplitude'].item(), 4)}"
-    marks = validity.handles(ds)
-    made.legend(marks, [str(mark.get_label()) for mark in marks])
-    notes = (
-        f"ratios below {LOWEST} are not shown",
-        "$\\times$ no result (failed or not run)" if missing else "",
-        validity.shares(ds),
-    )
-    made.title(
-        f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}{alone}",
-        "; ".join(filter(None, notes)),
-    )
+    _explain(made, ds, norm, missing)
     return made

@@ -17,6 +17,7 @@ REFERENCES = {
     "force amplitude over k": ("P/k", "the deflection $P/k$ under the force at rest"),
     "force amplitude over m omega^2": (r"P/(mω^2)", "the motion $P/(mω^2)$ of the free mass"),
     "belt velocity over omega_n": (r"v_{belt}/ω_n", "the belt velocity over $ω_n$"),
+    "": ("", "the input at scale 1"),  # of one that does not repeat
     "belt velocity over omega": (r"v_{belt}/ω", "the belt velocity over $ω$"),
 }
 

@@ -6,9 +6,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 
-from wedgesweep.figures import cases, labels, style
-from wedgesweep.figures.panels import Panels, Target, panels
-from wedgesweep.figures.stick_map import cell_edges
+from wedgesweep.figures.maps import Edges, panel_per_law
+from wedgesweep.figures.panels import Panels, Target
 from wedgesweep.figures.validity import LIFT_OFF, OPENS
 
 NAME = "lift-off-map"
@@ -20,7 +19,7 @@ COLOURS = colormaps["viridis"].with_extremes(bad="0.85", under="white")
 NONE = 1e-12
 
 
-def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -> QuadMesh:
+def _draw_law(ax: Axes, law: xr.Dataset, edges: Edges) -> QuadMesh:
     share = law.transpose("amplitude", "beta", ...)[LIFT_OFF].values
     # NaN: a bolster that never slips does not lift off either, but a failed case has no answer.
     stuck = np.isnan(share) & (law.transpose("amplitude", "beta", ...)["status"].values == 0)
@@ -33,24 +32,9 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     if ds[LIFT_OFF].notnull().any() and not (ds[LIFT_OFF] > 0.0).any():
         message = f"nothing lifts off in these cases: {LIFT_OFF} is never above 0"
         raise ValueError(message)
-    words = labels.of(ds)
-    amplitudes = ds["amplitude"].values * words.factor
-    logarithmic = bool(amplitudes[0] > 0.0)
-    edges = cell_edges(ds["beta"].values, False), cell_edges(amplitudes, logarithmic)
-    names = cases.laws(ds)
-    made = panels(target, len(names), size=(3.3, 3.6))
-    for ax, law in zip(made.axes, names, strict=True):
-        ax.grid(visible=False)
-        mesh = _draw_law(ax, ds.sel(friction_law=law), edges)
-        ax.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
-        ax.set_title(law, fontsize=10)
-        style.add_hertz_axis(ax, ds)
-    if logarithmic:
-        made.axes[0].set_yscale("log")
-        style.decimal_ticks(made.axes[0].yaxis)
+    made, mesh = panel_per_law(target, ds, _draw_law)
     opens = OPENS in ds
     made.colorbar(mesh, "share of a period [1]" if opens else "share of the slipping time [1]")
-    style.label(made.axes, style.BETA, words.amplitude)
     what = "a contact open" if opens else "a joint that pulls, where a real wedge would lift off"
     made.title(f"Share of time with {what}", "white: none; grey: no result")
     return made

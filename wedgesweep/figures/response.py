@@ -71,6 +71,25 @@ def _lowest_that_moves(ds: xr.Dataset) -> int:
     return int(np.argmax(moving >= min(0.5, moving.max())))
 
 
+def _time(ds: xr.Dataset) -> np.ndarray:
+    """Time (s) of the samples of a case."""
+    return ds["phase"].values / (ds["beta"].item() * ds.attrs["omega_n"])
+
+
+def _draw_law(ax: Axes, law: xr.Dataset, waves: xr.DataArray) -> None:
+    """Draw a row for each amplitude of a law."""
+    time, opened = _time(law), validity.opened(law)
+    color = style.law_style(law["friction_law"].item())["color"]
+    for row in range(law.sizes["amplitude"]):
+        case = law.isel(amplitude=row)
+        marks = {style.STUCK: case["stuck"].values == 1}
+        if opened is not None:
+            marks[style.OPEN] = opened.isel(amplitude=row).values
+        _draw_row(ax, time, waves.isel(amplitude=row).values, marks, row, color)
+        if remark := validity.remark(case):
+            ax.text(time[-1], row + 0.3, remark.strip(), fontsize=6.5, color=style.GREY, ha="right")
+
+
 def draw(
     target: Target, ds: xr.Dataset, beta: float | None = None, amplitudes: ArrayLike | None = None
 ) -> Panels:
@@ -85,19 +104,12 @@ def draw(
     waves = _normalised(ds)
     largest = float(np.nan_to_num(np.abs(waves).max()))
     per_ratio = HEIGHT / largest if largest > 0.0 else 1.0
-    time = ds["phase"].values / (ds["beta"].item() * ds.attrs["omega_n"])
-    names, words, opened = cases.laws(ds), labels.of(ds), validity.opened(ds)
+    time = _time(ds)
+    names, words = cases.laws(ds), labels.of(ds)
     made = panels(target, len(names), size=(3.2, max(2.4, 1.2 + 0.36 * len(rows))))
     axes = made.axes
     for ax, law in zip(axes, names, strict=True):
-        for row in range(len(rows)):
-            case = {"friction_law": law, "amplitude": ds["amplitude"].values[row]}
-            wave, marks = waves.sel(case).values * per_ratio, {style.STUCK: ds["stuck"].sel(case).values == 1}
-            if opened is not None:
-                marks[style.OPEN] = opened.sel(case).values
-            _draw_row(ax, time, wave, marks, row, style.law_style(law)["color"])
-            if remark := validity.remark(ds.sel(case)):
-                ax.text(time[-1], row + 0.3, remark.strip(), fontsize=6.5, color=style.GREY, ha="right")
+        _draw_law(ax, ds.sel(friction_law=law), waves.sel(friction_law=law) * per_ratio)
         ax.set_title(law, fontsize=10)
     axes[0].set_yticks(range(len(rows)), [f"{a * words.factor:.3g}" for a in ds["amplitude"].values])
     axes[0].set(ylim=(-0.9, len(rows) - 0.1), xlim=(0.0, time[-1]))
@@ -108,6 +120,7 @@ def draw(
     made.title(
         f"{words.name} ${words.motion}$ ({words.whose}) at {frequency}",
         f"a row for each amplitude, divided by {words.own_reference} and centred; "
-        f"yellow: {labels.sticking(names)}" + ("" if opened is None else "; blue: a contact is open"),
+        f"yellow: {labels.sticking(names)}"
+        + ("" if validity.opened(ds) is None else "; blue: a contact is open"),
     )
     return made

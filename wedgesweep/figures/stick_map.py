@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wedgesweep.figures import cases, labels, style, validity
-from wedgesweep.figures.panels import Panels, Target, panels
+from wedgesweep.figures.maps import Edges, panel_per_law
+from wedgesweep.figures.panels import Panels, Target
 
 NAME = "stick-map"
 DESCRIPTION = "stick fraction over frequency and amplitude, with lift-off and breakaway"
@@ -20,14 +21,6 @@ FEW_FAILURES = 50
 FEWEST_AMPLITUDES = 4
 MOST_POINTS = 1500  # sampled points that are marked
 COLOURS = colormaps["cividis"].with_extremes(bad=style.PURPLE)
-
-
-def cell_edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
-    """Put edges half way between the centres, n + 1 of them."""
-    x = np.log(centres) if logarithmic else centres.astype(float)
-    steps = np.diff(x) if len(x) > 1 else np.array([0.1 if logarithmic else 0.1 * abs(x[0])])
-    edges = np.concatenate([[x[0] - steps[0] / 2], x[:-1] + np.diff(x) / 2, [x[-1] + steps[-1] / 2]])
-    return np.exp(edges) if logarithmic else np.maximum(edges, 0.0)
 
 
 def _hatch(
@@ -44,7 +37,7 @@ def _hatch(
     ax.contour(x, y, corners, levels=[0.5], colors="white", linewidths=0.9)
 
 
-def _draw_law(ax: Axes, law: xr.Dataset, edges: tuple[np.ndarray, np.ndarray]) -> QuadMesh:
+def _draw_law(ax: Axes, law: xr.Dataset, edges: Edges) -> QuadMesh:
     law = law.transpose("amplitude", "beta", ...)
     fraction = np.ma.masked_invalid(law["stick_fraction"].values)
     mesh = ax.pcolormesh(*edges, fraction, cmap=COLOURS, vmin=0.0, vmax=1.0, rasterized=True)
@@ -91,29 +84,13 @@ def _legend(made: Panels, ds: xr.Dataset) -> None:
 
 def draw(target: Target, ds: xr.Dataset) -> Panels:
     """Draw a panel per law, lift-off hatched, and the line above which coulomb slip begins."""
-    words = labels.of(ds)
-    amplitudes = ds["amplitude"].values * words.factor
-    if amplitudes.size < FEWEST_AMPLITUDES:
-        message = f"needs {FEWEST_AMPLITUDES} amplitudes or more for a map; there are {amplitudes.size}"
+    if ds.sizes["amplitude"] < FEWEST_AMPLITUDES:
+        message = f"needs {FEWEST_AMPLITUDES} amplitudes or more for a map; there are {ds.sizes['amplitude']}"
         raise ValueError(message)
-    logarithmic = bool(amplitudes[0] > 0.0)
-    edges = cell_edges(ds["beta"].values, False), cell_edges(amplitudes, logarithmic)
-    names = cases.laws(ds)
-    made = panels(target, len(names), size=(3.3, 3.6))
-    axes = made.axes
-    for ax, law in zip(axes, names, strict=True):
-        ax.grid(visible=False)
-        mesh = _draw_law(ax, ds.sel(friction_law=law), edges)
-        ax.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
-        ax.set_title(law, fontsize=10)
-    if logarithmic:
-        axes[0].set_yscale("log")
-        style.decimal_ticks(axes[0].yaxis)
-    for ax in axes:
+    made, mesh = panel_per_law(target, ds, _draw_law)
+    for ax in made.axes:
         _draw_breakaway(ax, ds)
-        style.add_hertz_axis(ax, ds)
     made.colorbar(mesh, "stick fraction of a period [1]")
-    style.label(axes, style.BETA, words.amplitude)
     _legend(made, ds)
-    made.title(f"Share of time: {labels.sticking(names)}")
+    made.title(f"Share of time: {labels.sticking(cases.laws(ds))}")
     return made

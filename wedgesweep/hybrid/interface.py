@@ -215,6 +215,20 @@ def impact(y, mode, place, p):
 def closed_form(state, stop, p, keeping, recorder, counts):
     """Follow a mode that has a closed form to its event or ``stop``, or several modes, one after the other.
 
-    Returns whether it has one, the state reached, and the event or NO_EVENT; ``counts[2]`` counts the
-    events passed.
+    Returns whether it has one, the state reached, and the event, NO_EVENT or HANDED_OVER; ``counts[2]``
+    counts the events passed.
     """
+
+
+# Two systems may take turns in following a motion: one that holds while contacts are closed, and one for all
+# motions.
+
+
+@declared
+def leaves(y, mode, p):
+    """Whether a mode is for the other system to follow."""
+
+
+@declared
+def taken_over(t, y, mode, p):
+    """Mode with which a system goes on, and whether it is unique; ``mode``: an array, the other system's."""

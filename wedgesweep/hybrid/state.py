@@ -3,7 +3,8 @@
 from typing import Any, NamedTuple
 
 # How a run ends. A mode ends with the number of an event, from 0 up, or with one of the numbers below 0.
-OK, NO_EVENT, LOCKED, FAILED, CHATTERING = 0, -1, -2, -3, -4
+# HANDED_OVER: another system goes on (see period_map.run_case).
+OK, NO_EVENT, LOCKED, FAILED, CHATTERING, HANDED_OVER = 0, -1, -2, -3, -4, -5
 
 
 class State(NamedTuple):

@@ -20,11 +20,9 @@ UNITS = {
     "m_per_s2": Unit("acceleration", 1.0, "m s-2"),
     "N": Unit("force", 1.0, "N"),
 }
-# Units of quantities in SI, and those that a recording may be in: a config writes m/s2 for m/s^2.
+# Units of quantities in SI, and those that a recording may be in.
 SI = {each.quantity: each.si for each in UNITS.values()}
-RECORDED = {
-    quantity: {unit.replace("^", ""): size for unit, size in units.UNITS[quantity].items()} for quantity in SI
-}
+RECORDED = {quantity: units.UNITS[quantity] for quantity in SI}
 
 
 def sized(given: Mapping[str, Any], size: str) -> tuple[Unit, float]:

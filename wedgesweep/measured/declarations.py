@@ -6,7 +6,7 @@ from math import inf, isfinite, nan
 from typing import Any
 
 from wedgesweep import toml
-from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Whole
+from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Unit, Whole
 from wedgesweep.config.tables import Table, TableList, table
 from wedgesweep.csv_files.dialect import DECIMALS, DELIMITERS
 from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
@@ -74,17 +74,6 @@ class Inline(Table):
     def written(self) -> str:
         example = {name: key.example for name, key in self.keys.items() if key.required}
         return f"{self.key} = {toml.inline(example)}"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Unit(Choice):
-    """A unit of a channel; an unknown one is answered by all valid ones, as similar names are other units."""
-
-    def read(self, value: Any, path: str, problems: list[str]) -> str | None:
-        if value in self.choices:
-            return value
-        problems.append(f"{path}: unknown unit {show(value)}; valid here: {', '.join(self.choices)}")
-        return None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ from wedgesweep.measured.declarations import (
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
-from wedgesweep.units import UNITS
+from wedgesweep.units import UNITS, usual
 
 ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
@@ -126,22 +126,14 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     model_error = _model_error(attributes, path, problems)
     tests = [_test(group, path, config, problems) for group in groups]
     complete = tuple(test for test in tests if test)
-    velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
-    derived = {bool(getattr(variable, "derived", 0)) for variable in velocities}
-    if len(derived) > 1:
-        problems.append(
-            f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
-        )
+    derived = _derived_velocity(groups, path, problems)
     by_kind, different = _columns_by_kind(groups)
     if different:
         problems.append(
             f"{path}: tests: they have different variables, units, of or quantity; make them alike"
         )
     columns = {name: each for own in by_kind.values() for name, each in own.items()}
-    gain_std = attributes.get("input_gain_std", 0.0)
-    if not isinstance(gain_std, int | float) or not 0.0 <= gain_std < 1.0:
-        problems.append(f"{path}: input_gain_std: {show(gain_std)} is out of range; it must be >= 0 and < 1")
-        gain_std = 0.0
+    gain_std = _gain_std(attributes, path, problems)
     faults = channels.faults(by_kind, gain_std, None if problems else config)
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
@@ -157,11 +149,30 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         law=law,
         uncertain=uncertain,
         tests=complete,
-        derived_velocity=derived == {True},
+        derived_velocity=derived,
         columns=columns,
-        input_gain_std=float(gain_std),
+        input_gain_std=gain_std,
         model_error=model_error,
     )
+
+
+def _derived_velocity(groups: Sequence[Any], path: Path, problems: list[str]) -> bool:
+    """Whether the velocity of the tests was derived from their displacement."""
+    velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
+    derived = {bool(getattr(variable, "derived", 0)) for variable in velocities}
+    if len(derived) > 1:
+        problems.append(
+            f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
+        )
+    return derived == {True}
+
+
+def _gain_std(attributes: Mapping[str, Any], path: Path, problems: list[str]) -> float:
+    found = attributes.get("input_gain_std", 0.0)
+    if isinstance(found, int | float) and 0.0 <= found < 1.0:
+        return float(found)
+    problems.append(f"{path}: input_gain_std: {show(found)} is out of range; it must be >= 0 and < 1")
+    return 0.0
 
 
 def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[str, str]]], bool]:
@@ -179,13 +190,17 @@ def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[st
     return found, different
 
 
+def _unit(variable: Any) -> str:
+    return usual(str(getattr(variable, "units", "none")))
+
+
 def _columns(group: Any) -> dict[str, dict[str, str]]:
     """Name, unit, ``of`` and ``quantity`` of the variables of a test."""
     found = {}
     for name in (*UNITS, INPUT):
         if name in group.variables:
             own = group.variables[name]
-            told = {"column": name, "unit": getattr(own, "units", "none")}
+            told = {"column": name, "unit": _unit(own)}
             more = {key: getattr(own, key) for key in ("of", "quantity") if hasattr(own, key)}
             found[name] = told | more
     return found
@@ -237,7 +252,7 @@ def _test(group: Any, path: Path, model: Config | None, problems: list[str]) -> 
     columns = {
         name: np.ma.filled(variable[:].astype(float), np.nan) for name, variable in group.variables.items()
     }
-    units = {name: getattr(variable, "units", "none") for name, variable in group.variables.items()}
+    units = {name: _unit(variable) for name, variable in group.variables.items()}
     quantity = getattr(group.variables.get(INPUT), "quantity", None)
     problems.extend(f"{at}: {fault}" for fault in _variable_faults(columns, units, quantity))
     if len(problems) > before:

@@ -28,10 +28,10 @@ CAPTION = (
 
 def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     """Section with the figure and a table of the best explanations of each size."""
-    rungs = rungs_of(result)
-    if not rungs:
+    levels = levels_of(result)
+    if not levels:
         return Markup()
-    rows = [_row(rung) for rung in rungs]
+    rows = [_row(level) for level in levels]
     floor = result.document["method"].get("noise_floor")
     return html.section(
         "accuracy",
@@ -43,54 +43,54 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     )
 
 
-def _row(rung: Mapping[str, Any]) -> list[str]:
-    rival = next(iter(rung["rivals"]), None)
+def _row(level: Mapping[str, Any]) -> list[str]:
+    rival = next(iter(level["rivals"]), None)
     return [
-        str(len(rung["effects"])),
-        phrases.combination(rung["effects"]),
-        phrases.accuracy(rung["accuracy"]),
-        phrases.accuracy(rung.get("accuracy_held_out")),
+        str(len(level["effects"])),
+        phrases.combination(level["effects"]),
+        phrases.accuracy(level["accuracy"]),
+        phrases.accuracy(level.get("accuracy_held_out")),
         phrases.combination(rival["effects"]) if rival else formatting.NONE,
         phrases.accuracy(rival["accuracy"]) if rival else formatting.NONE,
     ]
 
 
-def rungs_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
-    """The rungs of the ladder, the base model's first; empty in results of older versions."""
+def levels_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
+    """The levels of the ladder, the base model's first; empty in results of older versions."""
     return result.document.get("ladder", [])
 
 
 def told(result: DiagnosisResult) -> list[str]:
     """What the best single effect explains, and the best pair where it is much better, as clauses."""
-    rungs = rungs_of(result)
-    if not rungs:
+    levels = levels_of(result)
+    if not levels:
         return []
-    base, *better = rungs
+    base, *better = levels
     clauses: list[str] = []
     reached = base["accuracy"]
-    for rung in better:
-        if rung["accuracy"] is None or (clauses and rung["accuracy"] * MUCH_BETTER > (reached or 0.0)):
+    for level in better:
+        if level["accuracy"] is None or (clauses and level["accuracy"] * MUCH_BETTER > (reached or 0.0)):
             continue
-        clauses.append(_told(rung, base, result.document))
-        reached = rung["accuracy"]
+        clauses.append(_told(level, base, result.document))
+        reached = level["accuracy"]
     return clauses
 
 
-def held_out(rung: Mapping[str, Any]) -> str:
+def held_out(level: Mapping[str, Any]) -> str:
     """How well an explanation predicts tests that it was not fitted to; empty if none were left out."""
-    size = rung.get("accuracy_held_out")
+    size = level.get("accuracy_held_out")
     return "" if size is None else f"held-out tests: {phrases.accuracy(size)}"
 
 
-def _told(rung: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
-    meanings = phrases.meanings(rung["effects"], document)
-    verb = "explains" if len(rung["effects"]) == 1 else "explain"
+def _told(level: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+    meanings = phrases.meanings(level["effects"], document)
+    verb = "explains" if len(level["effects"]) == 1 else "explain"
     beside = [f"without: {phrases.accuracy(base['accuracy'])}"]
-    if predicted := held_out(rung):
+    if predicted := held_out(level):
         beside.insert(0, predicted)
-    for rival in rung["rivals"][:1]:
+    for rival in level["rivals"][:1]:
         name = phrases.combination(rival["effects"])
         beside.append(f"next best, {name}: {phrases.accuracy(rival['accuracy'])}")
-    size, names = rung["accuracy"], phrases.combination(rung["effects"])
+    size, names = level["accuracy"], phrases.combination(level["effects"])
     to = f"to {phrases.accuracy(size)} of the response" if size else "to within the noise"
     return f"{to}, {meanings} ({names}) {verb} all tests ({'; '.join(beside)})"

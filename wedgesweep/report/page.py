@@ -99,7 +99,7 @@ def _answer(result: DiagnosisResult) -> Markup:
 
 def _contents(result: DiagnosisResult) -> Markup:
     headings = {"misfit": misfit.heading(result), **CONTENTS}
-    if not ladder.rungs_of(result):
+    if not ladder.levels_of(result):
         del headings["accuracy"]
     links = (html.element("a", text, href=f"#{name}") for name, text in headings.items())
     return html.element("nav", html.items(links), aria_label="Contents")

@@ -57,8 +57,8 @@ def _accuracies(result: DiagnosisResult) -> list[str]:
 
 def _accuracy(result: DiagnosisResult, effects: Sequence[str]) -> str:
     """Accuracy of an explanation on the ladder, as a share of the response."""
-    for rung in ladder.rungs_of(result):
-        if set(rung["effects"]) == set(effects):
-            size = phrases.accuracy(rung["accuracy"])
+    for level in ladder.levels_of(result):
+        if set(level["effects"]) == set(effects):
+            size = phrases.accuracy(level["accuracy"])
             return "within the noise" if size == phrases.NOISE else size
     return formatting.NONE

@@ -1,8 +1,8 @@
 """Chandiramani's experiment: which changes of the model explain it, and which test would decide.
 
-Every hypothesis is searched under each friction law, both leans of the columns and each interpretation of the
-unknown inputs: all scenarios with a coarse budget, the most promising laws and leans of each hypothesis with
-a medium one, and its best with a fine one.
+Every hypothesis is searched under each friction law, both signs of the column angle and each interpretation
+of the unknown inputs: all scenarios with a coarse budget, the most promising laws and column angles of each
+hypothesis with a medium one, and its best with a fine one.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,13 +15,19 @@ import numpy as np
 
 from wedgesweep.reproduce.best import HERTZ, Best, computed
 from wedgesweep.reproduce.discrimination import Discrimination, discriminate
-from wedgesweep.reproduce.hypotheses import HYPOTHESES, INDEPENDENT_INPUTS, INTERPRETATIONS, LEANS, Hypothesis
+from wedgesweep.reproduce.hypotheses import (
+    COLUMN_ANGLES,
+    HYPOTHESES,
+    INDEPENDENT_INPUTS,
+    INTERPRETATIONS,
+    Hypothesis,
+)
 from wedgesweep.reproduce.observations import OBSERVATIONS, Recording
 from wedgesweep.reproduce.scenarios import LOOSE, Scenario, recordings
 from wedgesweep.reproduce.search import COARSE, FINE, MEDIUM, Budget, SearchResult, search
 from wedgesweep.sweep.backend import in_order
 
-# Pairs of law and lean of each hypothesis that get the medium budget.
+# Pairs of law and column angle of each hypothesis that get the medium budget.
 PROMISING = 2
 # Number of observations that each hypothesis satisfies. If a run finds another number, something has changed.
 RECORDED = {
@@ -63,7 +69,7 @@ def investigate(
     coarse, medium, fine = budgets
     scenarios = [scenario for hypothesis in hypotheses for scenario in _scenarios(hypothesis)]
     first = _search(((scenario, coarse, None) for scenario in scenarios), n_jobs)
-    report(f"{len(first)} coarse searches of {len(hypotheses)} hypotheses: laws, leans and inputs")
+    report(f"{len(first)} coarse searches of {len(hypotheses)} hypotheses: laws, column angles and inputs")
     promising = [each for hypothesis in hypotheses for each in _promising(_ordered(first, hypothesis))]
     found = _search(((scenario, medium, start) for scenario, start in promising), n_jobs)
     report(f"{len(found)} medium searches; next the best of each hypothesis")
@@ -79,7 +85,7 @@ def investigate(
 
 
 def _scenarios(hypothesis: Hypothesis) -> list[Scenario]:
-    return [Scenario(hypothesis, *each) for each in product(hypothesis.laws, LEANS, INTERPRETATIONS)]
+    return [Scenario(hypothesis, *each) for each in product(hypothesis.laws, COLUMN_ANGLES, INTERPRETATIONS)]
 
 
 def _compile(hypotheses: Sequence[Hypothesis]) -> None:
@@ -111,18 +117,18 @@ def _best(results: Sequence[SearchResult]) -> Best:
 
 
 def _with_independent_inputs(best: SearchResult) -> Scenario:
-    """The scenario with the same law and lean that includes all interpretations of the inputs."""
+    """The scenario with the same law and column angle that includes all interpretations of the inputs."""
     return replace(best.scenario, interpretation=INDEPENDENT_INPUTS)
 
 
 def _promising(ordered: Sequence[SearchResult]) -> Iterator[tuple[Scenario, np.ndarray]]:
     """Scenarios for the medium budget, with start points.
 
-    The best pairs of law and lean, each with its best interpretation and with independent inputs.
+    The best pairs of law and column angle, each with its best interpretation and with independent inputs.
     """
-    pairs = list(dict.fromkeys((each.scenario.law.name, each.scenario.lean) for each in ordered))
+    pairs = list(dict.fromkeys((each.scenario.law.name, each.scenario.column_angle_deg) for each in ordered))
     for pair in pairs[:PROMISING]:
-        own = [each for each in ordered if (each.scenario.law.name, each.scenario.lean) == pair]
+        own = [each for each in ordered if (each.scenario.law.name, each.scenario.column_angle_deg) == pair]
         single = next(each for each in own if each.scenario.interpretation != INDEPENDENT_INPUTS)
         yield single.scenario, single.point[None]
         starts = [each.scenario.interpretation.as_independent_inputs(each.point[None]) for each in own]

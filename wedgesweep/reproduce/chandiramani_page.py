@@ -8,9 +8,10 @@ from wedgesweep.reproduce.markdown import number, table
 PICTURE = "chandiramani.png"
 TITLE = "Chandiramani's experiment: which change of the model explains the observations?"
 NOTE = (
-    "Each hypothesis at its best point, law, lean and interpretation of the inputs. A number says how many "
-    "tolerances an observation is missed by; - means that nothing of it is there. Responses with a negative "
-    "normal force, where a real wedge would lift off, are rejected, as are recordings whose periods differ."
+    "Each hypothesis at its best point, law, column angle and interpretation of the inputs. A number says "
+    "how many tolerances an observation is missed by; - means that nothing of it is there. Responses with a "
+    "negative normal force, where a real wedge would lift off, are rejected, as are recordings whose "
+    "periods differ."
 )
 
 
@@ -23,7 +24,7 @@ def render(content: dict[str, Any]) -> str:
         f"![Peak-to-peak over frequency of each hypothesis at its best]({PICTURE})",
         "## The hypotheses at their best",
         _best(content["hypotheses"]),
-        "## Observations satisfied by law, lean and interpretation of the inputs",
+        "## Observations satisfied by law, column angle and interpretation of the inputs",
         _by_choice(content["scenarios"]),
         "## What to measure next",
         _next(content),
@@ -79,7 +80,7 @@ def _best(hypotheses: Sequence[dict[str, Any]]) -> str:
         for each in hypotheses
     )
     head = (
-        *("hypothesis", "law", "lean (deg)", "inputs", "parameters"),
+        *("hypothesis", "law", "column angle (deg)", "inputs", "parameters"),
         "20 Hz: peak-to-peak (mm), plateau",
         "30 Hz: peak-to-peak (mm), plateau, distortion",
     )
@@ -94,7 +95,7 @@ def _by_choice(scenarios: Sequence[dict[str, Any]]) -> str:
     """Most observations that each hypothesis satisfies with each choice."""
     names = dict.fromkeys(each["hypothesis"] for each in scenarios)
     rows = ((name, *_most([each for each in scenarios if each["hypothesis"] == name])) for name in names)
-    return table(("hypothesis", "by law", "by lean", "by interpretation of the inputs"), rows)
+    return table(("hypothesis", "by law", "by column angle", "by interpretation of the inputs"), rows)
 
 
 def _most(scenarios: Sequence[dict[str, Any]]) -> Iterable[str]:

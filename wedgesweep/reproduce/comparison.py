@@ -10,7 +10,7 @@ import xarray as xr
 from wedgesweep.outcome import SETTLED
 from wedgesweep.reproduce.runs import LAWS, Run, Runs
 from wedgesweep.sweep import outcomes
-from wedgesweep.sweep.dataset import STATUSES
+from wedgesweep.sweep.variables import STATUSES
 
 # Ranges of the input over the amplitude at which set-valued friction begins to slip.
 NEAR = 5.0

@@ -32,7 +32,8 @@ STEEP_COULOMB = Law("coulomb (ramp to 0.1 mm/s)", "static-dynamic", STEEP)
 LAWS = (COULOMB, STATIC_DYNAMIC, EXPONENTIAL)
 # For hypotheses under which the faces can stick one at a time.
 REGULARISED_LAWS = (STEEP_COULOMB, STATIC_DYNAMIC, EXPONENTIAL)
-LEANS = (4.0, -4.0)  # deg; the paper does not say which way the columns lean
+# deg; the paper does not say which way the columns lean.
+COLUMN_ANGLES = (4.0, -4.0)
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,9 @@ class Hypothesis:
         pairs = zip(self.free, shares, strict=True)
         return {f"{effect}.{quantity.key}": _within(quantity, share) for (effect, quantity), share in pairs}
 
-    def record(self, law: Law, lean: float, shares: Sequence[float]) -> np.ndarray:
+    def record(self, law: Law, column_angle_deg: float, shares: Sequence[float]) -> np.ndarray:
         """Parameter record, shape (1,), with an arbitrary amplitude and frequency."""
-        suspension = {"column_angle": np.radians(lean)}
+        suspension = {"column_angle": np.radians(column_angle_deg)}
         return parameters.record(law.law, 1.0, 1.0, suspension, law.friction, self.values(shares))
 
 

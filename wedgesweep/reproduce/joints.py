@@ -7,7 +7,7 @@ import xarray as xr
 
 from wedgesweep.reproduce.runs import MM, Run
 from wedgesweep.reproduce.single_case import changed
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
 
 # As in claim 15: inputs and frequencies far above those at which nothing opens.
@@ -19,11 +19,11 @@ KEPT = ("amplitude_ratio", "lift_off_fraction", "impacts", "impact_energy", "dis
 def opened(run: Run) -> xr.Dataset:
     """The run's cases with unilateral joints: some variables; NaN where a case failed."""
     config = changed(run.config, UNILATERAL)
-    dtype = dataset.record_dtype({"phase": 0, "harmonic": dataset.HARMONICS, "part": 2})
+    dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
     cases = config.records()
     found = solve_cases(cases, np.arange(len(cases)), config.solver, inf, dtype)
     shape, coordinates = config.case_coordinates()
-    numbers = {name: (dataset.GRID, found[name].reshape(shape)) for name in KEPT}
+    numbers = {name: (variables.GRID, found[name].reshape(shape)) for name in KEPT}
     return xr.Dataset(numbers, coordinates)
 
 

@@ -20,11 +20,11 @@ EDGE = 0.01
 
 @dataclass(frozen=True)
 class Scenario:
-    """A hypothesis under a friction law, a lean (deg) and an interpretation of the inputs."""
+    """A hypothesis under a friction law, a column angle (deg) and an interpretation of the inputs."""
 
     hypothesis: Hypothesis
     law: Law
-    lean: float
+    column_angle_deg: float
     interpretation: Interpretation
 
     @property
@@ -39,7 +39,7 @@ class Scenario:
     def records(self, points: np.ndarray) -> np.ndarray:
         """Parameter records without amplitude and frequency, shape (n,)."""
         own = points[:, self.interpretation.inputs :]
-        rows = [self.hypothesis.record(self.law, self.lean, shares) for shares in own]
+        rows = [self.hypothesis.record(self.law, self.column_angle_deg, shares) for shares in own]
         return np.concatenate(rows)
 
     def labels(self) -> dict[str, str | float]:
@@ -47,7 +47,7 @@ class Scenario:
         return {
             "hypothesis": self.hypothesis.name,
             "law": self.law.name,
-            "column_angle_deg": self.lean,
+            "column_angle_deg": self.column_angle_deg,
             "interpretation": self.interpretation.name,
         }
 

@@ -58,7 +58,12 @@ def search(scenario: Scenario, budget: Budget, start: np.ndarray | None = None) 
 
 def _seed(scenario: Scenario) -> int:
     """A seed of its own, so that no result depends on which other scenarios are searched."""
-    names = (scenario.hypothesis.name, scenario.law.name, f"{scenario.lean:g}", scenario.interpretation.name)
+    names = (
+        scenario.hypothesis.name,
+        scenario.law.name,
+        f"{scenario.column_angle_deg:g}",
+        scenario.interpretation.name,
+    )
     return int.from_bytes(sha256("/".join(names).encode()).digest()[:4], "big")
 
 

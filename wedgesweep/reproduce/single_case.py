@@ -11,7 +11,7 @@ from wedgesweep.config import Case, Config, from_document
 from wedgesweep.reproduce.runs import MM, Run
 from wedgesweep.response import NUMBERS
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.sweep.dataset import HARMONICS
+from wedgesweep.sweep.variables import HARMONICS
 
 # Changes of a config: keys and values by table.
 Changes = Mapping[str, Mapping[str, Any]]
@@ -25,8 +25,8 @@ def changed(config: Config, changes: Changes) -> Config:
     return from_document(document)
 
 
-def other_lean(config: Config) -> dict[str, dict[str, float]]:
-    """The change that reverses the lean of the columns."""
+def mirrored_columns(config: Config) -> dict[str, dict[str, float]]:
+    """The change that mirrors the column angle."""
     return {"suspension": {"column_angle_deg": -config.document["suspension"]["column_angle_deg"]}}
 
 

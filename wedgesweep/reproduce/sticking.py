@@ -6,7 +6,7 @@ import numpy as np
 
 from wedgesweep.reproduce.findings import STICKS, Finding, above, below, claim
 from wedgesweep.reproduce.runs import MM, Run, Runs
-from wedgesweep.reproduce.single_case import other_lean, record, single
+from wedgesweep.reproduce.single_case import mirrored_columns, record, single
 
 # A case that is stuck for a larger share of the time hardly moves.
 MOST = 0.9
@@ -60,7 +60,7 @@ def _longest(run: Run, hertz: int) -> dict[str, float]:
     stuck = run.cases("coulomb", beta)["stick_fraction"]
     longest = stuck[int(stuck.where(stuck < MOST, 0.0).fillna(0.0).values.argmax())]
     millimetres = round(float(longest["amplitude"]) * MM, 6)
-    mirrored = single(run, "coulomb", beta, millimetres, other_lean(run.config))
+    mirrored = single(run, "coulomb", beta, millimetres, mirrored_columns(run.config))
     return {
         f"share_{hertz}": float(longest.where(longest < MOST, 0.0)),
         f"input_{hertz}": millimetres,
@@ -85,8 +85,8 @@ def _bolster_face(run: Run) -> dict[str, float]:
     reason="The input from which coulomb keeps slipping is proportional to omega^{slope:.2f} (fitted over "
     "{frequencies} frequencies), the input at which the ratio exceeds 0.1 to omega^{moving_slope:.2f}, "
     "because the bolster is driven by its mass times a omega^2. A base acceleration of {acceleration:.4f} "
-    "m/s2 makes the bolster slip once from rest, to a position where it sticks; slip continues from about "
-    "{sustained:.2f} m/s2. An input of 0.3 mm has this acceleration at beta = {beta_of_onset:.2f} only. "
+    "m/s^2 makes the bolster slip once from rest, to a position where it sticks; slip continues from about "
+    "{sustained:.2f} m/s^2. An input of 0.3 mm has this acceleration at beta = {beta_of_onset:.2f} only. "
     "The regularised laws have no onset: at beta = 1.75 and the smallest input static-dynamic creeps with "
     "a ratio of {creep:.2f}.",
 )

@@ -4,7 +4,7 @@ from math import pi
 
 from wedgesweep.reproduce.findings import Finding, claim, near
 from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, identifier
-from wedgesweep.reproduce.single_case import changed, other_lean, record, single
+from wedgesweep.reproduce.single_case import changed, mirrored_columns, record, single
 from wedgesweep.systems.suspension.equilibrium import resonance as frictionless_resonance
 from wedgesweep.systems.suspension.parameters import driven_mass, moving_mass
 
@@ -40,7 +40,7 @@ def parameters_and_cases(runs: Runs) -> Finding:
     "Equilibrium position y_0",
     paper="-2.1941 mm",
     here="{rest:.4f} mm",
-    reason="Table 1 gives {rest:.4f} mm, or {other_lean:.4f} mm if the columns lean the other way. The "
+    reason="Table 1 gives {rest:.4f} mm, or {mirrored:.4f} mm if the columns lean the other way. The "
     "rest position is proportional to 1/stiffness: all springs scaled by {springs:.4f} (paper-y0.toml) "
     "give {scaled:.4f} mm, and also the paper's resonance (claim 3).",
 )
@@ -49,16 +49,16 @@ def rest_position(runs: Runs) -> Finding:
     rest, scaled = (run.ds.attrs["rest_position"] * MM for run in (runs.paper, runs.scaled))
     numbers = {
         "rest": rest,
-        "other_lean": _other_lean(runs.paper) * MM,
+        "mirrored": _mirrored(runs.paper) * MM,
         "springs": _spring_scale(runs),
         "scaled": scaled,
     }
     return Finding((near("rest position under gravity (mm)", rest, -2.1941, READ_OFF),), numbers)
 
 
-def _other_lean(run: Run) -> float:
+def _mirrored(run: Run) -> float:
     """Rest position (m) with the column angle reversed."""
-    config = changed(run.config, other_lean(run.config))
+    config = changed(run.config, mirrored_columns(run.config))
     return float(record(config, "coulomb", 1.0, 1.0)["geometry"]["rest"][0])
 
 

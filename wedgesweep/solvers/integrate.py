@@ -23,8 +23,10 @@ from wedgesweep.hybrid.interface import (
     fastest,
     holds,
     initial_mode,
+    leaves,
     never_locks,
     observed,
+    opened,
     outruns,
     provided,
     rate,
@@ -35,7 +37,7 @@ from wedgesweep.hybrid.interface import (
 )
 from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
-from wedgesweep.hybrid.state import CHATTERING, FAILED, LOCKED, NO_EVENT, OK, State
+from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
 from wedgesweep.solvers import explicit, implicit
 from wedgesweep.solvers.step import inside, slope
 
@@ -275,6 +277,23 @@ by_record(
 )
 
 
+def _least_aim(h, mode, p):
+    """Least length (s) of a step that aims at an expected event."""
+
+
+@inlined
+def _least_aim_at_impact(h, mode, p):
+    """A flight between two impacts may be far shorter than a step."""
+    first, second = opened(mode, p)
+    return SHORTEST * 2.0 * pi / fastest(p) if first or second else LEAST_SHARE * h
+
+
+by_record(
+    _least_aim,
+    lambda fields: _least_aim_at_impact if provided(opened, fields) else (lambda h, mode, p: LEAST_SHARE * h),
+)
+
+
 def _closed_form(state, stop, p, keeping, recorder, counts):
     """The closed form of a mode, if the system has one."""
 
@@ -289,6 +308,18 @@ by_record(
         )
         if provided(closed_form, fields)
         else (lambda state, stop, p, keeping, recorder, counts: (False, state, NO_EVENT))
+    ),
+)
+
+
+def _leaves(y, mode, p):
+    """Whether another system goes on with a mode, if the system takes turns with one."""
+
+
+by_record(
+    _leaves,
+    lambda fields: (
+        (lambda y, mode, p: leaves(y, mode, p)) if provided(leaves, fields) else (lambda y, mode, p: False)
     ),
 )
 
@@ -312,7 +343,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         h = _after_event(h, p)
     while t < stop:
         h = min(h, longest)
-        aim = max((1.0 + PAST_EXPECTED) * expected, LEAST_SHARE * h)
+        aim = max((1.0 + PAST_EXPECTED) * expected, _least_aim(h, mode, p))
         taken = min(h, stop - t, to_event, aim)
         if implicitly:
             step, within, ahead, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
@@ -365,13 +396,15 @@ def begin(t, y, p):
 def integrate(state, keep_from, stop, p, recorder, work):
     """Follow a run from event to event up to ``stop``, and keep the part from a time on.
 
-    Returns how it ended (OK, LOCKED, FAILED, CHATTERING) and the state reached.
+    Returns how it ended (OK, LOCKED, FAILED, CHATTERING, HANDED_OVER) and the state reached.
     """
     window = (stop - state.t) * fastest(p) / (2.0 * pi)
     if window > LONGEST_WINDOW:
         return FAILED, state
     limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + window)
     while state.t < stop:
+        if _leaves(state.y, state.mode, p):
+            return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
         done, state, number = _closed_form(state, end, p, keeping, recorder, work.counts)
@@ -393,12 +426,3 @@ def integrate(state, keep_from, stop, p, recorder, work):
         if work.counts[2] > limit:
             return CHATTERING, state
     return OK, state
-
-
-@inner
-def run(t, y, keep_from, stop, p, recorder, work):
-    """As ``integrate``, from a state vector."""
-    state, unique = begin(t, y, p)
-    if not unique:
-        return LOCKED, state
-    return integrate(state, keep_from, stop, p, recorder, work)

@@ -2,31 +2,51 @@
 
 Drivers of the map (shooting, batches) see records as bytes and the map as an address, so that one compiled
 driver serves the records of all systems and kits.
+
+Contacts that may open take turns with contacts that hold: as long as all are closed, the smaller system of
+these has the same motion, and is faster.
 """
 
 from functools import cache
+from math import isnan
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba import types
 
-from wedgesweep.compiled import Pointer, borrowed, compiled, inlined
+from wedgesweep.compiled import Pointer, borrowed, by_record, compiled, inlined, inner
+from wedgesweep.effects.states import MASS
 from wedgesweep.hybrid import accumulators
-from wedgesweep.hybrid.interface import clocks, cycle, free, impact, provided, repeats, scales
+from wedgesweep.hybrid.interface import (
+    clocks,
+    cycle,
+    free,
+    impact,
+    never_locks,
+    provided,
+    repeats,
+    scales,
+    taken_over,
+)
 from wedgesweep.hybrid.recorder import Recorder
+from wedgesweep.hybrid.state import CHATTERING, HANDED_OVER, LOCKED, State
 from wedgesweep.hybrid.vectors import store, vector
-from wedgesweep.solvers.integrate import Workspace, run, workspace
+from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD, Workspace, begin, integrate, workspace
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
+from wedgesweep.systems import while_closed
 
-# Room for the states of any system.
-MOST_STATES = 32
+# Room for the states and for the numbers of a mode of any system.
+MOST_STATES, MOST_MODE = 32, 16
+# Places in what one system hands over to another: time (s), step (s), last event; from MODE on the mode.
+TIME, STEP, EVENT, MODE = range(4)
 
 
 class Memory(NamedTuple):
     """Room for a run and for what it keeps; see ``memory`` and ``Recorder``.
 
     ``reached`` (1,): time (s) at which the last run ended; ``free`` (MOST_STATES,): which states may take
-    other values near the one reached.
+    other values near the one reached; ``handed`` (MODE + MOST_MODE,): where another system goes on (time NaN:
+    nowhere).
     """
 
     work: Workspace
@@ -37,6 +57,7 @@ class Memory(NamedTuple):
     sticks: Any
     reached: Any
     free: Any
+    handed: Any
     acceleration: Any
     samples_per_period: int
     energies: bool
@@ -64,10 +85,38 @@ def memory(
         np.zeros(n, np.bool_),
         np.zeros(1),
         np.zeros(MOST_STATES, np.bool_),
+        np.full(MODE + MOST_MODE, np.nan),
         np.zeros(n if acceleration else 0),
         samples_per_period,
         energies,
     )
+
+
+def _first_state(start, y, handed, p):
+    """State in which a run begins, or goes on from another system, and whether it is unique."""
+
+
+@inlined
+def _handed_state(start, y, handed, p):
+    if isnan(handed[TIME]):
+        return begin(start, y, p)
+    mode, unique = taken_over(handed[TIME], y, handed[MODE:], p)
+    return State(handed[TIME], y, mode, np.int64(handed[EVENT]), handed[STEP]), unique
+
+
+by_record(
+    _first_state,
+    lambda fields: (
+        _handed_state if provided(taken_over, fields) else (lambda start, y, handed, p: begin(start, y, p))
+    ),
+)
+
+
+@inlined
+def _hand_over(state, handed):
+    handed[TIME], handed[STEP], handed[EVENT] = state.t, state.step, state.last_event
+    for i in range(len(state.mode)):
+        handed[MODE + i] = state.mode[i]
 
 
 @inlined
@@ -85,8 +134,14 @@ def _run_periods(first, periods, y, p, keeping, memory):
         memory.acceleration,
     )
     keep_from = start if keeping else stop
-    outcome, state = run(start, vector(y, scales(p)), keep_from, stop, p, recorder, memory.work)
+    outcome = LOCKED
+    state, unique = _first_state(start, vector(y, scales(p)), memory.handed, p)
+    if unique:
+        outcome, state = integrate(state, keep_from, stop, p, recorder, memory.work)
+    if outcome == HANDED_OVER:
+        _hand_over(state, memory.handed)
     store(state.y, y)
+    memory.free[:] = False
     store(free(state.y, p), memory.free)
     memory.reached[0] = state.t
     return outcome
@@ -109,7 +164,8 @@ class Cases(NamedTuple):
 
     ``records`` (n, bytes) for ``period_map``; natural sizes of the states and whether they only count time
     (n, S), the input's period (s) and whether all of the input repeats after it (n,). ``impacts``: whether
-    velocities may jump.
+    velocities may jump. ``turns`` (n,): whether a case is run by ``closed_map`` and ``closed_records`` while
+    its contacts are closed.
     """
 
     period_map: Any
@@ -119,22 +175,35 @@ class Cases(NamedTuple):
     cycle: Any
     repeats: Any
     impacts: bool
+    turns: Any
+    closed_map: Any
+    closed_records: Any
 
 
 def prepared(records: np.ndarray) -> Cases:
     """Compact records, shape (n,), for drivers."""
-    n, states = len(records), count_states(records)
+    n, states, closed = len(records), count_states(records), while_closed(records)
+    smaller = records if closed is None else closed
     found = Cases(
         period_map(records.dtype),
-        records.view(np.uint8).reshape(n, -1),
+        _as_bytes(records),
         np.zeros((n, states)),
         np.zeros((n, states), np.bool_),
         np.zeros(n),
         np.zeros(n, np.bool_),
         provided(impact, dict(records.dtype.fields or {})),
+        np.zeros(n, np.bool_),
+        period_map(smaller.dtype),
+        _as_bytes(smaller),
     )
     describe(records, found.scales, found.clocks, found.cycle, found.repeats)
+    if closed is not None:
+        which_never_lock(records, found.turns)
     return found
+
+
+def _as_bytes(records: np.ndarray) -> np.ndarray:
+    return records.view(np.uint8).reshape(len(records), -1)
 
 
 @compiled
@@ -154,9 +223,35 @@ def describe(records, of_states, counts, period, repeated):
 
 
 @compiled
-def run_periods(cases, first, periods, y, keeping, memory):
-    """Run the first of the cases from phase 0 of period ``first``; the states y (n,) move along.
+def which_never_lock(records, proved):
+    """Write for which records every state is proved to be well-posed."""
+    for i in range(records.size):
+        proved[i] = never_locks(records[i])
 
-    Returns how it ended.
+
+@inner
+def run_case(cases, number, first, periods, y, keeping, memory):
+    """Run a case from phase 0 of period ``first``; the states y (n,) move along. Returns how it ended.
+
+    A case that takes turns begins with closed contacts if all states but those of the mass are zero.
     """
-    return cases.period_map(first, periods, y, cases.records[0], keeping, memory)
+    memory.handed[TIME] = np.nan
+    closed = cases.turns[number]
+    for i in range(len(MASS), y.size):
+        closed = closed and y[i] == 0.0
+    for _ in range(EVENTS_PER_PERIOD * (1 + periods)):
+        if closed:
+            record = cases.closed_records[number]
+            outcome = cases.closed_map(first, periods, y, record, keeping, memory)
+        else:
+            outcome = cases.period_map(first, periods, y, cases.records[number], keeping, memory)
+        if outcome != HANDED_OVER:
+            return outcome
+        closed = not closed
+    return CHATTERING
+
+
+@compiled
+def run_periods(cases, first, periods, y, keeping, memory):
+    """``run_case`` of the first of the cases."""
+    return run_case(cases, 0, first, periods, y, keeping, memory)

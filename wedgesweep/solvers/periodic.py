@@ -11,11 +11,11 @@ from wedgesweep.compiled import allocating, borrowed, compiled
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
-from wedgesweep.solvers.period_map import memory, prepared
+from wedgesweep.solvers.period_map import memory, prepared, run_case
 from wedgesweep.solvers.shooting import copy, known, run_map, settle, shooting
 from wedgesweep.systems import grouped, state_count
 
-__all__ = ["OK", "Accuracy", "Periodic", "Warm", "at_rest", "joined", "respond", "samples"]
+__all__ = ["OK", "Accuracy", "Periodic", "Warm", "at_rest", "joined", "respond", "sampled"]
 
 # Time constants after which the lag of the velocity channel no longer depends on its start.
 LAG_TIMES = 16.0
@@ -178,23 +178,6 @@ def _sense_all(parameters, spectra):
         sensor.apply_to_spectra(spectra[i], parameters[i])
 
 
-def samples(
-    parameters: np.ndarray,
-    states: np.ndarray,
-    settle_periods: int,
-    periods: int,
-    samples_per_period: int,
-    rtol: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Deflection (m) and velocity (m/s) as the sensors show them, shape (n, samples), and states at the end.
-
-    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, S; a row with NaN:
-    at rest) and runs ``settle_periods`` before the kept ones. NaN where the case has no answer.
-    """
-    found = sampled(parameters, states, settle_periods, periods, samples_per_period, rtol)
-    return found.x, found.velocity, found.state
-
-
 class Sampled(NamedTuple):
     """Samples (n, k) of displacement (m), velocity (m/s) and acceleration (m/s^2; (n, 0) without).
 
@@ -216,7 +199,11 @@ def sampled(
     rtol: float,
     acceleration: bool = False,
 ) -> Sampled:
-    """Samples as those of ``samples``, and if wanted the acceleration, which has no sensor of its own."""
+    """Displacement and velocity as the sensors show them; if wanted the acceleration, which has no sensor.
+
+    For responses that do not repeat: each case starts at phase 0 from ``states`` (n, S; a row with NaN:
+    at rest) and runs ``settle_periods`` before the kept ones. NaN where the case has no answer.
+    """
     n, kept = len(parameters), periods * samples_per_period
     found = Sampled(
         np.full((n, kept), np.nan),
@@ -247,9 +234,9 @@ def _sample_all(cases, parameters, rows, spans, room, out):
             copy(out.state[i, : y.size], y)
         outcome = OK
         if spans[0] > 0:
-            outcome = cases.period_map(0, spans[0], y, cases.records[k], False, room)
+            outcome = run_case(cases, k, 0, spans[0], y, False, room)
         if outcome == OK:
-            outcome = cases.period_map(spans[0], spans[1], y, cases.records[k], True, room)
+            outcome = run_case(cases, k, spans[0], spans[1], y, True, room)
         out.state[i] = 0.0
         copy(y, out.state[i, : y.size])
         if outcome != OK:

@@ -1,7 +1,8 @@
 """scipy's Radau, mode by mode: it never steps across a corner of the equations.
 
 Each call of ``solve_ivp`` follows one mode until one of its event functions reaches zero. Right-hand side
-and event functions are compiled; what remains is scipy's.
+and event functions are compiled; what remains is scipy's. Contacts that may open take turns with contacts
+that hold, as in period_map.py.
 """
 
 from collections import Counter
@@ -18,7 +19,7 @@ from scipy.optimize import brentq, minimize_scalar
 from wedgesweep.hybrid import accumulators
 from wedgesweep.solvers import radau_system as system
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
-from wedgesweep.systems import compact
+from wedgesweep.systems import compact, while_closed
 
 # A mode of the system, a tuple of integers.
 Mode = Any
@@ -98,17 +99,23 @@ def solve(
     return _Run(parameters, window, rtol, time_limit).trajectory(start, settled)
 
 
+def _taking_turns(case: np.ndarray) -> list[np.ndarray]:
+    """A compact record, and that of the system which follows it while contacts are closed, if it has one."""
+    closed = while_closed(case)
+    return [case] if closed is None or not system.never_locks(case) else [case, closed]
+
+
 class _Run:
     """One case on its way: the current state, and what is kept so far."""
 
     def __init__(self, parameters: np.ndarray, window: Window, rtol: float, time_limit: float) -> None:
         self.window, self.rtol = window, rtol
-        self.case = compact(parameters)
+        self.cases = _taking_turns(compact(parameters))
         self.deadline = perf_counter() + time_limit
         self.time_limit = time_limit
-        self.scales, fastest = system.scales(self.case)
+        self.all_scales, fastest = system.scales(self.cases[0])
+        self._use(self.cases[0])
         self.period = 2.0 * pi / fastest
-        self.atol = ABSOLUTE * rtol * self.scales
         self.statistics: Counter[str] = Counter(rate_evaluations=0, steps=0, switches=0)
         self.sums = accumulators.empty()
         self.first_step: float | None = None
@@ -116,31 +123,50 @@ class _Run:
 
     def trajectory(self, start: Sequence[float] | np.ndarray, settled: float | None) -> Trajectory:
         """Follow the modes to the end of the window."""
-        y = np.zeros(self.scales.size)
-        given = np.asarray(start)[: y.size]
-        y[: given.size] = given
+        y = self._full(np.asarray(start, dtype=float)[: self.all_scales.size])
+        if not y[2:].any():
+            self._use(self.cases[-1])
+        y = y[: self.scales.size]
         mode, unique = system.initial_mode(0.0, y, self.case)
         self._require(unique, 0.0)
-        y, mode = self._settle(y, mode, settled)
+        y, mode = self._settle(*self._handed_over(0.0, y, mode), settled)
         self.samples = empty_samples(self.window.sample_times)
         self._follow(self.window.keep, self.window.end, y, mode)
         return Trajectory(self.samples, self.sums, self.window.periods, dict(self.statistics))
+
+    def _use(self, case: np.ndarray) -> None:
+        """Let a system follow the motion from here on."""
+        self.case, self.scales = case, system.scales(case)[0]
+
+    def _full(self, y: np.ndarray) -> np.ndarray:
+        """The state in the larger of two systems: closed contacts have no gap."""
+        return np.append(y, np.zeros(self.all_scales.size - y.size))
+
+    def _handed_over(self, t: float, y: np.ndarray, mode: Mode) -> tuple[np.ndarray, Mode]:
+        """State and mode in the system that follows the mode."""
+        if len(self.cases) == 1 or not system.leaves(y, mode, self.case):
+            return y, mode
+        self._use(self.cases[0 if self.case is self.cases[-1] else -1])
+        y = self._full(y)[: self.scales.size]
+        mode, unique = system.taken_over(t, y, mode, self.case)
+        self._require(unique, t)
+        return y, mode
 
     def _settle(self, y: np.ndarray, mode: Mode, settled: float | None) -> tuple[np.ndarray, Mode]:
         """Follow the modes to the kept part of the window; it is moved to where the state repeats."""
         if settled is None:
             return self._follow(0.0, self.window.keep, y, mode)
-        most, close = self.window.settle_periods, self.atol / (ABSOLUTE * self.rtol) * settled
+        most, close = self.window.settle_periods, self.all_scales * settled
         self.window = replace(self.window, settle_periods=0)
         for coarseness, last in ((COARSER, most - most // 4), (1.0, most)):
-            self.rtol, self.atol = self.rtol * coarseness, self.atol * coarseness
+            self.rtol *= coarseness
             for periods in range(self.window.settle_periods + 1, last + 1):
                 before, began = y, self.window.keep
                 self.window = replace(self.window, settle_periods=periods)
                 y, mode = self._follow(began, self.window.keep, y, mode)
-                if np.all(np.abs(y - before) < close):
+                if np.all(np.abs(self._full(y) - self._full(before)) < close):
                     break
-            self.rtol, self.atol = self.rtol / coarseness, self.atol / coarseness
+            self.rtol /= coarseness
         return y, mode
 
     def _follow(self, t: float, stop: float, y: np.ndarray, mode: Mode) -> tuple[np.ndarray, Mode]:
@@ -200,7 +226,7 @@ class _Run:
             events=[*(self._event(t, mode, place) for place in places), _turn],
             dense_output=held or t >= self.window.keep,
             rtol=self.rtol,
-            atol=self.atol,
+            atol=ABSOLUTE * self.rtol * self.scales,
             max_step=self.period / (STEPS_HELD if held else STEPS_PER_PERIOD),
             first_step=min(self.first_step, stop - t) if self.first_step else None,
         )
@@ -239,7 +265,7 @@ class _Run:
         sums = self.sums if t >= self.window.keep else None
         y, mode, unique = system.transition(t, y, mode, event, self.case, sums)
         self._require(unique, t)
-        return y, mode
+        return self._handed_over(t, y, mode)
 
     def _check(self, result: Any) -> None:
         self.statistics["rate_evaluations"] += result.nfev

@@ -35,6 +35,28 @@ def initial_mode(t, y, case):
 
 
 @compiled
+def never_locks(case):
+    """Whether it is proved that every state is well-posed."""
+    return interface.never_locks(case[0])
+
+
+@compiled
+def leaves(y, mode, case):
+    """Whether a mode is for the other system of two that take turns."""
+    return interface.leaves(vector(y, interface.scales(case[0])), mode, case[0])
+
+
+@compiled
+def _taken_over(t, y, mode, case):
+    return interface.taken_over(t, vector(y, interface.scales(case[0])), mode, case[0])
+
+
+def taken_over(t: float, y: np.ndarray, mode: Any, case: np.ndarray) -> tuple:
+    """Mode with which a system goes on from a mode of the other one, and whether it is unique."""
+    return _taken_over(t, y, np.array(mode, dtype=float), case)
+
+
+@compiled
 def holds(mode, case):
     """Whether contacts keep the mass at rest."""
     return interface.holds(mode, case[0])

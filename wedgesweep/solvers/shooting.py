@@ -18,6 +18,7 @@ from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
 from wedgesweep.solvers.linear_algebra import inverted, spectral_radius
 from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
+from wedgesweep.solvers.period_map import run_case
 
 # Perturbation of the scaled state for J, at least NOISE times the tolerance of a step, and the least step
 # after which J is updated.
@@ -67,8 +68,7 @@ def shooting(cases, number, accuracy, memory, records):
 @inlined
 def run_map(first, periods, y, keeping, shooting):
     """Run the case from phase 0 of period ``first``; y (n,) moves along. Returns the outcome."""
-    cases = shooting.cases
-    return cases.period_map(first, periods, y, cases.records[shooting.number], keeping, shooting.memory)
+    return run_case(shooting.cases, shooting.number, first, periods, y, keeping, shooting.memory)
 
 
 class Found(NamedTuple):

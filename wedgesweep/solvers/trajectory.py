@@ -97,7 +97,7 @@ class Trajectory:
 
 
 class CaseError(Exception):
-    """A case that has no answer; ``status`` is one of dataset.STATUSES."""
+    """A case that has no answer; ``status`` is one of variables.STATUSES."""
 
     def __init__(self, message: str, status: str) -> None:
         super().__init__(message)

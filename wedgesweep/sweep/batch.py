@@ -9,7 +9,7 @@ from wedgesweep.hybrid.state import OK
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.event_driven import Batch, BatchSettings
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 
 WAVEFORMS = ("normal_force_column", "normal_force_bolster", "stuck")
 
@@ -30,10 +30,10 @@ def solve_batch(
     settle = settings.settling(cases["input"]["omega"])
     samples = settings.kept_periods * settings.samples_per_period
     batch = event_driven.empty_batch(
-        len(cases), dataset.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
+        len(cases), variables.HARMONICS, samples if "displacement" in (dtype.names or ()) else 0
     )
     event_driven.run_batch(cases, settle, _batch_settings(settings, continuation), _rtol(settings), batch)
-    records = dataset.blank(dtype, indices)
+    records = variables.blank(dtype, indices)
     _fill(records, batch, settings)
     records["wall_time"] = (perf_counter() - began) / len(cases)
     return records, batch.state
@@ -72,11 +72,11 @@ def _fill(records: np.ndarray, batch: Batch, settings: Settings) -> None:
         columns |= dict(zip(WAVEFORMS, batch.waveforms[:, 2:].swapaxes(0, 1), strict=True))
     for name, values in columns.items():
         records[name][fine] = values[fine]
-    records["status"][fine] = dataset.STATUSES.index("ok")
+    records["status"][fine] = variables.STATUSES.index("ok")
     for case in np.flatnonzero(~fine).tolist():
         status, message = _failure(batch, case)
-        records[case]["status"] = dataset.STATUSES.index(status)
-        records[case]["message"] = message.encode()[: dataset.MESSAGE_BYTES]
+        records[case]["status"] = variables.STATUSES.index(status)
+        records[case]["message"] = message.encode()[: variables.MESSAGE_BYTES]
 
 
 def _failure(batch: Batch, case: int) -> tuple[str, str]:

@@ -13,20 +13,12 @@ from wedgesweep.compiled import CACHE_DIR
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
-from wedgesweep.sweep import dataset, transients
+from wedgesweep.sweep import transients, variables
 from wedgesweep.sweep.batch import solve_batch
 from wedgesweep.sweep.continuation import solve_lines
 from wedgesweep.systems import example
 
 SUSPENSION = "suspension"
-
-
-def describe(law: str, beta: float, amplitude: float, unit: str = "m") -> str:
-    """Describe a case in words; amplitude in m or N, or without a unit the scale of an input."""
-    if not unit:
-        return f"{law}, scale {amplitude:.6g}"
-    size = f"{amplitude * 1e3:.6g} mm" if unit == "m" else f"{amplitude:.6g} {unit}"
-    return f"{law}, beta {beta:.6g}, amplitude {size}"
 
 
 def is_compiled(method: str, kit: int = 0, system: str = SUSPENSION) -> bool:
@@ -42,7 +34,7 @@ def compile_once(method: str, kit: int = 0, system: str = SUSPENSION) -> None:
     if is_compiled(method, kit, system):
         return
     short = Settings(method=method, settle_periods=1, kept_periods=2, samples_per_period=32)
-    dtype = dataset.record_dtype({"phase": 64, "harmonic": dataset.HARMONICS, "part": 2})
+    dtype = variables.record_dtype({"phase": 64, "harmonic": variables.HARMONICS, "part": 2})
     # It sticks and slips, so that it uses all compiled functions.
     solve_cases(example(system, kit), np.array([0]), short, inf, dtype)
     compiled_mark(f"{method}-{system}-{kit}").touch()
@@ -92,7 +84,7 @@ def solve_cases(
     case_timeout : float
         Time limit per case (s); radau only.
     dtype : dtype
-        Layout of the records (see dataset.record_dtype).
+        Layout of the records (see variables.record_dtype).
 
     Returns
     -------
@@ -103,7 +95,7 @@ def solve_cases(
         return solve_lines(cases, indices, settings, dtype)
     if settings.transient is None and settings.method == "event-driven":
         return solve_batch(cases, indices, settings, dtype)[0]
-    records = dataset.blank(dtype, indices)
+    records = variables.blank(dtype, indices)
     for case in range(len(indices)):
         started = perf_counter()
         try:
@@ -116,9 +108,9 @@ def solve_cases(
         except Exception as error:  # one bad case must not take the sweep with it
             outcome, message = Outcome.SOLVER_FAILURE, f"{type(error).__name__}: {error}"
         if outcome != Outcome.OK:
-            records[case] = dataset.blank(dtype, indices[case : case + 1])[0]
+            records[case] = variables.blank(dtype, indices[case : case + 1])[0]
         records[case]["status"] = outcome
-        records[case]["message"] = message.encode()[: dataset.MESSAGE_BYTES]
+        records[case]["message"] = message.encode()[: variables.MESSAGE_BYTES]
         records[case]["wall_time"] = perf_counter() - started
     return records
 
@@ -128,16 +120,16 @@ def _solve_case(case: np.ndarray, settings: Settings, case_timeout: float, recor
     if settings.transient is not None:
         transients.solve_case(case, limited, record)
         return
-    result, statistics = simulate.respond(case, limited, dataset.HARMONICS)
+    result, statistics = simulate.respond(case, limited, variables.HARMONICS)
     if not np.isfinite(result.numbers["amplitude_ratio"]):
         status, message = "not_finite", "the response is not finite"
         raise CaseError(message, status)
-    variables: dict[str, Any] = {
+    values: dict[str, Any] = {
         **result.numbers,
         **result.spectra,
         **result.waveforms,
         **statistics,
     }
-    for name in variables.keys() & set(record.dtype.names or ()):
-        record[name] = variables[name]
+    for name in values.keys() & set(record.dtype.names or ()):
+        record[name] = values[name]
     record["settled_periods"] = settings.window(float(case["input"]["omega"][0])).settle_periods

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.batch import solve_batch
 
 COEXISTING, ALONE, NOT_TOLD = 1, 0, -1
@@ -21,9 +21,9 @@ def solve_lines(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtyp
     """Solve whole lines, given in any order, up and down in beta.
 
     ``cases`` are parameter records, shape (n,). Lines do not depend on each other. The records returned are
-    those of the sweep up; their variables ``dataset.CONTINUED`` describe the sweep down.
+    those of the sweep up; their variables ``variables.CONTINUED`` describe the sweep down.
     """
-    records = dataset.blank(dtype, indices)
+    records = variables.blank(dtype, indices)
     for line in lines(cases):
         both = there_and_back(line)
         found, _ = solve_batch(cases[both], indices[both], settings, dtype, continuation=True)
@@ -51,6 +51,6 @@ def there_and_back(line: np.ndarray) -> np.ndarray:
 def compared(records: np.ndarray, steady_tolerance: float) -> np.ndarray:
     """Flag whether both sweeps end in different responses, shape (n,); -1 if one of them is not periodic."""
     apart = np.abs(records["amplitude_ratio"] - records["amplitude_ratio_down"])
-    differ = (apart > dataset.DISTINCT * steady_tolerance) | (records["period"] != records["period_down"])
+    differ = (apart > variables.DISTINCT * steady_tolerance) | (records["period"] != records["period_down"])
     told = (records["period"] > 0) & (records["period_down"] > 0)
     return np.where(told, np.where(differ, COEXISTING, ALONE), NOT_TOLD)

@@ -3,15 +3,22 @@
 from typing import TypedDict
 
 from wedgesweep.config import Config
-from wedgesweep.sweep.dataset import OF_LIFT_OFF
+from wedgesweep.sweep.variables import OF_LIFT_OFF
 
 # What only datasets of unilateral joints have, and what other variables mean there.
 _OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)
-_OPEN = {
+_OPEN: dict[str, str | None] = {
     "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
     "lift_off_fraction": "share of time with at least one contact open",
     "stick_fraction": "share of time stuck (coulomb) or with the column face closed and below the "
     "threshold velocity",
+}
+# Where the input does not repeat. A wedge that lifts off does not move with the bolster: what is left of the
+# inertia of both is no force on either.
+_OPEN_IN_ALL: dict[str, str | None] = {
+    "impacts": "impacts of a wedge in all",
+    "impact_energy": "energy lost in impacts in all, beside dissipated_energy",
+    "force": None,
 }
 
 
@@ -39,7 +46,7 @@ def attributes(config: Config) -> Attributes:
 def of(config: Config) -> dict[str, str | None]:
     """Return the long names of variables by name, None for those that the system does not have."""
     if config.opens:
-        return dict(_OPEN)
+        return _OPEN | (_OPEN_IN_ALL if config.transient else {})
     if config.system != "oscillator":
         return _OF_LIFT_OFF
     if config.transient:
@@ -77,7 +84,7 @@ def _of_transients(config: Config) -> dict[str, str | None]:
     relative = contact == "base" and not config.forced
     x = "x - u" if relative else "x"
     rates = ("x' - u'", "x'' - u''") if relative else ("x'", "x''")
-    return {
+    return _OF_LIFT_OFF | {
         "peak_displacement": f"largest magnitude of {x}",
         "peak_to_peak": f"peak-to-peak of {x}",
         "peak_velocity": f"largest magnitude of {rates[0]}",

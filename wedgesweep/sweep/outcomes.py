@@ -1,20 +1,15 @@
-"""How each case of a sweep ended, whether the sweep is finished or not."""
+"""How each case of a sweep ended."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from wedgesweep import config
-from wedgesweep.errors import SweepError
+from wedgesweep import formatting
 from wedgesweep.outcome import Outcome, settled
-from wedgesweep.sweep import journal
-from wedgesweep.sweep.cases import describe
-from wedgesweep.sweep.run import Sweep
 
 LIFT_OFF = "lift_off_fraction"
 # A variable of unilateral joints.
@@ -50,7 +45,7 @@ class CaseResult(NamedTuple):
         return self.lift_off_fraction > 0.0
 
     def __str__(self) -> str:
-        where = describe(self.law, self.beta, self.amplitude, self.unit)
+        where = formatting.case(self.law, self.beta, self.amplitude, self.unit)
         return f"{where}: {self.status}: {self.message}"
 
 
@@ -140,26 +135,3 @@ def _of_transients(ds: xr.Dataset) -> Outcomes:
     lifted = ds[LIFT_OFF].values.ravel() if LIFT_OFF in ds else nothing
     # Nothing has to settle.
     return Outcomes(ds["status"].values.ravel(), nothing + 1.0, nothing, lifted, described)
-
-
-def of_journal(path: Path) -> Outcomes:
-    """How the finished cases of an unfinished sweep ended."""
-    header = journal.header(path)
-    settings = config.parse(header["config"], str(path))
-    if settings.sha256 != header["config_sha256"]:
-        message = f"{path}: damaged in its first line, whose config is not that of the records"
-        raise SweepError(message)
-    records = journal.read(path, Sweep(settings, path).dtype)
-    unit = "" if settings.transient else "N" if settings.forced else "m"
-
-    def described(place: int) -> tuple[str, float, float, str, str]:
-        case = settings.sweep.case(records["index"][place])
-        return (*case, unit, records["message"][place].decode())
-
-    if settings.transient:
-        nothing = np.zeros(len(records))
-        return Outcomes(records["status"], nothing + 1.0, nothing, records[LIFT_OFF], described)
-    columns = {name: records[name] for name in COLUMNS}
-    if settings.opens:
-        columns[LIFT_OFF] = np.zeros(len(records))
-    return Outcomes(**columns, describe_case=described)

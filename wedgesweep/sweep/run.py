@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wedgesweep.config import Case, Config, parse
+from wedgesweep import formatting
+from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset, journal, labels, provenance, transients
+from wedgesweep.sweep import dataset, journal, labels, provenance, transients, variables
 from wedgesweep.sweep.backend import Backend, Pool, local
-from wedgesweep.sweep.cases import Chunk, compile_once, describe, solve_cases
+from wedgesweep.sweep.cases import Chunk, compile_once, solve_cases
 from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
@@ -72,13 +73,13 @@ class Sweep:
         return {
             "phase": self.settings.kept_periods * samples if self.settings.keep_waveforms else 0,
             "samples_per_period": samples,
-            "harmonic": dataset.HARMONICS,
+            "harmonic": variables.HARMONICS,
             "part": 2,
         }
 
     @property
     def dtype(self) -> np.dtype:
-        return dataset.record_dtype(self.sizes, self.settings.continuation)
+        return variables.record_dtype(self.sizes, self.settings.continuation)
 
     @property
     def rows(self) -> Rows:
@@ -87,7 +88,7 @@ class Sweep:
 
     @property
     def journal_path(self) -> Path:
-        return self.out.with_name(self.out.name + ".partial")
+        return dataset.journal_of(self.out)
 
     @property
     def extended(self) -> bool:
@@ -252,7 +253,7 @@ class Sweep:
         if failed.size:
             case = self.config.sweep.case(failed[0]["index"])
             unit = "N" if self.config.forced else "m"
-            where = describe(case.law, case.beta, case.amplitude, "" if self.config.transient else unit)
+            where = formatting.case(*case, "" if self.config.transient else unit)
             message = f"{where}: {failed[0]['message'].decode()}"
             raise CaseFailedError(message)
 
@@ -301,21 +302,6 @@ def _decay(p: np.void) -> float:
     own = p["oscillator"]
     force = p["friction"]["mu_d"] * own["normal_force"] + p["guide_friction"]["force"]
     return float(4.0 * force / own["spring"]) if own["spring"] > 0.0 else nan
-
-
-def unfinished(out: Path) -> "xr.Dataset | None":
-    """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
-
-    None if there is no such run; raises SweepError if its journal is damaged.
-    """
-    path = out.with_name(out.name + ".partial")
-    if not path.exists():
-        return None
-    sweep = Sweep(parse(journal.header(path)["config"], str(path)), out)
-    records = dataset.blank(sweep.dtype, np.arange(sweep.count))
-    done = journal.read(path, sweep.dtype)
-    records[done["index"]] = done
-    return sweep.assembled(records, datetime.now(UTC))
 
 
 def _read_sweep(path: Path) -> "xr.Dataset":

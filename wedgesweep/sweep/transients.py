@@ -11,7 +11,7 @@ from wedgesweep.inputs import sine_sweep
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.simulate import Settings, Transient
 from wedgesweep.solvers.trajectory import CaseError, Trajectory
-from wedgesweep.systems import driven_mass, is_oscillator, moving_mass
+from wedgesweep.systems import driven_mass, is_oscillator, moving_mass, opens
 
 
 def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
@@ -34,7 +34,8 @@ def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
         "force": _force(case, given, run),
         "stuck": run.samples.sticks,
     }
-    variables = {**_numbers(run, case[0], x, velocity), **run.statistics, **waveforms}
+    opened = _of_lift_off(run.sums[0]) if opens(case)[0] else {}
+    variables = {**_numbers(run, case[0], x, velocity), **opened, **run.statistics, **waveforms}
     for name in variables.keys() & set(record.dtype.names or ()):
         record[name] = variables[name]
 
@@ -67,6 +68,18 @@ def _numbers(run: Trajectory, p: np.void, x: np.ndarray, velocity: np.ndarray) -
         "supplied_energy": one["supplied"],
         "minimum_normal_force": one["normal_force"] if one["normal_force"] < inf else nan,
         "lift_off_fraction": one["lifted_time"] / slipping if slipping > 0.0 else nan,
+    }
+
+
+def _of_lift_off(sums: np.void) -> dict[str, float]:
+    """Numbers of a motion in which wedges may lift off."""
+    return {
+        "lift_off_fraction": sums["either_open"] / sums["time"],
+        "column_open_fraction": sums["first_open"] / sums["time"],
+        "bolster_open_fraction": sums["second_open"] / sums["time"],
+        "impacts": sums["impacts"],
+        "largest_impulse": sums["impulse"],
+        "impact_energy": sums["struck"],
     }
 
 

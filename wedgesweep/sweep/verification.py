@@ -15,15 +15,15 @@ import joblib
 import numpy as np
 import xarray as xr
 
-from wedgesweep import response
+from wedgesweep import formatting, response
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import CaseError, Window
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.backend import loky
 from wedgesweep.sweep.batch import solve_batch
-from wedgesweep.sweep.cases import compile_once, describe
+from wedgesweep.sweep.cases import compile_once
 from wedgesweep.sweep.run import Sweep
 
 RTOL, TIGHTER = 1e-9, 1e-10
@@ -124,7 +124,7 @@ def _task(sweep: Sweep, stored: dict[str, np.ndarray], index: int) -> _Task:
         whole = period * -(-window.periods // period)
         window, start = replace(window, settle_periods=period, periods=whole), _state(sweep, index)
     return _Task(
-        describe(*case, "N" if sweep.config.forced else "m"),
+        formatting.case(*case, "N" if sweep.config.forced else "m"),
         record,
         window,
         start,
@@ -136,7 +136,7 @@ def _state(sweep: Sweep, index: int) -> np.ndarray:
     """The state in which the steady response of a case begins its period."""
     row = sweep.rows.cases(sweep.rows.of(np.array([index])))[0]
     numbers_only: Settings = replace(sweep.settings, keep_waveforms=False)
-    dtype = dataset.record_dtype({**sweep.sizes, "phase": 0}, sweep.settings.continuation)
+    dtype = variables.record_dtype({**sweep.sizes, "phase": 0}, sweep.settings.continuation)
     records = sweep.config.records(row)
     _, states = solve_batch(records, row, numbers_only, dtype, sweep.settings.continuation)
     return states[row.tolist().index(index)]
@@ -158,7 +158,7 @@ def _judged(task: _Task) -> Judged:
 
 def _solved(task: _Task, rtol: float) -> Numbers:
     run = radau.solve(task.record, task.window, rtol, TIME_LIMIT, task.start)
-    numbers = response.evaluate(run, task.record, dataset.HARMONICS).numbers
+    numbers = response.evaluate(run, task.record, variables.HARMONICS).numbers
     found = Numbers(float(numbers["amplitude_ratio"]), float(numbers["stick_fraction"]))
     if not all(map(isfinite, found)):
         message = "the response is not finite"

@@ -18,7 +18,7 @@ import numpy as np
 
 from wedgesweep.errors import SweepError
 from wedgesweep.outcome import Outcome
-from wedgesweep.sweep import dataset
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.backend import SENT_AHEAD, Pool
 from wedgesweep.sweep.cases import Chunk, solve_chunk
 
@@ -94,7 +94,7 @@ class Workers:
                 yield from self._alone(half)
             return
         task = self.chunk(rows)
-        records = dataset.blank(task.dtype, task.indices)
+        records = variables.blank(task.dtype, task.indices)
         records["status"], records["message"] = Outcome.WORKER_LOST, MESSAGE.encode()
         yield records
 

@@ -7,13 +7,13 @@ import numpy as np
 from wedgesweep.effects import states
 from wedgesweep.excitation import has_series, set_series
 from wedgesweep.systems.oscillator import hybrid as _oscillator_hybrid  # noqa: F401
-from wedgesweep.systems.oscillator import parameters as oscillator
+from wedgesweep.systems.oscillator import parameters as oscillator_parameters
 from wedgesweep.systems.suspension import hybrid as _suspension_hybrid  # noqa: F401
-from wedgesweep.systems.suspension import parameters as suspension
+from wedgesweep.systems.suspension import parameters as suspension_parameters
 from wedgesweep.systems.suspension.unilateral import hybrid as _unilateral_hybrid  # noqa: F401
 
 # Systems that configs know: the module of the records, by the field that marks them.
-SYSTEMS = {"suspension": suspension, "oscillator": oscillator}
+SYSTEMS = {"suspension": suspension_parameters, "oscillator": oscillator_parameters}
 
 
 def state_count() -> int:
@@ -29,9 +29,23 @@ def compact(parameters: np.ndarray) -> np.ndarray:
     return parameters
 
 
+def while_closed(records: np.ndarray) -> np.ndarray | None:
+    """Compact records for the system that follows them while their contacts are closed; None without one."""
+    if "suspension" not in (records.dtype.names or ()):
+        return None
+    return suspension_parameters.while_closed(records)
+
+
 def is_oscillator(parameters: np.ndarray) -> bool:
     """Whether records are those of the oscillator."""
     return "oscillator" in (parameters.dtype.names or ())
+
+
+def opens(parameters: np.ndarray) -> np.ndarray:
+    """Whether contacts of records, shape (n,), may open."""
+    if is_oscillator(parameters):
+        return np.zeros(len(parameters), bool)
+    return suspension_parameters.has_unilateral_joints(parameters)
 
 
 def _kits(parameters: np.ndarray) -> np.ndarray:
@@ -46,10 +60,10 @@ def kits(parameters: np.ndarray) -> np.ndarray:
 def example(system: str, kit: int) -> np.ndarray:
     """A case, shape (1,), of a kit, which sticks and slips."""
     if system == "suspension":
-        case = suspension.record("coulomb", 5e-3, 85.0)
+        case = suspension_parameters.record("coulomb", 5e-3, 85.0)
     else:
         body = {"mass": 1.0, "spring": 7e3, "normal_force": 30.0}
-        case = oscillator.record("coulomb", 5e-3, 85.0, body)
+        case = oscillator_parameters.record("coulomb", 5e-3, 85.0, body)
     _kits(case)[:] = kit // 2
     if kit % 2:
         set_series(case, np.array([-1j, 0.01]))
@@ -65,21 +79,21 @@ def has_impacts(parameters: np.ndarray) -> np.ndarray:
     """Whether contacts of records, shape (n,), may open and hit."""
     if is_oscillator(parameters):
         return np.zeros(len(parameters), bool)
-    return suspension.has_unilateral_joints(parameters)
+    return suspension_parameters.has_unilateral_joints(parameters)
 
 
 def driven_mass(parameters: np.ndarray) -> np.ndarray:
     """Mass (kg) that the base acceleration drives, of records of any shape."""
     if is_oscillator(parameters):
         return parameters["oscillator"]["mass"]
-    return suspension.driven_mass(parameters)
+    return suspension_parameters.driven_mass(parameters)
 
 
 def moving_mass(parameters: np.ndarray) -> np.ndarray:
     """Mass (kg) that the motion accelerates, of records of any shape."""
     if is_oscillator(parameters):
         return parameters["oscillator"]["mass"]
-    return suspension.moving_mass(parameters)
+    return suspension_parameters.moving_mass(parameters)
 
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -8,7 +8,7 @@ from wedgesweep.hybrid import interface
 
 @inlined
 def repeats(p):
-    """A foreign tone has a period of its own."""
+    """A spurious tone has a period of its own."""
     return not stray_vibration.acts(p)
 
 

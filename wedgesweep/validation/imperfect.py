@@ -44,7 +44,7 @@ class Errors:
     uncertain: Mapping[str, float]
 
 
-def draw(size: float, recorded: bool, lean_deg: float, random: np.random.Generator) -> Errors:
+def draw(size: float, recorded: bool, column_angle_deg: float, random: np.random.Generator) -> Errors:
     """Draw twelve errors of a relative ``size``: eleven here, that of the amplitudes with the data."""
 
     def near(value: float, std: float) -> float:
@@ -56,7 +56,7 @@ def draw(size: float, recorded: bool, lean_deg: float, random: np.random.Generat
     }
     angles = {
         "wedge_angle_deg": near(WEDGE_ANGLE_DEG, WEDGE_ANGLE_STD),
-        "column_angle_deg": near(lean_deg, COLUMN_ANGLE_STD),
+        "column_angle_deg": near(column_angle_deg, COLUMN_ANGLE_STD),
     }
     sections["suspension"] |= angles
     harmonics = RECORDED_HARMONICS if recorded else size * HARMONICS

@@ -43,9 +43,9 @@ def exact_or_tied(record: Record) -> bool:
 
 def leads_ladder(record: Record) -> bool:
     """Whether the truth is the most accurate single effect, or part of the most accurate pair."""
-    rungs = [rung["effects"] for rung in record["ladder"]]
+    levels = [level["effects"] for level in record["ladder"]]
     return any(
-        rung == record["truth"] or (len(rung) == 2 and {*record["truth"]} <= {*rung}) for rung in rungs
+        level == record["truth"] or (len(level) == 2 and {*record["truth"]} <= {*level}) for level in levels
     )
 
 

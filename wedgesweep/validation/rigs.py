@@ -102,9 +102,9 @@ class Rig:
         return 1e3 * force / (own["mass"] * omega**2 if self.relative else own["spring"])
 
 
-def bench(lean_deg: float) -> Rig:
+def bench(column_angle_deg: float) -> Rig:
     """The paper's bench with its column at some angle."""
-    return Rig({"suspension": {"column_angle_deg": lean_deg}})
+    return Rig({"suspension": {"column_angle_deg": column_angle_deg}})
 
 
 def any_size(random: np.random.Generator) -> Rig:

@@ -17,7 +17,8 @@ from wedgesweep.files import write_text
 from wedgesweep.sweep.provenance import git_commit
 from wedgesweep.validation import time_records, unmodelled_data
 from wedgesweep.validation.baselines import BASELINES
-from wedgesweep.validation.draft import Draft, draw
+from wedgesweep.validation.draft import Draft
+from wedgesweep.validation.draw import draw
 from wedgesweep.validation.judge import Record
 from wedgesweep.validation.response import TONE, Test
 from wedgesweep.validation.sets import DataSet
@@ -25,7 +26,7 @@ from wedgesweep.validation.strength import LEVEL
 from wedgesweep.validation.time_records import TIME_KINDS
 
 # What is kept of how a set was drawn, and the kinds that simpler methods are tried on.
-KEPT = ("law", "lean", "noise", "spread", "uncertain", "expected", "record_input", "size")
+KEPT = ("law", "column_angle_deg", "noise", "spread", "uncertain", "expected", "record_input", "size")
 COMPARED = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
 RECORD, DRAFT, TRUTH = "record.json", "draft.json", "truth.json"
 DATA, RESULT = "data", "diagnosis"
@@ -152,7 +153,7 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
         **{key: drawn[key] for key in ("law", "noise", "level")},
         **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
         "ladder": [
-            {key: rung[key] for key in ("effects", "accuracy", "distinct")} for rung in found["ladder"]
+            {key: level[key] for key in ("effects", "accuracy", "distinct")} for level in found["ladder"]
         ],
         "excess": found["misfit"]["excess_base"],
         **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
@@ -174,7 +175,7 @@ def _record(one: DataSet, draft: Draft, found: dict[str, Any]) -> Record:
         **{key: getattr(draft, key) for key in KEPT},
         **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
         "ladder": [
-            {key: rung[key] for key in ("effects", "accuracy", "distinct")} for rung in found["ladder"]
+            {key: level[key] for key in ("effects", "accuracy", "distinct")} for level in found["ladder"]
         ],
         "excess": found["misfit"]["excess_base"],
         **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},

@@ -30,7 +30,7 @@ class System(NamedTuple):
     """The system of one test in SI units; ``friction`` scales both coefficients."""
 
     law: int
-    lean: float  # rad
+    column_angle: float  # rad
     amplitude: float
     omega: float
     width: float
@@ -53,7 +53,7 @@ def friction_coefficient(v, s):
 @njit(cache=True)
 def solve_newton(z, v, base_acceleration, mu, s):
     """z'', N_c and N_b by Cramer's rule; ``mu`` holds the coefficients of column and bolster face."""
-    a, g = WEDGE_ANGLE, s.lean
+    a, g = WEDGE_ANGLE, s.column_angle
     mu_c, mu_b = mu
     r = sin(a) / sin(a + g)
     deflection = z - s.equilibrium
@@ -75,8 +75,8 @@ def solve_newton(z, v, base_acceleration, mu, s):
 @njit(cache=True)
 def acceleration(t, z, v, direction, s):
     """Return z'' and the smaller normal force; ``direction`` is that of slip, for Coulomb's law only."""
-    r = sin(WEDGE_ANGLE) / sin(WEDGE_ANGLE + s.lean)
-    q = -sin(s.lean) / sin(WEDGE_ANGLE + s.lean)
+    r = sin(WEDGE_ANGLE) / sin(WEDGE_ANGLE + s.column_angle)
+    q = -sin(s.column_angle) / sin(WEDGE_ANGLE + s.column_angle)
     base_acceleration = -s.amplitude * s.omega**2 * sin(s.omega * t)
     slip = float(direction) if s.law == COULOMB else v
     mu = (friction_coefficient(r * slip, s), friction_coefficient(q * slip, s))
@@ -133,14 +133,16 @@ def simulate(s, h, skipped, stride, samples):
     return out, least
 
 
-def system(law: str, lean_deg: float, frequency: float, amplitude: float, effect: dict[str, float]) -> System:
+def system(
+    law: str, column_angle_deg: float, frequency: float, amplitude: float, effect: dict[str, float]
+) -> System:
     """System of one test at a frequency (Hz) and an amplitude (m).
 
     ``effect`` may hold width (m), coefficient (N s^2/m^2) and friction (factor on both coefficients).
     """
     found = System(
         LAWS[law],
-        radians(lean_deg),
+        radians(column_angle_deg),
         amplitude,
         2.0 * pi * frequency,
         effect.get("width", 0.0),

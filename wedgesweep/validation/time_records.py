@@ -34,7 +34,7 @@ FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
 # Largest motion (mm) of a mass (kg), noise over the rms of a channel.
 TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
 # Change of the response to the first release or loop over that response, and attempts to reach it.
-CHANGE, ATTEMPTS = (0.05, 0.5), 20
+CHANGE, ATTEMPTS = (0.05, 0.5), 60
 # After so many of them the next effect takes the place of the one that is due.
 SAME_EFFECT = 5
 # Sampling rate, lengths of a release, a sweep and a loop in natural periods.

@@ -34,12 +34,12 @@ def name_of(effect: Mapping[str, float]) -> str:
 
 
 def spectra(
-    law: str, lean_deg: float, tests: Sequence[Test], effect: Mapping[str, float]
+    law: str, column_angle_deg: float, tests: Sequence[Test], effect: Mapping[str, float]
 ) -> tuple[np.ndarray, float]:
     """Roughly the spectra of the tests, as ``response.spectra`` has them, and the smallest normal force."""
     found, least = np.zeros((len(tests), 2, HARMONICS + 1), complex), np.inf
     amplitudes = 1e-3 * np.array([test.amplitude for test in tests])
-    for row, system in zip(found, systems((law, lean_deg), tests, amplitudes, effect), strict=True):
+    for row, system in zip(found, systems((law, column_angle_deg), tests, amplitudes, effect), strict=True):
         period = 2.0 * pi / system.omega
         stride = ceil(period / STEP / SAMPLES)
         step = period / SAMPLES / stride
@@ -52,7 +52,7 @@ def spectra(
 def systems(
     model: tuple[str, float], tests: Sequence[Test], amplitudes: np.ndarray, effect: Mapping[str, float]
 ) -> list[simulator.System]:
-    """The system of each test; ``model`` is law and lean (deg), ``amplitudes`` (m) has shape (tests,)."""
+    """System of each test; ``model``: law and column angle (deg); ``amplitudes`` (m) has shape (tests,)."""
     friction = simulator.drifting_friction(effect.get("rise", 0.0), len(tests)).tolist()
     return [
         simulator.system(*model, test.frequency_hz, amplitude, {**effect, "friction": factor})

@@ -19,13 +19,15 @@ SAMPLING_SPREAD = 0.03
 
 def make(draft: Draft, seed: int, directory: Path) -> None:
     """Write the same files as ``wedgesweep synthesize``."""
-    assert draft.lean is not None
+    assert draft.column_angle_deg is not None
     random = np.random.default_rng(seed)
     factors = {name: 1.0 + std * float(random.normal()) for name, std in draft.uncertain.items()}
     errors = (draft.spread or 0.0) * random.normal(size=len(draft.tests))
     amplitudes = 1e-3 * np.array([test.amplitude for test in draft.tests]) * (1.0 + errors)
     tables, stated = [], []
-    systems = unmodelled.systems((draft.law, draft.lean), draft.tests, amplitudes, draft.unmodelled)
+    systems = unmodelled.systems(
+        (draft.law, draft.column_angle_deg), draft.tests, amplitudes, draft.unmodelled
+    )
     for i, (test, system) in enumerate(zip(draft.tests, systems, strict=True)):
         true = system._replace(friction=system.friction * factors.get("friction_level", 1.0))
         tables.append(_table(true, draft.noise, random))

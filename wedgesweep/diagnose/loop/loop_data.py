@@ -14,7 +14,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.fit_data import NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.evaluation import NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.loop.recording import Recording
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.natural_units import NaturalUnits

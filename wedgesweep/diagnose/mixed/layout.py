@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import FitData, WarmStart
+from wedgesweep.diagnose.evaluation import WarmStart
+from wedgesweep.diagnose.fit_data import FitData
 
 
 class MixedStart(NamedTuple):

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import Evaluator, FitData
 from wedgesweep.diagnose.mixed.layout import Layout, MixedStart
-from wedgesweep.diagnose.model import Fit, Model
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.natural_units import NaturalUnits
 
 # A nuisance parameter of a kind that has no tests: it is never moved.
@@ -183,7 +184,7 @@ class MixedData(FitData):
         """A fit as that of each kind of test."""
         own = zip(self.parts, self.evaluations(fit.evaluation), strict=True)
         return {
-            part.kind: replace(fit, model=replace(fit.model, data=part), evaluation=each)
+            part.kind: replace(fit, model=fit.model.on(part), evaluation=each)
             for part, each in own
             if part is not None and each is not None
         }
@@ -309,12 +310,12 @@ class MixedData(FitData):
         found = self._each(lambda part, its: part.never_steady(its), own)
         return np.concatenate([each for each in found if each is not None])
 
-    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
         by_point = [self.points(each) for each in points]
         for i, part in enumerate(self.parts):
             if part is None or np.isfinite(part.nuisance_std).all() or not len(points):
                 continue
-            own = part.search_nuisances(replace(model, data=part), [each[i] for each in by_point])
+            own = part.search_nuisances(model.on(part), [each[i] for each in by_point])
             for each, found in zip(by_point, own, strict=True):
                 each[i] = found.point
         return model.evaluate_all([self._whole(each) for each in by_point])

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Evaluation, Point
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance
@@ -68,7 +68,7 @@ def offered(design: Design, fits: Sequence[Fit]) -> Offer:
 
 
 def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Prediction:
-    model, root = replace(fit.model, data=data), covariance_root(fit)
+    model, root = fit.model.on(data), covariance_root(fit)
     point = Point(fit.x, *data.start())
     if moved is not None:
         x = np.clip(point.x + root @ moved.parameters, model.low, model.high)

@@ -5,7 +5,7 @@ from math import ceil, pi
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Point
+from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
@@ -90,7 +90,7 @@ def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientDat
     own = best.model.data
     data = TransientData(tests, dict(own.uncertain), own.model_error, getattr(own, "gain_std", 0.0))
     nuisance, warm = data.start()
-    found = replace(best.model, data=data).evaluate(Point(best.x, nuisance, warm))
+    found = best.model.on(data).evaluate(Point(best.x, nuisance, warm))
     return replace(
         data,
         releases=tuple(_filled(known, each, row) for each, row in zip(tests, found.response, strict=True)),

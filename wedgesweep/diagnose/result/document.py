@@ -12,7 +12,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
 from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
-from wedgesweep.diagnose.ladder import Rated, Rung
+from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
@@ -48,7 +48,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         },
         "not_testable": hidden,
         "next_test": _next_test(found.next_test),
-        "ladder": [_rung(each) for each in found.ladder],
+        "ladder": [_level(each) for each in found.ladder],
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
@@ -205,13 +205,13 @@ def _next_test(test: NextTest | None) -> dict[str, Any] | None:
     }
 
 
-def _rung(rung: Rung) -> dict[str, Any]:
+def _level(level: Level) -> dict[str, Any]:
     """The most accurate explanation of a number of effects, with its rivals; 0.01 is 1 % of the response."""
     return {
-        **_rated(rung.best),
-        "accuracy_held_out": finite(rung.best.held_out),
-        "distinct": finite(rung.distinct),
-        "rivals": [_rated(each) for each in rung.rivals[:RIVALS]],
+        **_rated(level.best),
+        "accuracy_held_out": finite(level.best.held_out),
+        "distinct": finite(level.distinct),
+        "rivals": [_rated(each) for each in level.rivals[:RIVALS]],
     }
 
 
@@ -237,7 +237,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
 
 def _candidates(found: Diagnosis, hidden: Sequence[str]) -> list[dict[str, Any]]:
     scores = {score.effect: score for score in found.scores}
-    accuracies = {each.effects: each.accuracy for rung in found.ladder for each in rung.rated}
+    accuracies = {each.effects: each.accuracy for level in found.ladder for each in level.rated}
     rows = []
     for each in sorted([found.base, *found.explanations], key=lambda one: one.penalised):
         score = scores.get(each.effects[0]) if len(each.effects) == 1 else None

@@ -11,8 +11,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Comparison, Evaluation, FitData, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import Evaluator, FitData
 from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone, tone_phase
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
@@ -263,7 +263,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         elapsed = scenario.point.warm.state[:, : len(clocks)][:, clocks]
         return (elapsed * self.omega[:, None] / (2.0 * np.pi) > LONGEST_PERIOD).any(axis=1)
 
-    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
         return amplitude_grid.best_amplitudes(model, points)
 
     def held_as_stated(self) -> Self:

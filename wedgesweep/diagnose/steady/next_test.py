@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import pi, sqrt
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,11 +19,9 @@ from wedgesweep.diagnose.jacobian import STEP, derivatives
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import (
     PREDICTED,
-    NextTest,
     Offer,
     covariance_root,
     least_distance,
-    recommended,
 )
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
@@ -107,13 +105,6 @@ class _Prediction:
     spread: np.ndarray
     found: np.ndarray
     moves: np.ndarray
-
-
-def recommend(fits: Sequence[Fit]) -> NextTest | None:
-    """The steady test that separates most fits to steady tests, the best one first; None if none is."""
-    if len(fits) < 2:
-        return None
-    return recommended(offer(fits, rig_of(cast(HarmonicData, fits[0].model.data))), fits[0])
 
 
 def offer(fits: Sequence[Fit], rig: Rig) -> Offer:

@@ -17,7 +17,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from wedgesweep import excitation
-from wedgesweep.diagnose.fit_data import INPUT_GAIN, Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.evaluation import Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import TIGHT
 from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum

@@ -12,7 +12,8 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TOLERANCE
-from wedgesweep.diagnose.steady.spectra import REMOVED, SIMULATED, regressors
+from wedgesweep.diagnose.steady.harmonic_fit import REMOVED, regressors
+from wedgesweep.diagnose.steady.spectra import SIMULATED
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
@@ -115,7 +116,7 @@ def respond_with_tone(
     )
     state = warm.state
     if not np.isfinite(state).all():
-        state = periodic.samples(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance)[2]
+        state = periodic.sampled(rows, state, FROM_REST, 1, SAMPLES_PER_PERIOD, tolerance).state
         _count(rows, FROM_REST + 1)
     spectra, state = _recorded(rows, state, harmonics, tone, timings, tolerance)
     lag = np.where(np.isnan(source_phase), measured, np.nan) - np.angle(spectra[:, 0, -1])
@@ -144,7 +145,7 @@ def _recorded(
     """
     spectra = np.full((len(rows), 2, harmonics + 1), np.nan, complex)
     longest = ceil(max(timing.periods for timing in timings)) + 1
-    x, velocity, state = periodic.samples(rows, states, TONE_SETTLING, longest, SAMPLES_PER_PERIOD, tolerance)
+    run = periodic.sampled(rows, states, TONE_SETTLING, longest, SAMPLES_PER_PERIOD, tolerance)
     _count(rows, TONE_SETTLING + longest)
     turn = 2.0 * pi / SAMPLES_PER_PERIOD
     for i, timing in enumerate(timings):
@@ -152,13 +153,13 @@ def _recorded(
         first = round(start / turn)
         count = round(timing.periods * SAMPLES_PER_PERIOD)
         ratio = 2.0 * pi * tone / float(rows["input"]["omega"][i])
-        signals = -np.stack([x[i], velocity[i]])[:, first : first + count]
+        signals = -np.stack([run.x[i], run.velocity[i]])[:, first : first + count]
         found = signals @ _projection(ratio, harmonics, count).T
         found[:, :-1] *= np.exp(-1j * np.arange(1, harmonics + 1) * first * turn)
         # The first sample of the grid lies a little beside that of the record.
         found[:, -1] *= np.exp(1j * ratio * (start - first * turn))
         spectra[i] = found
-    return spectra, state
+    return spectra, run.state
 
 
 @lru_cache(maxsize=256)

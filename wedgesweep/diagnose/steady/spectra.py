@@ -6,22 +6,25 @@ Pintelon and Schoukens, System Identification, 2012, ch. 4).
 """
 
 from dataclasses import dataclass, replace
-from math import pi
-from typing import NamedTuple
 
 import numpy as np
 from scipy.special import gammaincc
 
 from wedgesweep.diagnose.steady import noise_psd
 from wedgesweep.diagnose.steady.aliasing import AliasMap, alias_map
+from wedgesweep.diagnose.steady.harmonic_fit import (
+    REMOVED,
+    RESOLVED,
+    Design,
+    design_of,
+    distance,
+    phasors_of,
+    resolvable,
+)
 from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
 
-# Harmonics that are compared with a simulation, and that are removed before the noise is measured.
-COMPARED, REMOVED = 16, 40
 # Harmonics that are simulated, and whose aliases beyond half the sampling rate count.
 SIMULATED = 127
-# Highest frequency that is used, over the sampling rate.
-BAND = 0.4
 # The noise is evaluated between harmonics, at multiples of this fraction of the input frequency.
 PARTS = 8
 # Lines of which less than this share remains after the fit say nothing of the noise.
@@ -30,14 +33,9 @@ LEAST_REMAINING = 0.2
 SAME = 0.98
 # Probability of lines at half multiples of the input frequency in a response that repeats each period.
 DOUBLED = 1e-4
-# Frequencies this many resolutions (one over the duration) apart are resolved.
-RESOLVED = 1.2
 # Intermodulation lines of a tone and the harmonics hide the noise as close as this (resolutions); they are
 # left out if this share of the lines remains.
 TONE_LINE_WIDTH, LEAST_CLEAR_SHARE = 0.8, 0.3
-# Closer than this (resolutions) a tone is the harmonic; farther off it leaks into all of them, and is
-# removed.
-MERGED = 0.05
 
 
 @dataclass(frozen=True)
@@ -132,51 +130,6 @@ class Spectrum:
         return resolvable(frequencies, self.frequency, self.duration, self.harmonics)
 
 
-def _distance(frequencies: np.ndarray | float, frequency: float) -> np.ndarray:
-    """Distance (Hz) of frequencies from the closest harmonic."""
-    return np.abs(frequencies - frequency * np.round(frequencies / frequency))
-
-
-def within_band(most: int, frequency: float, interval: float) -> int:
-    """How many harmonics, at most ``most``, a record sampled at an interval (s) shows."""
-    return min(most, int(BAND / interval / frequency))
-
-
-def resolvable(tones: np.ndarray, frequency: float, duration: float, harmonics: int) -> np.ndarray:
-    """Whether a record of some duration (s) resolves tones (Hz) from the harmonics, in their band."""
-    resolved = _distance(tones, frequency) * duration > RESOLVED
-    return resolved & (tones < frequency * (harmonics + 1))
-
-
-class TonePosition(NamedTuple):
-    """Whether a record resolves a tone from the harmonics, and else which one it masks (None: none)."""
-
-    resolved: bool
-    masked_harmonic: int | None
-
-
-def tone_position(tone: float, frequency: float, duration: float, harmonics: int) -> TonePosition:
-    """Position of a tone (Hz) among the compared harmonics of a record of some duration (s)."""
-    if resolvable(np.array(tone), frequency, duration, harmonics):
-        return TonePosition(True, None)
-    closest = round(tone / frequency)
-    masks = _distance(tone, frequency) * duration <= RESOLVED and 1 <= closest <= harmonics
-    return TonePosition(False, closest if masks else None)
-
-
-def regressors(time: np.ndarray, frequency: float, harmonics: int) -> np.ndarray:
-    """Constant, drift, and cosine and sine of each harmonic, shape (n, 2 + 2 * harmonics)."""
-    turns = _phasors(time, frequency, harmonics).T
-    slow = np.stack([np.ones_like(time), 2.0 * time / time[-1] - 1.0], axis=1)
-    return np.concatenate([slow, turns.real, turns.imag], axis=1)
-
-
-def _phasors(time: np.ndarray, frequency: float, multiples: int) -> np.ndarray:
-    """exp(2 pi i k f t) for k = 1..multiples, shape (multiples, n), as powers of the first."""
-    first = np.exp(2j * pi * frequency * time)
-    return np.multiply.accumulate(np.repeat(first[None], multiples, axis=0), axis=0)
-
-
 def spectrum(time: np.ndarray, channels: np.ndarray, frequency: float, tone: float | None = None) -> Spectrum:
     """Harmonics of one test, also of a response that repeats only every other period.
 
@@ -201,7 +154,7 @@ def _doubled(spectrum: Spectrum, tone: float | None) -> bool:
     The strongest of them does not count, as it may be a spurious tone. If a known tone cannot be resolved
     from one of them, what stands out is attributed to the tone.
     """
-    if tone is not None and _distance(tone, 0.5 * spectrum.frequency) * spectrum.duration <= RESOLVED:
+    if tone is not None and distance(tone, 0.5 * spectrum.frequency) * spectrum.duration <= RESOLVED:
         return False
     odd = np.arange(1, 2 * spectrum.harmonics + 2, 2)
     power = np.sort(spectrum.excess_at(0.5 * spectrum.frequency * odd))[:-1]
@@ -217,7 +170,7 @@ def fitted(
     """
     time = time - time[0]
     interval = time[-1] / (time.size - 1)
-    design = _design(time, interval, frequency, tone, doubled)
+    design = design_of(time, interval, frequency, tone, doubled)
     # The columns are nearly orthogonal, so the normal equations lose no accuracy.
     matrix = design.matrix
     inverse = np.linalg.inv(matrix.T @ matrix)
@@ -249,57 +202,16 @@ def fitted(
 def noise_coherence(time: np.ndarray, channels: np.ndarray, frequency: float) -> complex:
     """Coherence of the noise of two channels (2, n): of the second with the first."""
     time = time - time[0]
-    design = _design(time, time[-1] / (time.size - 1), frequency, None, False)
+    design = design_of(time, time[-1] / (time.size - 1), frequency, None, False)
     inverse = np.linalg.inv(design.matrix.T @ design.matrix)
     residual = channels - (design.matrix @ (inverse @ (design.matrix.T @ channels.T))).T
     return noise_psd.levels(residual, _noise_lines(time, frequency, design, inverse, None, False))[1]
 
 
-class _Design(NamedTuple):
-    """Columns of a fit, and the places of the cosines and sines that are kept; a tone comes last."""
-
-    matrix: np.ndarray
-    cosines: np.ndarray
-    sines: np.ndarray
-    harmonics: int
-    removed: int
-    tone: float | None
-    masked_harmonic: int | None
-
-    def read(self, solution: np.ndarray) -> np.ndarray:
-        """Complex amplitudes (columns, ...) from a solution (2 + ..., ...)."""
-        return solution[self.cosines] - 1j * solution[self.sines]
-
-    def scatter(self, inverse: np.ndarray) -> np.ndarray:
-        """Variance of each complex amplitude in white noise of variance 1."""
-        variance = np.diag(inverse)
-        return variance[self.cosines] + variance[self.sines]
-
-
-def _design(
-    time: np.ndarray, interval: float, frequency: float, tone: float | None, doubled: bool
-) -> _Design:
-    removed, kept = (within_band(most, frequency, interval) for most in (REMOVED, COMPARED))
-    columns = [regressors(time, frequency, removed)]
-    places = np.array([np.arange(2, 2 + kept), np.arange(2 + removed, 2 + removed + kept)])
-    if doubled:
-        half = _phasors(time, 0.5 * frequency, 2 * kept + 1)[::2].T
-        columns += [half.real, half.imag]
-    position = TonePosition(False, None) if tone is None else tone_position(tone, frequency, time[-1], kept)
-    if tone is not None and _distance(tone, frequency) * time[-1] > MERGED:
-        turn = np.exp(2j * pi * tone * time)[:, None]
-        columns += [turn.real, turn.imag]
-    matrix = np.concatenate(columns, axis=1)
-    if position.resolved:
-        places = np.c_[places, [matrix.shape[1] - 2, matrix.shape[1] - 1]]
-    shown = tone if position.resolved else None
-    return _Design(matrix, places[0], places[1], kept, removed, shown, position.masked_harmonic)
-
-
 def _noise_lines(
     time: np.ndarray,
     frequency: float,
-    design: _Design,
+    design: Design,
     inverse: np.ndarray,
     tone: float | None,
     doubled: bool,
@@ -307,7 +219,7 @@ def _noise_lines(
     """Lines between the harmonics at which the residual of a fit is noise."""
     parts = np.arange(1, PARTS * (design.harmonics + 1))
     parts = parts[parts % (PARTS // 2 if doubled else PARTS) > 0]
-    phasors = _phasors(time, frequency / PARTS, int(parts[-1]))[parts - 1]
+    phasors = phasors_of(time, frequency / PARTS, int(parts[-1]))[parts - 1]
     # Lines closer than the resolution of the record are partly redundant.
     redundancy = max(1.0, PARTS / (frequency * time[-1]))
     remaining = 1.0 - _share(phasors @ design.matrix, inverse) / time.size
@@ -326,7 +238,7 @@ def _without_intermodulation(
 
     That of a weak tone does not stand out of the noise, and still adds to it. All, if too few would be left.
     """
-    away = np.minimum(_distance(lines - tone, frequency), _distance(lines + tone, frequency))
+    away = np.minimum(distance(lines - tone, frequency), distance(lines + tone, frequency))
     clear = seen & (away * duration > TONE_LINE_WIDTH)
     return clear if clear.sum() > LEAST_CLEAR_SHARE * seen.sum() else seen
 
@@ -336,9 +248,9 @@ def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
     return ((products @ inverse) * products.conj()).sum(axis=1).real
 
 
-def _alias_map(time: np.ndarray, frequency: float, design: _Design, inverse: np.ndarray) -> AliasMap | None:
+def _alias_map(time: np.ndarray, frequency: float, design: Design, inverse: np.ndarray) -> AliasMap | None:
     """Aliases of harmonics up to SIMULATED; None if the record shows all of them as themselves."""
     if (SIMULATED + REMOVED) * frequency * time[-1] < time.size - 1:
         return None
-    phasors = _phasors(time, frequency, SIMULATED)
+    phasors = phasors_of(time, frequency, SIMULATED)
     return alias_map(design.read(inverse @ design.matrix.T), phasors, design.removed)

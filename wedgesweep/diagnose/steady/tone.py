@@ -8,7 +8,8 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln, logsumexp, xlogy
 
-from wedgesweep.diagnose.steady.spectra import BAND, REMOVED, Spectrum, regressors, resolvable, within_band
+from wedgesweep.diagnose.steady.harmonic_fit import BAND, REMOVED, regressors, resolvable, within_band
+from wedgesweep.diagnose.steady.spectra import Spectrum
 
 # The effect that makes one, and its number that the records tell directly.
 TONE = "stray_vibration"

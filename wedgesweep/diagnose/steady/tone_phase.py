@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.diagnose.fit_data import Point
+from wedgesweep.diagnose.evaluation import Point
 
 # Phases that are tried.
 PHASES = 12

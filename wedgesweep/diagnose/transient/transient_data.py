@@ -14,14 +14,15 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.decorrelation import Decorrelation
-from wedgesweep.diagnose.fit_data import (
+from wedgesweep.diagnose.evaluation import (
     Evaluation,
     NuisanceParameter,
     Point,
     Scenario,
     best_evaluation_per_test,
 )
-from wedgesweep.diagnose.model import TOLERANCE, Model
+from wedgesweep.diagnose.fit_data import Evaluator
+from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
@@ -227,7 +228,7 @@ class TransientData(SampledData):
             ]
         )
 
-    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations from several starts: where a mass rests before it moves, friction hides its place."""
         stated, at_rest = self.start()
         offsets = OFFSETS if len(points) <= FEW else (0.0,)

@@ -47,8 +47,8 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     """Draw magnitudes over the order, displacement above velocity (default: the six tests that misfit most).
 
     To see: a mark off the black dot by more than its bar is misfit. Odd harmonics come from physics that acts
-    alike in both directions (friction), even ones from physics that does not (lean, stops, directional
-    friction). A harmonic in the grey area cannot be distinguished from noise.
+    alike in both directions (friction), even ones from physics that does not (the column
+    angle, stops, directional friction). A harmonic in the grey area cannot be distinguished from noise.
     """
     made = multiples(
         target,

@@ -41,14 +41,14 @@ class Row(NamedTuple):
 def rows_of(result: DiagnosisResult) -> list[Row]:
     """Explanations that are adequate at some accuracy, the best of each size and then its rivals."""
     rows: list[Row] = []
-    for number, rung in enumerate(result.document.get("ladder", [])):
-        rated = [each for each in (rung, *rung["rivals"]) if each["accuracy"] is not None]
+    for number, level in enumerate(result.document.get("ladder", [])):
+        rated = [each for each in (level, *level["rivals"]) if each["accuracy"] is not None]
         for i, each in enumerate(rated):
             place = len(rows) + BETWEEN * number
             predicted = each.get("accuracy_held_out")
             held_out = None if predicted is None else 100.0 * predicted
             rows.append(
-                Row(place, each["effects"], 100.0 * each["accuracy"], each is rung and i == 0, held_out)
+                Row(place, each["effects"], 100.0 * each["accuracy"], each is level and i == 0, held_out)
             )
     return rows
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.figures.transient import picks
 
@@ -46,8 +46,10 @@ def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
         ax.set_title(law, fontsize=10)
         ax.set_xlim(min(place[0], place[-1]), max(place[0], place[-1]))
     label = "frequency of the input [Hz]" if swept else "time [s]"
-    style.label(made.axes, label, picks.displacement(ds))
+    style.label(made.axes, label, labels.of(ds).displacement)
     handles, names = made.axes[0].get_legend_handles_labels()
     made.legend(handles[::-1], names[::-1], columns=COUNT)
-    made.title("Response and its envelope", picks.about(ds))
+    made.title(
+        "Response and its envelope", "; ".join(filter(None, (labels.of(ds).sign, validity.shares(ds))))
+    )
     return made

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.figures.transient import picks
 
@@ -48,9 +48,10 @@ def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     chosen, laws = picks.one_scale(ds, scale), cases.laws(ds)
     made = panels(target, len(laws))
     for ax, law in zip(made.axes, laws, strict=True):
-        _draw_loop(ax, chosen.sel(friction_law=law), style.law_style(law)["color"])
-        ax.set_title(law, fontsize=10)
+        case = chosen.sel(friction_law=law)
+        _draw_loop(ax, case, style.law_style(law)["color"])
+        ax.set_title(f"{law}{validity.remark(case)}", fontsize=10)
         ax.margins(y=0.12)
-    style.label(made.axes, picks.displacement(ds), "restoring force [N]")
-    made.title(f"Force over displacement at scale {chosen['scale'].item():.3g}", picks.about(ds))
+    style.label(made.axes, labels.of(ds).displacement, "restoring force [N]")
+    made.title(f"Force over displacement at scale {chosen['scale'].item():.3g}", labels.of(ds).sign)
     return made

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from wedgesweep.figures import cases, style
+from wedgesweep.figures import cases, labels, style, validity
 from wedgesweep.figures.panels import Panels, Target, panels
 from wedgesweep.figures.transient import picks
 
@@ -53,8 +53,11 @@ def _draw_decrement(ax: Axes, at: np.ndarray, values: np.ndarray) -> None:
 
 def _draw_decay(ax: Axes, case: xr.Dataset, color: str, ds: xr.Dataset) -> None:
     time, x = case["time"].values, case["displacement"].values
-    stuck = case["stuck"].values == 1
-    ax.plot(time, np.where(stuck, x, np.nan) * style.MM, color=style.STUCK, linewidth=5)
+    opened = validity.opened(case)
+    marks = [(case["stuck"].values == 1, style.STUCK)]
+    marks += [] if opened is None else [(opened.values, style.OPEN)]
+    for marked, shade in marks:
+        ax.plot(time, np.where(marked, x, np.nan) * style.MM, color=shade, linewidth=5)
     ax.plot(time, x * style.MM, color=color, linewidth=1.1)
     if not np.isfinite(x).all():
         return
@@ -73,10 +76,12 @@ def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
     chosen, laws = picks.one_scale(ds, scale), cases.laws(ds)
     made = panels(target, len(laws), columns=2, size=(4.2, 3.4))
     for ax, law in zip(made.axes, laws, strict=True):
-        _draw_decay(ax, chosen.sel(friction_law=law), style.law_style(law)["color"], ds)
-        ax.set_title(law, fontsize=10)
-    style.label(made.axes, "time [s]", picks.displacement(ds), columns=2)
+        case = chosen.sel(friction_law=law)
+        _draw_decay(ax, case, style.law_style(law)["color"], ds)
+        ax.set_title(f"{law}{validity.remark(case)}", fontsize=10)
+    style.label(made.axes, "time [s]", labels.of(ds).displacement, columns=2)
     lines = "; dashed: dry friction alone, $4F/k$ a cycle" if np.isfinite(ds.attrs.get(LOSS, np.nan)) else ""
-    note = f"{picks.about(ds)}; yellow: stuck{lines}"
+    opens = "" if validity.opened(ds) is None else "; blue: a contact is open"
+    note = f"{labels.of(ds).sign}; yellow: stuck{opens}{lines}"
     made.title(f"Decay at scale {chosen['scale'].item():.3g}", note)
     return made

@@ -66,12 +66,13 @@ GEOMETRY = (
 # Whether a contact between wedge and column or bolster can pull, or opens: then it is the effect lift_off.
 BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
 RESTITUTION = lift_off.EFFECT.quantities[0]
-# Mark of records of unilateral joints without other effects that have mechanics of their own.
-PLAIN: list[tuple] = [("plain_unilateral", np.int64)]
+# Mark of records of bilateral joints that also follow unilateral ones while both contacts are closed.
+TURNS: list[tuple] = [("while_closed", np.int64)]
 
 # Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects;
-# unilateral joints without effects that have mechanics of their own, and with those that go with them.
-BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS = range(5)
+# unilateral joints without effects that have mechanics of their own, and with those that go with them; the
+# latter while both contacts are closed.
+BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS, CLOSED_WITH_EFFECTS = range(6)
 # Coulomb friction that is regularised reaches mu_d at this velocity (m/s) on the bench; see natural_units.
 REGULARISED_VELOCITY = 1e-6
 
@@ -88,19 +89,18 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
     some = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
     held = [name for name in names if name != lift_off.NAME]
     opens = records.effect_parts([lift_off.NAME])
-    if series:
-        # There is no closed form, so that ``base`` marks nothing here.
-        part = records.SERIES
-        bilateral = _dtype(part, plain), _dtype(part, own + plain), _dtype(part, held)
-        return *bilateral, _dtype(opens + part, plain), _dtype(opens + part, some)
-    bilateral = _dtype([("base", np.int64)], plain), _dtype([], own + plain), _dtype([], held)
-    return *bilateral, _dtype(PLAIN + opens, plain), _dtype(opens, some)
+    # With a series there is no closed form, which ``base`` marks.
+    part, base = (records.SERIES, []) if series else ([], [("base", np.int64)])
+    bilateral = _dtype(base + TURNS + part, plain), _dtype(part, own + plain), _dtype(part, held)
+    unilateral = _dtype(opens + part, plain), _dtype(opens + part, some)
+    return *bilateral, *unilateral, _dtype(TURNS + part, some)
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
     own = [(quantity.name, np.float64) for quantity in SUSPENSION]
     geometry = [
         ("kit", np.int64),
+        ("opens", np.int64),  # whether contacts may open
         ("always_well_posed", np.int64),
         *((name, np.float64) for name in GEOMETRY),
     ]
@@ -154,7 +154,7 @@ def record(
     records.set_common(case, law, friction, (amplitude, omega))
     for name in known.EFFECTS:
         records.set_effect(p, name, records.with_neutral(name, effects.get(name, {})))
-    p["geometry"]["kit"] = _kit_of(p)
+    p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p), has_unilateral_joints(p)
     if is_regularised(p):
         _regularise(p, nominal)
     prepare(case)
@@ -277,6 +277,19 @@ def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
     kits = _kits(tuple(known.EFFECTS), bool(excitation.has_series(rows).any()))
     return records.converted(rows, kits[int(rows["geometry"]["kit"].max(initial=BASE))])
+
+
+def while_closed(rows: np.ndarray) -> np.ndarray | None:
+    """Compact records of unilateral joints as those of bilateral ones, which follow them while closed.
+
+    None for other records.
+    """
+    names = rows.dtype.names or ()
+    if lift_off.NAME not in names:
+        return None
+    plain = rows["geometry"]["kit"].max(initial=BASE) == JOINTS_OPEN
+    kits = _kits(tuple(known.EFFECTS), records.SERIES[0][0] in names)
+    return records.converted(rows, kits[BASE if plain else CLOSED_WITH_EFFECTS])
 
 
 def has_own_mechanics(rows: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero
-from wedgesweep.hybrid.state import LOCKED, NO_EVENT
+from wedgesweep.hybrid.state import HANDED_OVER, LOCKED, NO_EVENT
 from wedgesweep.systems.suspension.events import EVENTS, events
 from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import COLUMN, slipping
@@ -54,12 +54,15 @@ def _lowest(t, held):
 
 
 @inner
-def _breakaway_input(state, direction, p):
-    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative."""
-    mode = slipping(direction, 0, 1, p)
-    column_mu, bolster_mu = coefficients(0.0, state.y, mode, p)
+def breakaway_input(y, direction, segment, p):
+    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative.
+
+    ``segment`` of the travel of the bolster.
+    """
+    mode = slipping(direction, segment, 1, p)
+    column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
-    load = loads(0.0, state.y, mode, p)
+    load = loads(0.0, y, mode, p)
     at_rest = reactions(load, mu, p)[0].acceleration
     inertia = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0].acceleration
     limit = -at_rest / inertia
@@ -68,9 +71,9 @@ def _breakaway_input(state, direction, p):
 
 
 @inlined
-def is_known(state, p):
-    """Whether both faces keep their load until the bolster breaks away, in either direction."""
-    forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
+def is_known(y, segment, p):
+    """Whether both faces keep their load until a stuck bolster breaks away, in either direction."""
+    forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
     return p.geometry.always_well_posed != 0 and forward < backward
 
 
@@ -78,12 +81,16 @@ def is_known(state, p):
 def release(state, stop, p):
     """Time at which a stuck bolster breaks away, and the event.
 
-    The event is NO_EVENT if nothing happens before ``stop``, and LOCKED where breakaway is not unique. The
-    bolster sticks between two base accelerations. With positive normal forces these are known, and so are
-    the phases at which a harmonic base motion reaches them.
+    The event is NO_EVENT if nothing happens before ``stop``, LOCKED where breakaway is not unique, and
+    HANDED_OVER where a contact of unilateral joints may open. The bolster sticks between two base
+    accelerations. With positive normal forces these are known, and so are the phases at which a harmonic base
+    motion reaches them.
     """
-    forward, backward = _breakaway_input(state, 1, p), _breakaway_input(state, -1, p)
+    segment = state.mode.segment
+    forward, backward = breakaway_input(state.y, 1, segment, p), breakaway_input(state.y, -1, segment, p)
     if not (p.geometry.always_well_posed and forward < backward):
+        if p.geometry.opens:
+            return state.t, HANDED_OVER
         return scanned_release(state, stop, p)
     return release_between(forward, backward, state.t, stop, p)
 

@@ -1,10 +1,11 @@
 """The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
 
-While both contacts are closed its equations, events and closed forms are those of bilateral joints. Records
-of this system have a part ``lift_off`` beside those of the suspension.
+While both contacts are closed its equations and events are those of bilateral joints. If no state can lock,
+bilateral joints themselves follow the motion then (see while_closed.py). Records of this system have a part
+``lift_off`` beside those of the suspension.
 """
 
-from math import inf, nan
+from math import inf, nan, sqrt
 from typing import NamedTuple
 
 from wedgesweep import excitation, friction
@@ -12,21 +13,18 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import hooks, travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
-from wedgesweep.hybrid.recorder import keep_constant
-from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.hybrid.vectors import replaced
-from wedgesweep.systems.suspension import (
-    energy,
-    events,
-    filippov,
-    first_event,
-    linear_slip,
-    linear_slip_sums,
-    newton,
-    release,
-    transitions,
+from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
+from wedgesweep.systems.suspension.modes import (
+    BOLSTER,
+    COLUMN,
+    VELOCITY,
+    X,
+    held,
+    mode_of,
+    with_branch,
+    with_segment,
 )
-from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN, VELOCITY, X, held, with_branch, with_segment
 from wedgesweep.systems.suspension.unilateral import contacts, impact
 from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, moved
 from wedgesweep.systems.suspension.unilateral.modes import (
@@ -52,12 +50,12 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     momentum,
     velocities,
 )
+from wedgesweep.systems.suspension.while_closed import stays_closed
 
-# Records with this field have no effects with mechanics of their own.
-PLAIN = "plain_unilateral"
-# Pairs of event functions are those of the suspension; the gaps stand where it has the sign of z'.
-COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 9
-TRAVEL, EVENTS = 10, 12
+# Pairs of event functions are those of the suspension. The gaps stand where it has the sign of z' and the
+# time at rest: in two pairs, as one gap may close at once after the other.
+COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 12
+TRAVEL, EVENTS = 10, 13
 
 
 @implement(interface.event_count, UNILATERAL)
@@ -101,13 +99,14 @@ def free(y, p):
 
 
 class Acting(NamedTuple):
-    """Accelerations (m/s^2) of bolster and column, and reactions (N) of both faces.
+    """Accelerations (m/s^2) of bolster, column and both gaps, and reactions (N) of both faces.
 
     Friction is not told while both contacts are closed: no event needs it.
     """
 
     acceleration: float
     column_acceleration: float
+    gains: tuple
     column: float
     column_friction: float
     bolster: float
@@ -136,15 +135,17 @@ def rate(t, y, mode, p):
     """dy/dt, and what acts."""
     if closed(mode):
         (velocity, acceleration), both = transitions.rate(t, y, mode, p)
-        acting = Acting(acceleration, both.column_acceleration, both.column, nan, both.bolster, nan)
+        none = (0.0, 0.0)
+        acting = Acting(acceleration, both.column_acceleration, none, both.column, nan, both.bolster, nan)
         return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), acting
     motion, now = _apart(t, y, mode, p)
-    acting = Acting(motion.rise, nan, now.column, now.column_friction, now.bolster, now.bolster_friction)
     column_rate, column_gain, bolster_rate, bolster_gain = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
         column_rate, column_gain = gap_state(y, COLUMN_RATE), motion.gap
     if mode.bolster_sign == 0:
         bolster_rate, bolster_gain = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
+    gains, (column, along_column, bolster, along_bolster) = (column_gain, bolster_gain), now
+    acting = Acting(motion.rise, nan, gains, column, along_column, bolster, along_bolster)
     return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), acting
 
 
@@ -211,11 +212,32 @@ def all_events(now, t, y, mode, p, out):
         _apart_events(now, y, mode, p, out)
 
 
+@inlined
+def _time_to_close(gap, rate, gain):
+    """Time (s) in which a gap closes at a constant acceleration; inf: never.
+
+    One that opens now has no acceleration yet but rounding errors.
+    """
+    square = rate * rate - 2.0 * gap * gain
+    if square < 0.0 or (rate >= 0.0 and gain >= 0.0) or gap == rate == 0.0:
+        return inf
+    if rate < 0.0:
+        return 2.0 * gap / (sqrt(square) - rate)
+    return (rate + sqrt(square)) / -gain
+
+
 @implement(interface.expected_event, UNILATERAL)
 @inlined
 def expected_event(now, t, y, mode, p):
-    """Time (s) in which a face would reach the end of its branch; not told while a contact is open."""
-    return events.expected_event(now, t, y, mode, p) if closed(mode) else inf
+    """Time (s) in which a face would reach the end of its branch, or an open one would close."""
+    if closed(mode):
+        return events.expected_event(now, t, y, mode, p)
+    column, bolster = inf, inf
+    if mode.column_sign == 0:
+        column = _time_to_close(y[COLUMN_GAP], y[COLUMN_RATE], now.gains[0])
+    if mode.bolster_sign == 0:
+        bolster = _time_to_close(y[BOLSTER_GAP], y[BOLSTER_RATE], now.gains[1])
+    return min(column, bolster)
 
 
 @implement(interface.event, UNILATERAL)
@@ -285,9 +307,9 @@ def _after_slip(t, y, mode, place, p):
 @inner
 def transition(t, y, mode, place, p):
     """State and mode after an event, and whether they are unique (if not: locked)."""
-    if place >= TRAVEL:
+    if place in (TRAVEL, TRAVEL + 1):
         return y, with_segment(mode, travel.next_segment(mode.segment, place % 2, p)), True
-    if place >= COLUMN_CLOSES:
+    if place in (COLUMN_CLOSES, BOLSTER_CLOSES):
         after = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
         found, certain = resolve(t, after.y, touching(after.y, p), mode.segment, p)
         return after.y, found, certain and after.unique
@@ -355,28 +377,26 @@ def normal_forces(t, y, mode, p):
     return column, bolster
 
 
-# Closed forms of the base model
+# Turns with bilateral joints
 
 
-@implement(interface.closed_form, PLAIN)
+@implement(interface.leaves, UNILATERAL)
+@inlined
+def leaves(y, mode, p):
+    """Whether bilateral joints can go on."""
+    return stays_closed(y, mode, p)
+
+
+@implement(interface.taken_over, UNILATERAL)
 @inner
-def follow(state, stop, p, keeping, recorder, counts):
-    """Follow a mode with both contacts closed to its event or ``stop`` if it has a closed form."""
-    t, y, mode, last_event, step = state
-    if not closed(mode):
-        return False, state, NO_EVENT
-    short = State(t, (y[X], y[VELOCITY]), mode, last_event, step)
-    if stuck(mode, p):
-        if not release.is_known(short, p):
-            return False, state, NO_EVENT
-        end, event_place = release.release(short, stop, p)
-        if keeping:
-            keep_constant(t, end, y, mode, recorder, p)
-        return True, State(end, y, mode, last_event, step), event_place
-    free_motion = linear_slip.oscillator(y, mode, p)
-    if not free_motion.linear:
-        return False, state, NO_EVENT
-    end, x, velocity, event_place = first_event.slide(short, stop, free_motion, p)
-    if keeping:
-        linear_slip_sums.keep(short, end, free_motion, recorder, p)
-    return True, State(end, (x, velocity, 0.0, 0.0, 0.0, 0.0), mode, last_event, step), event_place
+def taken_over(t, y, mode, p):
+    """Mode where bilateral joints no longer know that both contacts are closed, and whether it is unique.
+
+    A mode that a jump of friction holds is the same for both, as after an event of this system.
+    """
+    now = mode_of(mode)
+    if p.friction.set_valued:
+        return initial_mode(t, y, p)
+    if held(now):
+        return now, True
+    return resolve(t, y, Touching(True, True, now.column, now.bolster), now.segment, p)

@@ -1,0 +1,118 @@
+"""Points of the parameter space, and what a simulation of one comes to beside the measured tests."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from wedgesweep.diagnose.fit_parameters import Values
+
+
+class WarmStart(Protocol):
+    """Where the simulations of T tests start from; opaque to the fit."""
+
+    def of(self, rows: Any) -> Any:
+        """The warm start of some tests."""
+
+    def where(self, chosen: np.ndarray, other: Any) -> Any:
+        """A warm start with the rows ``chosen`` (T,) from another."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """One guess of everything that is fitted by simulation.
+
+    ``x`` (k + u,): parameters of the hypothesis, then uncertain parameters of the base model as scales.
+    ``nuisance`` (T, N): nuisance parameters of each test, those with a prior first; NaN where not fitted.
+    """
+
+    x: np.ndarray
+    nuisance: np.ndarray
+    warm: Any
+
+    def moved(self, step: np.ndarray, nuisance_step: np.ndarray) -> "Point":
+        """The point after a step of x (k + u,) and of the first L nuisance parameters, (T, L) or (L,)."""
+        nuisance = self.nuisance.copy()
+        nuisance[:, : nuisance_step.shape[-1]] += nuisance_step
+        return replace(self, x=self.x + step, nuisance=nuisance)
+
+    def subset(self, rows: np.ndarray) -> "Point":
+        """The point for some of its tests."""
+        return Point(self.x, self.nuisance[rows], self.warm.of(rows))
+
+
+class Scenario(NamedTuple):
+    """What to simulate: the values of all effects (SI), and the point that they belong to."""
+
+    values: Values
+    point: Point
+
+
+class Comparison(NamedTuple):
+    """One simulated scenario compared with the measurement.
+
+    ``response``: what was simulated, in the terms of the kind of record. ``residual`` (T, m): measurement
+    less simulation, whitened: of unit variance and uncorrelated. ``found`` (T,): whether a response exists.
+    """
+
+    response: Any
+    residual: np.ndarray
+    found: np.ndarray
+    warm: Any
+
+
+class NuisanceParameter(NamedTuple):
+    """A nuisance parameter fitted by simulation: finite-difference step, largest step of one iteration."""
+
+    step: float
+    max_step: float
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A point with its simulation and its residuals.
+
+    ``prior``: standardised pulls on the priors, those of the nuisance parameters (T * P) before those of the
+    uncertain parameters (u).
+    """
+
+    point: Point
+    response: Any
+    residual: np.ndarray
+    prior: np.ndarray
+    found_tests: np.ndarray
+    priors_per_test: int
+
+    @property
+    def found(self) -> bool:
+        """Whether all tests have a response."""
+        return bool(self.found_tests.all())
+
+    @property
+    def nuisance_prior(self) -> np.ndarray:
+        """Pulls on the priors of nuisance parameters, (T, P)."""
+        tests = len(self.residual)
+        return self.prior[: tests * self.priors_per_test].reshape(tests, self.priors_per_test)
+
+    @property
+    def uncertain_prior(self) -> np.ndarray:
+        """Pulls on the priors of uncertain parameters, (u,)."""
+        return self.prior[len(self.residual) * self.priors_per_test :]
+
+    @cached_property
+    def chi2_by_test(self) -> np.ndarray:
+        """Squared misfit of each test, pulls on its own priors included, (T,)."""
+        return (self.residual**2).sum(-1) + (self.nuisance_prior**2).sum(-1)
+
+    @cached_property
+    def chi2(self) -> float:
+        """Squared misfit of all tests, pulls on priors included; infinite if a response does not exist."""
+        return float((self.residual**2).sum() + (self.prior**2).sum()) if self.found else np.inf
+
+
+def best_evaluation_per_test(evaluations: Sequence[Evaluation]) -> np.ndarray:
+    """Index (T,) of the evaluation that fits each test best."""
+    misfit = [np.where(each.found_tests, each.chi2_by_test, np.inf) for each in evaluations]
+    return np.argmin(misfit, axis=0)

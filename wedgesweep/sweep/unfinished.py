@@ -1,0 +1,51 @@
+"""What an unfinished sweep has come to, read from its journal."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep import config
+from wedgesweep.errors import SweepError
+from wedgesweep.sweep import journal, variables
+from wedgesweep.sweep.dataset import journal_of
+from wedgesweep.sweep.outcomes import COLUMNS, LIFT_OFF, Outcomes
+from wedgesweep.sweep.run import Sweep
+
+
+def dataset_of(out: Path) -> xr.Dataset:
+    """Dataset of an interrupted run to ``out``, with status not_run where nothing is known yet.
+
+    Raises SweepError if its journal is damaged.
+    """
+    path = journal_of(out)
+    sweep = Sweep(config.parse(journal.header(path)["config"], str(path)), out)
+    records = variables.blank(sweep.dtype, np.arange(sweep.count))
+    done = journal.read(path, sweep.dtype)
+    records[done["index"]] = done
+    return sweep.assembled(records, datetime.now(UTC))
+
+
+def outcomes_of(out: Path) -> Outcomes:
+    """How the finished cases of an unfinished sweep ended."""
+    path = journal_of(out)
+    header = journal.header(path)
+    settings = config.parse(header["config"], str(path))
+    if settings.sha256 != header["config_sha256"]:
+        message = f"{path}: damaged in its first line, whose config is not that of the records"
+        raise SweepError(message)
+    records = journal.read(path, Sweep(settings, path).dtype)
+    unit = "" if settings.transient else "N" if settings.forced else "m"
+
+    def described(place: int) -> tuple[str, float, float, str, str]:
+        case = settings.sweep.case(records["index"][place])
+        return (*case, unit, records["message"][place].decode())
+
+    if settings.transient:
+        nothing = np.zeros(len(records))
+        return Outcomes(records["status"], nothing + 1.0, nothing, records[LIFT_OFF], described)
+    columns = {name: records[name] for name in COLUMNS}
+    if settings.opens:
+        columns[LIFT_OFF] = np.zeros(len(records))
+    return Outcomes(**columns, describe_case=described)

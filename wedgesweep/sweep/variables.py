@@ -1,0 +1,164 @@
+"""The variables of the datasets of sweeps, and the records of cases that hold them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.outcome import Outcome
+
+STATUSES = tuple(map(str, Outcome))
+HARMONICS = 9
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the dataset; ``dims`` follow the case dimensions."""
+
+    name: str
+    units: str
+    long_name: str
+    dims: tuple[str, ...] = ()
+    dtype: str = "f8"
+
+
+PHASE = ("phase",)
+SPECTRUM = ("harmonic", "part")
+
+VARIABLES = (
+    Variable("amplitude_ratio", "1", "half peak-to-peak of x - y over the input amplitude"),
+    Variable("peak_to_peak", "m", "peak-to-peak of the relative displacement x - y"),
+    Variable("peak_velocity", "m s-1", "largest magnitude of the relative velocity x' - y'"),
+    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
+    Variable(
+        "stick_fraction",
+        "1",
+        "share of time stuck (coulomb) or with the column face below the threshold velocity",
+    ),
+    Variable("stick_phases", "1", "number of sticking phases per forcing period"),
+    Variable("displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM),
+    Variable("velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM),
+    Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
+    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers per forcing period"),
+    Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
+    Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
+    Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
+    Variable(
+        "periodicity",
+        "1",
+        "largest change of x - y from the last period but one to the last, over input amplitude",
+    ),
+    Variable(
+        "period",
+        "1",
+        "period of the response in forcing periods; 0: it did not repeat, -1: not looked for",
+        dtype="i2",
+    ),
+    Variable("settled_periods", "1", "forcing periods run before the kept ones", dtype="i8"),
+    Variable("status", "1", "outcome of the case", dtype="i1"),
+    Variable("message", "", "reason of a failure, empty otherwise", dtype="str"),
+    Variable("rate_evaluations", "1", "calls of the right-hand side", dtype="i8"),
+    Variable("steps", "1", "steps of the integrator", dtype="i8"),
+    Variable("switches", "1", "located switches between slip branches", dtype="i8"),
+    Variable("wall_time", "s", "wall time of the case"),
+    Variable(
+        "displacement",
+        "m",
+        "relative displacement x - y (side frame minus bolster) from frictionless rest",
+        PHASE,
+        "f4",
+    ),
+    Variable("velocity", "m s-1", "relative velocity x' - y'", PHASE, "f4"),
+    Variable("normal_force_column", "N", "normal force on the column face", PHASE, "f4"),
+    Variable("normal_force_bolster", "N", "normal force on the bolster face", PHASE, "f4"),
+    Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", PHASE, "i1"),
+)
+
+WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PHASE)
+
+# Additional variables of unilateral joints.
+OF_LIFT_OFF = (
+    Variable("column_open_fraction", "1", "share of time with the column contact open"),
+    Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
+    Variable("impacts", "1", "impacts of a wedge per forcing period"),
+    Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
+    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
+)
+
+# Within a case of a motion that does not repeat.
+TIME = ("time",)
+_SHARED = ("status", "message", "rate_evaluations", "steps", "switches", "wall_time")
+_NAMED = {variable.name: variable for variable in VARIABLES}
+# Variables of a dataset whose input does not repeat, after those that are the same.
+TRANSIENT = (
+    Variable("peak_displacement", "m", "largest magnitude of x - y"),
+    Variable("peak_to_peak", "m", "peak-to-peak of x - y"),
+    Variable("peak_velocity", "m s-1", "largest magnitude of x' - y'"),
+    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
+    Variable("rms_displacement", "m", "rms of the stored samples of x - y"),
+    _NAMED["stick_fraction"],
+    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers in all"),
+    Variable("supplied_energy", "J", "energy supplied by the base in all"),
+    _NAMED["minimum_normal_force"],
+    _NAMED["lift_off_fraction"],
+    *(_NAMED[name] for name in _SHARED),
+    Variable("displacement", "m", _NAMED["displacement"].long_name, TIME),
+    Variable("velocity", "m s-1", "relative velocity x' - y'", TIME),
+    Variable("acceleration", "m s-2", "relative acceleration x'' - y''", TIME),
+    Variable("force", "N", "force that springs, dampers and friction set against x - y", TIME),
+    Variable("normal_force_column", "N", "normal force on the column face", TIME, "f4"),
+    Variable("normal_force_bolster", "N", "normal force on the bolster face", TIME, "f4"),
+    Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", TIME, "i1"),
+    *OF_LIFT_OFF,
+)
+
+# Additional variables of a continuation; all others belong to its sweep up in beta. Two responses are
+# distinct if their amplitude ratios differ by more than DISTINCT times steady_tolerance, or their periods.
+DISTINCT = 1000.0
+CONTINUED = (
+    Variable("amplitude_ratio_down", "1", "amplitude_ratio on the way down in beta"),
+    Variable("period_down", "1", "period on the way down in beta", dtype="i2"),
+    Variable(
+        "coexisting",
+        "1",
+        "whether the ways up and down in beta end in different responses: periods differ, or amplitude "
+        f"ratios by more than {DISTINCT:g} steady_tolerance; not told where one did not repeat or failed",
+        dtype="i1",
+    ),
+)
+# Flag variables: first value, and the meanings of the values from there on.
+FLAGS = {"status": (0, STATUSES), "coexisting": (-1, ("not_told", "no", "yes"))}
+
+GRID = ("friction_law", "beta", "amplitude")
+# Case dimensions where the input does not repeat.
+SCALED = ("friction_law", "scale")
+REQUIRED = ("status", "message", "period", "periodicity")
+MESSAGE_BYTES = 200
+
+
+def record_dtype(sizes: Mapping[str, int], continued: bool = False) -> np.dtype:
+    """Layout of the record of a case: its index and every variable, with dimensions from ``sizes``.
+
+    Without samples (``sizes`` of "phase" or "time" 0) there are no waveforms; ``continued`` adds CONTINUED.
+    """
+    fields: list[tuple[Any, ...]] = [("index", "i8")]
+    for variable in TRANSIENT if "time" in sizes else VARIABLES + OF_LIFT_OFF + CONTINUED * continued:
+        if variable.dims in (PHASE, TIME) and not sizes[variable.dims[0]]:
+            continue
+        dtype = f"S{MESSAGE_BYTES}" if variable.dtype == "str" else variable.dtype
+        fields.append((variable.name, dtype, tuple(sizes[dim] for dim in variable.dims)))
+    return np.dtype(fields)
+
+
+def blank(dtype: np.dtype, indices: np.ndarray) -> np.ndarray:
+    """Records of cases without results: NaN, zero counts, status not_run."""
+    records = np.zeros(len(indices), dtype)
+    for name in dtype.names or ():
+        if dtype[name].base.kind == "f":
+            records[name] = np.nan
+    records["index"] = indices
+    for name in {"period", "period_down", "coexisting"} & set(dtype.names or ()):
+        records[name] = -1
+    records["status"] = Outcome.NOT_RUN
+    return records
