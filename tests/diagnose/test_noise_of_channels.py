@@ -167,6 +167,15 @@ def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     assert ratios(0.0, 0, (0, 1))[..., 1].max() < 6.0
 
 
+@pytest.mark.parametrize("samples", [48, 100, 200])
+def test_a_short_record_has_noise_of_some_size(samples):
+    rng, (x, v) = np.random.default_rng(6), decay(0.08, samples)
+    tests = [{0: noisy(x, 0.0, rng), 1: noisy(v, 0.0, rng)}, {0: noisy(x, 0.0, rng)}]
+    found = noise_of_channels(tests, dict.fromkeys((0, 1), "relative"), [RATE] * 2)
+    assert [list(its) for its in found] == [[0, 1], [0]]
+    assert all(np.isfinite(each.std) and each.std > 0.0 for its in found for each in its.values())
+
+
 def short_accelerations(pole, seed):
     """Accelerations of four periods, with noise, and as they are without it."""
     rng, clean = np.random.default_rng(seed), [acceleration(0.04, 240), acceleration(0.03, 240, 0.5)]

@@ -33,13 +33,14 @@ Each = Callable[[Callable, list], list]
 class Prediction(NamedTuple):
     """Tests that were left out together, simulated by a model that was fitted to the others.
 
-    ``tests``: indices of the tests in the data of the fit.
+    ``tests``: indices of the tests in the data of the fit; ``effects``: those that the other tests support.
     """
 
     scheme: str
     tests: np.ndarray
     data: FitData
     evaluation: Evaluation
+    effects: tuple[str, ...]
 
     @property
     def misfit(self) -> np.ndarray:
@@ -144,7 +145,11 @@ def cross_validate(base: Fit, extended: Fit, each: Each) -> Gain:
         Maps a function over a list.
     """
     local, observations = local_numbers(extended), base.model.data.observations
-    both = zip(*(predictions(fit, each) for fit in (base, extended)), strict=True)
+    both = [
+        # Without its effects the extended model is the base model, however its nuisance parameters are found.
+        (before, after if after.effects else before)
+        for before, after in zip(*(predictions(fit, each) for fit in (base, extended)), strict=True)
+    ]
     return Gain(
         tuple(
             HeldOut(int(test), before.scheme, float(b), float(e), int(observations[test]), float(local[test]))
@@ -206,7 +211,7 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
         if not evaluation.found:
             break
         evaluation = part.model.evaluate(_with_own_nuisances(part.model, evaluation))
-    return Prediction(scheme, rows, part.model.data, evaluation)
+    return Prediction(scheme, rows, part.model.data, evaluation, trained.effects)
 
 
 def supported(trained: Fit) -> Fit:

@@ -39,8 +39,9 @@ BANDS, STEEP = 2, 12.0
 # Least share of the bins above the motion, and least number of bins, that must count as noise.
 LEAST_KEPT, FEWEST = 0.25, 8
 # A record is looked at in so many parts. Its quiet end or beginning is those whose rms is at most so many
-# times the least one. There must be so many of them, and the rms of all over that of the record at most this.
-PARTS, ALIKE, ENOUGH, QUIET = 8, 2.0, 2, 0.1
+# times the least one. There must be so many of them, the rms of all over that of the record must be at most
+# this, and there must be so many samples.
+PARTS, ALIKE, ENOUGH, QUIET, SHORTEST = 8, 2.0, 2, 0.1, 64
 
 
 class OwnNoise(NamedTuple):
@@ -97,7 +98,7 @@ def quiet_bins(samples: np.ndarray) -> NoiseBins | None:
     if not loud.any() or max(before, after) < ENOUGH:
         return None
     quiet = np.concatenate(parts[:before] if before > after else parts[PARTS - after :])
-    if quiet.std() > QUIET * samples.std():
+    if quiet.size < SHORTEST or quiet.std() > QUIET * samples.std():
         return None
     return noise_bins(quiet).bins
 
@@ -109,7 +110,7 @@ def without_skirts(own: Sequence[OwnNoise], others: Sequence[Sequence[NoiseBins]
     have skirts that fall with frequency not much faster than noise. They rise downwards by more than it may.
     """
     edges = HIGHEST * 2.0 ** (-np.arange(STEPS) / BANDS)
-    first = [max(each.first, edges[0]) for each in own]
+    first = [max(each.first, min(edges[0], each.bins.frequency[-FEWEST:][0])) for each in own]
     stopped = [False] * len(own)
     for low, high in zip(edges[1:], edges[:-1], strict=True):
         known = zip(own, first, others, strict=True)

@@ -182,6 +182,8 @@ def _bands(given: Sequence[NoiseBins]) -> _Bands:
     """Bins of one test in bands, over which no spectrum changes much; each kind of them by itself."""
     found = []
     for each in given:
+        if not each.frequency.size:
+            continue
         frequency, power, known = (values[np.argsort(each.frequency, kind="stable")] for values in each)
         first = np.flatnonzero(np.diff(np.floor(np.log(frequency) / WIDTH), prepend=-np.inf))
         bins = np.diff(np.r_[first, frequency.size])

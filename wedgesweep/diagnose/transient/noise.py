@@ -108,7 +108,7 @@ class NoiseEvidence:
             other = {each.lower: each.higher, each.higher: each.lower}.get(order)
             if other is not None and (t, other) in known:
                 found.append(each.told(order, known[t, other]).up_to(first))
-        return [each for each in found if each.frequency.size]
+        return found
 
     def without_skirts(self, order: int, known: Spectra) -> dict[Key, OwnNoise]:
         """Own bins of one channel, without those of the motion that only noise of the same shape unmasks."""
