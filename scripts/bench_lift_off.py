@@ -99,6 +99,7 @@ def ours(rows, exact):
         error = np.abs(found["amplitude_ratio"][: len(rows)] / exact - 1.0).max()
         if error <= LIMIT:
             break
+    seconds = min(seconds, *(timed(many, settings)[1] for _ in range(ROUNDS)))
     return rtol, error, seconds / len(many)
 
 
