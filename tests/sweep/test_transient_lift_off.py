@@ -5,6 +5,8 @@ import pytest
 
 from tests.command import invoke
 from wedgesweep import config
+from wedgesweep.sweep import unfinished
+from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.run import Sweep
 
 RELEASE = 'kind = "release"\ndisplacement_mm = 10.0\nduration_s = 0.6\nsampling_hz = 1000.0\n'
@@ -67,6 +69,14 @@ def test_friction_and_impacts_lose_what_a_release_stores(restitution):
     assert float(ds["dissipated_energy"] + ds["impact_energy"]) == pytest.approx(stored, rel=1e-6)
 
 
+@pytest.mark.parametrize(("joints", "outside"), [("unilateral", 0), ("bilateral", 3)])
+def test_an_unfinished_sweep_tells_what_lies_outside_of_the_model(tmp_path, joints, outside):
+    sweep = Sweep(config.parse(study(RELEASE, joints)), tmp_path / "part.nc")
+    with Journal(sweep.journal_path, sweep.dtype, sweep.journal_header) as journal:
+        journal.append(sweep.solve(np.arange(3)))
+    assert unfinished.outcomes_of(tmp_path / "part.nc").lifted == outside
+
+
 def test_faces_push_or_carry_nothing():
     ds = solved(RELEASE, "unilateral")
     for name in ("normal_force_column", "normal_force_bolster"):
@@ -78,8 +88,9 @@ def test_the_open_phases_are_told(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "open.toml").write_text(study(RELEASE, "unilateral"))
     (tmp_path / "held.toml").write_text(study(RELEASE, "bilateral"))
-    for name in ("open", "held"):
-        invoke("run", f"{name}.toml")
+    for name, outside in (("open", False), ("held", True)):
+        for told in (invoke("run", f"{name}.toml"), invoke("status", f"{name}.nc")):
+            assert ("outside of the model's validity" in told) is outside
     # Wedges that lift off do not move with the bolster: nothing tells their forces from inertia.
     told = invoke("plot", "all", "open.nc", "-o", "drawn")
     assert "skipped loop: the dataset has no force" in told

@@ -54,18 +54,11 @@ def _draw_still(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
     ax.text(0.5, 0.6, note, transform=ax.transAxes, ha="center", fontsize=8, color=style.GREY)
 
 
-def _open(case: xr.Dataset) -> np.ndarray:
-    """Samples at which a contact is open."""
-    marked = validity.opened(case)
-    return np.zeros(case.sizes["phase"], bool) if marked is None else marked.values
-
-
 def _draw_case(ax: Axes, case: xr.Dataset, omega_n: float) -> None:
     law, amplitude = case["friction_law"].item(), case["amplitude"].item()
     x, v = case["displacement"].values * style.MM, case["velocity"].values * style.MM
-    stuck = case["stuck"].values == 1
     ax.plot(x, v, color=style.law_style(law)["color"], linewidth=1.2, zorder=2)
-    for marked, color in ((stuck, style.STUCK), (_open(case), style.OPEN)):
+    for color, marked in validity.marked_samples(case).items():
         ax.plot(x[marked], v[marked], "o", color=color, markersize=7, markeredgewidth=0, zorder=1)
     # Written so that NaN counts as still.
     if not np.ptp(x) > STILL * _size(case):
@@ -94,12 +87,11 @@ def draw(
     made = panels(target, len(shown), columns=columns, size=(2.9, 2.5), share=False)
     for ax, case in zip(made.axes, shown, strict=True):
         _draw_case(ax, case, ds.attrs["omega_n"])
-    opens = "" if validity.opened(ds) is None else "; blue: a contact is open"
     words = labels.of(ds)
     style.label(made.axes, words.displacement, words.velocity, columns)
     left_out = f"; first {len(shown)} of {len(found)} cases" if len(found) > len(shown) else ""
     made.title(
-        f"Phase portraits; yellow: {labels.sticking(cases.laws(ds))}{opens}{left_out}",
+        f"Phase portraits; yellow: {labels.sticking(cases.laws(ds))}{validity.note_of_open(ds)}{left_out}",
         words.sign,
     )
     return made

@@ -78,14 +78,11 @@ def _time(ds: xr.Dataset) -> np.ndarray:
 
 def _draw_law(ax: Axes, law: xr.Dataset, waves: xr.DataArray) -> None:
     """Draw a row for each amplitude of a law."""
-    time, opened = _time(law), validity.opened(law)
+    time = _time(law)
     color = style.law_style(law["friction_law"].item())["color"]
     for row in range(law.sizes["amplitude"]):
         case = law.isel(amplitude=row)
-        marks = {style.STUCK: case["stuck"].values == 1}
-        if opened is not None:
-            marks[style.OPEN] = opened.isel(amplitude=row).values
-        _draw_row(ax, time, waves.isel(amplitude=row).values, marks, row, color)
+        _draw_row(ax, time, waves.isel(amplitude=row).values, validity.marked_samples(case), row, color)
         if remark := validity.remark(case):
             ax.text(time[-1], row + 0.3, remark.strip(), fontsize=6.5, color=style.GREY, ha="right")
 
@@ -120,7 +117,6 @@ def draw(
     made.title(
         f"{words.name} ${words.motion}$ ({words.whose}) at {frequency}",
         f"a row for each amplitude, divided by {words.own_reference} and centred; "
-        f"yellow: {labels.sticking(names)}"
-        + ("" if validity.opened(ds) is None else "; blue: a contact is open"),
+        f"yellow: {labels.sticking(names)}{validity.note_of_open(ds)}",
     )
     return made

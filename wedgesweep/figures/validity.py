@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from wedgesweep import formatting
+from wedgesweep.figures import style
 from wedgesweep.outcome import settled
 
 LIFT_OFF = "lift_off_fraction"  # a normal force that is given has none
@@ -32,6 +33,17 @@ def opened(ds: xr.Dataset) -> xr.DataArray | None:
     if OPENS not in ds or any(name not in ds for name in faces):
         return None
     return (ds[faces[0]] == 0.0) | (ds[faces[1]] == 0.0)
+
+
+def marked_samples(case: xr.Dataset) -> dict[str, np.ndarray]:
+    """Samples of a case at which it sticks, and at which a contact is open, by the colour that marks them."""
+    found, opens = {style.STUCK: case["stuck"].values == 1}, opened(case)
+    return found if opens is None else found | {style.OPEN: opens.values}
+
+
+def note_of_open(ds: xr.Dataset) -> str:
+    """What the colour of open contacts means, to go on with; empty where joints are held."""
+    return "" if opened(ds) is None else "; blue: a contact is open"
 
 
 def unsettled(ds: xr.Dataset) -> xr.DataArray:

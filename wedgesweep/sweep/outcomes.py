@@ -104,10 +104,10 @@ class Outcomes:
 
 def of_dataset(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended."""
+    if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
+        ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["status"], float)})
     if "scale" in ds.coords:
         return _of_transients(ds)
-    if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
-        ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["periodicity"])})
     unit = ds["amplitude"].attrs.get("units", "m")
     shape, dims = ds["status"].shape, ds["status"].dims
 
@@ -132,6 +132,6 @@ def _of_transients(ds: xr.Dataset) -> Outcomes:
         case = ds[["friction_law", "scale", "message"]].isel(friction_law=int(law), scale=int(scale))
         return case["friction_law"].item(), 1.0, case["scale"].item(), "", case["message"].item()
 
-    lifted = ds[LIFT_OFF].values.ravel() if LIFT_OFF in ds else nothing
     # Nothing has to settle.
-    return Outcomes(ds["status"].values.ravel(), nothing + 1.0, nothing, lifted, described)
+    status, lifted = ds["status"].values.ravel(), ds[LIFT_OFF].values.ravel()
+    return Outcomes(status, nothing + 1.0, nothing, lifted, described)

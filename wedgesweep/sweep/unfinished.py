@@ -42,10 +42,9 @@ def outcomes_of(out: Path) -> Outcomes:
         case = settings.sweep.case(records["index"][place])
         return (*case, unit, records["message"][place].decode())
 
+    nothing = np.zeros(len(records))
+    lifted = nothing if settings.opens else records[LIFT_OFF]
     if settings.transient:
-        nothing = np.zeros(len(records))
-        return Outcomes(records["status"], nothing + 1.0, nothing, records[LIFT_OFF], described)
-    columns = {name: records[name] for name in COLUMNS}
-    if settings.opens:
-        columns[LIFT_OFF] = np.zeros(len(records))
+        return Outcomes(records["status"], nothing + 1.0, nothing, lifted, described)
+    columns = {name: records[name] for name in COLUMNS} | {LIFT_OFF: lifted}
     return Outcomes(**columns, describe_case=described)

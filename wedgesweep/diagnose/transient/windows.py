@@ -14,8 +14,8 @@ from wedgesweep.diagnose.transient.release import Grid, Release
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
-# Share of a record under an input that is spent for that at its beginning, at most.
-FORGOTTEN = 0.125
+# Share of a record under an input that is simulated before its first window, at most.
+LEAD_SHARE = 0.125
 # Windows that a single record makes at least, if each has so many natural periods.
 FEWEST, SHORTEST = 3, 3.0
 # Highest frequency that is compared, over the natural frequency and over the highest that stands out.
@@ -61,9 +61,9 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     displacement = _displacement(record, 2.0 * pi / period)
     rest, length = _extent(displacement)
     compared = channels.shape[1] - 2 * skipped
-    # Before what is skipped has passed the input is not right, so that nothing can be simulated from there.
-    forgotten = min(ceil(LEAD * period), int(FORGOTTEN * compared)) if skipped else 0
-    compared -= forgotten
+    # In what is skipped the input is not right: the lead of the first window comes after it.
+    lead = min(ceil(LEAD * period), int(LEAD_SHARE * compared)) if skipped else 0
+    compared -= lead
     total = compared / period
     count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
     size = compared // count
@@ -72,7 +72,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     acting = None if record.driven is None else record.driven.acting
     found = []
     for place in range(count):
-        first = skipped + forgotten + place * size
+        first = skipped + lead + place * size
         grid = Grid(min(ceil(LEAD * period), first - skipped), size, 2.0 * pi * rate / period)
         start = first - grid.lead
         own = channels[:, first : first + size]

@@ -53,10 +53,7 @@ def _draw_decrement(ax: Axes, at: np.ndarray, values: np.ndarray) -> None:
 
 def _draw_decay(ax: Axes, case: xr.Dataset, color: str, ds: xr.Dataset) -> None:
     time, x = case["time"].values, case["displacement"].values
-    opened = validity.opened(case)
-    marks = [(case["stuck"].values == 1, style.STUCK)]
-    marks += [] if opened is None else [(opened.values, style.OPEN)]
-    for marked, shade in marks:
+    for shade, marked in validity.marked_samples(case).items():
         ax.plot(time, np.where(marked, x, np.nan) * style.MM, color=shade, linewidth=5)
     ax.plot(time, x * style.MM, color=color, linewidth=1.1)
     if not np.isfinite(x).all():
@@ -81,7 +78,6 @@ def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
         ax.set_title(f"{law}{validity.remark(case)}", fontsize=10)
     style.label(made.axes, "time [s]", labels.of(ds).displacement, columns=2)
     lines = "; dashed: dry friction alone, $4F/k$ a cycle" if np.isfinite(ds.attrs.get(LOSS, np.nan)) else ""
-    opens = "" if validity.opened(ds) is None else "; blue: a contact is open"
-    note = f"{labels.of(ds).sign}; yellow: stuck{opens}{lines}"
+    note = f"{labels.of(ds).sign}; yellow: stuck{validity.note_of_open(ds)}{lines}"
     made.title(f"Decay at scale {chosen['scale'].item():.3g}", note)
     return made
