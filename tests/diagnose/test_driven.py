@@ -7,6 +7,7 @@ from tests.diagnose.test_transients import MEASURED, OSCILLATOR
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
+from wedgesweep.diagnose.transient.driven import Driven
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
@@ -145,6 +146,19 @@ def test_a_test_without_input_says_so(tmp_path):
         read(path)
     path.write_text(path.read_text() + "undriven = true\n")
     assert read(path).tests[0].input is None
+
+
+@pytest.mark.parametrize("to_s", [TIMES[-1], 4.0, 2.0])
+def test_no_simulation_begins_where_the_filter_of_the_input_has_not_settled(tmp_path, to_s):
+    path = write(tmp_path, [4e-3 * chirp(2.0)], noise=(2e-6, 1e-6))
+    path.write_text(path.read_text() + f"to_s = {to_s}\n")
+    measurement = read(path)
+    (test,) = measurement.tests
+    settling = Driven(test.input, measurement.recorded_input, test.sampling_rate).settling
+    windows = transient_data(measurement).releases
+    assert settling > 0
+    assert all(round(each.starts_at / each.step) >= settling for each in windows)
+    assert all(each.grid.lead > 0 for each in windows)
 
 
 def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp_path):

@@ -194,13 +194,13 @@ def test_white_noise_far_above_the_motion_may_be_red_at_it(seed):
 @pytest.mark.parametrize("seed", range(3))
 def test_what_an_explanation_leaves_shows_that_there_is_less_noise(seed):
     evidence, tests, clean = short_accelerations(0.0, seed)
-    assert evidence.far
+    assert evidence.far_above
     frequency = np.pi * np.arange(4, 80) / 240
 
     def beside(more):
         left = [its[2] - each + more for its, each in zip(tests, clean, strict=True)]
         bins = [NoiseBins.of(frequency, dct(each, norm="ortho")[4:80] ** 2) for each in left]
-        return evidence.beside({(t, 2): [each] for t, each in enumerate(bins)})
+        return evidence.bounded({(t, 2): [each] for t, each in enumerate(bins)})
 
     right, wrong = beside(0.0), beside(30.0 * np.cos(2.0 * np.pi * np.arange(240) / RATE))
     for t, each in enumerate(clean):

@@ -141,7 +141,7 @@ class NoiseEvidence:
         return Told(most, least, own)
 
     @cached_property
-    def far(self) -> list[dict[Key, OwnNoise]]:
+    def far_above(self) -> list[dict[Key, OwnNoise]]:
         """Channels whose noise is only told well above the motion, with their own bins."""
         bins = [self._bins(its, self.told.least) for its in self.told.own]
         both = zip(bins, self.told.own, strict=True)
@@ -150,14 +150,14 @@ class NoiseEvidence:
     def _bins(self, own: Mapping[Key, OwnNoise], known: Spectra) -> list[list[NoiseBins]]:
         return [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
 
-    def beside(self, left: Mapping[Key, Sequence[NoiseBins]]) -> Spectra:
+    def bounded(self, left: Mapping[Key, Sequence[NoiseBins]]) -> Spectra:
         """Noise of channels that is only told far above the motion, by what an explanation leaves of them.
 
         That is noise, or more. It can show that there is less noise than there might be, and never that there
         is more: physics that is missing would pass for noise.
         """
         found: Spectra = {}
-        for own in self.far:
+        for own in self.far_above:
             bins = self._bins(own, self.told.least)
             more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
             spectra = _by_key(own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST))

@@ -122,7 +122,7 @@ class TransientData(SampledData):
         Noise of the input is passed on as its response does. Noise of a channel that is told far above its
         motion only is no more than what it leaves.
         """
-        data = self._with_noise_beside(scenario)
+        data = self._with_bounded_noise(scenario)
         if not any(own.driven for own in data.releases):
             return data
         (values,) = data.known_values([scenario], OF_INPUT)
@@ -131,9 +131,9 @@ class TransientData(SampledData):
         found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
         return replace(data, decorrelations=found)
 
-    def _with_noise_beside(self, scenario: Scenario) -> Self:
+    def _with_bounded_noise(self, scenario: Scenario) -> Self:
         """The data with less noise where a scenario shows that there is less."""
-        if not any(each.far for each in self.evidence):
+        if not any(each.far_above for each in self.evidence):
             return self
         left = self.without_zero(self.measured - np.nan_to_num(self.simulated([scenario])[0]))
         bins: dict[Key, list[NoiseBins]] = {}
@@ -141,7 +141,7 @@ class TransientData(SampledData):
             shape = own.compared.shape
             for key, each in own.noise_in(row[: own.compared.size].reshape(shape)).items():
                 bins.setdefault(key, []).append(each)
-        told = {key: each for one in self.evidence for key, each in one.beside(bins).items()}
+        told = {key: each for one in self.evidence for key, each in one.bounded(bins).items()}
         return replace(self, releases=tuple(own.with_noise(told) for own in self.releases))
 
     @cached_property
