@@ -8,7 +8,7 @@ import pytest
 
 from tests.diagnose.synthetic import MODEL, base_of
 from wedgesweep import config
-from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
+from wedgesweep.diagnose.least_squares import minimise, from_other_nuisances
 from wedgesweep.diagnose.score_test import scores
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation
@@ -49,7 +49,7 @@ def test_the_phase_of_a_vibration_explains_what_an_unknown_phase_leaves():
         assert [each.masked_harmonic for each in data.spectra] == [3, None, None]
         model = Search.of(data, ("stray_vibration",)).model("stray_vibration")
         anyhow = minimise(model, model.evaluate(model.start(None, np.array([ACCELERATION]))))
-        fit = with_extra_nuisances(anyhow)
+        fit = from_other_nuisances(anyhow)
         assert fit.p > 1e-3
         found = fit.values["stray_vibration"]["acceleration_m_per_s2"]
         assert found == pytest.approx(ACCELERATION, rel=0.05)
@@ -73,4 +73,4 @@ def test_the_base_model_may_contain_the_vibration():
 def test_a_fit_without_a_tone_stays_as_it_is():
     data = recorded(np.zeros(3), 0)
     base = base_of(data)
-    assert with_extra_nuisances(base) is base
+    assert from_other_nuisances(base) is base

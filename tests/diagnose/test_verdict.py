@@ -301,7 +301,7 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(709.0, "preload")
     worse = explained(900.0, "stribeck").fit
     monkeypatch.setattr(diagnosis, "tight_refit", lambda fit: worse if fit is first.fit else fit)
-    monkeypatch.setattr(diagnosis, "with_extra_nuisances", lambda fit: fit)
+    monkeypatch.setattr(diagnosis, "from_other_nuisances", lambda fit: fit)
     monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
     search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
     tied = verdict_of(base, first, second)

@@ -9,7 +9,7 @@ from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.ladder import Level, ladder
-from wedgesweep.diagnose.least_squares import tight_refit, with_extra_nuisances
+from wedgesweep.diagnose.least_squares import tight_refit, from_other_nuisances
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
@@ -190,7 +190,7 @@ def refit_cause(
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
         search.progress(f"final fit of {' + '.join(finding.best.effects)}")
-        fit = tight_refit(with_extra_nuisances(finding.best.fit))
+        fit = tight_refit(from_other_nuisances(finding.best.fit))
         # Without a cause there is no interval to report.
         if finding.cause is not None or search.budget.left > 0.0:
             fit = profile_likelihood(fit, search.each)

@@ -34,11 +34,17 @@ class Evaluator(Protocol):
     @property
     def data(self) -> "FitData": ...
 
+    @property
+    def effects(self) -> tuple[str, ...]: ...
+
     def on(self, data: "FitData") -> "Evaluator":
         """The same hypothesis on other data."""
 
     def evaluate_all(self, points: Sequence[Point]) -> list[Evaluation]:
         """Simulate many points at once, and compare them with the measurement."""
+
+    def best_nuisances(self, points: Sequence[Point]) -> np.ndarray:
+        """Nuisance parameters (T, N) of each test from the point that fits it best."""
 
 
 class FitData(Protocol):
@@ -180,9 +186,12 @@ class FitData(Protocol):
         """Whether a fit without this effect knows nothing of nuisance parameters that come with it."""
         return False
 
-    def extra_nuisance_points(self, effects: Iterable[str], point: Point) -> list[Point]:
-        """Points that try values of such nuisance parameters; empty if none are left to try."""
-        return []
+    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+        """Nuisance parameters (T, N) that a fit does not reach from an evaluation, for it to go on from.
+
+        None if there are none to try.
+        """
+        return None
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         """The data, with what an evaluation tells of the records' start."""

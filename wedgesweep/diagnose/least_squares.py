@@ -120,14 +120,13 @@ def subset_fit(fit: Fit, rows: np.ndarray) -> Fit:
     return Fit(model, model.evaluate(fit.point.subset(rows)), fit.covariance, fit.converged)
 
 
-def with_extra_nuisances(fit: Fit) -> Fit:
-    """The fit continued with the nuisance parameters that its effects bring along, if that is better."""
-    model = fit.model
-    points = model.data.extra_nuisance_points(fit.effects, fit.point) if fit.evaluation.found else []
-    if not points:
+def from_other_nuisances(fit: Fit) -> Fit:
+    """The fit continued from nuisance parameters that it had not reached, if that is better."""
+    model, here = fit.model, fit.evaluation
+    found = model.data.other_nuisances(model, here) if here.found else None
+    if found is None:
         return fit
-    start = replace(fit.point, nuisance=model.best_nuisances(points))
-    again = minimise(model, model.evaluate(start))
+    again = minimise(model, model.evaluate(replace(fit.point, nuisance=found)))
     return min(fit, again, key=lambda each: each.chi2)
 
 

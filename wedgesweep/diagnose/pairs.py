@@ -17,7 +17,7 @@ import numpy as np
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.least_squares import ITERATIONS, minimise, subset_fit
+from wedgesweep.diagnose.least_squares import ITERATIONS, from_other_nuisances, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import (
     MULTISTART_SCHEDULE,
@@ -218,7 +218,7 @@ def component_fits(search: Search, pairs: Sequence[Explanation]) -> list[Explana
     near = [each for each in pairs if each.fit.chi2 - pairs[0].fit.chi2 < NEAR_BEST]
     components = [(pair.fit, effect) for pair in near for effect in pair.effects]
     starts = search.each(lambda one: _component(search, *one), components)
-    fits = search.each(lambda fit: _followed(fit, ITERATIONS), starts)
+    fits = search.each(lambda fit: from_other_nuisances(_followed(fit, ITERATIONS)), starts)
     return [search.explanation(fit) for fit in fits]
 
 

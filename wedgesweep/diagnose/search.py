@@ -17,7 +17,7 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.least_squares import minimise, with_extra_nuisances
+from wedgesweep.diagnose.least_squares import minimise, from_other_nuisances
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
@@ -218,9 +218,10 @@ def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) 
 def _aligned(fit: Fit) -> Fit:
     """The fit on data that know what it tells of the records' start, continued where that matters."""
     model = fit.model.on(fit.model.data.aligned_to(fit.evaluation))
-    if model.data.repeats(fit.effects):
-        return replace(fit, model=model)
-    return with_extra_nuisances(minimise(model, model.evaluate(fit.point)))
+    fit = replace(fit, model=model)
+    if not model.data.repeats(fit.effects):
+        fit = minimise(model, model.evaluate(fit.point))
+    return from_other_nuisances(fit)
 
 
 def single_fits(search: Search, base: Fit) -> SingleFits:
@@ -260,7 +261,7 @@ def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation
     best = [each for each in sorted(found, key=penalised)[:REFITTED] if each.fit.p < POSSIBLE]
 
     def refitted(each: Explanation) -> Explanation:
-        return search.explanation(refit_without_influential_tests(with_extra_nuisances(each.fit)))
+        return search.explanation(refit_without_influential_tests(from_other_nuisances(each.fit)))
 
     return best_of_each([*search.each(refitted, best), *found], penalised)
 

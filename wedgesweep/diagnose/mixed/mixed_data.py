@@ -282,13 +282,18 @@ class MixedData(FitData):
     def brings_nuisances(self, effect: str) -> bool:
         return any(part.brings_nuisances(effect) for part in self.present)
 
-    def extra_nuisance_points(self, effects: Iterable[str], point: Point) -> list[Point]:
-        effects, own = tuple(effects), self.points(point)
-        found = []
-        for i, part in enumerate(self.parts):
-            for its in part.extra_nuisance_points(effects, own[i]) if part is not None else ():
-                found.append(self._whole([*own[:i], its, *own[i + 1 :]]))
-        return found
+    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+        points = self.points(evaluation.point)
+        own = self._each(
+            lambda part, its: part.other_nuisances(model.on(part), its), self.evaluations(evaluation)
+        )
+        if all(each is None for each in own):
+            return None
+        moved = [
+            point if nuisance is None else replace(point, nuisance=nuisance)
+            for point, nuisance in zip(points, own, strict=True)
+        ]
+        return self._whole(moved).nuisance
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return self._with(self._each(lambda part, its: part.aligned_to(its), self.evaluations(evaluation)))

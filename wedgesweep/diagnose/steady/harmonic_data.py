@@ -241,10 +241,11 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def brings_nuisances(self, effect: str) -> bool:
         return effect == TONE
 
-    def extra_nuisance_points(self, effects: Iterable[str], point: Point) -> list[Point]:
+    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+        effects, point = model.effects, evaluation.point
         if not self.has_tone(effects) or len(self.nuisances(effects, point)) > 1:
-            return []
-        return tone_phase.points(point, self.extra_nuisances(effects))
+            return None
+        return model.best_nuisances(tone_phase.points(point, self.extra_nuisances(effects)))
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return replace(self, input_phase=evaluation.response.phase)

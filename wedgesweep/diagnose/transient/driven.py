@@ -21,8 +21,8 @@ KEPT, ORDER = 1.4, 8
 HIGHEST, SAMPLED = 0.4, 8.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.0
-# Largest share of the input at any frequency that counts as its noise: where all that moves the base looks
-# like noise, most of it is not.
+# Largest rms of the input's noise over that of the input: where all that moves the base looks like noise, most
+# of it is not.
 MOST_NOISE = 0.05
 # Bins over which spectra of input and response are averaged, as a share of all.
 AVERAGED = 0.01
@@ -93,7 +93,8 @@ class Driven:
     def noise_power(self) -> np.ndarray:
         """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
         given = _power(self.samples)
-        return np.minimum(self.noise(np.linspace(0.0, pi, given.size)), MOST_NOISE**2 * given)
+        noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
+        return noise * min(MOST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
 
     def input_noise(self, shares: tuple[float, ...]) -> InputNoise:
         """The noise as it acts; ``shares`` (C,): of the base's displacement in each channel."""

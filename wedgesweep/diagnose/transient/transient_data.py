@@ -6,7 +6,7 @@ zero of the displacement is unknown in each.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
@@ -25,6 +25,7 @@ from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
+from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.natural_units import NaturalUnits
@@ -244,6 +245,14 @@ class TransientData(SampledData):
             best.append(replace(evaluations[0].point, nuisance=nuisance[chosen, np.arange(chosen.size)]))
         return model.evaluate_all(best)
 
+    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+        found = evaluation.point.nuisance.copy()
+        for test in standing_out(evaluation.chi2_by_test, self.dof):
+            rows = np.array([test])
+            misfit = partial(_misfits, model.on(self.subset(rows)), evaluation.point.subset(rows))
+            found[test, : len(START)] = best_start(misfit, found[test, : len(START)])
+        return None if np.array_equal(found, evaluation.point.nuisance) else found
+
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """Each record, or where there is only one blocks of windows that follow one another."""
         numbers = np.array([own.number for own in self.releases])
@@ -251,3 +260,9 @@ class TransientData(SampledData):
             return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
         blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))
         return [("block", rows) for rows in blocks]
+
+
+def _misfits(model: Evaluator, point: Point, starts: np.ndarray) -> np.ndarray:
+    """Squared misfits (n,) of one test from starts (n, 2); inf where there is no response."""
+    moved = [replace(point, nuisance=np.r_[each, point.nuisance[0, len(START) :]][None]) for each in starts]
+    return np.array([each.chi2 if each.found else np.inf for each in model.evaluate_all(moved)])
