@@ -8,7 +8,7 @@ import pytest
 
 from tests.diagnose.synthetic import MODEL, base_of
 from wedgesweep import config
-from wedgesweep.diagnose.least_squares import minimise, from_other_nuisances
+from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
 from wedgesweep.diagnose.score_test import scores
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation

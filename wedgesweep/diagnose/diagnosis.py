@@ -9,7 +9,7 @@ from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.ladder import Level, ladder
-from wedgesweep.diagnose.least_squares import tight_refit, from_other_nuisances
+from wedgesweep.diagnose.least_squares import from_other_nuisances, tight_refit
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.mixed.mixed_data import MixedData

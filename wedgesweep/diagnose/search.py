@@ -17,7 +17,7 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.least_squares import minimise, from_other_nuisances
+from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests

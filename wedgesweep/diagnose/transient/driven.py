@@ -21,8 +21,8 @@ KEPT, ORDER = 1.4, 8
 HIGHEST, SAMPLED = 0.4, 8.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.0
-# Largest rms of the input's noise over that of the input: where all that moves the base looks like noise, most
-# of it is not.
+# Largest rms of the input's noise over that of the input: where all that moves the base looks like noise,
+# most of it is not.
 MOST_NOISE = 0.05
 # Bins over which spectra of input and response are averaged, as a share of all.
 AVERAGED = 0.01

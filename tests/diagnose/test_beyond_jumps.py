@@ -1,0 +1,60 @@
+"""Fits of transients whose response jumps: a mass that just stops at a turn, or just does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.test_transients import OSCILLATOR, write
+from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
+from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
+from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.measured import read
+
+STOPS = OSCILLATOR.replace("static = 0.3", "static = 0.36").replace('"coulomb"', '"static-dynamic"')
+STOPS = STOPS.replace("damping_N_s_per_m = 1.0\n", "")
+# From 0.03 mm less the second release stops one turn earlier.
+STARTS = ((0.0102, 0.0), (4.203e-3, 0.02), (-0.0091, 0.02))
+LOWER = np.array([[0.0, 0.0], [-0.05e-3, 0.0], [0.0, 0.0]])
+
+
+def test_a_fit_gets_over_a_stop(tmp_path):
+    data = transient_data(read(write(tmp_path, STOPS, starts=STARTS)))
+    model = Search.of(data, []).model()
+    true = replace(model.start(None, np.zeros(0)), nuisance=np.array(STARTS) / data._scale)
+    right = minimise(model, model.evaluate(true))
+    assert right.p > 1e-3
+    wrong = replace(right.point, nuisance=right.point.nuisance + LOWER / data._scale)
+    stuck = minimise(model, model.evaluate(wrong))
+    assert stuck.chi2 > 10.0 * right.chi2
+    assert from_other_nuisances(stuck).chi2 == pytest.approx(right.chi2, abs=1.0)
+    assert from_other_nuisances(right) is right
+
+
+def test_a_minimum_along_a_cliff_is_found():
+    # A valley along the cliff x = y, whose bottom is far along it.
+    def misfit(starts):
+        x, y = (starts - [0.3, 0.1]).T / 1e-3
+        return np.where(x + 1e-9 >= y, (x + y) ** 2 + 50.0 * (x - y) ** 2, 1e4)
+
+    start = np.array([0.3 + 4e-3, 0.1 + 4e-3])
+    assert best_start(misfit, start) == pytest.approx([0.3, 0.1], abs=2e-4)
+
+
+def test_a_start_without_response_is_left():
+    def misfit(starts):
+        return np.where(starts[:, 0] > 0.0, 1.0 + 1e4 * starts[:, 0], np.inf)
+
+    assert best_start(misfit, np.array([1e-3, 0.0]))[0] == pytest.approx(0.0, abs=1e-4)
+
+
+def test_tests_stand_out_over_the_others():
+    dof = np.full(9, 200)
+    assert standing_out(np.full(9, 200.0), dof).size == 0
+    # All are wrong alike: this is not a jump.
+    assert standing_out(np.full(9, 2e6), dof).size == 0
+    chi2 = np.array([200.0, 190.0, 400.0, 210.0, 9e4, 220.0, 200.0, 180.0, 205.0])
+    assert standing_out(chi2, dof).tolist() == [4, 2]
+    # At most a third of the tests.
+    assert len(standing_out(np.array([200.0, 400.0, 210.0]), dof[:3])) == 1
