@@ -175,6 +175,21 @@ def test_a_motion_that_does_not_decay_is_refused(tmp_path):
         read(path)
 
 
+def test_a_motion_that_hardly_decays_is_a_free_motion(tmp_path):
+    path = write(tmp_path)
+    t = np.arange(5000) / 100.0
+    for decay, refused in ((0.003, False), (0.0, True), (-0.003, True)):
+        x = 10.0 * np.exp(-decay * t) * np.cos(10.0 * t) + 0.01 * np.random.default_rng(1).standard_normal(
+            t.size
+        )
+        np.savetxt(tmp_path / "drop1.csv", np.column_stack([t, x]), "%.8g", ",", header="t,x", comments="")
+        if refused:
+            with pytest.raises(MeasuredError, match=r"drop1\.csv: the motion does not decay"):
+                read(path)
+        else:
+            read(path)
+
+
 def test_a_ring_down_that_is_taken_for_steady_is_told_what_it_is(tmp_path):
     path = write(tmp_path)
     path.write_text(path.read_text().replace('kind = "transient"', "frequency_hz = 2.5"))

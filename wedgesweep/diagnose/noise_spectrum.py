@@ -39,7 +39,7 @@ class NoiseSpectrum:
     """Power of the noise by frequency: ``red`` a, ``pole`` r, ``white`` b, in squared units of a sample.
 
     ``highest``: the highest frequency (rad a sample) at which the motion stands out. ``source``: what the
-    estimate is taken from.
+    estimate is taken from. ``likewise``: noises that fit about as well; at each frequency the largest counts.
     """
 
     red: float
@@ -47,10 +47,12 @@ class NoiseSpectrum:
     white: float
     highest: float = pi
     source: str = FROM_SPECTRUM
+    likewise: tuple["NoiseSpectrum", ...] = ()
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
         """Variance of an orthonormal Fourier or cosine coefficient at frequencies in rad a sample."""
-        return self.red * _shape(self.pole, frequency) + self.white
+        own = self.red * _shape(self.pole, frequency) + self.white
+        return np.maximum.reduce([own, *(each(frequency) for each in self.likewise)])
 
     def up_to(self, highest: float) -> "NoiseSpectrum":
         """The same noise in a record whose motion stands out up to a frequency (rad a sample)."""
@@ -124,16 +126,18 @@ class Choice(NamedTuple):
 
     Of all poles within a ``loss`` of log-likelihood it is the one with most noise, with levels raised by what
     they are uncertain, or with the ``least``. It is white noise, unless colour gains more than ``coloured``.
+    ``everywhere``: the others count at frequencies where they have more noise.
     """
 
     loss: float
     least: bool = False
     coloured: float = COLOURED
+    everywhere: bool = False
 
 
 # The best fit, one that errs to the safe side, and both ends of a 95 % interval of the pole.
 BEST, LIKELY = Choice(0.0), Choice(0.5)
-LEAST, MOST = Choice(2.0, least=True), Choice(2.0)
+LEAST, MOST = Choice(2.0, least=True), Choice(2.0, everywhere=True)
 
 
 def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[NoiseSpectrum]:
@@ -145,24 +149,24 @@ def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[Noi
     mean = (bands.bins * bands.power) @ member / bins
     bands = bands._replace(known=bands.known + member @ (1e-12 * mean + 1e-300))
     found = _fitted(bands, member, np.array([_at_first(each) for each in own]))
-    best = _chosen(found, choice)
-    uncertain = ONE_END * np.sqrt(CORRELATED / bins)
-    level = found.level[best] * (1.0 if choice.loss == 0.0 or choice.least else 1.0 + uncertain)
-    red, white, pole = found.red[best], found.white[best], float(POLES[best])
-    if best == 0:
-        red, white = 0.0, red + white
-    return [NoiseSpectrum(float(each * red), pole, float(each * white)) for each in level]
+    raised = 0.0 if choice.loss == 0.0 or choice.least else ONE_END * np.sqrt(CORRELATED / bins)
+    best, *others = (
+        [found.spectrum(place, level) for level in found.level[place] * (1.0 + raised)]
+        for place in _chosen(found, choice)
+    )
+    return [replace(each, likewise=tuple(like)) for each, *like in zip(best, *others, strict=True)]
 
 
-def _chosen(found: "_Fitted", choice: Choice) -> int:
-    """The place of a pole; that of white noise, which comes first, unless colour is seen."""
+def _chosen(found: "_Fitted", choice: Choice) -> list[int]:
+    """Places of poles, the one that is taken first; that of white noise unless colour is seen."""
     loss = found.loss - found.loss.min()
     if loss[0] <= choice.coloured:
-        return 0
+        return [0]
     elsewhere = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
     elsewhere = elsewhere * found.level[:, 0]
     good = np.flatnonzero(loss <= choice.loss)
-    return int(good[np.argmin(elsewhere[good]) if choice.least else np.argmax(elsewhere[good])])
+    good = good[np.argsort(elsewhere[good] if choice.least else -elsewhere[good])]
+    return [int(place) for place in (good if choice.everywhere else good[:1])]
 
 
 def _shape(pole: float | np.ndarray, frequency: np.ndarray) -> np.ndarray:
@@ -205,6 +209,13 @@ class _Fitted(NamedTuple):
     white: np.ndarray
     level: np.ndarray
     loss: np.ndarray
+
+    def spectrum(self, place: int, level: float) -> NoiseSpectrum:
+        """The noise with one of the poles, at some level."""
+        red, white = self.red[place], self.white[place]
+        if place == 0:
+            red, white = 0.0, red + white
+        return NoiseSpectrum(float(level * red), float(POLES[place]), float(level * white))
 
 
 def _fitted(bands: _Bands, member: np.ndarray, level: np.ndarray) -> _Fitted:

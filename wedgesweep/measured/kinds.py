@@ -10,8 +10,10 @@ from wedgesweep.measured.measurement import TestRecord
 
 # The motion of a loop must come back by this share of its range, or friction cannot be told from a spring.
 RETURNS = 0.1
-# Least swing in the first part of a free motion over that in the last one, and both parts (shares).
-DECAYS, FIRST, LAST = 1.2, 0.25, 0.25
+# Least swing in the first part of a free motion over that in the last one, and that part (share).
+DECAYS, PART = 1.2, 0.25
+# The same where the swing falls from each of so many parts to the next: noise and steady motions never do so.
+DECAYS_SLOWLY, PARTS = 1.02, 8
 # Highest cut-off over the sampling rate: the motion of a loop is filtered at twice that.
 HIGHEST = 0.2
 # Fewest samples over which a filter settles.
@@ -80,14 +82,18 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a transient"]
     if test.input is not None:
         return []
-    first, last = (
-        float(np.ptp(part))
-        for part in (signal[: int(FIRST * signal.size)], signal[-int(LAST * signal.size) :])
-    )
-    if first < DECAYS * last:
-        size, unit = SHOWN[name]
-        told = f"it swings by {first / size:.3g} {unit}, at last {last / size:.3g} {unit}"
+    size = int(PART * signal.size)
+    first, last = float(np.ptp(signal[:size])), float(np.ptp(signal[-size:]))
+    if first < DECAYS * last and not _decays_slowly(signal):
+        scale, unit = SHOWN[name]
+        told = f"it swings by {first / scale:.3g} {unit}, at last {last / scale:.3g} {unit}"
         told = f"the motion does not decay ({told})"
         better = f'add the column input if there is one; if it is steady write kind = "steady" ({at}.kind)'
         return [f"{file}: {told}; {better}"]
     return []
+
+
+def _decays_slowly(signal: np.ndarray) -> bool:
+    """Whether a free motion (n,) that is hardly damped swings less and less."""
+    swing = np.array([np.ptp(part) for part in np.array_split(signal, PARTS)])
+    return bool((np.diff(swing) < 0.0).all() and swing[0] > DECAYS_SLOWLY * swing[-1])
