@@ -16,7 +16,7 @@ import numpy as np
 from wedgesweep import config
 from wedgesweep.config import Case
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.reproduce.single_case import changed
+from wedgesweep.reproduce.runs import changed
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases

@@ -14,8 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from wedgesweep import config
-from wedgesweep.reproduce import joints
-from wedgesweep.reproduce.single_case import changed
+from wedgesweep.reproduce.runs import UNILATERAL, changed
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
@@ -93,7 +92,7 @@ def main() -> None:
     """Print what each case does, and how many do so."""
     study = config.load(PAPER)
     without_period("bilateral", changed(study, {"solver": {"method": "event-driven"}}))
-    cases = without_period("unilateral", changed(study, joints.UNILATERAL))
+    cases = without_period("unilateral", changed(study, UNILATERAL))
     kinds: dict[str, int] = {}
     for i in range(len(cases)):
         period, exponent = followed(cases[i : i + 1])

@@ -5,7 +5,7 @@ from math import pi
 import xarray as xr
 
 from tests import fixture_dataset
-from wedgesweep.reproduce import integration, joints, sticking, suspension
+from wedgesweep.reproduce import integration, sticking, suspension
 from wedgesweep.reproduce.findings import VERDICTS
 from wedgesweep.reproduce.runs import Run, Runs
 
@@ -32,16 +32,26 @@ CHECK = {
     "required": ["statement", "here", "criterion", "holds"],
     "additionalProperties": False,
 }
+FINDING = {
+    "here": {"type": "string", "minLength": 1},
+    **{name: {"enum": list(VERDICTS)} for name in ("verdict", "recorded")},
+    "checks": {"type": "array", "items": CHECK, "minItems": 1},
+    "numbers": {"type": "object", "additionalProperties": NUMBER},
+}
 CLAIM = {
     "type": "object",
     "properties": {
         "number": {"type": "integer"},
-        **{name: {"type": "string", "minLength": 1} for name in ("claim", "paper", "here", "reason")},
-        **{name: {"enum": list(VERDICTS)} for name in ("verdict", "recorded")},
-        "checks": {"type": "array", "items": CHECK, "minItems": 1},
-        "numbers": {"type": "object", "additionalProperties": NUMBER},
+        **{name: {"type": "string", "minLength": 1} for name in ("claim", "paper", "reason")},
+        **FINDING,
+        "unilateral": {
+            "type": "object",
+            "properties": FINDING,
+            "required": list(FINDING),
+            "additionalProperties": False,
+        },
     },
-    "required": ["number", "claim", "paper", "here", "verdict", "recorded", "reason", "checks"],
+    "required": ["number", "claim", "paper", "reason", *FINDING],
     "additionalProperties": False,
 }
 SCHEMA = {
@@ -54,7 +64,7 @@ SCHEMA = {
         "laws": {"type": "array", "minItems": 12},
         "cases": {"type": "array", "minItems": 9},
         "failed": {"type": "array", "items": {"type": "string"}},
-        "runs": {"type": "object", "required": ["paper", "paper-y0", "breakaway"]},
+        "runs": {"type": "object", "required": ["paper", "paper-y0", "breakaway", "paper-unilateral"]},
     },
     "required": ["agrees", "verdicts", "claims", "published", "laws", "cases", "failed", "runs"],
     "additionalProperties": False,
@@ -70,23 +80,22 @@ def run_of(betas, amplitudes, **attributes):
     return Run(ds)
 
 
-def _opens(run):
+def _unilateral(run):
     """Joints that lift off at the largest input, without solving anything."""
-    ds = run.ds[[name for name in joints.KEPT if name in run.ds]]
+    ds = run.ds.copy(deep=True)
     numbers = {name: xr.zeros_like(ds["amplitude_ratio"]) for name in ("impacts", "impact_energy")}
-    return ds.assign(
-        lift_off_fraction=0.5 * (ds["amplitude_ratio"] * 0.0 + ds["amplitude"] > 1e-3), **numbers
-    )
+    opens = 0.5 * (ds["amplitude_ratio"] * 0.0 + ds["amplitude"] > 1e-3)
+    return Run(ds.assign(lift_off_fraction=opens, **numbers))
 
 
 def build(monkeypatch):
-    """Three runs, and single cases that are not solved either."""
+    """The runs, and single cases that are not solved either."""
 
     def not_solved(*arguments):
         return {"amplitude_ratio": 1.0, "stick_fraction": 0.5}
 
     for module in (suspension, sticking, integration):
         monkeypatch.setattr(module, "single", not_solved)
-    monkeypatch.setattr(joints, "opened", _opens)
     small = [2.0 * pi * hertz / fixture_dataset.OMEGA_N for hertz in HERTZ]
-    return Runs(run_of(BETAS, AMPLITUDES), run_of(BETAS, AMPLITUDES), run_of(small, SMALL_AMPLITUDES))
+    paper = run_of(BETAS, AMPLITUDES)
+    return Runs(paper, run_of(BETAS, AMPLITUDES), run_of(small, SMALL_AMPLITUDES), _unilateral(paper))

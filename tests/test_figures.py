@@ -270,6 +270,16 @@ def test_each_law_is_drawn_with_its_own_numbers(dataset):
     assert told == ["ramp up to $v_t$ = 0.001 mm/s", "ramp up to $v_t$ = 1 mm/s"]
 
 
+@pytest.mark.parametrize("held", ["", "[effects.bolster_stiffness]\nscale = 1.1\n"])
+def test_small_motions_do_not_depend_on_whether_joints_may_open(tmp_path, held):
+    grid = '[sweep]\nfriction_law = "coulomb"\nbeta = [1.0, 2.0]\namplitude_mm = 1.0\n'
+    unilateral = '[suspension]\njoints = "unilateral"\nrestitution = 0.3\n[solver]\nmethod = "event-driven"\n'
+    sweeps = [Sweep(config.parse(grid + held + joints), tmp_path / "study.nc") for joints in ("", unilateral)]
+    bilateral, opens = (sweep._physics() for sweep in sweeps)
+    assert opens == bilateral
+    assert np.isfinite(list(opens.values())).all()
+
+
 def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_their_own(tmp_path, dataset):
     (tmp_path / "crossing.toml").write_text(CROSSING)
     physics = Sweep(config.load(tmp_path / "crossing.toml"), tmp_path / "crossing.nc")._physics()

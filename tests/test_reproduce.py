@@ -181,7 +181,7 @@ def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):
         settle_periods = 60
         """
     ds = running.Sweep(running.config.parse(small), tmp_path / "20.nc").run(n_jobs=1)
-    found = BY_NUMBER[13].find(Runs(Run(ds), Run(ds), Run(ds)))
+    found = BY_NUMBER[13].find(Runs(*[Run(ds)] * 4))
     assert found.verdict == HOLDS
     assert found.numbers["longest"] == pytest.approx(0.5827 / 2, abs=0.003)
     assert found.numbers["shortest"] == pytest.approx(0.1470 / 2, abs=0.003)

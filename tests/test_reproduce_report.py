@@ -40,7 +40,9 @@ def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduction, "FIGURES", {})
     told = []
     found = {each.claim.number: each.verdict for each in claims.check(runs)}
+    lifting = {each.claim.number: each.unilateral.verdict for each in claims.check(runs) if each.unilateral}
     monkeypatch.setattr(claims, "RECORDED", found)
+    monkeypatch.setattr(claims, "RECORDED_UNILATERAL", lifting)
     assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is True
     told.clear()
     monkeypatch.setattr(claims, "RECORDED", found | {2: HOLDS})
@@ -48,6 +50,11 @@ def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
     assert "on record: holds" in told[1]
     text = (tmp_path / "reproduction.md").read_text()
     assert "**Claim 2 is recorded as holds, these runs say contradicted.**" in text
+    monkeypatch.setattr(claims, "RECORDED", found)
+    monkeypatch.setattr(claims, "RECORDED_UNILATERAL", lifting | {3: HOLDS})
+    assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is False
+    text = (tmp_path / "reproduction.md").read_text()
+    assert "**Claim 3 with unilateral joints is recorded as holds, these runs say contradicted.**" in text
 
 
 def test_the_report_has_every_claim_and_the_figures(directory):
@@ -97,10 +104,11 @@ def obtain(tmp_path, configs):
 
 def test_finished_runs_are_kept_and_others_made_again(tmp_path, configs):
     first, told = obtain(tmp_path, configs)
-    assert ["tiny" in line for line in told] == [True] * 3
+    assert ["tiny" in line for line in told] == [True] * 4
     again, told = obtain(tmp_path, configs)
-    assert ["kept" in line for line in told] == [True] * 3
+    assert ["kept" in line for line in told] == [True] * 4
     assert again.scaled.ds["amplitude_ratio"].equals(first.scaled.ds["amplitude_ratio"])
+    assert [run.config.opens for run in (first.paper, first.unilateral)] == [False, True]
     (configs / "breakaway.toml").write_text(TINY.replace("0.5", "0.6"))
     changed, told = obtain(tmp_path, configs)
     assert ["kept" in line for line in told[:2]] == [True] * 2

@@ -55,6 +55,16 @@ class Config:
         unilateral = self.document.get("suspension", {}).get("joints") == suspension.UNILATERAL
         return unilateral or lift_off.NAME in self.document["effects"]
 
+    @cached_property
+    def closed(self) -> "Config":
+        """The config with joints that hold, as they all do in small motions."""
+        if not self.opens:
+            return self
+        bilateral = self.document["suspension"] | {"joints": suspension.BILATERAL}
+        bilateral.pop(suspension.RESTITUTION.key, None)
+        effects = {name: each for name, each in self.document["effects"].items() if name != lift_off.NAME}
+        return Config(self.document | {"suspension": bilateral, "effects": effects})
+
     def natural_units(self, travel: float | None = None, omega: float | None = None) -> NaturalUnits:
         """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""
         if self.system == OSCILLATOR:

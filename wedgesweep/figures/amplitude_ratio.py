@@ -56,11 +56,14 @@ def _limits(beta: np.ndarray) -> tuple[float, float]:
 
 
 def _draw_reference(ax: Axes, ds: xr.Dataset) -> None:
+    from wedgesweep import config
+
     beta = np.linspace(0.0, float(ds["beta"].max()), 2000)
     ratio = frictionless_ratio(ds, beta)
     if np.isnan(ratio).all():
         return
-    ax.plot(beta, ratio, color="black", linestyle="--", linewidth=1, label="no friction", zorder=3)
+    label = "no friction, joints held" if config.parse(ds.attrs["config"]).opens else "no friction"
+    ax.plot(beta, ratio, color="black", linestyle="--", linewidth=1, label=label, zorder=3)
 
 
 def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm, factor: float) -> bool:

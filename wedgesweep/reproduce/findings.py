@@ -66,7 +66,8 @@ class Claim:
     """A claim of the paper and the function that checks it.
 
     ``statement`` and ``paper`` are the paper's claim and number in short; ``here`` and ``reason`` are
-    templates for the numbers of the finding.
+    templates for the numbers of the finding. ``large``: whether it is on inputs so large that joints pull, so
+    that it is checked with joints that lift off as well.
     """
 
     number: int
@@ -75,10 +76,11 @@ class Claim:
     here: str
     reason: str
     find: Callable[[Runs], Finding]
+    large: bool = False
 
 
 def claim(
-    number: int, statement: str, *, paper: str, here: str, reason: str
+    number: int, statement: str, *, paper: str, here: str, reason: str, large: bool = False
 ) -> Callable[[Callable[[Runs], Finding]], Claim]:
     """Turn the decorated function, which checks it, into a claim."""
-    return lambda find: Claim(number, statement, paper, here, reason, find)
+    return lambda find: Claim(number, statement, paper, here, reason, find, large)

@@ -1,30 +1,11 @@
-"""The paper's cases with joints that lift off, where its own joints pull."""
+"""What joints that lift off change in the paper's cases, where its own joints pull."""
 
-from math import inf
-
-import numpy as np
 import xarray as xr
 
-from wedgesweep.reproduce.runs import MM, Run
-from wedgesweep.reproduce.single_case import changed
-from wedgesweep.sweep import variables
-from wedgesweep.sweep.cases import solve_cases
+from wedgesweep.reproduce.runs import MM
 
 # As in claim 15: inputs and frequencies far above those at which nothing opens.
 LARGE_MM, LARGE_BETA, ROUNDING = 1.0, 1.0, 1e-6
-UNILATERAL = {"suspension": {"joints": "unilateral"}, "solver": {"method": "event-driven"}}
-KEPT = ("amplitude_ratio", "lift_off_fraction", "impacts", "impact_energy", "dissipated_energy")
-
-
-def opened(run: Run) -> xr.Dataset:
-    """The run's cases with unilateral joints: some variables; NaN where a case failed."""
-    config = changed(run.config, UNILATERAL)
-    dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
-    cases = config.records()
-    found = solve_cases(cases, np.arange(len(cases)), config.solver, inf, dtype)
-    shape, coordinates = config.case_coordinates()
-    numbers = {name: (variables.GRID, found[name].reshape(shape)) for name in KEPT}
-    return xr.Dataset(numbers, coordinates)
 
 
 def large(ds: xr.Dataset) -> xr.DataArray:

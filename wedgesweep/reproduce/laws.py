@@ -29,6 +29,7 @@ def _close_to_breakaway(runs: Runs) -> dict[str, float]:
     "0.05 mm the ratio is {coulomb:.3f} (coulomb), {static_dynamic:.3f} (static-dynamic) and "
     "{exponential:.3f} (exponential): set-valued friction sticks where the regularised laws creep. Below "
     "breakaway coulomb does not move at all. The table of the laws below covers all cases.",
+    large=True,
 )
 def same_trend(runs: Runs) -> Finding:
     """Compare the ratios of the three laws near breakaway and far above it."""
@@ -87,6 +88,7 @@ def lowest_frequency(runs: Runs) -> Finding:
     reason="Below breakaway both creep alike. Above it the exponential coefficient decreases with velocity"
     " and damps less: the ratios are {static_dynamic:.3f} and {exponential:.3f} at 20 Hz, 0.05 mm, and "
     "differ most at beta = {beta:g}, {input:g} mm. {share:.0%} of all cases differ by less than 10 %.",
+    large=True,
 )
 def regularised_alike(runs: Runs) -> Finding:
     """Compare the two regularised laws over all cases."""

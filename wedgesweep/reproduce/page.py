@@ -63,9 +63,10 @@ def _predicate(verdict: str, count: int) -> str:
 
 def _mismatches(claims: Rows) -> Iterator[str]:
     for claim in claims:
-        if claim["verdict"] != claim["recorded"]:
-            recorded = f"is recorded as {claim['recorded']}, these runs say {claim['verdict']}"
-            yield f"**Claim {claim['number']} {recorded}.**"
+        for joints, found in (("", claim), (" with unilateral joints", claim.get("unilateral"))):
+            if found and found["verdict"] != found["recorded"]:
+                recorded = f"is recorded as {found['recorded']}, these runs say {found['verdict']}"
+                yield f"**Claim {claim['number']}{joints} {recorded}.**"
 
 
 def _claims(claims: Rows) -> str:
@@ -77,7 +78,12 @@ def _claims(claims: Rows) -> str:
 
 def _reason(claim: dict[str, Any]) -> str:
     title = f"### {claim['number']}. {claim['claim']}: {claim['verdict']}"
-    return "\n".join([title, "", claim["reason"], "", *map(_check, claim["checks"])])
+    lines = [title, "", claim["reason"], "", *map(_check, claim["checks"])]
+    if "unilateral" in claim:
+        found = claim["unilateral"]
+        told = f"With joints that lift off the claim {_predicate(found['verdict'], 1)}: {found['here']}."
+        lines += ["", told, "", *map(_check, found["checks"])]
+    return "\n".join(lines)
 
 
 def _check(check: dict[str, Any]) -> str:

@@ -50,14 +50,22 @@ def document(runs: Runs, claims: Sequence[CheckedClaim], published: Sequence[Che
 
 
 def _claim(checked: CheckedClaim) -> dict[str, Any]:
+    unilateral = checked.unilateral
     return {
         "number": checked.claim.number,
         "claim": checked.claim.statement,
         "paper": checked.claim.paper,
+        **_finding(checked),
+        "reason": checked.reason,
+        **({} if unilateral is None else {"unilateral": _finding(unilateral)}),
+    }
+
+
+def _finding(checked: CheckedClaim) -> dict[str, Any]:
+    return {
         "here": checked.here,
         "verdict": checked.verdict,
         "recorded": checked.recorded,
-        "reason": checked.reason,
         "checks": [vars(check) for check in checked.finding.checks],
         "numbers": checked.finding.numbers,
     }

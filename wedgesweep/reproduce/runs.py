@@ -1,25 +1,41 @@
-"""The three sweeps on which the claims are checked."""
+"""The sweeps on which the claims are checked."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from wedgesweep import config
-from wedgesweep.config import Config
+from wedgesweep.config import Config, from_document
 from wedgesweep.errors import ConfigError, MismatchError, SweepError
 from wedgesweep.sweep.run import Progress, Sweep
 
 CONFIG_NAMES = ("paper", "paper-y0", "breakaway")
+# The paper's cases with joints that lift off.
+UNILATERAL_NAME = "paper-unilateral"
+UNILATERAL = {"suspension": {"joints": "unilateral"}, "solver": {"method": "event-driven"}}
 LAWS = ("coulomb", "static-dynamic", "exponential")
 MM = 1e3
 COMMAND = "wedgesweep reproduce"
 # Relative difference up to which a frequency or an amplitude is the one that is looked for.
 SAME = 1e-5
+
+
+# Changes of a config: keys and values by table.
+Changes = Mapping[str, Mapping[str, Any]]
+
+
+def changed(config: Config, changes: Changes) -> Config:
+    """The config with some keys changed; settling periods replace a duration."""
+    document = {**config.document, **{name: config.document[name] | changes[name] for name in changes}}
+    if "settle_periods" in changes.get("solver", {}):
+        document["solver"] = {key: value for key, value in document["solver"].items() if key != "duration_s"}
+    return from_document(document)
 
 
 def identifier(law: str) -> str:
@@ -98,15 +114,25 @@ def _place(coordinate: xr.DataArray, wanted: float) -> int:
 
 @dataclass(frozen=True)
 class Runs:
-    """Table 1 as printed, with springs scaled to the paper's y_0, and over the range of the experiment."""
+    """Table 1 as printed, with springs scaled to the paper's y_0, and over the range of the experiment.
+
+    ``unilateral``: Table 1 as printed with joints that lift off.
+    """
 
     paper: Run
     scaled: Run
     breakaway: Run
+    unilateral: Run
 
     @property
     def named(self) -> dict[str, Run]:
-        return dict(zip(CONFIG_NAMES, (self.paper, self.scaled, self.breakaway), strict=True))
+        every = (self.paper, self.scaled, self.breakaway, self.unilateral)
+        return dict(zip((*CONFIG_NAMES, UNILATERAL_NAME), every, strict=True))
+
+    @property
+    def with_unilateral_joints(self) -> "Runs":
+        """The runs with joints that lift off in place of the paper's."""
+        return replace(self, paper=self.unilateral)
 
 
 def obtain(
@@ -117,10 +143,9 @@ def obtain(
         message = f"{configs}: no such folder; reproduce needs the configs of a wedgesweep checkout"
         raise ConfigError([message])
     directory.mkdir(parents=True, exist_ok=True)
-    sweeps = [
-        Sweep(config.load(configs / f"{name}.toml"), directory / f"{name}.nc", COMMAND)
-        for name in CONFIG_NAMES
-    ]
+    studies = {name: config.load(configs / f"{name}.toml") for name in CONFIG_NAMES}
+    studies[UNILATERAL_NAME] = changed(studies["paper"], UNILATERAL)
+    sweeps = [Sweep(study, directory / f"{name}.nc", COMMAND) for name, study in studies.items()]
     return Runs(*(_obtain(sweep, n_jobs, report, progress) for sweep in sweeps))
 
 

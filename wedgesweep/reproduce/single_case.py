@@ -1,28 +1,15 @@
 """Single cases that no sweep holds: settled for longer, or with a changed config."""
 
-from collections.abc import Mapping
 from math import nan
-from typing import Any
 
 import numpy as np
 
 from wedgesweep import simulate
-from wedgesweep.config import Case, Config, from_document
-from wedgesweep.reproduce.runs import MM, Run
+from wedgesweep.config import Case, Config
+from wedgesweep.reproduce.runs import MM, Changes, Run, changed
 from wedgesweep.response import NUMBERS
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.variables import HARMONICS
-
-# Changes of a config: keys and values by table.
-Changes = Mapping[str, Mapping[str, Any]]
-
-
-def changed(config: Config, changes: Changes) -> Config:
-    """The config with some keys changed; settling periods replace a duration."""
-    document = {**config.document, **{name: config.document[name] | changes[name] for name in changes}}
-    if "settle_periods" in changes.get("solver", {}):
-        document["solver"] = {key: value for key, value in document["solver"].items() if key != "duration_s"}
-    return from_document(document)
 
 
 def mirrored_columns(config: Config) -> dict[str, dict[str, float]]:

@@ -3,8 +3,8 @@
 from math import pi
 
 from wedgesweep.reproduce.findings import Finding, claim, near
-from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, identifier
-from wedgesweep.reproduce.single_case import changed, mirrored_columns, record, single
+from wedgesweep.reproduce.runs import LAWS, MM, Run, Runs, changed, identifier
+from wedgesweep.reproduce.single_case import mirrored_columns, record, single
 from wedgesweep.systems.suspension.equilibrium import resonance as frictionless_resonance
 from wedgesweep.systems.suspension.parameters import driven_mass, moving_mass
 
@@ -77,6 +77,7 @@ def _spring_scale(runs: Runs) -> float:
     "give the paper's y_0, the resonance is {scaled:.3f} omega_n, {scaled_hertz:.1f} Hz, and the ratio is "
     "largest at beta = {scaled_coulomb:g}, {scaled_static_dynamic:g} and {scaled_exponential:g}. The "
     "paper's y_0 and its resonance agree with each other, and both contradict its Table 1.",
+    large=True,
 )
 def resonance(runs: Runs) -> Finding:
     """Compare the frictionless resonance and the frequencies of the largest ratios."""
@@ -113,6 +114,7 @@ def _peaks(run: Run) -> dict[str, float]:
     "friction and 1 mm it is {at_20:.2f} and {at_end:.2f} after {periods} periods. The springs that give "
     "the paper's y_0 yield {scaled_at_20:.2f} and {scaled_at_end:.2f} without friction, which is closer to"
     " the paper.",
+    large=True,
 )
 def unit_ratio(runs: Runs) -> Finding:
     """Compare the ratio with 1 at 20 Hz, at the end of the range and far above."""

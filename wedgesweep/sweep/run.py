@@ -91,11 +91,6 @@ class Sweep:
         return dataset.journal_of(self.out)
 
     @property
-    def extended(self) -> bool:
-        """Whether effects of the config need the extended mechanics."""
-        return bool(has_own_mechanics(self.config.records_of_laws).any())
-
-    @property
     def kit(self) -> int:
         """The largest kit of parts that the cases need."""
         own = int(kits(self.config.records_of_laws).max(initial=0))
@@ -288,9 +283,10 @@ class Sweep:
                 **labels.attributes(self.config),
             }
         numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
-        if self.extended:  # not defined for the extended mechanics
+        model = self.config.closed  # as far as the resonance and breakaway from rest are concerned
+        if has_own_mechanics(model.records_of_laws).any():  # not defined for the extended mechanics
             return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}
-        coulomb = self.config.record(Case("coulomb", 1.0, 1e-3))[0]
+        coulomb = model.record(Case("coulomb", 1.0, 1e-3))[0]
         return numbers | {
             "frictionless_resonance": resonance(p),
             "breakaway_acceleration": breakaway_acceleration(coulomb),
