@@ -52,34 +52,47 @@ def highest_compared(record: Recorded, model: Config) -> float:
     return max(own, BEYOND * min(seen))
 
 
-def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Release]:
-    """Prepare the windows of a record, of which there should be so many at least."""
-    rate, skipped = record.rate, record.driven.settling if record.driven else 0
-    passed_on = _passed_on(record)
-    channels = record.channels
-    period, top = _period(record, model), highest_compared(record, model)
-    displacement = _displacement(record, 2.0 * pi / period)
-    rest, length = _extent(displacement)
-    compared = channels.shape[1] - 2 * skipped
-    # In what is skipped the input is not right: the lead of the first window comes after it.
+class Cut(NamedTuple):
+    """Samples of a window: its ``first`` one, those inside it, and the ``lead`` that is simulated before."""
+
+    first: int
+    inside: int
+    lead: int
+
+
+def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
+    """Windows of a record of some samples, of which there should be so many at least.
+
+    ``period``: a natural one, in samples. ``skipped``: samples at either end at which the input is not right.
+    """
+    compared = samples - 2 * skipped
+    # The lead of the first window comes after what is skipped.
     lead = min(ceil(LEAD * period), int(LEAD_SHARE * compared)) if skipped else 0
     compared -= lead
     total = compared / period
     count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
-    size = compared // count
+    inside = compared // count
+    firsts = [skipped + lead + place * inside for place in range(count)]
+    return [Cut(first, inside, min(ceil(LEAD * period), first - skipped)) for first in firsts]
+
+
+def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Release]:
+    """Prepare the windows of a record, of which there should be so many at least."""
+    rate, driven = record.rate, record.driven
+    period, top = _period(record, model), highest_compared(record, model)
+    displacement = _displacement(record, 2.0 * pi / period)
+    rest, length = _extent(displacement)
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
-    acting = None if record.driven is None else record.driven.acting
+    parts = cuts(record.channels.shape[1], period, driven.settling if driven else 0, fewest)
+    passed_on, input_noise = _passed_on(record), driven.input_noise(record.shares) if driven else None
     found = []
-    for place in range(count):
-        first = skipped + lead + place * size
-        grid = Grid(min(ceil(LEAD * period), first - skipped), size, 2.0 * pi * rate / period)
-        start = first - grid.lead
-        own = channels[:, first : first + size]
-        span = grid.samples / rate
+    for place, (first, inside, lead) in enumerate(parts, 1):
+        start, end = first - lead, first + inside
+        own = record.channels[:, first:end]
         found.append(
             Release(
-                name=record.name if count == 1 else f"{record.name} {place + 1}",
+                name=record.name if len(parts) == 1 else f"{record.name} {place}",
                 model=model,
                 law=law,
                 step=1.0 / rate,
@@ -88,11 +101,11 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 channels=own,
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
-                coefficients=min(max(ceil(top * size / pi), FEWEST_COMPARED), size),
-                grid=grid,
-                input=nothing(span) if acting is None else at(acting, start / rate),
-                input_noise=record.driven.input_noise(record.shares) if record.driven else None,
-                length=max(float(np.abs(displacement[start : first + size] - rest).max()), SMALL * length),
+                coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
+                grid=Grid(lead, inside, 2.0 * pi * rate / period),
+                input=at(driven.acting, start / rate) if driven else nothing((end - start) / rate),
+                input_noise=input_noise,
+                length=max(float(np.abs(displacement[start:end] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),
                 orders=record.orders[: len(own)],
             )
