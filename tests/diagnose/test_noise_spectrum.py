@@ -7,7 +7,16 @@ from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
 from wedgesweep.diagnose.noise_bins import of_record
-from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, FROM_SPECTRUM, of_noise
+from wedgesweep.diagnose.noise_spectrum import (
+    FROM_REPEATS,
+    FROM_SPECTRUM,
+    MOST,
+    Choice,
+    NoiseBins,
+    fit,
+    of_noise,
+    periodogram,
+)
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import MeasuredError, read
@@ -33,6 +42,22 @@ def test_noise_below_a_decay_is_told_from_what_lies_above(pole):
     # Too low an estimate would look like a misfit, so that it errs to the other side.
     assert np.min(ratios) > 0.4
     assert np.median(ratios) < 3.0
+
+
+def test_noise_between_what_is_known_of_it_is_not_taken_for_too_small():
+    """Bins at the lowest and the highest frequencies leave open how the noise falls from one to the other."""
+    pole, between = 0.9, np.linspace(0.05, 2.0, 100)
+    true = (1.0 - pole**2) / (1.0 + pole**2 - 2.0 * pole * np.cos(between))
+    least: dict[Choice, list[float]] = {Choice(MOST.loss): [], MOST: []}
+    for seed in range(40):
+        frequency, power = periodogram(coloured(np.random.default_rng(seed), 600, pole))
+        kept = (np.arange(frequency.size) < 8) | (frequency > 2.0)
+        for choice, found in least.items():
+            (told,) = fit([[NoiseBins.of(frequency[kept], power[kept])]], choice)
+            found.append((told(between) / true).min())
+    of_one_pole, of_all = (np.median(each) for each in least.values())
+    assert of_one_pole < 0.5
+    assert 0.8 < of_all < 1.3
 
 
 def test_what_does_not_repeat_is_noise():
