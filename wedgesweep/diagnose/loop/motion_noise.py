@@ -6,7 +6,8 @@ time. That is an error of the force, too, of twice the friction for as long as t
 is by far the largest one. The filter spreads it over neighbours, whose errors are therefore correlated.
 
 Within one sample nobody knows when a recorded jump took place: a force that was not averaged over each sample
-is off by as much as if the jump were anywhere within it.
+is off by as much as if the jump were anywhere within it. It may be the sample before the jump that is off, or
+the one after it.
 """
 
 from math import sqrt
@@ -82,7 +83,8 @@ def covariance(low_pass: LowPass, places: np.ndarray, std: float, derivatives: D
     through = sum(each * (-rate) ** order for order, each in enumerate(by_motion))
     wide = LowPass(WIDER * low_pass.cutoff, low_pass.rate)
     by_noise = std * np.fft.irfft(through * wide.gain(size), size, axis=1)
-    return _by_distance(by_noise, step) + _by_distance(seen(derivatives.jumps / sqrt(12.0)), step)
+    either = np.hypot(derivatives.jumps, np.r_[0.0, derivatives.jumps[:-1]]) / sqrt(12.0)
+    return _by_distance(by_noise, step) + _by_distance(seen(either), step)
 
 
 def _by_distance(weights: np.ndarray, step: int) -> np.ndarray:
