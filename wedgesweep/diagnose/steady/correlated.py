@@ -97,10 +97,25 @@ class CorrelatedHarmonics(HarmonicData):
         some = super().with_model_error(size)
         if self.whitening is None:
             return some
-        inverse, unit = np.linalg.inv(self.whitening), np.eye(self.whitening.shape[-1])
-        turn = _real_matrix(some.whitening_of_responses @ np.linalg.pinv(self.whitening_of_responses))
-        by_input = turn @ (inverse @ inverse - unit) @ np.swapaxes(turn, 1, 2)
-        return replace(some, whitening=_inverse_root(unit + by_input))
+        turn = _real_matrix(some.whitening_of_responses @ self._unwhitening_of_responses)
+        return replace(some, whitening=self._turned(turn))
+
+    def _turned(self, turn: np.ndarray) -> np.ndarray:
+        """The whitening of residuals to which matrices (T, m, m) turn those of these data."""
+        by_input = turn @ self.by_input @ np.swapaxes(turn, 1, 2)
+        return _inverse_root(np.eye(by_input.shape[-1]) + by_input)
+
+    @cached_property
+    def by_input(self) -> np.ndarray:
+        """What inputs add to the unit covariance of the responses' own noise, (T, m, m)."""
+        assert self.whitening is not None
+        inverse = np.linalg.inv(self.whitening)
+        return inverse @ inverse - np.eye(inverse.shape[-1])
+
+    @cached_property
+    def _unwhitening_of_responses(self) -> np.ndarray:
+        """What takes back ``whitening_of_responses``, (T, n, n)."""
+        return np.linalg.pinv(self.whitening_of_responses)
 
     @property
     def whitening_of_responses(self) -> np.ndarray:

@@ -33,7 +33,7 @@ HARMONICS = {"second": 2, "third": 3}
 LEAST_STEP = 1e-4
 # Newton steps from the best start phase without a covariance, and in rad their largest length and a
 # negligible one.
-NEWTON_STEPS, NEWTON_LENGTH, NEGLIGIBLE = 12, 0.05, 1e-10
+NEWTON_STEPS, NEWTON_LENGTH, NEGLIGIBLE = 12, 0.05, 1e-7
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,18 @@ class StatedInputData(CorrelatedHarmonics):
                 columns.append(np.where(known, part_std / step * 0.5 * (above - below), 0.0))
         derivative = np.stack(columns, axis=-1)
         return np.eye(derivative.shape[1]) + derivative @ np.swapaxes(derivative, 1, 2)
+
+    @cached_property
+    def _passed_on(self) -> np.ndarray:
+        """Independent columns (T, m, 2 for each harmonic) of what the inputs' harmonics add."""
+        variance, vectors = np.linalg.eigh(self.by_input)
+        count = 2 * len(HARMONICS)
+        return vectors[..., -count:] * np.sqrt(np.maximum(variance[:, None, -count:], 0.0))
+
+    def _turned(self, turn: np.ndarray) -> np.ndarray:
+        vectors, std, _ = np.linalg.svd(turn @ self._passed_on, full_matrices=False)
+        change = 1.0 / np.hypot(std, 1.0) - 1.0
+        return np.eye(turn.shape[-1]) + (vectors * change[:, None, :]) @ np.swapaxes(vectors, 1, 2)
 
     def _distorted(self, values: Values, name: str, change: complex) -> Values:
         """Values of effects (SI) with a change of one harmonic of the input."""

@@ -68,7 +68,7 @@ class WhitenedHarmonics:
         """1..H."""
         return np.arange(1, self.shape[1] + 1)
 
-    @property
+    @cached_property
     def turning_orders(self) -> np.ndarray:
         """Orders by which a start phase turns what is compared; 0 for a tone, which has its own phase."""
         return np.r_[self.orders, [0] * (self.columns - self.orders.size)]
