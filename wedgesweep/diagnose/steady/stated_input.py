@@ -2,13 +2,19 @@
 
 A shaker distorts. Each stated harmonic of the input is a complex number over the fundamental: zero, with a
 standard deviation of its magnitude that a laboratory knows; real and imaginary part have that over sqrt(2).
-It differs from test to test. With K the derivative of the residual by real and imaginary parts, and V their
-covariance, the residual has the covariance
+It differs from test to test. Where a harmonic meets a resonance, friction does not pass it on in proportion.
+So with s the standard deviation of a part, a part u changes the residual by
 
-    I + K V K^T
+    k u / s + q (u / s)^2
 
-in units of the responses' own noise and of the model error. Its directions turn with the start phase of a
-record, and are those at the best phase of the explanation that the covariance was taken at.
+where k and q are half the difference and half the sum of the changes by u = s and u = -s. The residual then
+has the second moments (as E u^4 = 3 s^4)
+
+    I + sum (k k^T + 3 q q^T)
+
+over all parts, in units of the responses' own noise and of the model error. Products of different parts are
+left out. The directions k and q turn with the start phase of a record, and are those at the best phase of the
+explanation that the covariance was taken at.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -28,6 +34,8 @@ from wedgesweep.effects import input_distortion, merge
 DISTORTION = input_distortion.EFFECT.name
 # Harmonics that inputs have: numbers of the effect, which has a phase for each, and their orders.
 HARMONICS = {"second": 2, "third": 3}
+# Columns k and q of their real and imaginary parts.
+COLUMNS = 4 * len(HARMONICS)
 # Least finite-difference step of a harmonic, times its order, so that the error of simulations does not hide
 # it; else the standard deviation of its real part.
 LEAST_STEP = 1e-4
@@ -56,17 +64,17 @@ class StatedInputData(CorrelatedHarmonics):
                 ]
                 evaluation = Evaluation(point, here.response, here.residual, np.zeros(0), here.found, 0)
                 (above, below), found = self.bare().changes(evaluation, moved, TIGHT)
-                known = (found[0] & found[1])[:, None]
-                columns.append(np.where(known, part_std / step * 0.5 * (above - below), 0.0))
-        derivative = np.stack(columns, axis=-1)
-        return np.eye(derivative.shape[1]) + derivative @ np.swapaxes(derivative, 1, 2)
+                size, known = part_std / step, (found[0] & found[1])[:, None]
+                columns.append(np.where(known, size * 0.5 * (above - below), 0.0))
+                columns.append(np.where(known, sqrt(3.0) * size**2 * 0.5 * (above + below), 0.0))
+        passed_on = np.stack(columns, axis=-1)
+        return np.eye(passed_on.shape[1]) + passed_on @ np.swapaxes(passed_on, 1, 2)
 
     @cached_property
     def _passed_on(self) -> np.ndarray:
-        """Independent columns (T, m, 2 for each harmonic) of what the inputs' harmonics add."""
+        """Independent columns (T, m, COLUMNS) of what the inputs' harmonics add."""
         variance, vectors = np.linalg.eigh(self.by_input)
-        count = 2 * len(HARMONICS)
-        return vectors[..., -count:] * np.sqrt(np.maximum(variance[:, None, -count:], 0.0))
+        return vectors[..., -COLUMNS:] * np.sqrt(np.maximum(variance[:, None, -COLUMNS:], 0.0))
 
     def _turned(self, turn: np.ndarray) -> np.ndarray:
         vectors, std, _ = np.linalg.svd(turn @ self._passed_on, full_matrices=False)
