@@ -53,22 +53,27 @@ class StatedInputData(CorrelatedHarmonics):
     def covariance(self, scenario: Scenario) -> np.ndarray:
         here = self.compare([scenario], TIGHT)[0]
         point = replace(scenario.point, warm=here.warm)
-        part_std = sqrt(0.5) * self.harmonics_std
-        columns = []
-        for name, order in HARMONICS.items():
-            step = max(part_std, LEAST_STEP / order)
+        evaluation = Evaluation(point, here.response, here.residual, np.zeros(0), here.found, 0)
+        columns: list[np.ndarray] = []
+        for name in HARMONICS:
             for turn in (1.0, 1j):
-                moved = [
-                    Scenario(self._distorted(scenario.values, name, sign * turn * step), point)
-                    for sign in (1.0, -1.0)
-                ]
-                evaluation = Evaluation(point, here.response, here.residual, np.zeros(0), here.found, 0)
-                (above, below), found = self.bare().changes(evaluation, moved, TIGHT)
-                size, known = part_std / step, (found[0] & found[1])[:, None]
-                columns.append(np.where(known, size * 0.5 * (above - below), 0.0))
-                columns.append(np.where(known, sqrt(3.0) * size**2 * 0.5 * (above + below), 0.0))
+                columns += self._changes_by(name, turn, scenario.values, evaluation)
         passed_on = np.stack(columns, axis=-1)
         return np.eye(passed_on.shape[1]) + passed_on @ np.swapaxes(passed_on, 1, 2)
+
+    def _changes_by(
+        self, name: str, turn: complex, values: Values, here: Evaluation
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What a part of a harmonic adds, (T, m): k and sqrt(3) q."""
+        std = sqrt(0.5) * self.harmonics_std
+        step = max(std, LEAST_STEP / HARMONICS[name])
+        moved = [
+            Scenario(self._distorted(values, name, sign * turn * step), here.point) for sign in (1.0, -1.0)
+        ]
+        (above, below), found = self.bare().changes(here, moved, TIGHT)
+        size, known = std / step, (found[0] & found[1])[:, None]
+        linear, quadratic = 0.5 * size * (above - below), 0.5 * size**2 * (above + below)
+        return np.where(known, linear, 0.0), np.where(known, sqrt(3.0) * quadratic, 0.0)
 
     @cached_property
     def _passed_on(self) -> np.ndarray:
