@@ -18,6 +18,7 @@ MEASURED = {
     "measurement": {
         "title": "bench",
         "model": "model.toml",
+        "input_harmonics_std": 0.004,
         "columns": {
             "time": {"column": "t", "unit": "s"},
             "displacement": {"column": "d", "unit": "mm"},

@@ -108,6 +108,11 @@ def test_one_netcdf_file_holds_the_same(tmp_path):
             "",
             "measurement.input_gain_std: there is no recorded input",
         ),
+        (
+            "input_gain_std = 0.02",
+            "input_harmonics_std = 0.004",
+            "measurement.input_harmonics_std: the input is recorded",
+        ),
     ],
 )  # fmt: skip
 def test_faults(tmp_path, old, new, words):
@@ -118,3 +123,59 @@ def test_faults(tmp_path, old, new, words):
 def test_absolute_motion_needs_the_input(tmp_path):
     text = MEASURED.replace('unit = "mm" }', 'unit = "mm", of = "absolute" }')
     assert "displacement.of: without a recorded input" in problems(tmp_path, text)
+
+
+STATED = MEASURED.replace('title = "bench"', 'title = "bench"\ninput_harmonics_std = 0.004')
+
+
+def test_harmonics_of_a_stated_input_are_uncertain_where_that_is_stated(tmp_path):
+    assert read(tmp_path, MEASURED).input_harmonics_std == 0.0
+    found = read(tmp_path, STATED)
+    assert found.input_harmonics_std == 0.004
+    write_netcdf(found, tmp_path / "all.nc")
+    assert measured.read(tmp_path / "all.nc").input_harmonics_std == 0.004
+    write_netcdf(read(tmp_path, MEASURED), tmp_path / "none.nc")
+    assert measured.read(tmp_path / "none.nc").input_harmonics_std == 0.0
+    with netCDF4.Dataset(tmp_path / "none.nc") as file:
+        assert "input_harmonics_std" not in file.ncattrs()
+
+
+BAD_STDS = [
+    ("-0.1", "-0.1 is out of range; it must be at least 0"),
+    ("1.0", "1.0 is out of range; it must be less than 1"),
+    ("nan", "nan is not a finite number"),
+    ("true", "true is not a finite number"),
+    ('"0.4 %"', '"0.4 %" is not a finite number'),
+    ("[0.004, 0.002]", "[0.004, 0.002] is not a finite number"),
+]
+
+
+@pytest.mark.parametrize(("value", "words"), BAD_STDS)
+def test_a_wrong_uncertainty_of_harmonics_is_told(tmp_path, value, words):
+    told = problems(tmp_path, STATED.replace("input_harmonics_std = 0.004", f"input_harmonics_std = {value}"))
+    assert f"measurement.input_harmonics_std: {words}" in told
+
+
+@pytest.mark.parametrize("name", ["input_harmonics_std", "input_gain_std"])
+@pytest.mark.parametrize("value", [-0.1, 1.0, "small", np.array([0.1, 0.2])])
+def test_a_wrong_uncertainty_in_a_netcdf_file_is_told(tmp_path, name, value):
+    write_netcdf(read(tmp_path, STATED), tmp_path / "all.nc")
+    with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:
+        file.setncattr(name, value)
+    with pytest.raises(measured.MeasuredError, match=f"all.nc: {name}: .* is (out of range|not a finite)"):
+        measured.read(tmp_path / "all.nc")
+
+
+def test_only_steady_tests_have_harmonics_of_a_stated_input(tmp_path):
+    text = STATED.replace(
+        "frequency_hz = 20.0\namplitude_mm = 0.3\namplitude_std = 0.01\n", 'kind = "transient"\n'
+    )
+    assert "measurement.input_harmonics_std: there is no test of kind steady" in problems(tmp_path, text)
+
+
+def test_a_recorded_input_in_a_netcdf_file_has_its_harmonics(tmp_path):
+    write_netcdf(read(tmp_path, RECORDED), tmp_path / "all.nc")
+    with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:
+        file.setncattr("input_harmonics_std", 0.004)
+    with pytest.raises(measured.MeasuredError, match="input_harmonics_std: the input is recorded"):
+        measured.read(tmp_path / "all.nc")

@@ -11,6 +11,8 @@ from wedgesweep.measured.declarations import (
     COLUMNS,
     FORCE_AMPLITUDE,
     INPUT,
+    INPUT_GAIN_STD,
+    INPUT_HARMONICS_STD,
     LOOP,
     RELATIVE,
     RESPONSES,
@@ -25,13 +27,28 @@ FORCE = "force"
 
 
 def faults(
-    by_kind: Mapping[str, Mapping[str, Mapping[str, Any]]], gain_std: float, model: Config | None
+    by_kind: Mapping[str, Mapping[str, Mapping[str, Any]]], stds: Mapping[str, Any], model: Config | None
 ) -> list[str]:
-    """Faults of the channels of each kind of test, as "key: fault"; without any, those beside the model."""
+    """Faults of the channels of each kind of test, as "key: fault"; without any, those beside the model.
+
+    ``stds``: what is unknown of inputs, by the names of INPUT_STDS.
+    """
+    gain_std = stds[INPUT_GAIN_STD.key]
     found = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
+    if stds[INPUT_HARMONICS_STD.key]:
+        found += [f"{INPUT_HARMONICS_STD.key}: {fault}" for fault in _harmonics_faults(by_kind)]
     if found or model is None:
         return found
     return [fault for kind, own in by_kind.items() for fault in excitation_faults(own, model, kind)]
+
+
+def _harmonics_faults(by_kind: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Why harmonics of the input cannot be uncertain: those of stated inputs of steady tests are."""
+    if STEADY not in by_kind:
+        return [f"there is no test of kind {STEADY}, and inputs of other kinds are no sines; omit it"]
+    if INPUT in by_kind[STEADY]:
+        return [f"the input is recorded, and its harmonics with it; omit it, or the column {INPUT}"]
+    return []
 
 
 def channel_faults(

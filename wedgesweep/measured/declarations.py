@@ -170,6 +170,14 @@ QUANTITY = Choice(
 INPUT_GAIN_STD = Quantity(
     "input_gain_std", 0.0, "relative std of the gain of the recorded input", minimum=0.0, below=1.0
 )
+INPUT_HARMONICS_STD = Quantity(
+    "input_harmonics_std",
+    0.0,
+    "steady, stated amplitudes: std of each harmonic of the input over its amplitude",
+    minimum=0.0,
+    below=1.0,
+)
+INPUT_STDS = (INPUT_GAIN_STD.key, INPUT_HARMONICS_STD.key)
 DERIVED = Flag(key="derived", meaning="whether it is computed from the displacement", default=False)
 
 COLUMNS = table(
@@ -238,6 +246,7 @@ MEASUREMENT = table(
     COLUMNS,
     DIALECT,
     Number.of(INPUT_GAIN_STD),
+    Number.of(INPUT_HARMONICS_STD),
     UNCERTAIN,
     TableList(key="test", meaning="the tests", item=TEST, example="measurement.test"),
 )

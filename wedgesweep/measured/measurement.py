@@ -91,7 +91,8 @@ class Measurement:
     ``law`` is the model's friction law; ``uncertain`` holds the relative std of numbers of the model by
     the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel, with
     ``of`` of responses and ``quantity`` of the input. ``input_gain_std``: of a recorded input, relative.
-    ``model_error``: the relative error that a model may have.
+    ``input_harmonics_std``: of each harmonic of a stated input, over its amplitude. ``model_error``: the
+    relative error that a model may have.
     """
 
     path: Path
@@ -103,6 +104,7 @@ class Measurement:
     derived_velocity: bool
     columns: Mapping[str, Mapping[str, str]]
     input_gain_std: float = 0.0
+    input_harmonics_std: float = 0.0
     model_error: float = 0.0
 
     @property

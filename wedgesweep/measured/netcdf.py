@@ -8,7 +8,8 @@ The group ``tests`` holds a group per test with the attributes ``file``, ``frequ
 measured.toml; a loop has ``force`` instead of the latter. A velocity that is computed from displacement has
 the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute ``quantity``;
 ``acceleration`` is a further response, and responses may have the attribute ``of``. The attribute ``model``
-of a test holds its numbers of the model as a JSON object; ``input_gain_std`` is an attribute of the file.
+of a test holds its numbers of the model as a JSON object; ``input_gain_std`` and ``input_harmonics_std`` are
+attributes of the file.
 """
 
 import json
@@ -28,6 +29,9 @@ from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import (
     DETREND,
     INPUT,
+    INPUT_GAIN_STD,
+    INPUT_HARMONICS_STD,
+    INPUT_STDS,
     KINDS,
     MODEL_ERROR,
     QUANTITIES,
@@ -40,9 +44,11 @@ from wedgesweep.measured.declarations import (
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model, parse_model
+from wedgesweep.quantity import Quantity
 from wedgesweep.units import UNITS, usual
 
-ROOT_NAMES = ("title", "model", "model_error", "input_gain_std")
+NUMBERS = (MODEL_ERROR, INPUT_GAIN_STD, INPUT_HARMONICS_STD)
+ROOT_NAMES = ("title", "model", *(each.key for each in NUMBERS))
 SI_UNITS = {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
 LONG_NAMES = {
     "time": "time",
@@ -61,8 +67,9 @@ def write_netcdf(measurement: Measurement, path: Path) -> None:
     with written(path) as temporary, netCDF4.Dataset(temporary, "w") as root:
         root.setncatts({"title": measurement.title, "model": measurement.model.to_toml()})
         root.setncattr("model_error", measurement.model_error)
-        if measurement.input_gain_std:
-            root.setncattr("input_gain_std", measurement.input_gain_std)
+        for name in INPUT_STDS:
+            if std := getattr(measurement, name):
+                root.setncattr(name, std)
         root.createGroup("uncertain").setncatts(dict(measurement.uncertain))
         tests = root.createGroup("tests")
         for i, test in enumerate(measurement.tests):
@@ -123,7 +130,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     problems.extend(f"{path}: {name}: unknown attribute; {hint(name, ROOT_NAMES)}" for name in unknown)
     config, law = _model(attributes, path, model, problems)
     uncertain = _uncertain(root, path, problems)
-    model_error = _model_error(attributes, path, problems)
+    numbers = {each.key: _number(each, attributes, path, problems) for each in NUMBERS}
     tests = [_test(group, path, config, problems) for group in groups]
     complete = tuple(test for test in tests if test)
     derived = _derived_velocity(groups, path, problems)
@@ -133,8 +140,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
             f"{path}: tests: they have different variables, units, of or quantity; make them alike"
         )
     columns = {name: each for own in by_kind.values() for name, each in own.items()}
-    gain_std = _gain_std(attributes, path, problems)
-    faults = channels.faults(by_kind, gain_std, None if problems else config)
+    faults = channels.faults(by_kind, numbers, None if problems else config)
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
         problems += [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
@@ -151,8 +157,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         tests=complete,
         derived_velocity=derived,
         columns=columns,
-        input_gain_std=gain_std,
-        model_error=model_error,
+        **numbers,
     )
 
 
@@ -165,14 +170,6 @@ def _derived_velocity(groups: Sequence[Any], path: Path, problems: list[str]) ->
             f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
         )
     return derived == {True}
-
-
-def _gain_std(attributes: Mapping[str, Any], path: Path, problems: list[str]) -> float:
-    found = attributes.get("input_gain_std", 0.0)
-    if isinstance(found, int | float) and 0.0 <= found < 1.0:
-        return float(found)
-    problems.append(f"{path}: input_gain_std: {show(found)} is out of range; it must be >= 0 and < 1")
-    return 0.0
 
 
 def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[str, str]]], bool]:
@@ -217,11 +214,12 @@ def _model(
     return parse_model(attributes["model"], f"{path}: model", problems)
 
 
-def _model_error(attributes: Mapping[str, Any], path: Path, problems: list[str]) -> float:
+def _number(quantity: Quantity, attributes: Mapping[str, Any], path: Path, problems: list[str]) -> float:
+    """The number of the file with the name of a key of measured.toml; its default where it is not given."""
     found: list[str] = []
-    value = Number.of(MODEL_ERROR).read(attributes.get("model_error", 0.0), "model_error", found)
+    value = Number.of(quantity).read(attributes.get(quantity.key, quantity.default), quantity.key, found)
     problems.extend(f"{path}: {problem}" for problem in found)
-    return 0.0 if value is None else float(value)
+    return quantity.default if value is None else value
 
 
 def _uncertain(root: Any, path: Path, problems: list[str]) -> dict[str, float]:

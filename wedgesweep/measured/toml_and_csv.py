@@ -13,7 +13,7 @@ from wedgesweep.files import read_text
 from wedgesweep.hints import show
 from wedgesweep.measured import arrays, channels, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import INPUT, ROOT, STEADY, columns_of
+from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, columns_of
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
@@ -32,7 +32,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     model = model or _stated_model(path, measurement, problems)
     config, law = load_model(model, problems) if model else (None, "")
     if complete:
-        told = channels.faults(by_kind, measurement["input_gain_std"], config)
+        told = channels.faults(by_kind, measurement, config)
         problems += [f"{path}: {_at(fault)}" for fault in told]
     if config is not None:
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
@@ -52,7 +52,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
             name: {key: value for key, value in each.items() if key != "derived"}
             for name, each in columns.items()
         },
-        input_gain_std=measurement["input_gain_std"],
+        **{name: measurement[name] for name in INPUT_STDS},
         model_error=measurement["model_error"],
     )
 
@@ -77,7 +77,7 @@ def _columns_by_kind(measurement: Mapping[str, Any]) -> dict[str, dict[str, Any]
 
 def _at(fault: str) -> str:
     """The full key of a fault of the channels."""
-    return f"measurement.{fault}" if fault.startswith("input_gain_std") else f"measurement.columns.{fault}"
+    return f"measurement.{fault}" if fault.startswith(INPUT_STDS) else f"measurement.columns.{fault}"
 
 
 def _override_faults(path: Path, measurement: dict[str, Any], config: Config) -> list[str]:

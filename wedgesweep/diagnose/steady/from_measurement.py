@@ -7,16 +7,17 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.steady import tone
+from wedgesweep.diagnose.steady.correlated import stated
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.recorded_input import (
     InputHarmonics,
     RecordedInputData,
     input_harmonics,
     motion_factor,
-    stated,
     without_noise,
 )
 from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence, spectrum
+from wedgesweep.diagnose.steady.stated_input import with_uncertain_harmonics
 from wedgesweep.effects import acting
 from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.natural_units import FREQUENCY
@@ -37,7 +38,7 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
     found = known or tone.find([fitted(*each) for each in records], lowest)
     spectra = tuple(spectrum(*each, found.frequency if found else None) for each in records)
     std = [test.amplitude_std if test.amplitude is not None else np.inf for test in tests]
-    return HarmonicData(
+    data = HarmonicData(
         model=measurement.model,
         law=measurement.law,
         names=tuple(test.name for test in tests),
@@ -50,6 +51,7 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         models=_models(measurement),
         model_error=measurement.model_error,
     )
+    return with_uncertain_harmonics(data, measurement.input_harmonics_std)
 
 
 def _models(measurement: Measurement) -> tuple | None:

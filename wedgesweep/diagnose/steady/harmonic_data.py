@@ -188,10 +188,14 @@ class HarmonicData(WhitenedHarmonics, FitData):
             return phase, aliases
         left = self.whitened - self.rotated(whitened, phase)
         both = np.stack([left - self.whiten(aliases), left])
-        with_aliases, without = (np.abs(both) ** 2).sum((-2, -1), keepdims=True)
-        aliases[np.broadcast_to(with_aliases > without + FILTERED, aliases.shape)] = 0.0
+        with_aliases, without = self._squared(both)
+        aliases[with_aliases > without + FILTERED] = 0.0
         phase = self.start_phase(whitened, self.whiten(aliases))
         return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
+
+    def _squared(self, left: np.ndarray) -> np.ndarray:
+        """Squared misfit (..., T) of whitened harmonics (..., T, C, H) that are left."""
+        return (np.abs(left) ** 2).sum((-2, -1))
 
     def with_model_error(self, size: float) -> Self:
         return replace(self, model_error=size)
@@ -216,9 +220,8 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
         """Derivative of the residual by the start phase, (T, m, 1)."""
-        orders = np.r_[self.orders, [0] * (self.columns - self.orders.size)]
         rotated = self.rotated(here.response.whitened, here.response.phase)
-        return real(-1j * orders * rotated)[..., None]
+        return self.decorrelated(real(-1j * self.turning_orders * rotated))[..., None]
 
     def response_change(self, here: Evaluation, there: Evaluation) -> np.ndarray:
         both = np.stack([there.response.whitened, here.response.whitened])

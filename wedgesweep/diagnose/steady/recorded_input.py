@@ -11,7 +11,6 @@ in units of the responses' own noise, C being the covariance of the latter with 
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -20,9 +19,9 @@ from wedgesweep import excitation
 from wedgesweep.diagnose.evaluation import Evaluation, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import TIGHT
-from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
+from wedgesweep.diagnose.steady.correlated import CorrelatedHarmonics
+from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
-from wedgesweep.diagnose.steady.whitened import real
 
 # Effects of sensors, with the number that stands for none.
 SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
@@ -31,8 +30,6 @@ ABOVE_NOISE = 2.0
 # Least finite-difference step of a coefficient, times its order and over the fundamental, so that the error
 # of simulations does not hide it; else its standard deviation.
 LEAST_STEP = 1e-4
-# A covariance is taken anew if the variance of some combination of numbers changes by this factor.
-CHANGED = 1.1
 
 
 class InputHarmonics(NamedTuple):
@@ -86,16 +83,13 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
 
 
 @dataclass(frozen=True)
-class RecordedInputData(HarmonicData):
+class RecordedInputData(CorrelatedHarmonics):
     """Harmonics of steady tests whose input was recorded.
 
-    ``inputs``: the recorded inputs. ``whitening`` (T, m, m): turns residuals over the noise of the responses
-    into such of unit covariance; None before the covariance is known. ``untold``: effects that these channels
-    cannot show.
+    ``inputs``: the recorded inputs. ``untold``: effects that these channels cannot show.
     """
 
     inputs: InputHarmonics | None = None
-    whitening: np.ndarray | None = None
     untold: tuple[str, ...] = ()
 
     eliminated = 0
@@ -110,38 +104,11 @@ class RecordedInputData(HarmonicData):
         """Observations of each test, (T,): nothing of the input is free."""
         return self.observations
 
-    @cached_property
-    def power(self) -> np.ndarray:
-        """Squared misfit of a simulation of nothing at all, (T,)."""
-        return (self.decorrelated(real(self.whitened)) ** 2).sum(-1)
-
     def subset(self, rows: np.ndarray) -> Self:
-        some = super().subset(rows)
-        whitening = None if self.whitening is None else self._cut(self.whitening[rows], some)
-        return replace(some, inputs=self.recorded.of(rows), whitening=whitening)
-
-    def _cut(self, whitening: np.ndarray, some: HarmonicData) -> np.ndarray:
-        """The matrices for data padded to fewer harmonics or channels."""
-        kept = np.zeros((2, self.shape[0], self.columns), bool)
-        kept[:, : some.shape[0], : some.shape[1]] = True
-        if self.tone is not None:
-            kept[:, : some.shape[0], -1] = True
-        place = np.flatnonzero(kept)
-        return whitening[:, place[:, None], place]
+        return replace(super().subset(rows), inputs=self.recorded.of(rows))
 
     def with_undetected(self, effect: str) -> Self:
-        if effect in self.untold:
-            return self
-        wider = super().with_undetected(effect)
-        if self.whitening is None:
-            return wider
-        # The noise of a recorded input at a tone between its harmonics does not matter here.
-        harmonic = np.zeros((2, self.shape[0], wider.columns), bool)
-        harmonic[..., : self.shape[1]] = True
-        place = np.flatnonzero(harmonic)
-        whitening = np.tile(np.eye(harmonic.size), (self.tests, 1, 1))
-        whitening[:, place[:, None], place] = self.whitening
-        return replace(wider, whitening=whitening)
+        return self if effect in self.untold else super().with_undetected(effect)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         return (AMPLITUDE,)
@@ -187,29 +154,13 @@ class RecordedInputData(HarmonicData):
     def eliminated_derivatives(self, here: Evaluation) -> np.ndarray:
         return np.zeros((*here.residual.shape, 0))
 
-    def decorrelated(self, residual: np.ndarray) -> np.ndarray:
-        if self.whitening is None:
-            return residual
-        return np.einsum("tij,...tj->...ti", self.whitening, residual)
-
-    def correlated(self, noise: np.ndarray) -> np.ndarray:
-        """Noise of responses with that of inputs, as the response passes it on; inputs stay as recorded."""
-        if self.whitening is None:
-            return noise
-        return np.einsum("tij,...tj->...ti", np.linalg.inv(self.whitening), noise)
-
     def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
         return step
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return self
 
-    def bare(self) -> Self:
-        """The data as if inputs had no noise."""
-        return replace(self, whitening=None)
-
-    def with_covariance(self, scenario: Scenario) -> Self:
-        """The data with the covariance of its residuals, by the response in a scenario."""
+    def covariance(self, scenario: Scenario) -> np.ndarray:
         bare = self.bare()
         tests, orders = self.recorded.displacement.shape
         here = bare.compare([scenario], TIGHT)[0]
@@ -232,33 +183,7 @@ class RecordedInputData(HarmonicData):
                 if order < shared.shape[-1]:
                     cross = column[:, :, None] * shared[:, part, :, order][:, None, :]
                     covariance += cross + np.swapaxes(cross, 1, 2)
-        return replace(self, whitening=_inverse_root(covariance))
-
-    def renewed(self, scenario: Scenario) -> Self:
-        if self.whitening is None:
-            return self
-        there = self.with_covariance(scenario)
-        assert there.whitening is not None
-        both = self.whitening @ np.linalg.inv(there.whitening)
-        ratio = np.linalg.eigvalsh(both @ np.swapaxes(both, 1, 2))
-        return there if np.abs(np.log(ratio)).max() > np.log(CHANGED) else self
-
-    def with_model_error(self, size: float) -> Self:
-        some = super().with_model_error(size)
-        if self.whitening is None:
-            return some
-        inverse, unit = np.linalg.inv(self.whitening), np.eye(self.whitening.shape[-1])
-        turn = _real_matrix(some.whitening_of_responses @ np.linalg.pinv(self.whitening_of_responses))
-        by_input = turn @ (inverse @ inverse - unit) @ np.swapaxes(turn, 1, 2)
-        return replace(some, whitening=_inverse_root(unit + by_input))
-
-    @property
-    def whitening_of_responses(self) -> np.ndarray:
-        """What ``whiten`` does as matrices (T, n, n) for the n harmonics of all channels."""
-        size = self.shape[0] * self.columns
-        unit = np.eye(size, dtype=complex).reshape(size, 1, self.shape[0], self.columns)
-        columns = self.whiten(np.repeat(unit, self.tests, axis=1)).reshape(size, self.tests, size)
-        return columns.transpose(1, 2, 0)
+        return covariance
 
     def _with_coefficient(self, order: int, change: np.ndarray) -> Self:
         """The data as if a coefficient of the inputs had been recorded with a change (T,) in m."""
@@ -292,18 +217,6 @@ class RecordedInputData(HarmonicData):
         return found.reshape(found.shape[0], 2, 2 * channels * columns, columns)
 
 
-def _real_matrix(matrices: np.ndarray) -> np.ndarray:
-    """Matrices (T, n, n) for complex vectors as (T, 2 n, 2 n) for their real and imaginary parts."""
-    top = np.concatenate([matrices.real, -matrices.imag], axis=2)
-    return np.concatenate([top, np.concatenate([matrices.imag, matrices.real], axis=2)], axis=1)
-
-
-def _inverse_root(covariance: np.ndarray) -> np.ndarray:
-    """Symmetric matrices W (T, m, m) with W covariance W = 1; noise is not taken for less than a tenth."""
-    values, vectors = np.linalg.eigh(covariance)
-    return (vectors / np.sqrt(np.maximum(values, 0.1))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
-
-
 def input_harmonics(spectrum: Spectrum, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """Displacement harmonics (N,) in m of a recorded quantity, and their variances."""
     factor = motion_factor(spectrum, quantity)
@@ -314,8 +227,3 @@ def motion_factor(spectrum: Spectrum, quantity: str) -> np.ndarray:
     """What turns the harmonics (N,) of a quantity into those of the displacement; a force stays one."""
     order = 0 if quantity == "force" else ("displacement", "velocity", "acceleration").index(quantity)
     return (2j * np.pi * spectrum.frequency * np.arange(1, spectrum.mean.shape[1] + 1)) ** -order
-
-
-def stated(data: RecordedInputData) -> Scenario:
-    """The base model as stated."""
-    return Scenario({}, Point(np.ones(len(data.uncertain)), *data.start()))

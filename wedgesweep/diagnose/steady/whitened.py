@@ -69,6 +69,11 @@ class WhitenedHarmonics:
         return np.arange(1, self.shape[1] + 1)
 
     @cached_property
+    def turning_orders(self) -> np.ndarray:
+        """Orders by which a start phase turns what is compared; 0 for a tone, which has its own phase."""
+        return np.r_[self.orders, [0] * (self.columns - self.orders.size)]
+
+    @cached_property
     def observations(self) -> np.ndarray:
         """Real numbers that each test contributes, (T,)."""
         return np.array([s.observations for s in self.spectra])

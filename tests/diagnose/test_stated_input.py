@@ -1,0 +1,253 @@
+"""Stated inputs whose harmonics are uncertain: what a shaker distorts belongs to the covariance."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnose.synthetic import MODEL as BENCH
+from tests.diagnose.synthetic import drawn
+from tests.diagnose.test_oscillator_data import FREQUENCY, C, K, M, model
+from wedgesweep import config
+from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.diagnosis import diagnose, explain
+from wedgesweep.diagnose.fit_parameters import Hypothesis
+from wedgesweep.diagnose.model import Model
+from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.steady.correlated import stated
+from wedgesweep.diagnose.steady.from_measurement import harmonic_data
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.diagnose.steady.stated_input import with_uncertain_harmonics
+from wedgesweep.diagnose.steady.whitened import real
+from wedgesweep.measured.measurement import Measurement, TestRecord
+
+STD, AMPLITUDE, NOISE = 0.004, 1e-3, 1e-4
+FREQUENCIES = np.array([FREQUENCY, 1.6 * FREQUENCY, 0.4 * FREQUENCY])
+
+
+def receptance(frequency, orders):
+    """Motion of the frictionless mass less that of its base, over the latter."""
+    omega = 2.0 * np.pi * frequency * orders
+    return M * omega**2 / (K + 1j * C * omega - M * omega**2)
+
+
+def frictionless(seed=0, std=STD, distorted=False, noise=NOISE, velocity=True):
+    """Records of the frictionless oscillator, whose inputs may be distorted: each test in its own way."""
+    rng, orders = np.random.default_rng(seed), np.arange(1, 4)
+    tests = []
+    for frequency in FREQUENCIES:
+        parts = np.array([0.0, 1.0, 1.0]) * STD * np.sqrt(0.5) * distorted
+        given = -1j * np.eye(3)[0] + parts * (rng.normal(size=3) + 1j * rng.normal(size=3))
+        motion = AMPLITUDE * given * receptance(frequency, orders)
+        time = np.arange(4000) * 12.0 / frequency / 4000
+        omega = 2.0 * np.pi * frequency * orders
+        turns = np.exp(1j * np.outer(time + rng.uniform(0.0, 1.0 / frequency), omega))
+        exact = np.array([(turns @ (motion * rate)).real for rate in (1.0, 1j * omega)])
+        exact += noise * exact.std(axis=1, keepdims=True) * rng.normal(size=exact.shape)
+        tests.append(
+            TestRecord(
+                name=f"{frequency:g}",
+                file=f"{frequency:g}.csv",
+                frequency=frequency,
+                amplitude=AMPLITUDE,
+                amplitude_std=0.0,
+                time=time,
+                displacement=exact[0],
+                velocity=exact[1] if velocity else None,
+            )
+        )
+    return Measurement(
+        path=None,
+        title="",
+        model=model("base", "base"),
+        law="coulomb",
+        uncertain={},
+        tests=tuple(tests),
+        derived_velocity=False,
+        columns={"displacement": {"column": "y", "unit": "m"}},
+        input_harmonics_std=std,
+    )
+
+
+def closed_form(data):
+    """Covariance of residuals: noise, and what the transfer function makes of each harmonic of the input."""
+    tests, (channels, columns) = data.tests, data.shape
+    found = np.tile(np.eye(2 * channels * columns), (tests, 1, 1))
+    for order in (2, 3):
+        response = np.zeros((tests, channels, columns), complex)
+        for t, omega in enumerate(data.omega):
+            there = AMPLITUDE * receptance(omega / (2.0 * np.pi), order)
+            response[t, :, order - 1] = there * np.array([1.0, 1j * order * omega])[:channels]
+        for turn in (1.0, 1j):
+            column = np.sqrt(0.5) * STD * real(data.whiten(turn * response))
+            found += column[:, :, None] * column[:, None, :]
+    return found
+
+
+@pytest.mark.parametrize("velocity", [True, False])
+@pytest.mark.parametrize("model_error", [0.0, 0.01])
+def test_the_covariance_is_that_of_the_transfer_function(velocity, model_error):
+    """A linear system passes each harmonic on by itself, whatever the start phase of a record."""
+    measurement = frictionless(velocity=velocity)
+    data = harmonic_data(replace(measurement, model_error=model_error))
+    expected = closed_form(data)
+    assert expected.max() > (1e3 if model_error == 0.0 else 3.0)
+    np.testing.assert_allclose(data.covariance(stated(data)), expected, atol=1e-5 * expected.max())
+    whitened = data.whitening @ expected @ np.swapaxes(data.whitening, 1, 2)
+    np.testing.assert_allclose(whitened, np.tile(np.eye(expected.shape[1]), (3, 1, 1)), atol=0.02)
+
+
+def test_without_the_key_nothing_is_different():
+    measurement = frictionless(std=0.0)
+    data = harmonic_data(measurement)
+    assert type(data) is HarmonicData
+    assert with_uncertain_harmonics(data, 0.0) is data
+
+
+def chi2_over_dof(data, scenario):
+    return (data.compare([scenario], 1e-8)[0].residual ** 2).sum() / data.dof.sum()
+
+
+def test_the_misfit_of_the_truth_has_the_size_of_its_covariance():
+    """Over draws: the mean of chi-squared over its degrees of freedom has a standard error of 1 %."""
+    told, untold = [], []
+    for seed in range(40):
+        data = harmonic_data(frictionless(seed, distorted=True))
+        told.append(chi2_over_dof(data, stated(data)))
+        untold.append(chi2_over_dof(data.bare(), stated(data)))
+    assert np.mean(told) == pytest.approx(1.0, abs=0.04)
+    assert np.mean(untold) > 50.0
+
+
+def distorted(size, seed=0, effects=None, level=0.02):
+    """The bench with friction; the magnitude of both harmonics of the input, with any phase."""
+    phases = np.random.default_rng([seed, 1]).uniform(-np.pi, np.pi, 2)
+    harmonics = {"second": size, "second_phase": phases[0], "third": size, "third_phase": phases[1]}
+    return drawn({"input_distortion": harmonics, **(effects or {})}, seed, level, std=0.001)
+
+
+@pytest.mark.parametrize(("std", "level"), [(0.25 * STD, 0.02), (STD, 0.04)])
+def test_the_misfit_of_a_bench_with_friction_has_the_size_of_its_covariance(std, level):
+    """Small harmonics are passed on in proportion; larger ones are not where they meet the resonance."""
+    told, untold = [], []
+    for seed in range(20):
+        bare = distorted(std, seed, level=level)
+        data = with_uncertain_harmonics(bare, std)
+        data = data.renewed(stated(data))
+        told.append(chi2_over_dof(data, stated(data)))
+        untold.append(chi2_over_dof(bare, stated(data)))
+    assert np.mean(told) == pytest.approx(1.0, abs=0.1)
+    assert np.mean(untold) > 5.0
+
+
+def test_the_start_phase_is_the_best_one_under_the_covariance():
+    data = with_uncertain_harmonics(distorted(STD), STD)
+    here = Model(data, Hypothesis(())).evaluate(stated(data).point)
+    phase, simulated = here.response.phase, here.response.whitened
+    aliases = data.whiten(here.response.aliases)
+
+    def misfit(turned):
+        left = real(data.whitened - aliases - data.rotated(simulated, turned))
+        return (data.decorrelated(left) ** 2).sum(-1)
+
+    assert (misfit(phase) < np.minimum(misfit(phase - 1e-4), misfit(phase + 1e-4))).all()
+    derivative = data.eliminated_derivatives(here)[..., 0]
+    slope = 2.0 * (derivative * here.residual).sum(-1)
+    assert (np.abs(slope) < 1e-4 * np.linalg.norm(derivative, axis=-1)).all()
+    assert (np.abs(phase - data.bare().start_phase(simulated, aliases)) > 1e-4).any()
+
+
+def test_the_derivative_by_the_start_phase_is_that_of_the_residual():
+    data = with_uncertain_harmonics(distorted(STD), STD)
+    here = Model(data, Hypothesis(())).evaluate(stated(data).point)
+    turned = [
+        data.decorrelated(real(-data.rotated(here.response.whitened, here.response.phase + step)))
+        for step in (1e-5, -1e-5)
+    ]
+    np.testing.assert_allclose(
+        data.eliminated_derivatives(here)[..., 0], (turned[0] - turned[1]) / 2e-5, rtol=1e-5, atol=1e-4
+    )
+
+
+def test_some_of_the_tests_are_compared_as_before():
+    data = with_uncertain_harmonics(distorted(STD), STD)
+    rows = np.array([1, 4])
+    all_tests = Model(data, Hypothesis(())).evaluate(stated(data).point)
+    some = Model(data.subset(rows), Hypothesis(())).evaluate(stated(data).point.subset(rows))
+    np.testing.assert_allclose(some.chi2_by_test, all_tests.chi2_by_test[rows], rtol=1e-6)
+
+
+def test_a_model_error_has_no_part_in_what_the_input_adds():
+    data = harmonic_data(frictionless()).with_model_error(0.02)
+    expected = closed_form(data)
+    assert 3.0 < expected.max() < 0.01 * closed_form(harmonic_data(frictionless())).max()
+    np.testing.assert_allclose(
+        np.linalg.inv(data.whitening @ data.whitening), expected, atol=1e-4 * expected.max()
+    )
+
+
+def test_bootstrap_samples_have_inputs_with_harmonics():
+    data = with_uncertain_harmonics(distorted(0.0), STD)
+    truth = Model(data, Hypothesis(())).evaluate(stated(data).point)
+    rng, squares, bare = np.random.default_rng(5), [], []
+    for _ in range(100):
+        sample = data.bootstrap_sample(truth, rng)
+        squares.append(sample.compared_again(truth).chi2)
+        bare.append(sample.bare().compared_again(truth).chi2)
+    expected = data.dof.sum()
+    assert np.mean(squares) == pytest.approx(expected, abs=4.0 * np.sqrt(2.0 * expected / 100))
+    assert np.mean(bare) > 5.0 * expected
+
+
+# A third harmonic meets the resonance at 13.6 Hz.
+EFFECTS = ("input_distortion", "viscous_damping", "displacement_gain")
+
+
+def finding_of(data):
+    search, base, found, _ = explain(Search.of(data, EFFECTS))
+    return search, verdict.decide(base, found, verdict.thresholds_for(search.data))
+
+
+def test_a_distortion_as_large_as_declared_is_not_missing():
+    data = replace(distorted(STD), model_error=0.02)
+    _, blamed = finding_of(data)
+    assert blamed.verdict == verdict.NAMED
+    assert blamed.best.effects == ("input_distortion",)
+    _, right = finding_of(with_uncertain_harmonics(data, STD))
+    assert right.verdict == verdict.NOTHING
+
+
+def test_a_distortion_ten_times_as_large_is_named():
+    data = with_uncertain_harmonics(replace(distorted(10.0 * STD), model_error=0.02), STD)
+    search, found = finding_of(data)
+    assert found.verdict == verdict.NAMED
+    assert found.best.effects == ("input_distortion",)
+    fit = found.best.fit
+    for name in ("second", "third"):
+        assert fit.values["input_distortion"][name] == pytest.approx(10.0 * STD, rel=0.1)
+    assert fit.model.data is search.data
+    assert search.data.renewed(fit.model.scenario(fit.point)) is search.data
+
+
+def test_a_cause_beside_a_distortion_as_large_as_declared_is_named_alone():
+    data = replace(distorted(STD, effects={"viscous_damping": {"coefficient": 8.0}}), model_error=0.02)
+    _, paired = finding_of(data)
+    assert set(paired.best.effects) == {"viscous_damping", "input_distortion"}
+    _, found = finding_of(with_uncertain_harmonics(data, STD))
+    assert found.verdict == verdict.NAMED
+    assert found.best.effects == ("viscous_damping",)
+    assert found.best.fit.values["viscous_damping"]["coefficient_N_s_per_m"] == pytest.approx(8.0, rel=0.05)
+
+
+def test_a_model_that_distorts_is_distorted_further():
+    own = BENCH + "[effects.input_distortion]\nsecond = 0.01\nsecond_phase_deg = 30.0\n"
+    data = with_uncertain_harmonics(replace(distorted(STD), model=config.parse(own)), STD)
+    moved = data._distorted({}, "second", 0.01)["input_distortion"]
+    both = 0.01 * np.exp(1j * np.radians(30.0)) + 0.01
+    assert moved["second"] == pytest.approx(abs(both))
+    assert moved["second_phase"] == pytest.approx(np.angle(both))
+
+
+def test_a_whole_diagnosis_of_distorted_tests_finds_nothing_missing():
+    found = diagnose(frictionless(7, distorted=True), ("input_distortion", "viscous_damping"))
+    assert found.finding.verdict == verdict.NOTHING
