@@ -54,15 +54,5 @@ def test_errors_are_in_proportion_to_their_size_but_for_a_recorded_distortion():
     assert masses[1] == pytest.approx(0.5 * masses[0], abs=2e-6)
     assert half.effects["input_distortion"]["second"] == 0.5 * whole.effects["input_distortion"]["second"]
     assert half.uncertain == {name: 0.5 * std for name, std in whole.uncertain.items()}
-    recorded = [imperfect.draw(size, True, 4.0, np.random.default_rng(3)) for size in (1.0, 0.5)]
-    assert recorded[0].effects["input_distortion"] == recorded[1].effects["input_distortion"]
-    assert [each.harmonics_std for each in (whole, half, *recorded)] == [0.002, 0.001, 0.0, 0.0]
-
-
-def test_the_declared_harmonics_of_a_stated_input_have_the_size_of_those_drawn():
-    drawn = [imperfect.draw(2.0, False, 4.0, np.random.default_rng(seed)) for seed in range(400)]
-    parts = [each.effects["input_distortion"] for each in drawn]
-    for name in ("second", "third"):
-        harmonics = [each[name] * np.exp(1j * np.radians(each[f"{name}_phase_deg"])) for each in parts]
-        real = np.r_[np.real(harmonics), np.imag(harmonics)]
-        assert real.std() == pytest.approx(np.sqrt(0.5) * drawn[0].harmonics_std, rel=0.1)
+    recorded = [imperfect.draw(size, True, 4.0, np.random.default_rng(3)).effects for size in (1.0, 0.5)]
+    assert recorded[0]["input_distortion"] == recorded[1]["input_distortion"]

@@ -36,16 +36,12 @@ SIZES = (0.5, 1.0, 2.0)
 
 @dataclass(frozen=True)
 class Errors:
-    """The true rig beside that of the model, effects of the errors, and what a user declares of them.
-
-    ``harmonics_std``: of the harmonics of an input whose amplitude is stated; 0 where it is recorded.
-    """
+    """The true rig beside that of the model, effects of the errors, and what a user declares of them."""
 
     rig: Rig
     effects: Effects
     spread: float
     uncertain: Mapping[str, float]
-    harmonics_std: float
 
 
 def draw(size: float, recorded: bool, column_angle_deg: float, random: np.random.Generator) -> Errors:
@@ -63,8 +59,7 @@ def draw(size: float, recorded: bool, column_angle_deg: float, random: np.random
         "column_angle_deg": near(column_angle_deg, COLUMN_ANGLE_STD),
     }
     sections["suspension"] |= angles
-    declared = 0.0 if recorded else size * HARMONICS
-    harmonics = RECORDED_HARMONICS if recorded else declared
+    harmonics = RECORDED_HARMONICS if recorded else size * HARMONICS
     second, third = np.abs(harmonics * random.normal(size=2)).tolist()
     phases = random.uniform(-180.0, 180.0, 2).tolist()
     distortion = {
@@ -75,4 +70,4 @@ def draw(size: float, recorded: bool, column_angle_deg: float, random: np.random
     }
     effects = {"input_distortion": distortion, "displacement_gain": {"scale": near(1.0, GAIN)}}
     uncertain = {name: size * std for name, std in DECLARED.items()}
-    return Errors(Rig(sections), effects, size * AMPLITUDE, uncertain, declared)
+    return Errors(Rig(sections), effects, size * AMPLITUDE, uncertain)

@@ -19,7 +19,6 @@ from wedgesweep.validation import time_records, unmodelled_data
 from wedgesweep.validation.baselines import BASELINES
 from wedgesweep.validation.draft import Draft
 from wedgesweep.validation.draw import draw
-from wedgesweep.validation.imperfect import Errors
 from wedgesweep.validation.judge import Record
 from wedgesweep.validation.response import TONE, Test
 from wedgesweep.validation.sets import DataSet
@@ -228,17 +227,15 @@ def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory:
             amplitude = round(RAISE * draft.tests[i].amplitude, 6)
             draft.tests[i] = draft.tests[i]._replace(amplitude=amplitude)
     if draft.errors:
-        _declare_errors(draft, draft.errors, directory / DATA)
+        _declare_errors(draft, directory / DATA)
 
 
-def _declare_errors(draft: Draft, errors: Errors, data: Path) -> None:
+def _declare_errors(draft: Draft, data: Path) -> None:
     """Put the model on trial in place of the true one, and say what is known of their difference."""
     (data / "model.toml").write_text(toml.dumps(draft.system({}).document()))
     file = data / "measured.toml"
     document = tomllib.loads(file.read_text())
     document["measurement"] |= {"uncertain": draft.uncertain, "model_error": draft.model_error}
-    if errors.harmonics_std:
-        document["measurement"] |= {"input_harmonics_std": errors.harmonics_std}
     file.write_text(toml.dumps(document))
 
 
