@@ -327,3 +327,14 @@ def test_a_loop_needs_displacement_and_force(tmp_path):
     path.write_text(path.read_text().replace('force = { column = "F", unit = "N" }\n', ""))
     with pytest.raises(MeasuredError, match="force: missing"):
         read(path)
+
+
+def test_a_jump_may_be_in_the_sample_before_it_or_after_it():
+    """Errors of its time reach both alike: the compared forces do not know which sample was off."""
+    low_pass, places = LowPass(50.0, 500.0), np.arange(41, 161)
+    jumps = np.zeros(201)
+    jumps[100] = 1.0  # between the samples 100 and 101
+    nothing = (np.zeros(201),) * 3
+    variance = motion_noise.covariance(low_pass, places, 0.0, motion_noise.Derivatives(nothing, jumps))[0]
+    assert variance == pytest.approx(variance[::-1], abs=1e-12)
+    assert variance.argmax() in (59, 60)
