@@ -48,6 +48,20 @@ def test_a_jump_at_a_turn_counts_for_its_share_of_the_interval():
         assert force.sum() == pytest.approx(expected, abs=1e-9)
 
 
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+def test_friction_that_runs_through_its_ramp_within_a_sample_counts_by_its_mean(law):
+    friction = {"dynamic": 0.3, "static": 0.36, "threshold_velocity": 2e-3}
+    record = oscillator.record(law, 0.0, 10.0, {**OSCILLATOR, "damping": 0.0}, friction)
+    fine, coarse, samples = 64, 6e-3, 400
+    # A turn lasts for about a sample: the velocity changes by 5 mm/s in it.
+    step = coarse / fine
+    every = np.array(sine(5.5e-3, 12.2, samples * fine, step))
+    exact = imposed_motion.forces(record, *every, step)[0].reshape(samples, fine).mean(axis=1)
+    middle = sine(5.5e-3, 12.2, samples, coarse, phase=0.1 + 12.2 * 0.5 * (coarse - step))
+    force = imposed_motion.forces(record, *middle, coarse)[0]
+    assert force == pytest.approx(exact, abs=0.02 * 3.6)
+
+
 def test_bristles_follow_a_constant_velocity_as_their_closed_form():
     # Dahl: db/dx = (1 - b)/length while x grows.
     length, speed = 1e-3, 0.02

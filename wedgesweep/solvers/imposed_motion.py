@@ -14,6 +14,8 @@ from wedgesweep.hybrid.interface import driving_force, initial_mode, rate, scale
 from wedgesweep.hybrid.vectors import replaced, vector
 from wedgesweep.systems import grouped
 
+# Parts of a sample over which the force is averaged where regularised friction runs through its ramp.
+PARTS = 16
 # States of the mass itself, which the motion gives, and the step of the others for their derivatives.
 GIVEN, DIFFERENCE = 2, 1e-6
 
@@ -25,7 +27,7 @@ def forces(
     acceleration: np.ndarray,
     step: float,
 ) -> np.ndarray:
-    """Force on the mass along a motion.
+    """Force on the mass along a motion: the mean over each sample where friction changes within it.
 
     Parameters
     ----------
@@ -49,8 +51,10 @@ def forces(
     for rows, cases in grouped(parameters):
         part = np.empty((rows.size, velocity.size))
         _follow_all(cases, places[rows], motion, step, part)
+        jumps = cases["friction"]["set_valued"] != 0
+        part[jumps] = with_jumps(part[jumps], velocity)
         found[rows] = part
-    return with_jumps(found, velocity)
+    return found
 
 
 def with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
@@ -73,12 +77,28 @@ def _follow_all(cases, places, motion, step, out):
         y = vector(np.zeros(len(scales(p))), scales(p))
         for i in range(motion.shape[1]):
             y = replaced(replaced(y, 0, places[k, i]), 1, motion[0, i])
-            out[k, i] = driving_force(0.0, motion[1, i], y, initial_mode(0.0, y, p)[0], p)
+            out[k, i] = _force(y, motion[1, i], step, p)
             following = min(i + 1, motion.shape[1] - 1)
             # States of effects see the mean motion between two samples.
             y = replaced(y, 0, 0.5 * (places[k, i] + places[k, following]))
             y = replaced(y, 1, 0.5 * (motion[0, i] + motion[0, following]))
             y = _advanced(y, step, p)
+
+
+@inner
+def _force(y, acceleration, step, p):
+    """Force at a sample, whose velocity changes evenly from half a step before it to half a step after it."""
+    # Beyond this velocity friction neither changes its sign within the sample nor leaves its ramp.
+    parts = PARTS if abs(y[1]) < p.friction.v_t + 0.5 * abs(acceleration) * step else 1
+    if p.friction.set_valued:
+        parts = 1
+    total = 0.0
+    for part in range(parts):
+        later = ((part + 0.5) / parts - 0.5) * step
+        there = replaced(y, 0, y[0] + (y[1] + 0.5 * acceleration * later) * later)
+        there = replaced(there, 1, y[1] + acceleration * later)
+        total += driving_force(0.0, acceleration, there, initial_mode(0.0, there, p)[0], p)
+    return total / parts
 
 
 @inner
