@@ -14,6 +14,9 @@ from wedgesweep.diagnose.transient.release import Grid, Release
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
+# A motion that swings by less than this share of the largest swing of its record may stick: how friction lets
+# go then depends on how long it has stuck.
+STUCK = 0.05
 # Share of a record under an input that is simulated before its first window, at most.
 LEAD_SHARE = 0.125
 # Windows that a single record makes at least, if each has so many natural periods.
@@ -76,6 +79,15 @@ def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
     return [Cut(first, inside, min(ceil(LEAD * period), first - skipped)) for first in firsts]
 
 
+def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -> Cut:
+    """The window with a lead that goes back to where a motion (n,) that may stick has last slipped."""
+    size, allowed = ceil(period), STUCK * float(np.ptp(motion))
+    start = cut.first - cut.lead
+    while start > skipped and float(np.ptp(motion[max(start - size, skipped) : start + size])) < allowed:
+        start = max(start - size, skipped)
+    return cut._replace(lead=cut.first - start)
+
+
 def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Release]:
     """Prepare the windows of a record, of which there should be so many at least."""
     rate, driven = record.rate, record.driven
@@ -85,6 +97,8 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
     parts = cuts(record.channels.shape[1], period, driven.settling if driven else 0, fewest)
+    if driven:
+        parts = [_from_last_slip(each, smooth, period, driven.settling) for each in parts]
     passed_on, input_noise = _passed_on(record), driven.input_noise(record.shares) if driven else None
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
