@@ -22,6 +22,8 @@ PERIODS, SAMPLING_HZ, LEVEL = 8.4, 2000.0, 0.04
 STUCK = 1e-3
 # Steps of log amplitudes and of factors on uncertain parameters in finite differences.
 STEP = 1e-4
+# Least factor on an uncertain parameter: an iteration may try less than nothing.
+LEAST_FACTOR = 0.05
 # An estimate need not be better than this share.
 FTOL, EVALUATIONS = 1e-2, 8
 # Residual that stands for a response that does not exist.
@@ -123,7 +125,8 @@ class _Fit:
         count = len(self.bench.tests)
         effects = {key: dict(numbers) for key, numbers in self.model.effects.items()}
         for name, change in zip(self.bench.uncertain, x[count:].tolist(), strict=True):
-            effects[name] = {"scale": (1.0 + change) * effects.get(name, {"scale": 1.0})["scale"]}
+            own = effects.get(name, {"scale": 1.0})["scale"]
+            effects[name] = {"scale": max(1.0 + change, LEAST_FACTOR) * own}
         tests = [
             test._replace(amplitude=test.amplitude * float(np.exp(step)))
             for test, step in zip(self.bench.tests, x[:count], strict=True)
