@@ -104,10 +104,12 @@ class Driven:
     def passed_on(self, response: np.ndarray) -> np.ndarray:
         """Power of the input's noise in a response (n,) by frequency, from 0 to half the sampling rate.
 
-        The rig passes on noise as it passes on the input: by the ratio of the spectra of the two.
+        The rig passes on noise as it passes on the input: by the ratio of the spectra of the two. Where the
+        input does not stand out of its noise, that ratio says nothing.
         """
         given, seen = (_power(each) for each in (self.samples, response))
-        return seen * self.noise_power / np.maximum(given, 1e-300)
+        noise = np.minimum(self.noise_power, MOST_NOISE**2 * given)
+        return seen * noise / np.maximum(given, 1e-300)
 
 
 def at(given: SampledInput, start: float) -> SampledInput:
