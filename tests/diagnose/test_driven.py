@@ -200,3 +200,12 @@ def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulati
     first, second, third = (own.starts_at for own in data.releases)
     assert first == pytest.approx(second)
     assert third > second + 5.0
+
+
+def test_a_window_in_which_a_mass_stays_at_rest_is_not_simulated_from_where_it_last_slipped(tmp_path):
+    """A record that begins with a long rest would be simulated from its start once for each window."""
+    slow = np.where(0.7 * TIMES[-1] > TIMES, 0.01, 1.0) * 1e-3 * chirp()
+    releases = transient_data(read(write(tmp_path, [slow], noise=(2e-6, 1e-4)))).releases
+    first, resting, slipping = releases
+    assert resting.begins - resting.starts_at == pytest.approx(first.grid.lead * first.step, rel=0.5)
+    assert slipping.starts_at < resting.begins

@@ -24,8 +24,6 @@ MM = 1e3
 COMMAND = "wedgesweep reproduce"
 # Relative difference up to which a frequency or an amplitude is the one that is looked for.
 SAME = 1e-5
-
-
 # Changes of a config: keys and values by table.
 Changes = Mapping[str, Mapping[str, Any]]
 

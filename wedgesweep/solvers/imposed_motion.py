@@ -89,9 +89,8 @@ def _follow_all(cases, places, motion, step, out):
 def _force(y, acceleration, step, p):
     """Force at a sample, whose velocity changes evenly from half a step before it to half a step after it."""
     # Beyond this velocity friction neither changes its sign within the sample nor leaves its ramp.
-    parts = PARTS if abs(y[1]) < p.friction.v_t + 0.5 * abs(acceleration) * step else 1
-    if p.friction.set_valued:
-        parts = 1
+    slow = abs(y[1]) < p.friction.v_t + 0.5 * abs(acceleration) * step
+    parts = PARTS if slow and not p.friction.set_valued else 1
     total = 0.0
     for part in range(parts):
         later = ((part + 0.5) / parts - 0.5) * step

@@ -80,10 +80,15 @@ def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
 
 
 def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -> Cut:
-    """The window with a lead that goes back to where a motion (n,) that may stick has last slipped."""
+    """The window with a lead that goes back to where a motion (n,) that may stick has last slipped.
+
+    Only if it slips within the window: else its friction does not let go there.
+    """
     size, allowed = ceil(period), STUCK * float(np.ptp(motion))
     start = cut.first - cut.lead
-    while start > skipped and float(np.ptp(motion[max(start - size, skipped) : start + size])) < allowed:
+    if np.ptp(motion[start : cut.first + cut.inside]) < allowed:
+        return cut
+    while start > skipped and np.ptp(motion[max(start - size, skipped) : start + size]) < allowed:
         start = max(start - size, skipped)
     return cut._replace(lead=cut.first - start)
 
