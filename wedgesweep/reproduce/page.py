@@ -118,7 +118,8 @@ def _cases(rows: Rows) -> str:
     return (
         "Not settled: the last two periods still differ by more than a thousandth of the input amplitude "
         "when the run ends (for paper.toml after the paper's 1.5 s). Lift-off: a normal force becomes "
-        "negative at some time, where a real wedge would separate from its faces.\n\n"
+        "negative at some time, where a real wedge would separate from its faces; with joints that lift off, "
+        "a contact opens.\n\n"
         + table(
             ("run", "law", "cases", "failed", *flags),
             (
