@@ -14,6 +14,7 @@ from pathlib import Path
 
 from wedgesweep import measured, toml
 from wedgesweep.diagnose import diagnosis
+from wedgesweep.effects import EFFECTS
 
 REPORT = Path(__file__).parent.parent / "docs" / "bench_diagnosis.txt"
 COMMAND = [sys.executable, "-m", "wedgesweep"]
@@ -97,7 +98,7 @@ def main():
         folder = Path(name)
         warm = make(folder / "warm", "coulomb", HIDDEN["velocity_lag"], TESTS[::2])
         whole(warm, folder / "warm-found")
-        say(f"One diagnosis of {len(TESTS)} tests, 21 effects, {JOBS} threads; s (goal {GOAL:g})")
+        say(f"One diagnosis of {len(TESTS)} tests, {len(EFFECTS)} effects, {JOBS} threads; s (goal {GOAL:g})")
         say(f"{'hidden':38}{'law':16}{'verdict':18}{'whole':>7}  parts")
         for hidden, effects in HIDDEN.items():
             for law in LAWS:
