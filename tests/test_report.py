@@ -448,6 +448,21 @@ def test_one_of_a_kind_is_written_in_the_singular(tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
+def test_uncertain_numbers_as_fitted(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "named")
+    harmonics = {"second": 0.0021, "second_phase_deg": 20.0, "third": 0.0013, "third_phase_deg": -90.0}
+    document["uncertain"]["input_distortion"] = harmonics | {"second_std": 0.0003, "third_std": 0.0002}
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    for words in (
+        "scale of friction_level 1.03",
+        "second harmonic over the first 0.0021",
+        "third harmonic over the first 0.0013",
+    ):
+        assert words in text
+
+
+@pytest.mark.usefixtures("no_figures")
 def test_numbers_that_are_missing(tmp_path):
     """Few tests, no velocity, no interval, nothing detectable, fits without numbers."""
     document, _ = fixture_diagnosis.write(tmp_path, "named", tests=5, velocity=False, known=False)

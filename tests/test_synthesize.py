@@ -206,6 +206,25 @@ def test_an_uncertain_number_is_off_and_told(here):
         assert contents(here / "made")[name] == contents(here / "certain")[name]
 
 
+def test_an_uncertain_distortion_is_the_same_in_all_tests_and_told(here):
+    (here / "tests.toml").write_text(f"[uncertain]\ninput_distortion = 0.01\n{TESTS}")
+    synthesize("--level", 0)
+    told = truth(here)["uncertain"]["input_distortion"]
+    assert 0.0 < told["second"] < 0.05
+    assert told["second"] != told["third"]
+    assert measured.read(here / "made" / "measured.toml").uncertain == {"input_distortion": 0.01}
+    more = "[effects.input_distortion]\n" + "".join(f"{key} = {value!r}\n" for key, value in told.items())
+    (here / "true.toml").write_text(TRUE.replace("[sweep]", f"{more}[sweep]"))
+    (here / "tests.toml").write_text(TESTS)
+    synthesize("--level", 0, output="certain")
+    for name in ("test-00.csv", "test-01.csv"):
+        drawn, certain = (
+            np.loadtxt(here / each / name, delimiter=",", skiprows=1) for each in ("made", "certain")
+        )
+        # The phases have gone through degrees.
+        np.testing.assert_allclose(drawn, certain, rtol=1e-6, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new", "words"),
     [

@@ -31,13 +31,16 @@ def receptance(frequency, orders):
     return M * omega**2 / (K + 1j * C * omega - M * omega**2)
 
 
-def frictionless(seed=0, std=STD, distorted=False, noise=NOISE, velocity=True):
-    """Records of the frictionless oscillator, whose inputs may be distorted: each test in its own way."""
+def frictionless(seed=0, std=STD, distorted=False, noise=NOISE, velocity=True, common=(0.0, 0.0)):
+    """Records of the frictionless oscillator, whose inputs may be distorted: each test in its own way.
+
+    ``common``: second and third harmonic over the amplitude, complex, that all inputs have.
+    """
     rng, orders = np.random.default_rng(seed), np.arange(1, 4)
     tests = []
     for frequency in FREQUENCIES:
         parts = np.array([0.0, 1.0, 1.0]) * STD * np.sqrt(0.5) * distorted
-        given = -1j * np.eye(3)[0] + parts * (rng.normal(size=3) + 1j * rng.normal(size=3))
+        given = -1j * np.array([1.0, *common]) + parts * (rng.normal(size=3) + 1j * rng.normal(size=3))
         motion = AMPLITUDE * given * receptance(frequency, orders)
         time = np.arange(4000) * 12.0 / frequency / 4000
         omega = 2.0 * np.pi * frequency * orders

@@ -15,15 +15,17 @@ DOF, PENALTY = 700, 12.6
 
 
 def explained(
-    q, *effects, tests=12, uncertain=None, scale=1.0, numbers=1, by_test=None, constant=1.0, error=0.0
+    q, *effects, tests=12, uncertain=None, told=None, numbers=1, by_test=None, constant=1.0, error=0.0
 ):
+    """An explanation with a misfit; ``told``: numbers of its effects."""
     data = SimpleNamespace(
+        model=SimpleNamespace(effects={}),
         tests=tests,
         uncertain=uncertain or {},
         dof=np.full(tests, DOF / tests),
         model_misfit=np.full(tests, error * DOF / tests),
     )
-    model = SimpleNamespace(data=data, size=numbers * len(effects))
+    model = SimpleNamespace(data=data, size=numbers * len(effects), values=lambda x: told)
     fit = SimpleNamespace(
         chi2=q,
         excess=q - DOF,
@@ -31,7 +33,7 @@ def explained(
         model=model,
         evaluation=SimpleNamespace(chi2_by_test=np.full(tests, q / tests) if by_test is None else by_test),
         effects=effects,
-        values={effect: {"scale": scale} for effect in effects},
+        x=None,
     )
     return priced(fit, constant)
 
@@ -269,11 +271,18 @@ def test_a_cause_is_named_only_if_no_other_leaves_noise_only():
     assert verdict_of(base, best, explained(685.0, "bolster_stiffness", "preload")).verdict == "named"
 
 
-@pytest.mark.parametrize(("scale", "named"), [(1.1, False), (1.4, True)])
-def test_an_uncertain_number_is_a_cause_beyond_three_deviations(scale, named):
-    found = verdict_of(
-        explained(5000.0), explained(705.0, "friction_level", uncertain={"friction_level": 0.1}, scale=scale)
-    )
+@pytest.mark.parametrize(
+    ("name", "numbers", "named"),
+    [
+        ("friction_level", {"scale": 1.25}, False),
+        ("friction_level", {"scale": 1.4}, True),
+        # Of each harmonic, cosine and sine part have a share of 1 / sqrt(2).
+        ("input_distortion", {"second": 0.2, "second_phase": 2.0, "third": 0.0, "third_phase": 0.0}, False),
+        ("input_distortion", {"second": 0.0, "second_phase": 0.0, "third": 0.22, "third_phase": 3.1}, True),
+    ],
+)
+def test_an_uncertain_number_is_a_cause_beyond_three_deviations(name, numbers, named):
+    found = verdict_of(explained(5000.0), explained(705.0, name, uncertain={name: 0.1}, told={name: numbers}))
     assert (found.verdict == "named") is named
 
 

@@ -173,6 +173,35 @@ def test_only_steady_tests_have_harmonics_of_a_stated_input(tmp_path):
     assert "measurement.input_harmonics_std: there is no test of kind steady" in problems(tmp_path, text)
 
 
+COMMON = "[measurement.uncertain]\ninput_distortion = 0.004\n"
+
+
+def test_harmonics_of_a_stated_input_may_be_the_same_in_all_tests(tmp_path):
+    found = read(tmp_path, COMMON + MEASURED)
+    assert found.uncertain == {"input_distortion": 0.004}
+    write_netcdf(found, tmp_path / "all.nc")
+    assert measured.read(tmp_path / "all.nc").uncertain == {"input_distortion": 0.004}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (RECORDED.replace("input_gain_std = 0.02", ""), "the input is recorded, and its harmonics with it"),
+        (
+            MEASURED.replace("frequency_hz = 20.0\namplitude_mm = 0.3\namplitude_std = 0.01\n", "")
+            .replace("[[measurement.test]]", '[[measurement.test]]\nkind = "transient"'),
+            "there is no test of kind steady",
+        ),
+        (
+            MEASURED + '[[measurement.test]]\nfile = "one.csv"\nkind = "transient"\n',
+            "tests of kind transient have other inputs; diagnose them by themselves",
+        ),
+    ],
+)  # fmt: skip
+def test_only_stated_inputs_have_the_same_harmonics(tmp_path, text, words):
+    assert f"measurement.uncertain.input_distortion: {words}" in problems(tmp_path, COMMON + text)
+
+
 def test_a_recorded_input_in_a_netcdf_file_has_its_harmonics(tmp_path):
     write_netcdf(read(tmp_path, RECORDED), tmp_path / "all.nc")
     with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:

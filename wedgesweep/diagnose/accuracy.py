@@ -111,6 +111,6 @@ def _minimised(fit: Fit, size: float) -> Fit:
     known = np.isfinite(data.nuisance_std)
     nuisance = fit.point.nuisance.copy()
     nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
-    x = np.r_[fit.x[: model.size], np.ones(len(model.uncertain))]
+    x = np.r_[fit.x[: model.size], model.uncertain.mean]
     as_stated = model.evaluate(replace(fit.point, x=x, nuisance=nuisance, warm=at_rest))
     return minimise(model, min(here, as_stated, key=lambda each: each.chi2), ITERATIONS)

@@ -10,14 +10,13 @@ from scipy.special import chdtrc
 from wedgesweep.diagnose.evaluation import Evaluation, Point, Scenario, best_evaluation_per_test
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
+from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
 
 # Relative errors of simulations: negligible beside the noise of 4 % data, negligible in derivatives as well,
 # and good enough to choose the points from which a fit starts.
 TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
 # The base model is also fitted from this many standard deviations of an uncertain parameter to either side.
 OFF = 1.5
-# Bounds and scale of uncertain parameters, which are factors.
-UNCERTAIN_LOW, UNCERTAIN_HIGH, UNCERTAIN_SCALE = 0.2, 5.0, 0.1
 # A nuisance parameter that is stated as exact has this standard deviation.
 EXACT = 1e-6
 
@@ -44,27 +43,23 @@ class Model:
         return self.hypothesis.effects
 
     @cached_property
-    def uncertain(self) -> dict[str, float]:
-        """Uncertain parameters of the base model with their priors; a candidate effect has no prior."""
-        return {k: s for k, s in self.data.uncertain.items() if k not in self.effects}
-
-    @cached_property
-    def prior_std(self) -> np.ndarray:
-        """Standard deviations of the uncertain parameters, (u,)."""
-        return np.array(list(self.uncertain.values()))
+    def uncertain(self) -> UncertainNumbers:
+        """Uncertain parameters (u,) of the base model with their priors; a candidate effect has no prior."""
+        stds = {k: s for k, s in self.data.uncertain.items() if k not in self.effects}
+        return uncertain_numbers(stds, self.data.model.effects)
 
     @cached_property
     def low(self) -> np.ndarray:
         """Lower bounds of x, (k + u,)."""
-        return self._bound(self.hypothesis.low, UNCERTAIN_LOW)
+        return self._bound(self.hypothesis.low, self.uncertain.low)
 
     @cached_property
     def high(self) -> np.ndarray:
         """Upper bounds of x, (k + u,)."""
-        return self._bound(self.hypothesis.high, UNCERTAIN_HIGH)
+        return self._bound(self.hypothesis.high, self.uncertain.high)
 
-    def _bound(self, own: np.ndarray, uncertain: float) -> np.ndarray:
-        bound = np.r_[own, [uncertain] * len(self.uncertain)]
+    def _bound(self, own: np.ndarray, uncertain: np.ndarray) -> np.ndarray:
+        bound = np.r_[own, uncertain]
         if self.held is not None:
             bound[self.held[0]] = self.held[1]
         return bound
@@ -72,7 +67,7 @@ class Model:
     @cached_property
     def scale(self) -> np.ndarray:
         """Changes of x that matter, (k + u,)."""
-        return np.r_[self.hypothesis.scale, [UNCERTAIN_SCALE] * len(self.uncertain)]
+        return np.r_[self.hypothesis.scale, self.uncertain.scale]
 
     @cached_property
     def nuisance_weight(self) -> np.ndarray:
@@ -93,15 +88,15 @@ class Model:
         return replace(self, data=data)
 
     def uncertain_starts(self) -> np.ndarray:
-        """Uncertain parameters (1 + 2 u, u) as stated, and each of them well off to either side."""
-        off = OFF * np.diag(self.prior_std)
-        stated = np.ones((1, self.prior_std.size))
-        return np.maximum(np.concatenate([stated, stated + off, stated - off]), self.low[self.size :])
+        """Uncertain parameters (n, u) as stated, and each factor well off to either side."""
+        factors = [each.factor for each in self.uncertain.numbers]
+        off = OFF * np.diag(self.uncertain.std)[factors]
+        stated = self.uncertain.mean[None]
+        return np.maximum(np.concatenate([stated, stated + off, stated - off]), self.uncertain.low)
 
     def values(self, x: np.ndarray) -> Values:
         """Values of all effects in SI."""
-        nuisance = {name: {"scale": float(s)} for name, s in zip(self.uncertain, x[self.size :], strict=True)}
-        return {**nuisance, **self.hypothesis.values(x[: self.size])}
+        return {**self.uncertain.values(x[self.size :]), **self.hypothesis.values(x[: self.size])}
 
     def scenario(self, point: Point) -> Scenario:
         return Scenario(self.values(point.x), point)
@@ -133,15 +128,14 @@ class Model:
 
     def _prior(self, point: Point) -> np.ndarray:
         nuisance = point.nuisance[:, : self.nuisance_weight.shape[1]] * self.nuisance_weight
-        return np.r_[nuisance.ravel(), (point.x[self.size :] - 1.0) / self.prior_std]
+        return np.r_[nuisance.ravel(), (point.x[self.size :] - self.uncertain.mean) / self.uncertain.std]
 
     def start(self, base: "Fit | None", x: np.ndarray) -> Point:
         """The point with parameters x (k,) of the hypothesis and everything else as a base fit has it."""
         if base is None:
-            return Point(np.r_[x, np.ones(len(self.uncertain))], *self.data.start())
-        known = dict(zip(base.model.uncertain, base.x[base.model.size :], strict=True))
-        rest = [known.get(name, 1.0) for name in self.uncertain]
-        return replace(base.evaluation.point, x=np.r_[x, rest])
+            return Point(np.r_[x, self.uncertain.mean], *self.data.start())
+        known = base.model.uncertain.values(base.x[base.model.size :])
+        return replace(base.evaluation.point, x=np.r_[x, self.uncertain.at(known)])
 
 
 @dataclass(frozen=True)

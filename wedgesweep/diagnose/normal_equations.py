@@ -75,7 +75,7 @@ def normal_equations(
     global_block = np.einsum("tmk,tml->kl", by_parameter, by_parameter)
     global_gradient = np.einsum("tmk,tm->k", by_parameter, evaluation.residual)
     uncertain = np.arange(model.size, len(global_gradient))
-    global_block[uncertain, uncertain] += model.prior_std**-2.0
-    global_gradient[model.size :] += evaluation.uncertain_prior / model.prior_std
+    global_block[uncertain, uncertain] += model.uncertain.std**-2.0
+    global_gradient[model.size :] += evaluation.uncertain_prior / model.uncertain.std
     coupling = np.einsum("tmi,tmk->tik", by_nuisance, by_parameter)
     return NormalEquations(local, coupling, global_block, gradient, global_gradient, eliminated)

@@ -27,7 +27,7 @@ class Projector:
         derivatives = np.concatenate(
             [by_test.reshape(rows, -1), self.by_parameter.reshape(rows, parameters)], axis=1
         )
-        priors = self._over_all(model.nuisance_weight, 1.0 / model.prior_std)
+        priors = self._over_all(model.nuisance_weight, 1.0 / model.uncertain.std)
         matrix = np.concatenate([derivatives, np.diag(priors)])
         matrix /= np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
         u, s, _ = np.linalg.svd(matrix, full_matrices=False)

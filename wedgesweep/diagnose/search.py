@@ -190,7 +190,7 @@ def base_fit(search: Search) -> BaseFit:
     points = [replace(start, x=x) for x in model.uncertain_starts()]
     evaluations = search.data.search_nuisances(model, points)
     fits = search.each(lambda evaluation: minimise(model, evaluation), evaluations)
-    if model.uncertain and min(fits, key=_chi2).p < POSSIBLE:
+    if len(model.uncertain) and min(fits, key=_chi2).p < POSSIBLE:
         # Nuisance parameters may have made up for wrong values of uncertain parameters.
         fits += search.each(
             lambda evaluation: minimise(model, _held_as_stated(model, evaluation)), evaluations
@@ -206,7 +206,7 @@ def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) 
     """
     best = min(found, key=penalised, default=base).fit
     model, values = search.model(), best.model.values(best.x)
-    x = np.array([values[name]["scale"] for name in model.uncertain])
+    x = np.clip(model.uncertain.at(values), model.low, model.high)
     _, at_rest = search.data.start()
     fit = minimise(model, model.evaluate(replace(best.point, x=x, warm=at_rest)))
     if fit.chi2 >= base.fit.chi2 - SLIGHT:

@@ -11,6 +11,7 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnosis_result import VERDICTS
 from wedgesweep.effects import confounded, parts
+from wedgesweep.uncertain import uncertain_numbers
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = VERDICTS
 # Explanations whose penalised misfits are closer than this cannot be told apart.
@@ -77,12 +78,11 @@ class Finding:
 
 def eligible(each: Explanation) -> bool:
     """Whether a fit may be called a cause: an uncertain parameter must have left its prior."""
-    uncertain = each.fit.model.data.uncertain
-    return all(
-        abs(numbers["scale"] - 1.0) > UNCERTAIN * uncertain[name]
-        for name, numbers in each.fit.values.items()
-        if name in uncertain
-    )
+    fit, data = each.fit, each.fit.model.data
+    declared = {name: std for name, std in data.uncertain.items() if name in fit.effects}
+    stated = uncertain_numbers(declared, data.model.effects)
+    moved = np.abs(stated.at(fit.model.values(fit.x)) - stated.mean) > UNCERTAIN * stated.std
+    return {one.effect for one, far in zip(stated.numbers, moved, strict=True) if far} == set(declared)
 
 
 def none_adequate(found: Sequence[Explanation]) -> bool:

@@ -18,7 +18,9 @@ from wedgesweep.measured.declarations import (
     RESPONSES,
     STEADY,
     TRANSIENT,
+    UNCERTAIN,
 )
+from wedgesweep.uncertain import DISTORTION
 
 # Responses that are compared at a time.
 MOST_RESPONSES = 2
@@ -31,12 +33,15 @@ def faults(
 ) -> list[str]:
     """Faults of the channels of each kind of test, as "key: fault"; without any, those beside the model.
 
-    ``stds``: what is unknown of inputs, by the names of INPUT_STDS.
+    ``stds``: what is unknown, by the names of INPUT_STDS and in the table ``uncertain``.
     """
     gain_std = stds[INPUT_GAIN_STD.key]
     found = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
     if stds[INPUT_HARMONICS_STD.key]:
         found += [f"{INPUT_HARMONICS_STD.key}: {fault}" for fault in _harmonics_faults(by_kind)]
+    if DISTORTION in stds[UNCERTAIN.key]:
+        faults = _harmonics_faults(by_kind) or _other_kinds_faults(by_kind)
+        found += [f"{UNCERTAIN.key}.{DISTORTION}: {fault}" for fault in faults]
     if found or model is None:
         return found
     return [fault for kind, own in by_kind.items() for fault in excitation_faults(own, model, kind)]
@@ -49,6 +54,12 @@ def _harmonics_faults(by_kind: Mapping[str, Mapping[str, Any]]) -> list[str]:
     if INPUT in by_kind[STEADY]:
         return [f"the input is recorded, and its harmonics with it; omit it, or the column {INPUT}"]
     return []
+
+
+def _other_kinds_faults(by_kind: Mapping[str, Any]) -> list[str]:
+    """Why harmonics of the input cannot be the same in all tests."""
+    others = [kind for kind in by_kind if kind != STEADY]
+    return [f"tests of kind {kind} have other inputs; diagnose them by themselves" for kind in others]
 
 
 def channel_faults(

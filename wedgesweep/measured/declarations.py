@@ -12,6 +12,7 @@ from wedgesweep.csv_files.dialect import DECIMALS, DELIMITERS
 from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
 from wedgesweep.hints import show
 from wedgesweep.quantity import Quantity
+from wedgesweep.uncertain import DISTORTION
 from wedgesweep.units import UNITS
 
 # Channels that show the response, and what a recorded input may be.
@@ -154,7 +155,12 @@ def _channel(name: str, meaning: str, column: str, unit: str, *more: Key, option
 
 
 def _uncertain(name: str) -> Number:
-    meaning = f"relative std of the quantity that the effect {name} scales"
+    meaning = (
+        "std (rms) of the second and of the third harmonic of the stated input over its amplitude; "
+        "the same in all tests"
+        if name == DISTORTION
+        else f"relative std of the quantity that the effect {name} scales"
+    )
     return Number.of(Quantity(name, nan, meaning, above=0.0, below=1.0), optional=True)
 
 
@@ -202,7 +208,9 @@ DIALECT = table(
     default={},
 )
 
-UNCERTAIN = table("uncertain", "uncertain numbers of the model", *map(_uncertain, PARAMETERS), default={})
+UNCERTAIN = table(
+    "uncertain", "uncertain numbers of the model", *map(_uncertain, (*PARAMETERS, DISTORTION)), default={}
+)
 
 TEST = RecordTable(
     key="test",

@@ -140,7 +140,8 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
             f"{path}: tests: they have different variables, units, of or quantity; make them alike"
         )
     columns = {name: each for own in by_kind.values() for name, each in own.items()}
-    faults = channels.faults(by_kind, numbers, None if problems else config)
+    stds = {**numbers, UNCERTAIN.key: uncertain}
+    faults = channels.faults(by_kind, stds, None if problems else config)
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
         problems += [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, by_kind)]

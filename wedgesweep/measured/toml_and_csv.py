@@ -13,7 +13,7 @@ from wedgesweep.files import read_text
 from wedgesweep.hints import show
 from wedgesweep.measured import arrays, channels, overrides
 from wedgesweep.measured.build import Channels, build_record
-from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, columns_of
+from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
@@ -77,7 +77,8 @@ def _columns_by_kind(measurement: Mapping[str, Any]) -> dict[str, dict[str, Any]
 
 def _at(fault: str) -> str:
     """The full key of a fault of the channels."""
-    return f"measurement.{fault}" if fault.startswith(INPUT_STDS) else f"measurement.columns.{fault}"
+    elsewhere = fault.startswith((*INPUT_STDS, UNCERTAIN.key))
+    return f"measurement.{fault}" if elsewhere else f"measurement.columns.{fault}"
 
 
 def _override_faults(path: Path, measurement: dict[str, Any], config: Config) -> list[str]:

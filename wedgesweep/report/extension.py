@@ -87,10 +87,23 @@ def _row(key: str, fitted: dict[str, Any]) -> list[str]:
 
 def _uncertain(result: DiagnosisResult) -> Markup:
     """Parameters that the measurement declares uncertain, as the fit leaves them."""
-    rows = [
-        [name, formatting.number(each["scale"], 4), formatting.number(each["std"], 2)]
-        for name, each in result.document.get("uncertain", {}).items()
-    ]
+    rows = [row for name, each in result.document.get("uncertain", {}).items() for row in _fitted(name, each)]
     if not rows:
         return Markup()
-    return html.table("Uncertain parameters of the model, as fitted", ("scale of", "value", "std"), rows)
+    return html.table("Uncertain parameters of the model, as fitted", ("", "value", "std"), rows)
+
+
+def _fitted(name: str, numbers: dict[str, float]) -> list[list[str]]:
+    """Rows of an effect: its scale, or its harmonics of the input."""
+    if "scale" in numbers:
+        told = {f"scale of {name}": (numbers["scale"], numbers["std"])}
+    else:
+        told = {
+            quantity.meaning: (numbers[quantity.key], numbers[f"{quantity.key}_std"])
+            for quantity in EFFECTS[name].quantities
+            if f"{quantity.key}_std" in numbers
+        }
+    return [
+        [label, formatting.number(value, 4), formatting.number(std, 2)]
+        for label, (value, std) in told.items()
+    ]

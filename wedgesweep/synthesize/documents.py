@@ -65,10 +65,16 @@ def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: 
     return {
         "effects": truth.config.document["effects"],
         "friction_law": truth.law,
-        "uncertain": truth.factors,
+        "uncertain": _uncertain(truth),
         "noise": options.noise,
         "level": options.level,
         "seed": options.seed,
         "solver": {"method": "radau", "rtol": RTOL},
         "tests": tests,
     }
+
+
+def _uncertain(truth: Truth) -> dict[str, Any]:
+    """True factors by effect, and the numbers of other uncertain effects."""
+    found = truth.uncertain.by_key(truth.x)
+    return {name: numbers.get("scale", numbers) for name, numbers in found.items()}

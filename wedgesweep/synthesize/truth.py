@@ -1,6 +1,6 @@
 """The true system: all random numbers of a synthetic measurement, drawn once."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, exp, pi
 
@@ -11,6 +11,7 @@ from wedgesweep.effects import merge
 from wedgesweep.natural_units import FREQUENCY
 from wedgesweep.synthesize.motion import Clock
 from wedgesweep.synthesize.plan import Plan, PlannedTest
+from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
 
 # Default sampling rates: near SAMPLING_HZ for a rig like the bench (in proportion to the natural frequency of
 # others), and different in each test.
@@ -43,18 +44,18 @@ class TrueTest:
 
 @dataclass(frozen=True)
 class Truth:
-    """The true system: a config with effects, its law, and the true factors of uncertain numbers."""
+    """The true system: a config with effects, its law, and its uncertain numbers at ``x`` (u,)."""
 
     config: Config
     law: str
-    factors: Mapping[str, float]
+    uncertain: UncertainNumbers
+    x: np.ndarray
     tests: tuple[TrueTest, ...]
 
     @property
     def effects(self) -> dict[str, dict[str, float]]:
         """Effects of the config with the uncertain numbers at their true values, in SI units."""
-        factors = {name: {"scale": factor} for name, factor in self.factors.items()}
-        return merge(self.config.effects, factors)
+        return merge(self.config.effects, self.uncertain.values(self.x))
 
     def record(self, test: TrueTest) -> np.ndarray:
         """Parameters of a test for the solver, shape (1,)."""
@@ -76,7 +77,8 @@ def draw(
     """Draw all random numbers; each test has its own generator, so that it does not depend on the others."""
     seeds = np.random.SeedSequence(seed).spawn(len(plan.tests) + 1)
     random = np.random.default_rng(seeds[0])
-    factors = {name: 1.0 + std * float(random.normal()) for name, std in plan.uncertain.items()}
+    stated = uncertain_numbers(plan.uncertain, config.effects)
+    x = stated.mean + stated.std * random.normal(size=len(stated))
     stray = STRAY in config.effects
     near = SAMPLING_HZ * config.natural_units().ratio(FREQUENCY)
 
@@ -87,7 +89,7 @@ def draw(
         _drawn(test, amplitude_error, rate, stray, np.random.default_rng(seed))
         for test, seed in zip(plan.tests, seeds[1:], strict=True)
     )
-    return Truth(config, law, factors, tests)
+    return Truth(config, law, stated, x, tests)
 
 
 def _drawn(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wedgesweep.uncertain import DISTORTION
 from wedgesweep.validation.response import Effects
 from wedgesweep.validation.rigs import Rig
 
@@ -26,10 +27,11 @@ GAIN = 0.005
 AMPLITUDE = 0.005
 # Model error that is allowed for.
 MODEL_ERROR = 0.02
-# What a user declares of this.
+# What a user declares of this; harmonics of an input that is stated.
 DECLARED = {"bolster_mass": 0.005, "bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "friction_level": 0.03}
+DECLARED_INPUT = {DISTORTION: HARMONICS}
 # Effects that stand for errors which are there in truth.
-EFFECTS = (*DECLARED, "input_distortion", "displacement_gain")
+EFFECTS = (*DECLARED, DISTORTION, "displacement_gain")
 # The errors of consecutive sets are these multiples.
 SIZES = (0.5, 1.0, 2.0)
 
@@ -68,6 +70,7 @@ def draw(size: float, recorded: bool, column_angle_deg: float, random: np.random
         "third": third,
         "third_phase_deg": phases[1],
     }
-    effects = {"input_distortion": distortion, "displacement_gain": {"scale": near(1.0, GAIN)}}
-    uncertain = {name: size * std for name, std in DECLARED.items()}
+    effects = {DISTORTION: distortion, "displacement_gain": {"scale": near(1.0, GAIN)}}
+    declared = DECLARED if recorded else DECLARED | DECLARED_INPUT
+    uncertain = {name: size * std for name, std in declared.items()}
     return Errors(Rig(sections), effects, size * AMPLITUDE, uncertain)

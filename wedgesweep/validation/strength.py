@@ -12,7 +12,9 @@ from math import pi
 import numpy as np
 from scipy.optimize import least_squares
 
+from wedgesweep.effects import merge
 from wedgesweep.synthesize.noise import AR1_CORRELATION
+from wedgesweep.uncertain import uncertain_numbers
 from wedgesweep.validation import response
 from wedgesweep.validation.response import HARMONICS, TONE, Effects, System, Test
 
@@ -20,10 +22,8 @@ from wedgesweep.validation.response import HARMONICS, TONE, Effects, System, Tes
 PERIODS, SAMPLING_HZ, LEVEL = 8.4, 2000.0, 0.04
 # A smaller displacement over that by a static input counts as sticking.
 STUCK = 1e-3
-# Steps of log amplitudes and of factors on uncertain parameters in finite differences.
+# Steps of log amplitudes and of uncertain numbers in finite differences.
 STEP = 1e-4
-# Least factor on an uncertain parameter: an iteration may try less than nothing.
-LEAST_FACTOR = 0.05
 # An estimate need not be better than this share.
 FTOL, EVALUATIONS = 1e-2, 8
 # Residual that stands for a response that does not exist.
@@ -38,7 +38,7 @@ class Bench:
     """How a system is tested: tests, kind of noise, and what is uncertain.
 
     ``spread`` is the relative std of the stated input amplitudes, None where they are unknown;
-    ``uncertain`` that of parameters of the model; ``model_error`` what a model may be wrong by.
+    ``uncertain`` that of numbers of the model by effect; ``model_error`` what a model may be wrong by.
     """
 
     tests: Sequence[Test]
@@ -102,13 +102,15 @@ def excess(true: np.ndarray | None, tone_hz: float, model: System, bench: Bench)
 
 
 class _Fit:
-    """Residuals over start phases (rad), log amplitudes and factors on uncertain parameters, less 1."""
+    """Residuals over start phases (rad), log amplitudes and uncertain numbers less what is stated."""
 
     def __init__(self, true: np.ndarray, tone_hz: float, model: System, bench: Bench) -> None:
         self.true, self.model, self.bench = true, model, bench
         self.std = bench.noise_std(true, tone_hz)
         spread = np.inf if bench.spread is None else bench.spread
-        self.prior = np.r_[np.full(len(bench.tests), spread), list(bench.uncertain.values())]
+        unknown = {name: std for name, std in bench.uncertain.items() if name not in model.effects}
+        self.uncertain = uncertain_numbers(unknown, {})
+        self.prior = np.r_[np.full(len(bench.tests), spread), self.uncertain.std]
 
     def start(self) -> np.ndarray | None:
         """Nominal amplitudes and parameters, and the start phases that suit them best."""
@@ -121,12 +123,10 @@ class _Fit:
         return np.r_[phases[np.argmax((overlap @ turn).real, axis=1)], np.zeros(self.prior.size)]
 
     def simulate(self, x: np.ndarray) -> np.ndarray:
-        """Spectra of the model at log amplitudes and factors."""
-        count = len(self.bench.tests)
-        effects = {key: dict(numbers) for key, numbers in self.model.effects.items()}
-        for name, change in zip(self.bench.uncertain, x[count:].tolist(), strict=True):
-            own = effects.get(name, {"scale": 1.0})["scale"]
-            effects[name] = {"scale": max(1.0 + change, LEAST_FACTOR) * own}
+        """Spectra of the model at log amplitudes and uncertain numbers."""
+        count, uncertain = len(self.bench.tests), self.uncertain
+        changed = uncertain.by_key(np.maximum(uncertain.mean + x[count:], uncertain.low))
+        effects = merge(self.model.effects, changed)
         tests = [
             test._replace(amplitude=test.amplitude * float(np.exp(step)))
             for test, step in zip(self.bench.tests, x[:count], strict=True)

@@ -61,12 +61,23 @@ def interval(
 
 
 def uncertain(fit: Fit) -> dict[str, dict[str, float]]:
-    """Uncertain parameters of the base model as fitted."""
+    """Uncertain parameters of the base model as fitted, with their standard deviations.
+
+    That of a scale is ``std``, that of a harmonic's magnitude is named after it, as ``second_std``.
+    """
     size = fit.model.size
-    return {
-        name: {"scale": float(value), "std": float(sqrt(max(fit.covariance[size + i, size + i], 0.0)))}
-        for i, (name, value) in enumerate(zip(fit.model.uncertain, fit.x[size:], strict=True))
-    }
+    found = uncertain_values(fit)
+    std = np.sqrt(np.maximum(np.diag(fit.covariance)[size:], 0.0))
+    for number, value in zip(fit.model.uncertain.numbers, std.tolist(), strict=True):
+        name = "std" if number.factor else f"{number.part[0]}_std"
+        own = found[number.effect]
+        own[name] = max(own.get(name, 0.0), value)
+    return found
+
+
+def uncertain_values(fit: Fit) -> dict[str, dict[str, float]]:
+    """Uncertain parameters of the base model as fitted, by the keys of their effects."""
+    return fit.model.uncertain.by_key(fit.x[fit.model.size :])
 
 
 def finite(value: Any) -> float | None:

@@ -6,7 +6,7 @@ from typing import Any
 from wedgesweep import effects, toml
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
-from wedgesweep.diagnose.result.estimates import uncertain
+from wedgesweep.diagnose.result.estimates import uncertain_values
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 
@@ -14,8 +14,7 @@ def extended(found: Diagnosis) -> str:
     """The extended model as a config that runs the measured tests."""
     best, data = found.extended, found.data
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
-    known = uncertain(best)
-    nuisance = {name: {"scale": each["scale"]} for name, each in known.items() if name != INPUT_GAIN}
+    nuisance = {name: each for name, each in uncertain_values(best).items() if name != INPUT_GAIN}
     document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
     if not isinstance(data, HarmonicData):
         return _heading(found) + toml.dumps(document)

@@ -140,4 +140,4 @@ def _inverse_root(covariance: np.ndarray) -> np.ndarray:
 
 def stated(data: HarmonicData) -> Scenario:
     """The base model as stated."""
-    return Scenario({}, Point(np.ones(len(data.uncertain)), *data.start()))
+    return Scenario({}, Point(np.zeros(0), *data.start()))
