@@ -14,6 +14,7 @@ from pathlib import Path
 
 from wedgesweep import measured, toml
 from wedgesweep.diagnose import diagnosis
+from wedgesweep.diagnose.progress import Step
 from wedgesweep.effects import EFFECTS
 
 REPORT = Path(__file__).parent.parent / "docs" / "bench_diagnosis.txt"
@@ -34,9 +35,6 @@ HIDDEN = {
     },
 }
 LAWS = ("coulomb", "static-dynamic", "exponential")
-# Parts that are told as they begin; of the others each fit is told as it ends.
-BEGUN = ("base model", "final fit", "scores", "held-out tests", "next test")
-
 said = []
 
 
@@ -70,40 +68,35 @@ def whole(file, folder):
 
 
 def parts(file):
-    """Verdict and seconds of each part: base model, singles, pairs, singles again, and what follows."""
-    times = [("", time.perf_counter())]
+    """Verdict and seconds of each stage, in the order in which they began."""
+    times = [("reading", time.perf_counter())]
     found = diagnosis.diagnose(
-        measured.read(file), threads=JOBS, progress=lambda step: times.append((step, time.perf_counter()))
+        measured.read(file),
+        threads=JOBS,
+        progress=lambda step: times.append((stage(step), time.perf_counter())),
     )
     times.append(("end", time.perf_counter()))
-    spent = dict.fromkeys((BEGUN[0], "singles", "pairs", "singles again", *BEGUN[1:]), 0.0)
-    part = BEGUN[0]
-    for (step, before), (following, after) in pairwise(times):
-        part = next((each for each in BEGUN if step.startswith(each)), None) or ended(following) or part
-        spent[part] += after - before
+    spent = {}
+    for (name, before), (_, after) in pairwise(times):
+        spent[name] = spent.get(name, 0.0) + after - before
     return found.finding.verdict, spent
 
 
-def ended(step):
-    """The part of a step that is told as it ends, None if it is not."""
-    if step.startswith((*BEGUN, "end")):
-        return None
-    if step.endswith("all starting points"):
-        return "singles again"
-    return "pairs" if " + " in step else "singles"
+def stage(step):
+    """The stage of a step that is told; the final fit is told with its effects."""
+    return step.stage if isinstance(step, Step) else step.partition(" of ")[0]
 
 
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        warm = make(folder / "warm", "coulomb", HIDDEN["velocity_lag"], TESTS[::2])
-        whole(warm, folder / "warm-found")
         say(f"One diagnosis of {len(TESTS)} tests, {len(EFFECTS)} effects, {JOBS} threads; s (goal {GOAL:g})")
         say(f"{'hidden':38}{'law':16}{'verdict':18}{'whole':>7}  parts")
         for hidden, effects in HIDDEN.items():
             for law in LAWS:
                 place = folder / f"{hidden}-{law}"
                 file = make(place, law, effects, TESTS)
+                parts(file)  # compiles
                 seconds = whole(file, place / "found")
                 verdict, spent = parts(file)
                 told = ", ".join(f"{part} {value:.1f}" for part, value in spent.items() if value >= 0.05)
