@@ -448,6 +448,15 @@ def test_one_of_a_kind_is_written_in_the_singular(tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
+def test_a_number_outside_of_the_searched_range(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "named")
+    document["causes"][0]["parameters"]["peak"]["searched"] = [0.0, 0.05]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    assert "0.070 to 0.090; outside of the searched range, 0 to 0.05" in text
+
+
+@pytest.mark.usefixtures("no_figures")
 def test_uncertain_numbers_as_fitted(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     harmonics = {"second": 0.0021, "second_phase_deg": 20.0, "third": 0.0013, "third_phase_deg": -90.0}

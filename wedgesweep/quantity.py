@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, pi
+from math import inf, isinf, pi
 
 from wedgesweep.natural_units import (
     ACCELERATION,
@@ -16,6 +16,9 @@ from wedgesweep.natural_units import (
     NaturalUnits,
 )
 
+# How much wider than the searched range the range is in which a number may be followed: times the width, or
+# as a factor of a logarithm. Ends that a number must not reach are left this share of the way.
+WIDER, SHORT = 10.0, 0.01
 # Longest suffix first, so that "_N_per_mm" is not read as "_mm".
 SI_FACTORS = {
     "_N_per_mm3": 1e9,
@@ -102,6 +105,18 @@ class Quantity:
         ratio = units.ratio(self.dimension)
         return ratio * low, ratio * high
 
+    def wider(self, units: NaturalUnits = BENCH) -> tuple[float, float]:
+        """A range around the searched one, as far as the number may go, in the key's unit."""
+        low, high = self.searched(units)
+        if self.logarithmic:
+            wide = low / WIDER, high * WIDER
+        else:
+            wide = low - WIDER * (high - low), high + WIDER * (high - low)
+        return (
+            max(wide[0], self.minimum, _short_of(self.above, low)),
+            min(wide[1], self.maximum, _short_of(self.below, high)),
+        )
+
     @property
     def angle(self) -> bool:
         """Whether the number is an angle, which comes round again."""
@@ -125,3 +140,8 @@ class Quantity:
         if value >= self.below:
             return f"must be less than {self.below:g}"
         return None
+
+
+def _short_of(end: float, inside: float) -> float:
+    """A number just inside of an end, which may be infinite."""
+    return end if isinf(end) else end + SHORT * (inside - end)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 from wedgesweep.diagnose import cross_validation, score_test, verdict
+from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
@@ -223,10 +224,14 @@ def explain(search: Search) -> Explained:
     search, base, found, scans = with_renewed_covariance(Explained(search, better, found, scans))
     if verdict.none_adequate([base]):
         found = refit_best(search, found)
+    if verdict.none_adequate([base, *found]):
+        search, found = followed_beyond(search, found)
     if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
         search.budget.grant(PAIRS_SHARE * search.budget.total)
         pairs = fit_pairs(search, base.fit, found, scans)
         found = found + pairs + component_fits(search, pairs)
+        if verdict.none_adequate(found):
+            search, found = followed_beyond(search, found)
         if verdict.none_adequate(found):
             found = found + multistart(search, scans)
     found = best_of_each(found, penalised)

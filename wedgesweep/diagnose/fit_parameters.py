@@ -33,13 +33,21 @@ Values = dict[str, dict[str, float]]
 
 @dataclass(frozen=True)
 class FitParameter:
-    """One fitted number, with bounds (angles have none) and the value at which it does nothing."""
+    """One fitted number, with bounds (angles have none) and the value at which it does nothing.
+
+    ``low`` and ``high`` bound the searched range, ``wider`` what lies around it.
+    """
 
     name: str
     low: float
     high: float
+    wider: tuple[float, float]
     logarithmic: bool = False
     neutral: float = 0.0
+
+    @property
+    def effect(self) -> str:
+        return self.name.partition(".")[0]
 
     @property
     def angle(self) -> bool:
@@ -79,14 +87,15 @@ def _split(effect: str) -> Iterator[tuple[Quantity, Quantity | None]]:
 
 def _parameters(effect: str) -> Iterator[FitParameter]:
     for quantity, phase in _split(effect):
-        low, high = quantity.search or (0.0, 0.0)
+        (low, high), wider = quantity.searched(), quantity.wider()
         name = f"{effect}.{quantity.key}"
         if phase:
-            yield from (FitParameter(f"{name}.{part}", -high, high) for part in ("cos", "sin"))
+            around = -wider[1], wider[1]
+            yield from (FitParameter(f"{name}.{part}", -high, high, around) for part in ("cos", "sin"))
         elif quantity.logarithmic:
-            yield FitParameter(name, log(low), log(high), True)
+            yield FitParameter(name, log(low), log(high), (log(wider[0]), log(wider[1])), True)
         else:
-            yield FitParameter(name, low, high, neutral=quantity.neutral)
+            yield FitParameter(name, low, high, wider, neutral=quantity.neutral)
 
 
 @dataclass(frozen=True)
@@ -94,12 +103,13 @@ class Hypothesis:
     """Some effects together, as a vector x (k,) of fit parameters; no effects: the base model.
 
     ``fixed``: numbers, as ("effect.key", value) in key units, that are known from elsewhere and not fitted.
-    ``units``: of the model on trial.
+    ``units``: of the model on trial. ``wider``: effects whose numbers may leave the range that was searched.
     """
 
     effects: tuple[str, ...] = ()
     fixed: tuple[tuple[str, float], ...] = ()
     units: NaturalUnits = BENCH
+    wider: tuple[str, ...] = ()
 
     @cached_property
     def parameters(self) -> tuple[FitParameter, ...]:
@@ -114,12 +124,23 @@ class Hypothesis:
     @cached_property
     def low(self) -> np.ndarray:
         """Lower bounds (k,)."""
-        return np.array([-inf if each.angle else each.low for each in self.parameters])
+        return self._bounds[0]
 
     @cached_property
     def high(self) -> np.ndarray:
         """Upper bounds (k,)."""
-        return np.array([inf if each.angle else each.high for each in self.parameters])
+        return self._bounds[1]
+
+    @cached_property
+    def _bounds(self) -> np.ndarray:
+        """Lower and upper bounds, (2, k)."""
+
+        def ends(each: FitParameter) -> tuple[float, float]:
+            if each.angle:
+                return -inf, inf
+            return each.wider if each.effect in self.wider else (each.low, each.high)
+
+        return np.array([ends(each) for each in self.parameters]).reshape(-1, 2).T
 
     @cached_property
     def scale(self) -> np.ndarray:

@@ -63,7 +63,8 @@ class Search:
     """What all stages share: data, candidate effects, number of threads, and who is told of progress.
 
     ``undetected``: candidates of which the records show nothing, so that there is nothing to fit. ``budget``:
-    what the search may simulate; base model and single effects are fitted whatever that takes.
+    what the search may simulate; base model and single effects are fitted whatever that takes. ``wider``:
+    effects whose best numbers lie outside of the range that is searched, see beyond_range.py.
     """
 
     data: FitData
@@ -72,6 +73,7 @@ class Search:
     threads: int = 1
     progress: Callable[[str], None] = quiet
     budget: work.Budget = field(default_factory=work.Budget, compare=False)
+    wider: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -95,7 +97,8 @@ class Search:
         """The model with some effects; no effects: the base model."""
         known = self.data.known
         fixed = tuple((name, value) for name, (value, _) in known.items() if name.split(".")[0] in effects)
-        return Model(self.data, Hypothesis(effects, fixed, self.data.units), tolerance)
+        wider = tuple(name for name in effects if name in self.wider)
+        return Model(self.data, Hypothesis(effects, fixed, self.data.units, wider), tolerance)
 
     def explanation(self, fit: Fit) -> Explanation:
         return Explanation(fit, self.parameter_penalty)

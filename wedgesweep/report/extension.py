@@ -82,7 +82,11 @@ def _parameters(result: DiagnosisResult, effect: str) -> list[tuple[str, dict[st
 def _row(key: str, fitted: dict[str, Any]) -> list[str]:
     name, unit = phrases.split_key(key)
     value, low, high = phrases.rounded(fitted) or (formatting.number(fitted["value"]), "", "")
-    return [name, phrases.with_unit(value, unit), f"{low} to {high}" if low else formatting.NONE]
+    interval = f"{low} to {high}" if low else formatting.NONE
+    if "searched" in fitted:
+        searched = " to ".join(map(formatting.number, fitted["searched"]))
+        interval += f"; outside of the searched range, {searched}"
+    return [name, phrases.with_unit(value, unit), interval]
 
 
 def _uncertain(result: DiagnosisResult) -> Markup:

@@ -8,15 +8,14 @@ import numpy as np
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.profile_likelihood import TWO_SIDED
 from wedgesweep.effects import EFFECTS
-from wedgesweep.natural_units import BENCH, NaturalUnits
 from wedgesweep.quantity import Quantity
 
 
 def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
     """Fitted parameters of every effect with their 95 % intervals, in key units.
 
-    Intervals are symmetric in the fit parameter, which may be a logarithm, and end where the searched range
-    ends.
+    Intervals are symmetric in the fit parameter, which may be a logarithm, and end where the range of the fit
+    ends. A number outside of the range that was searched comes with that range.
     """
     hypothesis, size, known = fit.model.hypothesis, fit.model.size, fit.model.data.known
     x, covariance = fit.x[:size], fit.covariance[:size, :size]
@@ -30,8 +29,13 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
         std = sqrt(max(float(slope @ covariance @ slope), 0.0))
         if f"{name}.{quantity.key}" in known:
             std = change(quantity, value, value + known[f"{name}.{quantity.key}"][1])
-        ends = interval(quantity, value, TWO_SIDED * std, hypothesis.units)
-        return {"value": finite(value), "ci95": [finite(end) for end in ends]}
+        searched, units = quantity.searched(hypothesis.units), hypothesis.units
+        limits = quantity.wider(units) if name in hypothesis.wider else searched
+        ends = interval(quantity, value, TWO_SIDED * std, limits)
+        found: dict[str, Any] = {"value": finite(value), "ci95": [finite(end) for end in ends]}
+        if not (quantity.angle or searched[0] <= value <= searched[1]):
+            found["searched"] = list(searched)
+        return found
 
     return {
         name: {q.key: estimate(name, q) for q in EFFECTS[name].quantities if q.search}
@@ -47,10 +51,10 @@ def change(quantity: Quantity, value: float, moved: float) -> float:
 
 
 def interval(
-    quantity: Quantity, value: float, half: float, units: NaturalUnits = BENCH
+    quantity: Quantity, value: float, half: float, limits: tuple[float, float]
 ) -> tuple[float, float]:
-    """Ends of an interval; ``half`` of its width is in the form in which the number is fitted."""
-    low, high = quantity.searched(units)
+    """Ends of an interval within limits; ``half`` its width is in the form in which the number is fitted."""
+    low, high = limits
     if quantity.angle:
         half = min(half, 0.5 * (high - low))
         return value - half, value + half

@@ -1,0 +1,51 @@
+"""Numbers that end where their searched range ends, followed beyond it.
+
+The ranges suit dampers like the bench's, in natural units of the model on trial. On another rig a number may
+lie outside: bristles that are shorter, a drag that is larger. A fit then ends at the end of the range, and
+what it leaves would be taken for a cause that no effect describes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.model import Fit
+from wedgesweep.diagnose.search import SLIGHT, Search
+
+# So many of the best explanations are followed.
+FOLLOWED = 6
+# A number ends with its range if it is as close as this share of the range's width.
+CLOSE = 1e-3
+
+
+def followed_beyond(search: Search, found: Sequence[Explanation]) -> tuple[Search, list[Explanation]]:
+    """The search, and its explanations best first, where the best may leave the range that was searched."""
+    leading = [each for each in sorted(found, key=penalised)[:FOLLOWED] if ending(each.fit)]
+    better = [
+        search.explanation(fit)
+        for each, fit in zip(leading, search.each(lambda each: _followed(each.fit), leading), strict=True)
+        if fit.chi2 < each.fit.chi2 - SLIGHT
+    ]
+    wider = {name for each in better for name in each.fit.model.hypothesis.wider}
+    search = replace(search, wider=tuple(sorted({*search.wider, *wider})))
+    return search, best_of_each([*better, *found], penalised)
+
+
+def ending(fit: Fit) -> tuple[str, ...]:
+    """Effects with a number at an end of its searched range beyond which it may go."""
+    hypothesis = fit.model.hypothesis
+    ends = []
+    for each, x in zip(hypothesis.parameters, fit.x, strict=False):
+        close = CLOSE * (each.high - each.low)
+        below = x - each.low < close and each.wider[0] < each.low
+        above = each.high - x < close and each.wider[1] > each.high
+        if (below or above) and not each.angle and each.effect not in hypothesis.wider:
+            ends.append(each.effect)
+    return tuple(dict.fromkeys(ends))
+
+
+def _followed(fit: Fit) -> Fit:
+    hypothesis = fit.model.hypothesis
+    model = replace(fit.model, hypothesis=replace(hypothesis, wider=(*hypothesis.wider, *ending(fit))))
+    return minimise(model, model.evaluate(fit.point))
