@@ -8,6 +8,8 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from tests.diagnose.synthetic import MODEL as BENCH
+from wedgesweep import config
 from wedgesweep.diagnose import cross_validation, diagnosis, score_test, verdict
 from wedgesweep.diagnose.evaluation import Comparison, NuisanceParameter
 from wedgesweep.diagnose.fit_data import FitData
@@ -55,6 +57,7 @@ class Decays(FitData):
     measured: np.ndarray
     stated: np.ndarray
     model_error: float = 0.0
+    model = config.parse(BENCH)
     uncertain = MappingProxyType({})
     eliminated = 1
 
