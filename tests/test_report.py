@@ -448,6 +448,17 @@ def test_one_of_a_kind_is_written_in_the_singular(tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
+def test_numbers_far_from_stated(tmp_path):
+    document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
+    document["misfit"]["implausible"] = ["bolster_mass", "friction_level"]
+    document["rivals"] = [{"effects": ["guide_friction"], "gap": 0.0}]
+    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    assert "and only with bolster_mass and friction_level far from what is stated)" in text
+    assert "would leave only noise, but it hardly fits better" in text
+
+
+@pytest.mark.usefixtures("no_figures")
 def test_a_number_outside_of_the_searched_range(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["causes"][0]["parameters"]["peak"]["searched"] = [0.0, 0.05]

@@ -85,11 +85,11 @@ class Quantity:
     def suffix(self) -> str:
         return next((suffix for suffix in SI_FACTORS if self.key.endswith(suffix)), "")
 
-    @property
+    @cached_property
     def name(self) -> str:
         return self.key.removesuffix(self.suffix)
 
-    @property
+    @cached_property
     def factor(self) -> float:
         """What turns a number in the key's unit into SI."""
         return SI_FACTORS.get(self.suffix, 1.0)

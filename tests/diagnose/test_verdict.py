@@ -15,9 +15,9 @@ DOF, PENALTY = 700, 12.6
 
 
 def explained(
-    q, *effects, tests=12, uncertain=None, told=None, numbers=1, by_test=None, constant=1.0, error=0.0
+    q, *effects, tests=12, uncertain=None, told=None, numbers=1, by_test=None, constant=1.0, error=0.0, far=()
 ):
-    """An explanation with a misfit; ``told``: numbers of its effects."""
+    """An explanation. ``told``: numbers of its effects; ``far``: uncertain ones that are far from stated."""
     data = SimpleNamespace(
         model=SimpleNamespace(effects={}),
         tests=tests,
@@ -34,6 +34,7 @@ def explained(
         evaluation=SimpleNamespace(chi2_by_test=np.full(tests, q / tests) if by_test is None else by_test),
         effects=effects,
         x=None,
+        implausible=far,
     )
     return priced(fit, constant)
 
@@ -228,6 +229,33 @@ def test_a_misfit_that_nobody_explains():
 def test_a_misfit_that_nobody_even_touches():
     found = verdict_of(explained(5000.0), explained(4999.0, "stribeck"))
     assert found.verdict == "none-of-mine"
+
+
+FAR = ("bolster_mass",)
+ALLOWED = Thresholds(least_gain=600.0)
+
+
+def test_a_base_model_with_numbers_far_from_stated_lacks_something():
+    """They make up for a cause that gains less than a model error may leave."""
+    plausible = explained(560.0, "wedge_stiffness")
+    others = explained(550.0, "stribeck", far=FAR), explained(900.0, "preload"), plausible
+    found = verdict_of(explained(600.0, far=FAR), *others, thresholds=ALLOWED)
+    assert (found.verdict, found.cause, found.alternatives) == ("data-insufficient", None, (plausible,))
+    assert verdict_of(explained(600.0), *others, thresholds=ALLOWED).verdict == "nothing-missing"
+
+
+def test_nothing_explains_numbers_far_from_stated():
+    others = explained(550.0, "stribeck", far=FAR), explained(900.0, "preload")
+    found = verdict_of(explained(600.0, far=FAR), *others, thresholds=ALLOWED)
+    assert (found.verdict, found.best) == ("none-of-mine", others[0])
+
+
+def test_held_out_tests_do_not_make_up_for_numbers_far_from_stated():
+    for far, expected in (((), "nothing-missing"), (FAR, "data-insufficient")):
+        base, best = explained(700.0, far=far), explained(650.0, "stribeck")
+        found = verdict_of(base, best)
+        assert found.verdict == "consistent-with"
+        assert on_held_out_tests(found, base, -0.1, (-0.2, 0.1)).verdict == expected
 
 
 @pytest.mark.parametrize("least", [705.0, 800.0])

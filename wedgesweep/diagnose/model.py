@@ -17,6 +17,8 @@ from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
 TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
 # The base model is also fitted from this many standard deviations of an uncertain parameter to either side.
 OFF = 1.5
+# Uncertain parameters that a fit moves farther (standard deviations) are not those of the rig.
+IMPLAUSIBLE = 4.0
 # A nuisance parameter that is stated as exact has this standard deviation.
 EXACT = 1e-6
 
@@ -176,6 +178,13 @@ class Fit:
     def p(self) -> float:
         """Probability of a misfit this large if the model is right."""
         return float(chdtrc(self.dof, self.chi2))
+
+    @property
+    def implausible(self) -> tuple[str, ...]:
+        """Effects whose uncertain parameters the fit has moved much too far from what is stated."""
+        far = np.abs(self.evaluation.uncertain_prior) > IMPLAUSIBLE
+        numbers = self.model.uncertain.numbers
+        return tuple(dict.fromkeys(each.effect for each, is_far in zip(numbers, far, strict=True) if is_far))
 
     @property
     def values(self) -> Values:

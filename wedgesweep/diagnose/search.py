@@ -6,6 +6,7 @@ Each stage is a function of what earlier stages returned; nothing is kept in bet
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import count
 from math import inf, log
 from typing import Any, NamedTuple
@@ -34,6 +35,8 @@ class Round(NamedTuple):
 SCHEDULE = (Round(4, 3), Round(2, 4))
 # Where the base model is adequate a cause can only be weak, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)
+# Rounds from the starting points of the base model.
+BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
 # Rounds from all starting points, where nothing is adequate.
 MULTISTART_SCHEDULE = (Round(None, 3), Round(4, 5), Round(2, 8))
 # An effect is dropped after the first round if its misfit is this many times the base model's.
@@ -192,14 +195,23 @@ def base_fit(search: Search) -> BaseFit:
     start = model.start(None, np.zeros(0))
     points = [replace(start, x=x) for x in model.uncertain_starts()]
     evaluations = search.data.search_nuisances(model, points)
-    fits = search.each(lambda evaluation: minimise(model, evaluation), evaluations)
-    if len(model.uncertain) and min(fits, key=_chi2).p < POSSIBLE:
+    fit = _from_several(search, model, evaluations)
+    if len(model.uncertain) and fit.p < POSSIBLE:
         # Nuisance parameters may have made up for wrong values of uncertain parameters.
-        fits += search.each(
-            lambda evaluation: minimise(model, _held_as_stated(model, evaluation)), evaluations
-        )
-    fit = _aligned(refit_without_influential_tests(min(fits, key=_chi2)))
+        held = search.each(lambda evaluation: _held_as_stated(model, evaluation), evaluations)
+        fit = min(fit, _from_several(search, model, held), key=_chi2)
+    fit = _aligned(refit_without_influential_tests(fit))
     return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
+
+
+def _from_several(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
+    """The best fit from several evaluations, fewer of which are followed from round to round."""
+    for entering, iterations in BASE_SCHEDULE:
+        follow = partial(minimise, model, iterations=iterations)
+        fits = search.each(follow, _leading(evaluations, entering))
+        evaluations = [fit.evaluation for fit in fits]
+    best = min(fits, key=_chi2)
+    return best if best.converged else minimise(model, best.evaluation)
 
 
 def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) -> BaseFit:

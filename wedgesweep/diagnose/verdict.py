@@ -85,6 +85,11 @@ def eligible(each: Explanation) -> bool:
     return {one.effect for one, far in zip(stated.numbers, moved, strict=True) if far} == set(declared)
 
 
+def tolerable(base: Fit) -> bool:
+    """Whether nothing need be missing: a small misfit, with uncertain parameters about as stated."""
+    return base.p >= TOLERABLE and not base.implausible
+
+
 def none_adequate(found: Sequence[Explanation]) -> bool:
     """Whether there are explanations, and not even the best of them is adequate."""
     best = min(found, key=penalised, default=None)
@@ -121,8 +126,10 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     order = ranked(explanations, thresholds.gap)
     better = [each for each in order if each.penalised < base.penalised - thresholds.least_gain]
     if not better:
-        if base.fit.p >= TOLERABLE:
+        if tolerable(base.fit):
             return Finding(NOTHING, None, ())
+        if base.fit.p >= TOLERABLE:
+            return _with_numbers_as_stated(base, order)
         adequate = bool(order) and order[0].p_value >= ADEQUATE
         return Finding(INSUFFICIENT if adequate else _unexplained(base), order[0] if order else None, ())
     best = next((each for each in better if each.p_value >= POSSIBLE), None)
@@ -146,6 +153,14 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     if base.fit.excess < thresholds.strong or p < ADEQUATE:
         return Finding(CONSISTENT, best, ())
     return Finding(CONSISTENT if alternatives else NAMED, best, alternatives)
+
+
+def _with_numbers_as_stated(base: Explanation, order: Sequence[Explanation]) -> Finding:
+    """What would do with uncertain parameters about as stated, where the base model needs others."""
+    found = [each for each in order if each.fit.p >= ADEQUATE and not each.fit.implausible][:MOST_TIED]
+    if not found:
+        return Finding(_unexplained(base), order[0] if order else None, ())
+    return Finding(INSUFFICIENT, found[0], tuple(found[1:]))
 
 
 def _component_suffices(order: Sequence[Explanation], best: Explanation) -> bool:
@@ -214,7 +229,7 @@ def on_held_out_tests(
         return finding
     if interval is None:
         return Finding(CONSISTENT, finding.best, finding.rivals) if finding.verdict == NAMED else finding
-    if base.fit.p >= TOLERABLE:
+    if tolerable(base.fit):
         return Finding(NOTHING, None, ())
     rival_adequate = any(each.p_value >= ADEQUATE for each in finding.rivals)
     if _least_p(base, finding.cause) < ADEQUATE and not rival_adequate:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from wedgesweep.quantity import Quantity
 
@@ -26,7 +27,7 @@ PARTS = {
 class Effect:
     """One missing piece of physics, switched on by the config table ``[effects.NAME]``.
 
-    At the ``off`` value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
+    At the neutral value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
     that add forces, coefficients, states or events to the base model when they are not off. An effect
     without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
     of this one. ``meaning`` may hold names of PARTS in braces; see ``described``.
@@ -44,8 +45,12 @@ class Effect:
         """What the effect is, in words, on a system."""
         return self.meaning.format(**PARTS[system])
 
+    @cached_property
+    def off(self) -> Mapping[str, float]:
+        """Numbers (SI units) at which the effect is absent."""
+        return {each.name: each.neutral * each.factor for each in self.quantities}
+
     def acts(self, numbers: Mapping[str, float]) -> bool:
         """Whether numbers (SI units; left out: off) change anything."""
         leading = self.extends or (self.quantities[0].name,)
-        off = {each.name: each.neutral * each.factor for each in self.quantities}
-        return any(numbers.get(name, off[name]) != off[name] for name in leading)
+        return any(numbers.get(name, self.off[name]) != self.off[name] for name in leading)

@@ -121,7 +121,11 @@ def _insufficient(result: DiagnosisResult) -> str:
 
 
 def _wrong(result: DiagnosisResult) -> str:
-    return f"Something is wrong (the error of the simulation is {_error(result, 'base')})"
+    error = f"the error of the simulation is {_error(result, 'base')}"
+    if far := result.document["misfit"].get("implausible"):
+        needs = f"with {phrases.listing(far)} far from what is stated"
+        return f"Something is wrong ({error}, and only {needs})"
+    return f"Something is wrong ({error})"
 
 
 def _adequate(result: DiagnosisResult) -> str:
@@ -139,6 +143,9 @@ def _adequate(result: DiagnosisResult) -> str:
 def _doubt(result: DiagnosisResult, only: Mapping[str, Any]) -> str:
     if confounded(only["effects"]):
         return "an error in a model parameter that is no candidate could look like these two"
+    if result.document["misfit"].get("implausible"):
+        allowed = result.document["method"].get("model_error")
+        return "a model error could have its shape" if allowed else "it hardly fits better"
     if half := _adequate_half(result, only["effects"]):
         return f"{half} alone leaves hardly more, with parameters that differ from test to test"
     who = "held-out tests do not" if _unconfirmed(result) else "so few tests cannot"

@@ -53,8 +53,7 @@ def set_common(case: np.ndarray, law: str, friction: Mapping[str, float], given:
 
 def with_neutral(name: str, numbers: Mapping[str, float]) -> dict[str, Any]:
     """Numbers (SI) of an effect; what is not given is neutral."""
-    neutral = {each.name: each.neutral * each.factor for each in known.EFFECTS[name].quantities}
-    return {**neutral, **numbers}
+    return {**known.EFFECTS[name].off, **numbers}
 
 
 def set_effect(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
@@ -71,12 +70,11 @@ def set_effect(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
 
 def acting(p: np.void, names: Iterable[str]) -> list[str]:
     """Which of some effects need mechanics of their own in a record."""
+    effects = [known.EFFECTS[name] for name in names]
     return [
-        name
-        for name in names
-        for quantity in known.EFFECTS[name].quantities
-        if quantity.name in known.EFFECTS[name].extends
-        and p[name][quantity.name] != quantity.neutral * quantity.factor
+        each.name
+        for each in effects
+        if each.extends and any(p[each.name][number] != each.off[number] for number in each.extends)
     ]
 
 

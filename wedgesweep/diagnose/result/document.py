@@ -122,6 +122,7 @@ def _misfit(found: Diagnosis, best: Explanation) -> dict[str, Any]:
         "dof_extended": best.fit.dof,
         "excess_base": finite(base.excess),
         "p_base": finite(base.p),
+        "implausible": list(base.implausible),
         "p_extended": finite(best.fit.p),
         "p_where_it_shows": finite(p_where_it_shows(base, best.fit)),
         **_constancy(best),
