@@ -12,7 +12,7 @@ from wedgesweep.diagnose.diagnosis import explain
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.result.estimates import parameters
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import BENCH
 
@@ -69,9 +69,22 @@ def test_a_number_at_an_end_of_what_is_possible_is_not_followed():
     model = search.model("guide_friction")
     fit = minimise(model, model.evaluate(model.start(None, np.array([0.0]))), 0)
     assert ending(fit) == ()
-    same, explanations = followed_beyond(search, [search.explanation(fit)])
+    same, explanations = followed_beyond(search, search.explanation(fit), [search.explanation(fit)])
     assert same.wider == ()
     assert [each.fit for each in explanations] == [fit]
+
+
+def test_an_effect_that_explains_next_to_nothing_is_not_followed():
+    """Where it is absent, as an ever stiffer column, its simulations take longest."""
+    search = Search.of(friction_of(2.6), ("friction_level",))
+    _, base = base_fit(search)
+    model = search.model("friction_level")
+    fit = minimise(model, model.evaluate(model.start(base.fit, np.array([2.0]))))
+    assert ending(fit) == ("friction_level",)
+    assert fit.chi2 < 0.9 * base.fit.chi2
+    explanation = search.explanation(fit)
+    assert followed_beyond(search, base, [explanation])[0].wider == ("friction_level",)
+    assert followed_beyond(search, explanation, [explanation])[0].wider == ()
 
 
 def test_a_logarithm_ends_at_either_end_of_its_range():

@@ -83,6 +83,8 @@ def test_parts_and_harmonics_are_the_same_numbers():
     assert values[DISTORTION]["second"] == pytest.approx(0.005)
     assert found.by_key(x)[DISTORTION]["third_phase_deg"] == pytest.approx(90.0)
     np.testing.assert_allclose(found.at(values), x, atol=1e-12)
+    # Nothing but a rounding error is none.
+    assert found.values(np.r_[1.0, 4e-16, 0.0, 0.0, 1e-5, 1.0])[DISTORTION]["second"] == 0.0
     # What is not told is as stated.
     np.testing.assert_allclose(found.at({"bolster_mass": {"scale": 1.2}}), [1.2, *found.mean[1:]])
 

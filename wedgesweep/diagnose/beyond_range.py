@@ -15,13 +15,24 @@ from wedgesweep.diagnose.search import SLIGHT, Search
 
 # So many of the best explanations are followed.
 FOLLOWED = 6
+# Share of the base model's chi-squared that they may leave at most.
+EXPLAINS = 0.9
 # A number ends with its range if it is as close as this share of the range's width.
 CLOSE = 1e-3
 
 
-def followed_beyond(search: Search, found: Sequence[Explanation]) -> tuple[Search, list[Explanation]]:
-    """The search, and its explanations best first, where the best may leave the range that was searched."""
-    leading = [each for each in sorted(found, key=penalised)[:FOLLOWED] if ending(each.fit)]
+def followed_beyond(
+    search: Search, base: Explanation, found: Sequence[Explanation]
+) -> tuple[Search, list[Explanation]]:
+    """The search, and its explanations best first, where the best may leave the range that was searched.
+
+    An effect that explains next to nothing ends where it is absent, as an ever stiffer column, and stays.
+    """
+    leading = [
+        each
+        for each in sorted(found, key=penalised)[:FOLLOWED]
+        if each.fit.chi2 < EXPLAINS * base.fit.chi2 and ending(each.fit)
+    ]
     better = [
         search.explanation(fit)
         for each, fit in zip(leading, search.each(lambda each: _followed(each.fit), leading), strict=True)

@@ -225,13 +225,13 @@ def explain(search: Search) -> Explained:
     if verdict.none_adequate([base]):
         found = refit_best(search, found)
     if verdict.none_adequate([base, *found]):
-        search, found = followed_beyond(search, found)
+        search, found = followed_beyond(search, base, found)
     if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
         search.budget.grant(PAIRS_SHARE * search.budget.total)
         pairs = fit_pairs(search, base.fit, found, scans)
         found = found + pairs + component_fits(search, pairs)
         if verdict.none_adequate(found):
-            search, found = followed_beyond(search, found)
+            search, found = followed_beyond(search, base, found)
         if verdict.none_adequate(found):
             found = found + multistart(search, scans)
     found = best_of_each(found, penalised)
