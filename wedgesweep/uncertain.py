@@ -27,7 +27,7 @@ SCALE = 0.1
 FARTHEST = 5.0
 # Least factor.
 LEAST = 0.2
-# Harmonics that are no larger are zero.
+# Harmonics that are no larger are zero: a config has no numbers as small as rounding errors.
 ROUNDING = 1e-12
 
 
@@ -149,7 +149,6 @@ def _harmonics(parts: Mapping[tuple[str, ...], float]) -> dict[str, float]:
     found: dict[str, float] = {}
     for harmonic, phase in HARMONICS.items():
         value = complex(parts[harmonic, COSINE], parts[harmonic, SINE])
-        # A config has no numbers as small as rounding errors.
         value = value if abs(value) > ROUNDING else 0j
         found |= {harmonic: abs(value), phase: float(np.angle(value))}
     return found

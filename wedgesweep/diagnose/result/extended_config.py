@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from wedgesweep import effects, toml
+from wedgesweep.config.keys import SMALLEST
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.result.estimates import uncertain_values
@@ -15,7 +16,7 @@ def extended(found: Diagnosis) -> str:
     best, data = found.extended, found.data
     document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: each for name, each in uncertain_values(best).items() if name != INPUT_GAIN}
-    document["effects"] = effects.merge(document["effects"], {**nuisance, **best.values})
+    document["effects"] = _as_written(effects.merge(document["effects"], {**nuisance, **best.values}))
     if not isinstance(data, HarmonicData):
         return _heading(found) + toml.dumps(document)
     # Repeated tests are one case.
@@ -34,6 +35,14 @@ def extended(found: Diagnosis) -> str:
         ],
     }
     return _heading(found) + toml.dumps(document)
+
+
+def _as_written(numbers: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+    """Numbers as a config takes them: what is smaller than its smallest ones is zero."""
+    return {
+        name: {key: value if abs(value) >= SMALLEST else 0.0 for key, value in own.items()}
+        for name, own in numbers.items()
+    }
 
 
 def _steady(solver: Mapping[str, Any]) -> dict[str, Any]:
