@@ -8,7 +8,6 @@ import pytest
 from tests.diagnose.synthetic import MODEL, base_of, drawn, searched
 from wedgesweep.diagnose import diagnosis
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search, base_fit, best_of, multistart, refit_base, single_fit
 
 CANDIDATES = ("displacement_gain", "velocity_lag")
@@ -126,8 +125,11 @@ def test_inputs_do_not_make_up_for_uncertain_numbers(seed):
 def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     search = Search.of(clean(), ("velocity_lag",))
     with monkeypatch.context() as alone:
-        alone.setattr(Model, "uncertain_starts", lambda self: np.ones((1, 1)))
         alone.setattr("wedgesweep.diagnose.search.refit_without_influential_tests", lambda fit: fit)
+        alone.setattr(
+            "wedgesweep.diagnose.search._from_several",
+            lambda search, model, evaluations: minimise(model, evaluations[0]),
+        )
         alone.setattr("wedgesweep.diagnose.search._held_as_stated", lambda model, evaluation: evaluation)
         short = base_fit(search).base
     assert short.fit.p < 1e-9
