@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation import judge, ranges, sets, strength
+from wedgesweep.validation import judge, ranges, response, rigs, sets, strength
 from wedgesweep.validation.__main__ import main
 from wedgesweep.validation.shares import Share
 from wedgesweep.validation.time_records import TIME_KINDS
@@ -60,6 +60,24 @@ def test_an_added_test_follows_its_poor_set():
 )
 def test_wilson_intervals(hits, n, low, high):
     assert Share(hits, n).wilson == pytest.approx((low, high), abs=1e-4)
+
+
+def test_a_cause_that_uncertain_numbers_make_up_for_is_weak():
+    """A wedge spring 17 % too stiff looks much like a mass and a friction that are off within reason."""
+    frequencies = np.repeat([5.078, 7.837, 19.011, 23.715, 33.364], 2)
+    amplitudes = (0.8128, 3.058, 0.3343, 0.7686, 0.05382, 0.1316, 0.0401, 0.1426, 0.01879, 0.0683)
+    tests = [response.Test(*each) for each in zip(frequencies, amplitudes, strict=True)]
+    rig, hidden = rigs.bench(4.0), {"wedge_stiffness": {"scale": 1.1745}}
+    true = strength.true_spectra(response.System("coulomb", rig, hidden), tests)
+
+    def excess(**uncertain):
+        bench = strength.Bench(tests, "adc", 0.01, uncertain, model_error=0.02)
+        return strength.excess(true, 0.0, response.System("coulomb", rig), bench)
+
+    known = {"bolster_mass": 0.01, "bolster_stiffness": 0.02, "friction_level": 0.06}
+    assert excess() > 10.0 * excess(**known)
+    # A number that is the cause itself is off by so many standard deviations at most.
+    assert excess(wedge_stiffness=0.1) < 1.745**2
 
 
 def test_the_strength_wanted_is_found():

@@ -24,8 +24,9 @@ PERIODS, SAMPLING_HZ, LEVEL = 8.4, 2000.0, 0.04
 STUCK = 1e-3
 # Steps of log amplitudes and of uncertain numbers in finite differences.
 STEP = 1e-4
-# An estimate need not be better than this share.
-FTOL, EVALUATIONS = 1e-2, 8
+# An estimate need not be better than this share. Uncertain numbers that together make up for a cause take
+# many evaluations to get there, and an estimate that stops before is far too high.
+FTOL, EVALUATIONS = 1e-2, 40
 # Residual that stands for a response that does not exist.
 ABSENT = 1e3
 START_PHASES = 256
