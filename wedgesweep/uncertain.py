@@ -140,15 +140,24 @@ def _part(numbers: Mapping[str, float] | None, part: tuple[str, ...], stated: fl
     if part == FACTOR:
         return numbers["scale"]
     harmonic, turn = part
-    value = numbers.get(harmonic, 0.0) * np.exp(1j * numbers.get(HARMONICS[harmonic], 0.0))
-    return float(value.real if turn == COSINE else value.imag)
+    value = harmonic_of(numbers, harmonic)
+    return value.real if turn == COSINE else value.imag
 
 
 def _harmonics(parts: Mapping[tuple[str, ...], float]) -> dict[str, float]:
     """Harmonics of the input by magnitude and phase (rad)."""
     found: dict[str, float] = {}
-    for harmonic, phase in HARMONICS.items():
+    for harmonic in HARMONICS:
         value = complex(parts[harmonic, COSINE], parts[harmonic, SINE])
-        value = value if abs(value) > ROUNDING else 0j
-        found |= {harmonic: abs(value), phase: float(np.angle(value))}
+        found |= with_harmonic({}, harmonic, value if abs(value) > ROUNDING else 0j)
     return found
+
+
+def harmonic_of(numbers: Mapping[str, float], harmonic: str) -> complex:
+    """A harmonic of the input over its amplitude, from numbers (SI) of the effect; 0 if not among them."""
+    return complex(numbers.get(harmonic, 0.0) * np.exp(1j * numbers.get(HARMONICS[harmonic], 0.0)))
+
+
+def with_harmonic(numbers: Mapping[str, float], harmonic: str, value: complex) -> dict[str, float]:
+    """The numbers (SI) of the effect with another value of a harmonic."""
+    return {**numbers, harmonic: abs(value), HARMONICS[harmonic]: float(np.angle(value))}

@@ -29,13 +29,13 @@ from wedgesweep.diagnose.model import TIGHT
 from wedgesweep.diagnose.steady.correlated import CorrelatedHarmonics, stated
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.whitened import real
-from wedgesweep.effects import input_distortion, merge
+from wedgesweep.effects import merge
+from wedgesweep.uncertain import DISTORTION, harmonic_of, with_harmonic
 
-DISTORTION = input_distortion.EFFECT.name
-# Harmonics that inputs have: numbers of the effect, which has a phase for each, and their orders.
-HARMONICS = {"second": 2, "third": 3}
+# Orders of the harmonics that inputs have.
+ORDERS = {"second": 2, "third": 3}
 # Columns k and q of their real and imaginary parts.
-COLUMNS = 4 * len(HARMONICS)
+COLUMNS = 4 * len(ORDERS)
 # Least finite-difference step of a harmonic, times its order, so that the error of simulations does not hide
 # it; else the standard deviation of its real part.
 LEAST_STEP = 1e-4
@@ -55,7 +55,7 @@ class StatedInputData(CorrelatedHarmonics):
         point = replace(scenario.point, warm=here.warm)
         evaluation = Evaluation(point, here.response, here.residual, np.zeros(0), here.found, 0)
         columns: list[np.ndarray] = []
-        for name in HARMONICS:
+        for name in ORDERS:
             for turn in (1.0, 1j):
                 columns += self._changes_by(name, turn, scenario.values, evaluation)
         passed_on = np.stack(columns, axis=-1)
@@ -66,7 +66,7 @@ class StatedInputData(CorrelatedHarmonics):
     ) -> tuple[np.ndarray, np.ndarray]:
         """What a part of a harmonic adds, (T, m): k and sqrt(3) q."""
         std = sqrt(0.5) * self.harmonics_std
-        step = max(std, LEAST_STEP / HARMONICS[name])
+        step = max(std, LEAST_STEP / ORDERS[name])
         moved = [
             Scenario(self._distorted(values, name, sign * turn * step), here.point) for sign in (1.0, -1.0)
         ]
@@ -89,9 +89,7 @@ class StatedInputData(CorrelatedHarmonics):
     def _distorted(self, values: Values, name: str, change: complex) -> Values:
         """Values of effects (SI) with a change of one harmonic of the input."""
         own = merge(self.model.effects, values).get(DISTORTION, {})
-        phase = f"{name}_phase"
-        harmonic = own.get(name, 0.0) * np.exp(1j * own.get(phase, 0.0)) + change
-        return {**values, DISTORTION: {**own, name: float(abs(harmonic)), phase: float(np.angle(harmonic))}}
+        return {**values, DISTORTION: with_harmonic(own, name, harmonic_of(own, name) + change)}
 
     def _squared(self, left: np.ndarray) -> np.ndarray:
         return (self.decorrelated(real(left)) ** 2).sum(-1)
