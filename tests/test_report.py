@@ -49,6 +49,12 @@ class Page(HTMLParser):
         return plain(" ".join(" ".join(self.texts).split()))
 
 
+def page_of(directory, document):
+    """The report of a result whose document has been changed."""
+    (directory / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
+    return Page(report.write(directory).read_text(encoding="utf-8"))
+
+
 def plain(text):
     return text.replace(formatting.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
 
@@ -338,8 +344,7 @@ def test_the_gain_says_over_what_the_excess_is(size, words, tmp_path):
 def test_a_recommended_test_says_whether_it_distinguishes_reliably(distance, words, tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "tied")
     document["next_test"]["distance"] = distance
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    text = page_of(tmp_path, document).text
     assert words in text.replace("\u00a0", " ")
 
 
@@ -435,8 +440,7 @@ def test_one_of_a_kind_is_written_in_the_singular(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient", tests=1)
     document["not_testable"] = ["ageing"]
     document["candidates"] = [each for each in document["candidates"] if each["effects"] in ([], ["ageing"])]
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    text = plain(Page(report.write(tmp_path).read_text(encoding="utf-8")).text)
+    text = plain(page_of(tmp_path, document).text)
     for words in (
         "but this test cannot show what",
         "fitted to 1 test, the base model",
@@ -452,9 +456,8 @@ def test_numbers_far_from_stated(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "data-insufficient")
     document["misfit"]["implausible"] = ["bolster_mass", "friction_level"]
     document["rivals"] = [{"effects": ["guide_friction"], "gap": 0.0}]
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
-    assert "and only with bolster_mass and friction_level far from what is stated)" in text
+    text = page_of(tmp_path, document).text
+    assert "but only with bolster_mass and friction_level far from what is stated)" in text
     assert "would leave only noise, but it hardly fits better" in text
 
 
@@ -462,8 +465,7 @@ def test_numbers_far_from_stated(tmp_path):
 def test_a_number_outside_of_the_searched_range(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     document["causes"][0]["parameters"]["peak"]["searched"] = [0.0, 0.05]
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    text = page_of(tmp_path, document).text
     assert "0.070 to 0.090; outside of the searched range, 0 to 0.05" in text
 
 
@@ -472,8 +474,7 @@ def test_uncertain_numbers_as_fitted(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "named")
     harmonics = {"second": 0.0021, "second_phase_deg": 20.0, "third": 0.0013, "third_phase_deg": -90.0}
     document["uncertain"]["input_distortion"] = harmonics | {"second_std": 0.0003, "third_std": 0.0002}
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    text = page_of(tmp_path, document).text
     for words in (
         "scale of friction_level 1.03",
         "second harmonic over the first 0.0021",
@@ -491,8 +492,7 @@ def test_numbers_that_are_missing(tmp_path):
     document["causes"][0]["parameters"]["peak"] = {"value": None, "ci95": [None, None]}
     document["causes"][0]["parameters"]["velocity_mm_per_s"]["ci95"] = [None, None]
     document["gain"]["ci95"] = None
-    (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")
-    text = Page(report.write(tmp_path).read_text(encoding="utf-8")).text
+    text = page_of(tmp_path, document).text
     for words in (
         "peak not determined",
         "velocity 5.10 mm/s, no interval",

@@ -124,7 +124,7 @@ def _wrong(result: DiagnosisResult) -> str:
     error = f"the error of the simulation is {_error(result, 'base')}"
     if far := result.document["misfit"].get("implausible"):
         needs = f"with {phrases.listing(far)} far from what is stated"
-        return f"Something is wrong ({error}, and only {needs})"
+        return f"Something is wrong ({error}, but only {needs})"
     return f"Something is wrong ({error})"
 
 
