@@ -126,7 +126,7 @@ class _Fit:
     def simulate(self, x: np.ndarray) -> np.ndarray:
         """Spectra of the model at log amplitudes and uncertain numbers."""
         count, uncertain = len(self.bench.tests), self.uncertain
-        changed = uncertain.by_key(np.clip(uncertain.mean + x[count:], uncertain.low, uncertain.high))
+        changed = uncertain.by_key(np.maximum(uncertain.mean + x[count:], uncertain.low))
         effects = merge(self.model.effects, changed)
         tests = [
             test._replace(amplitude=test.amplitude * float(np.exp(step)))
