@@ -86,6 +86,15 @@ def test_a_neighbour_that_is_already_steady_costs_one_period():
     np.testing.assert_allclose(again.spectra, first.spectra, rtol=1e-4, atol=1e-9)
 
 
+@pytest.mark.parametrize("factor", [0.99, 0.998, 1.0, 1.0005, 1.0012])
+def test_a_small_step_of_a_parameter_takes_few_periods(factor):
+    # Close to a response whose derivative of the map is known: one or two of Newton's steps.
+    case = CASES[1:2]
+    first = respond(records(factor=1.001, cases=case), tolerance=1e-6)
+    assert np.isfinite(first.warm.map[0, :2, :2]).all()
+    assert respond(records(factor=factor, cases=case), first.warm, tolerance=1e-6).periods[0] <= 3
+
+
 def distorted(amplitude, share=1.0):
     """Cases that repeat after two periods from rest, if their input is distorted this much."""
     tones = {"second": 3.07e-4 * share, "second_phase": -1.86, "third": 5.56e-4 * share, "third_phase": 2.8}

@@ -77,15 +77,22 @@ def _rough(each: Explanation) -> Rated:
 
 def _level(search: Search, rough: Sequence[Rated]) -> Level:
     """The explanations of one size; the leading ones, and all that would lead, are refined."""
-    order = sorted(rough, key=_order)
-    chosen = [each for each in order[:REFINED] if each.accuracy <= FACTOR * order[0].accuracy]
-    done: list[Rated] = []
+    waiting, done = sorted(rough, key=_order), list[Rated]()
+    chosen = [each for each in waiting[:REFINED] if each.accuracy <= FACTOR * waiting[0].accuracy]
     while chosen:
-        done += search.each(_refined, chosen)
-        waiting = [each for each in order if all(each.explanation is not one.explanation for one in done)]
-        order = sorted([*done, *waiting], key=_order)
-        chosen = [each for each in order[:COMPARED] if each in waiting]
+        done = sorted([*done, *search.each(_refined, chosen)], key=_order)
+        waiting = waiting[len(chosen) :]
+        chosen = _leading(waiting, done)
+    order = sorted([*done, *waiting], key=_order)
     return Level((_tested(search, order[0]), *order[1:]))
+
+
+def _leading(waiting: list[Rated], done: list[Rated]) -> list[Rated]:
+    """Of explanations that wait to be refined, best first, those that would be among the leading ones."""
+    if len(done) < COMPARED:
+        return waiting[: COMPARED - len(done)]
+    last = _order(done[COMPARED - 1])
+    return [each for each in waiting[:REFINED] if _order(each) < last]
 
 
 def _tested(search: Search, best: Rated) -> Rated:

@@ -278,7 +278,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         if now < shortest:
             shortest = now
             copy(image, best)
-        if run == periods and now <= CLOSER * shooting.tolerance:
+        if run == periods and now <= CLOSER * shooting.tolerance and not known(jacobian):
             # All but steady: another run costs less than a derivative.
             copy(image, y)
             last = now

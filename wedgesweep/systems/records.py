@@ -1,13 +1,14 @@
 """What parameter records of all systems have in common: friction, input, and a part for each effect."""
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 
 import numpy as np
 
 from wedgesweep import effects as known
 from wedgesweep import excitation
 from wedgesweep import friction as laws
+from wedgesweep.effects import Numbers
 from wedgesweep.friction.quantities import FRICTION, SYMBOLS
 
 # Parts of a record type.
@@ -37,6 +38,22 @@ def effect_parts(names: Iterable[str]) -> list[tuple]:
     return parts
 
 
+def blank(kind: np.dtype, names: Iterable[str]) -> np.ndarray:
+    """A full record, shape (1,), with a sine as input and these effects off."""
+    # numpy copies records part by part, and bytes at once.
+    return np.frombuffer(bytearray(_blank(kind, tuple(names))), kind)
+
+
+@cache
+def _blank(kind: np.dtype, names: tuple[str, ...]) -> bytes:
+    case = np.zeros(1, kind)
+    excitation.set_series(case, excitation.SINE)
+    for name in set(names) & set(kind.names or ()):
+        for number, value in known.EFFECTS[name].off.items():
+            case[name][number] = value
+    return case.tobytes()
+
+
 def set_common(case: np.ndarray, law: str, friction: Mapping[str, float], given: tuple[float, float]) -> None:
     """Put the law, its numbers (SI by name) and the input into a full record, shape (1,), in place.
 
@@ -48,24 +65,22 @@ def set_common(case: np.ndarray, law: str, friction: Mapping[str, float], given:
         p["friction"][SYMBOLS[quantity.name]] = value
     p["friction"]["law"], p["friction"]["set_valued"] = laws.code(law), laws.LAWS[law].SET_VALUED
     p["input"]["amplitude"], p["input"]["omega"] = given
-    excitation.set_series(case, excitation.SINE)
 
 
-def with_neutral(name: str, numbers: Mapping[str, float]) -> dict[str, Any]:
-    """Numbers (SI) of an effect; what is not given is neutral."""
-    return {**known.EFFECTS[name].off, **numbers}
+def set_effects(p: np.void, names: Iterable[str], effects: Numbers) -> None:
+    """Put the numbers (SI) of effects into their parts of a ``blank`` record, or adjust other parts by them.
 
-
-def set_effect(p: np.void, effect: str, numbers: Mapping[str, float]) -> None:
-    """Put the numbers (SI) of an effect into its part of a record, or adjust other parts by them."""
-    module = known.REGISTERED[effect]
-    if hasattr(module, "adjust"):
-        module.adjust(p, **numbers)
-        return
-    for name, value in numbers.items():
-        p[effect][name] = value
-    if hasattr(module, "prepare"):
-        module.prepare(p)
+    ``names``: of all effects that the record's system knows, in their order.
+    """
+    for name in names:
+        module = known.REGISTERED[name]
+        if name in effects and hasattr(module, "adjust"):
+            module.adjust(p, **{**known.EFFECTS[name].off, **effects[name]})
+        elif name in effects:
+            for number, value in effects[name].items():
+                p[name][number] = value
+        if hasattr(module, "prepare"):
+            module.prepare(p)
 
 
 def acting(p: np.void, names: Iterable[str]) -> list[str]:
@@ -76,6 +91,12 @@ def acting(p: np.void, names: Iterable[str]) -> list[str]:
         for each in effects
         if each.extends and any(p[each.name][number] != each.off[number] for number in each.extends)
     ]
+
+
+def stacked(some: Sequence[np.ndarray]) -> np.ndarray:
+    """Records of one type, one array after the other."""
+    # numpy would compare the types part by part.
+    return np.concatenate([each.view(np.uint8) for each in some]).view(some[0].dtype)
 
 
 def converted(rows: np.ndarray, kind: np.dtype) -> np.ndarray:

@@ -23,6 +23,7 @@ from wedgesweep.natural_units import NaturalUnits
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
 from wedgesweep.systems import compact
+from wedgesweep.systems.records import stacked
 
 # Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
 AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
@@ -142,7 +143,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         phase = np.concatenate([each.point.nuisance[:, 1] for each in scenarios])
         warm = joined([each.point.warm for each in scenarios])
         toned = self.has_tone(scenarios[0].values)
-        done = self._respond(np.concatenate(rows), phase if toned else None, warm, tolerance)
+        done = self._respond(stacked(rows), phase if toned else None, warm, tolerance)
         shape = (len(scenarios), self.tests)
         harmonics = done.harmonics.reshape(*shape, 2, -1)[:, :, : self.shape[0]]
         return Simulated(harmonics, done.found.reshape(shape), done.warm)

@@ -31,6 +31,7 @@ from wedgesweep.effects import acting
 from wedgesweep.measured.declarations import STEADY
 from wedgesweep.natural_units import ACCELERATION, FREQUENCY, NaturalUnits
 from wedgesweep.solvers.periodic import Warm, at_rest
+from wedgesweep.systems.records import stacked
 
 # Frequencies (Hz) of the tests to choose from, for a rig like the bench; see natural_units.
 FREQUENCIES = np.array([4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0])
@@ -165,7 +166,7 @@ def _responses(
         )
         for step in steps
     ]
-    done = _simulated(fit, rig, np.concatenate(rows), warm)
+    done = _simulated(fit, rig, stacked(rows), warm)
     harmonics = done.harmonics[:, : rig.channels, : rig.harmonics]
     harmonics = harmonics.reshape(len(steps), tests.omega.size, rig.channels, rig.harmonics)
     return harmonics, done.found.reshape(len(steps), -1), done.warm

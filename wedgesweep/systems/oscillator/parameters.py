@@ -119,7 +119,7 @@ def record(
     structured array, shape (1,)
         Of ``record_type()``.
     """
-    case = np.zeros(1, record_type())
+    case = records.blank(record_type(), effect_names())
     p = case[0]
     contact, own = oscillator.get("contact", BASE), p["oscillator"]
     for quantity in OSCILLATOR:
@@ -127,12 +127,9 @@ def record(
     own["absolute"], own["forced"] = contact != BASE, input_kind == FORCE
     own["belt_velocity"] = oscillator["belt_velocity"] if contact == BELT else 0.0
     records.set_common(case, law, friction, (amplitude, omega))
-    for name in effect_names():
-        numbers = records.with_neutral(name, effects.get(name, {}))
-        if name in SCALED:
-            own[SCALED[name]] *= numbers["scale"]
-        else:
-            records.set_effect(p, name, numbers)
+    for name in SCALED:
+        own[SCALED[name]] *= effects.get(name, {}).get("scale", 1.0)
+    records.set_effects(p, (name for name in effect_names() if name not in SCALED), effects)
     own["kit"] = bool(records.acting(p, effect_names())) or law == bristles.NAME
     if law == bristles.NAME:
         _set_bristles(p, oscillator)

@@ -6,7 +6,7 @@ record; compiled code gets the smallest sufficient kit of parts (``compact``), s
 off cost nothing, nor does the Fourier series of a recorded input (part ``series``).
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from math import cos, isfinite, sin
 from types import MappingProxyType
@@ -143,7 +143,7 @@ def record(
     structured array, shape (1,)
         Of ``record_type()``.
     """
-    case = np.zeros(1, record_type())
+    case = records.blank(record_type(), known.EFFECTS)
     p = case[0]
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
@@ -152,12 +152,12 @@ def record(
         effects = {**effects, lift_off.NAME: {"restitution": restitution}}
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
-    for name in known.EFFECTS:
-        records.set_effect(p, name, records.with_neutral(name, effects.get(name, {})))
-    p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p), has_unilateral_joints(p)
-    if is_regularised(p):
+    records.set_effects(p, known.EFFECTS, effects)
+    acting = _acting(p)
+    p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
+    if _regularise_friction(p, acting):
         _regularise(p, nominal)
-    prepare(case)
+    prepare(case, acting)
     return case
 
 
@@ -171,8 +171,8 @@ def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
     return rows[lift_off.NAME]["restitution"] >= 0.0
 
 
-def _kit_of(p: np.void) -> int:
-    acting = [name for name in _acting(p) if name != lift_off.NAME]
+def _kit_of(p: np.void, acting: Sequence[str]) -> int:
+    acting = [name for name in acting if name != lift_off.NAME]
     if has_unilateral_joints(p):
         lateral = [lift_off.NOT_WITH] if p[lift_off.NOT_WITH]["force"] > 0.0 else []
         if refused := {*acting, *lateral} - set(known.with_lift_off()):
@@ -197,7 +197,11 @@ def regularised_velocity(suspension: Mapping[str, float] | np.void) -> float:
 
 def is_regularised(p: np.void) -> bool:
     """Whether effects turn the case's Coulomb law into a steep ramp."""
-    regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in _acting(p))
+    return _regularise_friction(p, _acting(p))
+
+
+def _regularise_friction(p: np.void, acting: Sequence[str]) -> bool:
+    regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in acting)
     return regularising and laws.LAWS["coulomb"].SET_VALUED and p["friction"]["law"] == laws.code("coulomb")
 
 
@@ -212,8 +216,8 @@ def _regularise(p: np.void, nominal: np.void) -> None:
         own["mu_s"] = own["mu_d"]
 
 
-def prepare(case: np.ndarray) -> None:
-    """Fill in the geometry of a record, shape (1,), in place.
+def prepare(case: np.ndarray, acting: Sequence[str]) -> None:
+    """Fill in the geometry of a record, shape (1,), in place; ``acting``: effects with their own mechanics.
 
     The equilibrium is NaN where the springs have none (a cubic stiffness far below zero).
     """
@@ -231,7 +235,7 @@ def prepare(case: np.ndarray) -> None:
     p["rest"], case[0]["column_compliance"]["rest"] = equilibrium(small)
     if case[0]["load_dependent_friction"]["reference"] == 0.0:
         case[0]["load_dependent_friction"]["reference"] = _column_force_at_rest(case[0])
-    p["always_well_posed"] = _always_well_posed(case[0], small)
+    p["always_well_posed"] = _always_well_posed(case[0], acting, small)
 
 
 def _column_force_at_rest(p: np.void) -> float:
@@ -242,7 +246,7 @@ def _column_force_at_rest(p: np.void) -> float:
     return abs(float(load * g["cos_wedge"] / g["sin_included"])) or 1.0
 
 
-def _always_well_posed(p: np.void, small: np.void) -> bool:
+def _always_well_posed(p: np.void, acting: Sequence[str], small: np.void) -> bool:
     """Whether every load has exactly one pair of normal forces, at any slip velocity.
 
     Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one if
@@ -251,7 +255,7 @@ def _always_well_posed(p: np.void, small: np.void) -> bool:
     is known the answer is no.
     """
     most = list(laws.LAWS.values())[p["friction"]["law"]].bound(p)
-    for name in _acting(p):
+    for name in acting:
         bound = getattr(known.REGISTERED[name], "bound", None)
         most = bound(most, p) if bound else most
     if not isfinite(most):
