@@ -130,7 +130,7 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
             "wedgesweep.diagnose.search._from_several",
             lambda search, model, evaluations: minimise(model, evaluations[0]),
         )
-        alone.setattr("wedgesweep.diagnose.search._held_as_stated", lambda model, evaluation: evaluation)
+        alone.setattr("wedgesweep.diagnose.search._nuisances_held", lambda model, evaluation: evaluation)
         short = base_fit(search).base
     assert short.fit.p < 1e-9
     model = search.model("velocity_lag")

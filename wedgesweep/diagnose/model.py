@@ -27,13 +27,15 @@ EXACT = 1e-6
 class Model:
     """A hypothesis on the tests of some data, simulated to a tolerance.
 
-    ``held``: index and value of a parameter that is not fitted but known.
+    ``held``: index and value of a parameter that is not fitted but known. ``as_stated``: whether the
+    uncertain parameters of the base model are what is stated, and not fitted.
     """
 
     data: FitData
     hypothesis: Hypothesis
     tolerance: float = TOLERANCE
     held: tuple[int, float] | None = None
+    as_stated: bool = False
 
     @property
     def size(self) -> int:
@@ -47,7 +49,8 @@ class Model:
     @cached_property
     def uncertain(self) -> UncertainNumbers:
         """Uncertain parameters (u,) of the base model with their priors; a candidate effect has no prior."""
-        stds = {k: s for k, s in self.data.uncertain.items() if k not in self.effects}
+        declared = {} if self.as_stated else self.data.uncertain
+        stds = {k: s for k, s in declared.items() if k not in self.effects}
         return uncertain_numbers(stds, self.data.model.effects)
 
     @cached_property

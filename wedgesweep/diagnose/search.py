@@ -33,6 +33,8 @@ class Round(NamedTuple):
 
 # Rounds from the starting points of an effect; the best fit of the last round is followed to its minimum.
 SCHEDULE = (Round(4, 3), Round(2, 4))
+# Rounds where some of these points are where a fit beside a base model as stated has ended.
+NEARER_SCHEDULE = (Round(3, 3), Round(1, 5))
 # Where the base model is adequate a cause can only be weak, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)
 # Rounds from the starting points of the base model.
@@ -43,8 +45,10 @@ MULTISTART_SCHEDULE = (Round(None, 3), Round(4, 5), Round(2, 8))
 CUT_OFF = 100.0
 # So many of the best explanations, if they are impossible, are refitted without influential tests.
 REFITTED = 8
-# Iterations of a fit whose nuisance parameters are held as stated.
+# Iterations of a base fit whose nuisance parameters are held as stated.
 HELD_ITERATIONS = 8
+# Rounds of fits of an effect beside a base model in which everything is as stated.
+STATED_SCHEDULE = (Round(4, 3), Round(2, 5))
 # A fit is better if it takes this much off chi-squared.
 SLIGHT = 1.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
@@ -198,7 +202,7 @@ def base_fit(search: Search) -> BaseFit:
     fit = _from_several(search, model, evaluations)
     if len(model.uncertain) and fit.p < POSSIBLE:
         # Nuisance parameters may have made up for wrong values of uncertain parameters.
-        held = search.each(lambda evaluation: _held_as_stated(model, evaluation), evaluations)
+        held = search.each(lambda evaluation: _nuisances_held(model, evaluation), evaluations)
         fit = min(fit, _from_several(search, model, held), key=_chi2)
     fit = _aligned(refit_without_influential_tests(fit))
     return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
@@ -256,15 +260,14 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     points = model.hypothesis.starts()
     scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
     evaluations = best_per_value(scan)
-    implausible = data.implausible(base.point)
+    implausible = data.implausible(base.point) or bool(base.implausible)
     if implausible or data.brings_nuisances(effect) or model.hypothesis.switches:
         # Without the effect the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
         evaluations = evaluations + fresh
         if implausible:
-            leading = _leading(fresh, SCHEDULE[0].entering)
-            evaluations = evaluations + [_held_as_stated(model, evaluation) for evaluation in leading]
-    schedule = SCHEDULE if base.p < POSSIBLE else SHORT_SCHEDULE
+            evaluations = evaluations + _beside_stated(model, fresh)
+    schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else NEARER_SCHEDULE if implausible else SCHEDULE
     fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
     if data.brings_nuisances(effect):
         fit = _aligned(fit)
@@ -331,11 +334,22 @@ def _chi2(each: Fit | Evaluation) -> float:
     return each.chi2
 
 
-def _held_as_stated(model: Model, evaluation: Evaluation) -> Evaluation:
+def _nuisances_held(model: Model, evaluation: Evaluation) -> Evaluation:
     """Where an evaluation leads while nuisance parameters stay as stated."""
     strict = model.on(model.data.held_as_stated())
     found = minimise(strict, strict.evaluate(evaluation.point), HELD_ITERATIONS)
     return model.evaluate(found.point)
+
+
+def _beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+    """Where the best evaluations lead while nuisance and uncertain parameters stay as stated."""
+    strict = replace(model, data=model.data.held_as_stated(), as_stated=True)
+    leading = [each.point for each in _leading(evaluations, STATED_SCHEDULE[0].entering)]
+    found = strict.evaluate_all([replace(point, x=point.x[: model.size]) for point in leading])
+    for entering, iterations in STATED_SCHEDULE:
+        found = [minimise(strict, each, iterations).evaluation for each in _leading(found, entering)]
+    x = [np.r_[each.point.x, model.uncertain.mean] for each in found]
+    return model.evaluate_all([replace(each.point, x=own) for each, own in zip(found, x, strict=True)])
 
 
 def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Evaluation]:

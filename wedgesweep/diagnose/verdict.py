@@ -26,6 +26,8 @@ STRONG = 800.0
 FEWEST_TESTS = 3
 # With this many rivals the tests show that something is wrong, but not what.
 MOST_TIED = 4
+# Model errors may be this much larger than a measurement says.
+GUESS = 2.0
 # A parameter that is uncertain anyway is a cause only if it is off by this many standard deviations.
 UNCERTAIN = 3.0
 
@@ -152,7 +154,8 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(INSUFFICIENT, best, alternatives)
     if base.fit.excess < thresholds.strong or p < ADEQUATE:
         return Finding(CONSISTENT, best, ())
-    return Finding(CONSISTENT if alternatives else NAMED, best, alternatives)
+    weak = bool(alternatives) or _component_nearly_suffices(order, best)
+    return Finding(CONSISTENT if weak else NAMED, best, alternatives)
 
 
 def _with_numbers_as_stated(base: Explanation, order: Sequence[Explanation]) -> Finding:
@@ -170,6 +173,20 @@ def _component_suffices(order: Sequence[Explanation], best: Explanation) -> bool
     """
     components = [each for each in order if set(each.effects) < set(best.effects)]
     return any(each.fit.p >= ADEQUATE > each.p_value for each in components)
+
+
+def _component_nearly_suffices(order: Sequence[Explanation], best: Explanation) -> bool:
+    """Whether one component of a pair would do by itself if model errors were a little larger than allowed.
+
+    How large they are is a guess, and the other component may be one of them.
+    """
+    components = [each.fit for each in order if set(each.effects) < set(best.effects)]
+    return any(_p_under_larger_errors(fit) >= ADEQUATE for fit in components)
+
+
+def _p_under_larger_errors(fit: Fit) -> float:
+    data = fit.model.data.with_model_error(GUESS * fit.model.data.model_error)
+    return float(chdtrc(fit.dof, data.compared_again(fit.evaluation).chi2))
 
 
 def _adequate_alternatives(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
