@@ -1,6 +1,7 @@
 """Where the search for an explanation continues, and where it ends."""
 
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -8,7 +9,15 @@ import pytest
 from tests.diagnose.synthetic import MODEL, base_of, drawn, searched
 from wedgesweep.diagnose import diagnosis
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.search import Search, base_fit, best_of, multistart, refit_base, single_fit
+from wedgesweep.diagnose.search import (
+    Search,
+    base_fit,
+    beside_stated,
+    best_of,
+    multistart,
+    refit_base,
+    single_fit,
+)
 
 CANDIDATES = ("displacement_gain", "velocity_lag")
 
@@ -65,6 +74,21 @@ def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(
     assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
 
 
+def test_an_effect_is_fitted_beside_what_is_stated_where_the_base_model_needs_other_numbers():
+    """Springs, mass and friction go as far as they may to make up for friction that falls with velocity."""
+    stds = {"bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "bolster_mass": 0.005, "friction_level": 0.03}
+    hidden = {"stribeck": {"peak": 0.0578, "velocity": 36.4e-3}}
+    search, base = base_fit(Search.of(clean(effects=hidden, uncertain=stds), ("stribeck",)))
+    assert base.fit.implausible
+    model = search.model("stribeck")
+    started = model.evaluate_all([model.start(None, x) for x in model.hypothesis.starts()[::5]])
+    ended = beside_stated(model, started)
+    for each in ended:
+        np.testing.assert_array_equal(each.point.x[model.size :], model.uncertain.mean)
+    assert min(each.chi2 for each in ended) < 0.5 * min(each.chi2 for each in started)
+    assert single_fit(search, "stribeck", base.fit).explanation.fit.p > 1e-3
+
+
 def test_an_undetected_tone_leaves_nothing_to_fit():
     search = Search.of(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
     _, base, found, _ = diagnosis.explain(search)
@@ -78,12 +102,12 @@ STATED = np.array([1.103, 2.929, 0.528, 1.176, 0.355, 0.0796, 0.1828, 0.0675, 0.
 OFF = np.array([-2.8, 1.5, 0.0, 1.0, -1.3, 0.2, -2.0, -0.5, 2.3, -0.7, -0.8, 2.7]) / 100.0
 
 
-def clean(seed=0):
+def clean(seed=0, effects=MappingProxyType({}), uncertain=MappingProxyType({"friction_level": 0.058})):
     return drawn(
-        {"friction_level": {"scale": 0.971}},
+        {"friction_level": {"scale": 0.971}, **effects},
         seed=seed,
         std=0.013,
-        uncertain={"friction_level": 0.058},
+        uncertain=dict(uncertain),
         off=OFF,
         bench=(FREQUENCIES, 1e-3 * STATED),
         model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",

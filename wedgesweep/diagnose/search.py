@@ -266,7 +266,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
         evaluations = evaluations + fresh
         if implausible:
-            evaluations = evaluations + _beside_stated(model, fresh)
+            evaluations = evaluations + beside_stated(model, fresh)
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else NEARER_SCHEDULE if implausible else SCHEDULE
     fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
     if data.brings_nuisances(effect):
@@ -341,7 +341,7 @@ def _nuisances_held(model: Model, evaluation: Evaluation) -> Evaluation:
     return model.evaluate(found.point)
 
 
-def _beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evaluation]:
+def beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evaluation]:
     """Where the best evaluations lead while nuisance and uncertain parameters stay as stated."""
     strict = replace(model, data=model.data.held_as_stated(), as_stated=True)
     leading = [each.point for each in _leading(evaluations, STATED_SCHEDULE[0].entering)]
