@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation import judge, ranges, response, rigs, sets, strength
+from wedgesweep.validation import hiding, judge, ranges, response, rigs, sets, strength
 from wedgesweep.validation.__main__ import main
 from wedgesweep.validation.shares import Share
 from wedgesweep.validation.time_records import TIME_KINDS
@@ -47,6 +47,13 @@ def test_a_smaller_campaign_has_sets_of_the_full_one():
     assert len(whole) == sum(sets.SIZES.values())
     other = {one for chain in sets.chains(4, 1.0) for one in chain}
     assert not whole & other
+
+
+def test_an_effect_that_contains_the_unknown_one_is_no_candidate():
+    assert set(EFFECTS) - set(hiding.candidates_without("stribeck")) == {"stribeck"}
+    left_out = {"viscous_damping", "directional_damping"}
+    assert set(EFFECTS) - set(hiding.candidates_without("viscous_damping")) == left_out
+    assert hiding.candidates_without(None) == tuple(EFFECTS)
 
 
 def test_an_added_test_follows_its_poor_set():

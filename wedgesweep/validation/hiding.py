@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from wedgesweep.effects import EFFECTS, go_together, lift_off
+from wedgesweep.effects import EFFECTS, go_together, lift_off, parts
 from wedgesweep.validation import ranges, strength, unmodelled
 from wedgesweep.validation.benches import SAME_NOISE
 from wedgesweep.validation.draft import Draft
@@ -114,8 +114,13 @@ def _hide_unknown(one: DataSet, draft: Draft, random: np.random.Generator, attem
         return _hide_unmodelled(turn, draft, target, random)
     order = np.random.default_rng([one.seed, 98]).permutation(len(ranges.EFFECTS))
     effect = ranges.EFFECTS[order[turn % order.size]]
-    draft.candidates = tuple(name for name in EFFECTS if name != effect)
+    draft.candidates = candidates_without(effect)
     return _hide_single(draft, effect, target, random)
+
+
+def candidates_without(effect: str | None) -> tuple[str, ...]:
+    """All effects but one; and but those of which it is a special case, which would be no wrong names."""
+    return tuple(name for name in EFFECTS if effect not in parts((name,)))
 
 
 def _hide_unmodelled(turn: int, draft: Draft, target: float, random: np.random.Generator) -> bool:
@@ -126,7 +131,7 @@ def _hide_unmodelled(turn: int, draft: Draft, target: float, random: np.random.G
     if found is None:
         return False
     draft.unmodelled = unmodelled.numbers(name, found)
-    draft.candidates = tuple(each for each in EFFECTS if each != unmodelled.CANDIDATES.get(name))
+    draft.candidates = candidates_without(unmodelled.CANDIDATES.get(name))
     draft.expected = draft.unmodelled_excess(draft.unmodelled)
     return draft.presses()
 
