@@ -193,6 +193,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
             "gap": 10.0,
             "enough_distance": 30.0,
             "strong_excess": 800.0,
+            "larger_model_error": 0.04,
             "adequate_p": 0.01,
             "model_error": 0.0,
             "noise_floor": FLOOR,

@@ -288,6 +288,11 @@ def test_few_candidates_are_described_in_words(candidates, words, tmp_path):
     [
         ("consistent-with", ["preload"], "(preload would also leave only noise)"),
         (
+            "consistent-with",
+            ["guide_friction+preload"],
+            "(by itself it would do under a model error of 4 %, and guide_friction + preload leave less)",
+        ),
+        (
             "data-insufficient",
             ["preload", "stribeck"],
             "cannot show what: 2 explanations would each leave only noise; a test",

@@ -152,10 +152,12 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
         return Finding(TIED, best, rivals)
     if confounded(best.effects) or _component_suffices(order, best):
         return Finding(INSUFFICIENT, best, alternatives)
+    nearly = _nearly_sufficient_component(order, best)
+    if nearly is not None:
+        return Finding(CONSISTENT, nearly, (best, *alternatives))
     if base.fit.excess < thresholds.strong or p < ADEQUATE:
         return Finding(CONSISTENT, best, ())
-    weak = bool(alternatives) or _component_nearly_suffices(order, best)
-    return Finding(CONSISTENT if weak else NAMED, best, alternatives)
+    return Finding(CONSISTENT if alternatives else NAMED, best, alternatives)
 
 
 def _with_numbers_as_stated(base: Explanation, order: Sequence[Explanation]) -> Finding:
@@ -175,13 +177,16 @@ def _component_suffices(order: Sequence[Explanation], best: Explanation) -> bool
     return any(each.fit.p >= ADEQUATE > each.p_value for each in components)
 
 
-def _component_nearly_suffices(order: Sequence[Explanation], best: Explanation) -> bool:
-    """Whether one component of a pair would do by itself if model errors were a little larger than allowed.
+def _nearly_sufficient_component(order: Sequence[Explanation], best: Explanation) -> Explanation | None:
+    """The component of a pair that would do by itself if model errors were a little larger than allowed.
 
     How large they are is a guess, and the other component may be one of them.
     """
-    components = [each.fit for each in order if set(each.effects) < set(best.effects)]
-    return any(_p_under_larger_errors(fit) >= ADEQUATE for fit in components)
+    if best.fit.model.data.model_error == 0.0:
+        return None
+    components = [each for each in order if set(each.effects) < set(best.effects)]
+    nearly = (each for each in components if _p_under_larger_errors(each.fit) >= ADEQUATE)
+    return next((each for each in nearly if not each.fit.implausible), None)
 
 
 def _p_under_larger_errors(fit: Fit) -> float:
