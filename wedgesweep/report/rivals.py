@@ -18,7 +18,8 @@ def section(result: DiagnosisResult) -> Markup:
     ]
     named = bool(result.document["causes"])
     caption = "Other adequate explanations" if named else "Adequate explanations"
-    table = html.table(caption, ("explanation", "meaning", "behind the best by"), rows, 2)
+    behind = f"penalised misfit less that of the {'cause' if named else 'best'}"
+    table = html.table(caption, ("explanation", "meaning", behind), rows, 2)
     return html.section(
         "rivals", "Rival explanations", table if rows else html.paragraph(NONE if named else NO_CAUSE)
     )
