@@ -290,7 +290,8 @@ def test_few_candidates_are_described_in_words(candidates, words, tmp_path):
         (
             "consistent-with",
             ["guide_friction+preload"],
-            "(by itself it would do under a model error of 4 %, and guide_friction + preload leave less)",
+            "(by itself it explains the tests only under a model error of 4 %; "
+            "guide_friction + preload leave less)",
         ),
         (
             "data-insufficient",

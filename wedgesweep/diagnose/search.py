@@ -33,7 +33,7 @@ class Round(NamedTuple):
 
 # Rounds from the starting points of an effect; the best fit of the last round is followed to its minimum.
 SCHEDULE = (Round(4, 3), Round(2, 4))
-# Rounds where some of these points are where a fit beside a base model as stated has ended.
+# The same where fits beside a base model as stated have already brought some of these points closer.
 NEARER_SCHEDULE = (Round(3, 3), Round(1, 5))
 # Where the base model is adequate a cause can only be weak, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)

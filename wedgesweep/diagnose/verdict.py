@@ -26,8 +26,8 @@ STRONG = 800.0
 FEWEST_TESTS = 3
 # With this many rivals the tests show that something is wrong, but not what.
 MOST_TIED = 4
-# Model errors may be this much larger than a measurement says.
-GUESS = 2.0
+# How many times larger model errors may be than a measurement says.
+LARGER = 2.0
 # A parameter that is uncertain anyway is a cause only if it is off by this many standard deviations.
 UNCERTAIN = 3.0
 
@@ -190,7 +190,7 @@ def _nearly_sufficient_component(order: Sequence[Explanation], best: Explanation
 
 
 def _p_under_larger_errors(fit: Fit) -> float:
-    data = fit.model.data.with_model_error(GUESS * fit.model.data.model_error)
+    data = fit.model.data.with_model_error(LARGER * fit.model.data.model_error)
     return float(chdtrc(fit.dof, data.compared_again(fit.evaluation).chi2))
 
 

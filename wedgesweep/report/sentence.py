@@ -78,9 +78,9 @@ def _consistent(result: DiagnosisResult) -> str:
 
 
 def _weakness(result: DiagnosisResult) -> str:
-    if pair := _with_an_error_beside(result):
+    if pair := _pair_that_leaves_less(result):
         larger = phrases.accuracy(result.document["method"]["larger_model_error"])
-        return f"by itself it would do under a model error of {larger}, and {pair} leave less"
+        return f"by itself it explains the tests only under a model error of {larger}; {pair} leave less"
     if rivals := result.document["rivals"]:
         others = phrases.listing([phrases.combination(each["effects"]) for each in rivals])
         return f"{others} would also leave only noise{_next_test(result, 'them')}"
@@ -98,7 +98,7 @@ def _weakness(result: DiagnosisResult) -> str:
     return f"it leaves more than noise in the tests that show it, {phrases.p_value(p)}"
 
 
-def _with_an_error_beside(result: DiagnosisResult) -> str | None:
+def _pair_that_leaves_less(result: DiagnosisResult) -> str | None:
     """The pair that leaves less than the cause, one of its two effects."""
     pairs = [
         each["effects"] for each in result.document["rivals"] if set(each["effects"]) > set(result.added)

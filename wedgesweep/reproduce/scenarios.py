@@ -10,6 +10,7 @@ from wedgesweep.reproduce.hypotheses import Hypothesis, Interpretation, Law
 from wedgesweep.reproduce.observations import FAST_HERTZ, OBSERVATIONS, OF_TESTS, SLOW_HERTZ, Recording
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Accuracy, Periodic
+from wedgesweep.systems.records import stacked
 
 # A search needs tenths of tolerances only; its results are computed again.
 LOOSE, TIGHT = Accuracy(1e-5, 80, 1e-6), Accuracy(1e-7, 1000, 1e-8)
@@ -40,7 +41,7 @@ class Scenario:
         """Parameter records without amplitude and frequency, shape (n,)."""
         own = points[:, self.interpretation.inputs :]
         rows = [self.hypothesis.record(self.law, self.column_angle_deg, shares) for shares in own]
-        return np.concatenate(rows)
+        return stacked(rows)
 
     def labels(self) -> dict[str, str | float]:
         """What the scenario is, by the words of the report."""

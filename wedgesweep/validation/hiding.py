@@ -119,7 +119,7 @@ def _hide_unknown(one: DataSet, draft: Draft, random: np.random.Generator, attem
 
 
 def candidates_without(effect: str | None) -> tuple[str, ...]:
-    """All effects but one; and but those of which it is a special case, which would be no wrong names."""
+    """All effects but one, and but those that contain it: to name one of these would be right."""
     return tuple(name for name in EFFECTS if effect not in parts((name,)))
 
 

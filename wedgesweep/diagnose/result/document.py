@@ -21,7 +21,7 @@ from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.verdict import GUESS, p_where_it_shows
+from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
@@ -228,7 +228,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "strong_excess": finite(found.thresholds.strong),
         "adequate_p": ADEQUATE,
         "model_error": found.data.model_error,
-        "larger_model_error": GUESS * found.data.model_error,
+        "larger_model_error": LARGER * found.data.model_error,
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,

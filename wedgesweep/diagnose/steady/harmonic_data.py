@@ -128,7 +128,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
             simulation.records(model, self.law, scenario.values, self.omega[t : t + 1], amplitudes[t : t + 1])
             for t, model in enumerate(self.models)
         ]
-        return np.concatenate(each)
+        return stacked(each)
 
     def decorrelated(self, residual: np.ndarray) -> np.ndarray:
         """Residuals (..., T, m) over the noise of the responses as such of unit covariance."""

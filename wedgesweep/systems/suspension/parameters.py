@@ -155,7 +155,7 @@ def record(
     records.set_effects(p, known.EFFECTS, effects)
     acting = _acting(p)
     p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
-    if _regularise_friction(p, acting):
+    if _made_regularised(p, acting):
         _regularise(p, nominal)
     prepare(case, acting)
     return case
@@ -197,10 +197,10 @@ def regularised_velocity(suspension: Mapping[str, float] | np.void) -> float:
 
 def is_regularised(p: np.void) -> bool:
     """Whether effects turn the case's Coulomb law into a steep ramp."""
-    return _regularise_friction(p, _acting(p))
+    return _made_regularised(p, _acting(p))
 
 
-def _regularise_friction(p: np.void, acting: Sequence[str]) -> bool:
+def _made_regularised(p: np.void, acting: Sequence[str]) -> bool:
     regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in acting)
     return regularising and laws.LAWS["coulomb"].SET_VALUED and p["friction"]["law"] == laws.code("coulomb")
 
