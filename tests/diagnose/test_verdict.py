@@ -11,7 +11,7 @@ from wedgesweep.diagnose.explanation import POSSIBLE, Explanation
 from wedgesweep.diagnose.parameter_constancy import Constancy
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p_where_it_shows
 
-DOF, PENALTY = 700, 12.6
+DOF, PENALTY, MODEL_ERROR = 700, 12.6, 0.02
 
 
 def explained(
@@ -38,9 +38,9 @@ def explained(
         uncertain=uncertain or {},
         dof=np.full(tests, DOF / tests),
         model_misfit=np.full(tests, error * DOF / tests),
-        model_error=0.0 if relaxed is None else 0.02,
+        model_error=0.0 if relaxed is None else MODEL_ERROR,
         with_model_error=lambda size: SimpleNamespace(
-            compared_again=lambda evaluation: SimpleNamespace(chi2=relaxed)
+            compared_again=lambda evaluation: SimpleNamespace(chi2=relaxed if size > MODEL_ERROR else q)
         ),
     )
     model = SimpleNamespace(data=data, size=numbers * len(effects), values=lambda x: told)
