@@ -14,6 +14,7 @@ from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.steady.harmonic_fit import REMOVED, regressors
 from wedgesweep.diagnose.steady.spectra import SIMULATED
+from wedgesweep.excitation import has_series
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
@@ -25,8 +26,9 @@ TONE_SETTLING, FROM_REST = 10, 30
 # Periods over which such a response is evaluated if its relative timing is unknown, and at most: by then all
 # relative phases of tone and input have occurred.
 UNTIMED, LONGEST_SIMULATED = 12.0, 60.0
-# Work of one case beside its periods, and of a period with mechanics of an effect's own; see work.py.
-WORK_OF_CASE, WORK_OF_OWN_MECHANICS = 3.0, 3.0
+# Work of one case beside its periods, and of a period with mechanics of an effect's own; see work.py. A
+# period under a recorded input takes so many times as long as one under a sine.
+WORK_OF_CASE, WORK_OF_OWN_MECHANICS, WORK_UNDER_SERIES = 3.0, 3.0, 1.5
 
 
 class Responses(NamedTuple):
@@ -60,6 +62,7 @@ def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOL
 def _count(rows: np.ndarray, periods: np.ndarray | int) -> None:
     """Count the work of simulated cases (n,) over so many periods (n,)."""
     weight = np.where(systems.has_own_mechanics(rows), WORK_OF_OWN_MECHANICS, 1.0)
+    weight *= np.where(has_series(rows), WORK_UNDER_SERIES, 1.0)
     work.add(float((WORK_OF_CASE + weight * periods).sum()))
 
 
