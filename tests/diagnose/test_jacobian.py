@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tests.diagnose.synthetic import LAG, LEANING, drawn, searched
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.jacobian import STEP, _smaller, jacobian
+from wedgesweep.diagnose.jacobian import STEP, _smaller, accurate_jacobian, jacobian, step_sizes
 from wedgesweep.diagnose.model import Model
 
 
@@ -23,6 +24,31 @@ def test_both_sides_tell_the_same_of_a_smooth_response():
     right, left = (jacobian(lag.fit.model, lag.fit.evaluation, side) for side in (1.0, -1.0))
     for one, other in zip(right, left, strict=True):
         assert np.abs(one - other).max() < 0.1 * np.abs(one).max()
+
+
+def test_steps_change_no_test_by_more_than_its_noise():
+    """Steps sized for a bench of usual noise, on records that are a hundred times as exact."""
+    *_, (lag,) = searched(drawn(LAG, level=4e-4), "velocity_lag")
+    model = replace(lag.fit.model, tolerance=1e-9)
+    here = model.evaluate(lag.fit.point)
+    found = accurate_jacobian(model, here)
+    assert largest_change(model, found, step_sizes(model, here.point)) > 5.0
+    sizes = step_sizes(model, here.point, found)
+    assert largest_change(model, found, sizes) == pytest.approx(1.0)
+    for one, other in zip(found, accurate_jacobian(model, here, -1.0), strict=True):
+        np.testing.assert_allclose(one, other, atol=0.01 * np.abs(one).max())
+
+
+def test_steps_change_a_test_by_more_than_the_error_of_its_simulation():
+    *_, (lag,) = searched(drawn(LAG, level=4e-4), "velocity_lag")
+    model = replace(lag.fit.model, tolerance=1e-4)
+    found = jacobian(model, model.evaluate(lag.fit.point))
+    assert largest_change(model, found, step_sizes(model, lag.fit.point, found)) > 5.0
+
+
+def largest_change(model, derivatives, sizes):
+    """Of any test by the first parameter, in noise."""
+    return sizes[0] * np.sqrt((derivatives.by_parameter[..., 0] ** 2).mean(axis=1)).max()
 
 
 def test_next_to_where_a_wedge_locks_the_near_side_tells():

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import AMPLITUDES, LAG, drawn, searched
-from wedgesweep.diagnose.least_squares import _covariance, lm_step, tight_refit
+from tests.diagnose.synthetic import AMPLITUDES, LAG, MODEL, drawn, searched
+from wedgesweep.diagnose.least_squares import _covariance, lm_step, minimise, tight_refit
 from wedgesweep.diagnose.normal_equations import normal_equations
 
 
@@ -48,6 +48,27 @@ def test_the_error_of_a_simulation_is_no_information():
     coarse, std = (np.sqrt(np.diag(fit.covariance)) for fit in (stop.fit, fine))
     np.testing.assert_allclose(coarse, std, rtol=0.1)
     assert fine.chi2 == pytest.approx(stop.fit.chi2, abs=0.1)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_fit_follows_the_valley_in_which_amplitudes_imitate_a_parameter(seed):
+    """Near breakaway a test tells little else than a combination of its amplitude and the preload."""
+    std = 0.004
+    data = drawn(
+        {"preload": {"force": 0.08}},
+        seed,
+        level=0.025,
+        std=std,
+        off=std * np.random.default_rng(seed).normal(size=5),
+        bench=(np.array([5.0, 8.0, 8.0, 11.0, 19.0]), 1e-3 * np.array([2.5, 0.9, 1.3, 0.55, 0.17])),
+        law="coulomb",
+        model=MODEL + "[suspension]\ncolumn_angle_deg = -4.0\n",
+    )
+    _, _, (found,) = searched(data, "preload")
+    at_truth = found.fit.model.holding(0, 0.08)
+    start = at_truth.evaluate(replace(found.fit.point, x=np.array([0.08])))
+    assert found.fit.chi2 < minimise(at_truth, start).chi2 + 0.1
+    assert found.fit.x[0] == pytest.approx(0.08, abs=0.002)
 
 
 def test_a_parameter_that_does_not_show_shortens_no_step():

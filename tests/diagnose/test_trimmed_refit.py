@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import LAG, MODEL, base_of, drawn, next_to_breakaway, searched
-from wedgesweep.diagnose import trimmed_refit
+from wedgesweep.diagnose import jacobian, trimmed_refit
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import Search
 
@@ -15,8 +15,11 @@ def refined(data, effects, x):
     return minimise(model, model.evaluate(model.start(base, np.asarray(x, float))))
 
 
-def test_around_a_test_next_to_breakaway():
-    held_up = refined(next_to_breakaway(), ("stribeck", "viscous_damping"), (6e-3, -0.6, 0.0))
+def test_around_a_test_next_to_breakaway(monkeypatch):
+    with monkeypatch.context() as differences:
+        # Steps that are too long for so steep a misfit.
+        differences.setattr(jacobian, "LARGEST_CHANGE", np.inf)
+        held_up = refined(next_to_breakaway(), ("stribeck", "viscous_damping"), (6e-3, -0.6, 0.0))
     assert held_up.p < 1e-9
     found = trimmed_refit.refit_without_influential_tests(held_up)
     assert found.p > 0.01
@@ -58,7 +61,7 @@ def test_around_a_test_that_sticks():
     assert found.values["bolster_mass"]["scale"] == pytest.approx(1.0746, abs=0.002)
 
 
-@pytest.mark.parametrize(("true", "off"), [(0.25, -0.06), (0.255, -0.04)])
+@pytest.mark.parametrize(("true", "off"), [(0.25, -0.07), (0.255, -0.04)])
 def test_around_a_test_whose_input_led_to_where_it_sticks(true, off):
     """From an input that was stated too high a step down ends short of breakaway, where nothing leads on."""
     data = drawn(

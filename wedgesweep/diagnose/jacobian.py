@@ -5,12 +5,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.diagnose.evaluation import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.model import Model
 
 # Step as a share of a parameter's scale. Shorter steps pick up the error of the simulation, which looks like
 # information: intervals become too narrow where amplitude and effect are hard to tell apart.
 STEP = 2e-3
+# Steps change no test by more than its noise (root mean square of whitened residuals). Beyond, responses
+# bend, and a parameter that a nuisance parameter imitates looks as if the tests could tell them apart. Where
+# noise is small, a change may be this many times the error of the simulation.
+LARGEST_CHANGE, RESOLVED = 1.0, 1e3
 
 
 class Jacobian(NamedTuple):
@@ -30,7 +34,25 @@ class Derivatives(NamedTuple):
     found: np.ndarray
 
 
-def jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
+def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.ndarray:
+    """Steps of differences for all parameters and fitted nuisance parameters, shape (k + u + L,).
+
+    ``near``: derivatives at a point nearby, by which large changes are avoided.
+    """
+    sizes = np.r_[STEP * model.scale, [each.step for each in model.data.nuisances(model.effects, point)]]
+    if near is None:
+        return sizes
+    by_nuisance = near.by_nuisance[..., model.data.eliminated :]
+    columns = np.concatenate([near.by_parameter, by_nuisance], axis=-1)
+    change = np.sqrt((columns**2).mean(axis=1)) * sizes
+    simulated = np.sqrt(model.data.power / columns.shape[1])
+    allowed = np.maximum(LARGEST_CHANGE, RESOLVED * model.tolerance * simulated)
+    return sizes / np.maximum((change / allowed[:, None]).max(axis=0), 1.0)
+
+
+def jacobian(
+    model: Model, evaluation: Evaluation, side: float = 1.0, sizes: np.ndarray | None = None
+) -> Jacobian:
     """Derivatives at an evaluation, one simulation for each parameter.
 
     Parameters
@@ -41,11 +63,12 @@ def jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobia
         Where derivatives are taken.
     side : float
         To which side (1 or -1) parameters are changed where the bounds allow it.
+    sizes : ndarray, optional
+        Steps, see ``step_sizes``.
     """
     point, data = evaluation.point, model.data
-    nuisances = [each.step for each in data.nuisances(model.effects, point)]
-    steps = side * np.r_[STEP * model.scale, nuisances]
-    free = [np.inf] * len(nuisances)
+    steps = side * (step_sizes(model, point) if sizes is None else sizes)
+    free = [np.inf] * (len(steps) - len(point.x))
     low, high = np.r_[model.low - point.x, np.negative(free)], np.r_[model.high - point.x, free]
     steps = np.where((low <= steps) & (steps <= high), steps, -steps)
     back = (low <= -steps) & (-steps <= high)
@@ -60,12 +83,21 @@ def jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobia
     return Jacobian(columns[..., :size], np.concatenate([eliminated, columns[..., size:]], axis=-1))
 
 
+def accurate_jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
+    """Derivatives at an evaluation, taken again by shorter steps where a response has changed a lot."""
+    near = jacobian(model, evaluation, side)
+    sizes = step_sizes(model, evaluation.point, near)
+    enough = np.array_equal(sizes, step_sizes(model, evaluation.point))
+    return near if enough else jacobian(model, evaluation, side, sizes)
+
+
 def conservative_jacobian(model: Model, evaluation: Evaluation) -> Jacobian:
     """Of forward and backward differences the smaller, for each test and parameter.
 
     A difference across a jump of the response is large, and would make a parameter look far too certain.
     """
-    return Jacobian(*map(_smaller, jacobian(model, evaluation), jacobian(model, evaluation, -1.0)))
+    forward, backward = (accurate_jacobian(model, evaluation, side) for side in (1.0, -1.0))
+    return Jacobian(*map(_smaller, forward, backward))
 
 
 def derivatives(

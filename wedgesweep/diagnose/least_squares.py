@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.jacobian import conservative_jacobian
+from wedgesweep.diagnose.jacobian import conservative_jacobian, jacobian, step_sizes
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
 
@@ -35,11 +35,12 @@ class Step(NamedTuple):
 def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> Fit:
     """Follow an evaluation to the nearest minimum of chi-squared within the bounds."""
     evaluation, damping, converged = start, DAMPING, False
-    matrix = np.zeros((len(model.low), len(model.low)))
+    matrix, derivatives = np.zeros((len(model.low), len(model.low))), None
     for _ in range(iterations):
         if not evaluation.found:
             break
-        equations = normal_equations(model, evaluation)
+        derivatives = jacobian(model, evaluation, sizes=step_sizes(model, evaluation.point, derivatives))
+        equations = normal_equations(model, evaluation, derivatives)
         matrix = equations.schur_complement().matrix
         better, predicted = None, np.inf
         little = max(CONVERGED, CONVERGED_SHARE * (evaluation.chi2 - model.dof))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from wedgesweep.diagnose.jacobian import jacobian
+from wedgesweep.diagnose.jacobian import accurate_jacobian
 from wedgesweep.diagnose.model import Fit
 
 # Singular value of the scaled derivatives below which a direction depends on the others.
@@ -18,7 +18,7 @@ class Projector:
 
     def __init__(self, fit: Fit) -> None:
         self._model = model = fit.model
-        self.by_parameter, by_nuisance = jacobian(model, fit.evaluation)
+        self.by_parameter, by_nuisance = accurate_jacobian(model, fit.evaluation)
         tests, observations, parameters = self.by_parameter.shape
         self._nuisances = by_nuisance.shape[-1]
         by_test = np.zeros((tests, observations, tests, self._nuisances))

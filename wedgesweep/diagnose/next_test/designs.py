@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.jacobian import jacobian
+from wedgesweep.diagnose.jacobian import accurate_jacobian
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance
 from wedgesweep.diagnose.sampled_data import SampledData
@@ -74,7 +74,7 @@ def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Pre
         x = np.clip(point.x + root @ moved.parameters, model.low, model.high)
         point = replace(point, x=x).moved(np.zeros(x.size), moved.nuisances[None])
     here = model.evaluate(point)
-    by_parameter, by_nuisance = jacobian(model, here)
+    by_parameter, by_nuisance = accurate_jacobian(model, here)
     std = np.full((data.tests, by_nuisance.shape[2]), np.inf)
     stated = data.nuisance_std
     std[:, data.eliminated : data.eliminated + stated.shape[1]] = stated
