@@ -46,6 +46,18 @@ def test_steps_change_a_test_by_more_than_the_error_of_its_simulation():
     assert largest_change(model, found, step_sizes(model, lag.fit.point, found)) > 5.0
 
 
+def test_what_is_held_is_not_simulated(monkeypatch):
+    *_, (lag,) = searched(drawn(LAG), "velocity_lag")
+    model, here = lag.fit.model, lag.fit.evaluation
+    free, scenarios = jacobian(model, here), []
+    one = type(model.data).changes
+    monkeypatch.setattr(type(model.data), "changes", lambda *given: scenarios.extend(given[2]) or one(*given))
+    held = jacobian(model.holding(slice(None), here.point.x), here)
+    assert len(scenarios) == 1
+    assert not held.by_parameter.any()
+    np.testing.assert_array_equal(held.by_nuisance, free.by_nuisance)
+
+
 def largest_change(model, derivatives, sizes):
     """Of any test by the first parameter, in noise."""
     return sizes[0] * np.sqrt((derivatives.by_parameter[..., 0] ** 2).mean(axis=1)).max()

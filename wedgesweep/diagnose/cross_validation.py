@@ -241,7 +241,7 @@ def undetermined(fit: Fit) -> tuple[str, ...]:
 
 def _with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:
     """The point after a step of the nuisance parameters alone."""
-    equations = normal_equations(model, evaluation)
+    equations = normal_equations(model.holding(slice(None), evaluation.point.x), evaluation)
     nothing = np.zeros(len(evaluation.point.x))
     step = equations.local_step(nothing, 0.0)[:, equations.eliminated :]
     step = model.data.predicted_nuisances(evaluation, step)

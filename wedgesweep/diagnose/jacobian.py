@@ -53,7 +53,7 @@ def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.n
 def jacobian(
     model: Model, evaluation: Evaluation, side: float = 1.0, sizes: np.ndarray | None = None
 ) -> Jacobian:
-    """Derivatives at an evaluation, one simulation for each parameter.
+    """Derivatives at an evaluation, one simulation for each parameter; 0 by those that are held.
 
     Parameters
     ----------
@@ -66,19 +66,23 @@ def jacobian(
     sizes : ndarray, optional
         Steps, see ``step_sizes``.
     """
-    point, data = evaluation.point, model.data
+    point, data, size = evaluation.point, model.data, len(evaluation.point.x)
     steps = side * (step_sizes(model, point) if sizes is None else sizes)
-    free = [np.inf] * (len(steps) - len(point.x))
-    low, high = np.r_[model.low - point.x, np.negative(free)], np.r_[model.high - point.x, free]
+    unbounded = [np.inf] * (len(steps) - size)
+    low, high = np.r_[model.low - point.x, np.negative(unbounded)], np.r_[model.high - point.x, unbounded]
+    fitted = np.flatnonzero(low < high)
     steps = np.where((low <= steps) & (steps <= high), steps, -steps)
     back = (low <= -steps) & (-steps <= high)
-    size = len(point.x)
 
     def changes(moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        scenarios = [model.scenario(point.moved(move[:size], move[size:])) for move in moves]
+        whole = np.zeros((len(moves), len(steps)))
+        whole[:, fitted] = moves
+        scenarios = [model.scenario(point.moved(move[:size], move[size:])) for move in whole]
         return data.changes(evaluation, scenarios, model.tolerance)
 
-    columns = derivatives(changes, steps, back).values
+    columns = np.zeros((*evaluation.residual.shape, len(steps)))
+    if fitted.size:
+        columns[..., fitted] = derivatives(changes, steps[fitted], back[fitted]).values
     eliminated = data.eliminated_derivatives(evaluation)
     return Jacobian(columns[..., :size], np.concatenate([eliminated, columns[..., size:]], axis=-1))
 

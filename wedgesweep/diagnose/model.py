@@ -27,14 +27,14 @@ EXACT = 1e-6
 class Model:
     """A hypothesis on the tests of some data, simulated to a tolerance.
 
-    ``held``: index and value of a parameter that is not fitted but known. ``as_stated``: whether the
-    uncertain parameters of the base model are what is stated, and not fitted.
+    ``held``: index and value of a parameter, or of several, that are not fitted but known. ``as_stated``:
+    whether the uncertain parameters of the base model are what is stated, and not fitted.
     """
 
     data: FitData
     hypothesis: Hypothesis
     tolerance: float = TOLERANCE
-    held: tuple[int, float] | None = None
+    held: tuple[int | slice, float | np.ndarray] | None = None
     as_stated: bool = False
 
     @property
@@ -84,8 +84,8 @@ class Model:
         """Observations less everything that is fitted without a prior."""
         return int(self.data.dof.sum()) - int(self.data.extra_nuisances(self.effects).sum()) - self.size
 
-    def holding(self, parameter: int, value: float) -> "Model":
-        """The model with one of its parameters known."""
+    def holding(self, parameter: int | slice, value: float | np.ndarray) -> "Model":
+        """The model with one of its parameters known, or several."""
         return replace(self, held=(parameter, value))
 
     def on(self, data: FitData) -> "Model":
