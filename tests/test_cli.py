@@ -461,7 +461,7 @@ def test_what_lies_outside_of_validity_is_counted_and_told(here, drawn_dataset):
     )
     assert "did not reach steady state" in told
     told = invoke("case", "few.toml", "--law", "Coulomb", "--beta", 1.1, "--amplitude", 1e9)
-    assert "outside of the model's validity: a joint lifts off in" in told
+    assert "outside of the model's validity: a joint pulls in" in told
 
 
 def test_static_below_dynamic_friction_is_told(here):

@@ -87,7 +87,7 @@ def _print_remarks(ds: "xr.Dataset") -> None:
     result = outcomes.of_dataset(ds)[0]
     if result.lifted:
         share = f"{100.0 * result.lift_off_fraction:.2g} % of the slipping time"
-        log.warning(f"outside of the model's validity: a joint lifts off in {share}, where it is held")
+        log.warning(f"outside of the model's validity: a joint pulls in {share}; a real one would lift off")
     if not result.settled:
         log.warning("not settled: the response still changes from period to period")
 

@@ -64,7 +64,7 @@ def with_verbosity(command: Any) -> Any:
     """Add --quiet and --verbose to a command."""
     options = (
         ("quiet", "Print results, warnings and errors only: no notes, no progress."),
-        ("verbose", "Also tell what is read, solved and written, and when."),
+        ("verbose", "Also tell what is read, solved and written."),
     )
     for name, meaning in options:
         command.params.append(

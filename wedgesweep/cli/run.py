@@ -64,7 +64,7 @@ BACKENDS = ("threads", "loky", "dask")
     help="Address of a running Dask scheduler (tcp://host:8786) whose workers have one thread each.",
 )
 @click.option("--fresh", is_flag=True, help="Discard the results of earlier runs of this output.")
-@click.option("--yes", is_flag=True, help=f"Run also more than {MANY} cases.")
+@click.option("--yes", is_flag=True, help=f"Run even if there are more than {MANY} cases.")
 @click.option(
     "--verify",
     type=click.IntRange(min=1),

@@ -14,7 +14,7 @@ EFFECT = Effect(
     name="bolster_mass",
     family="parameters",
     branch=NUMERICAL,
-    meaning="another mass of the {body}, weight too",
+    meaning="a different mass of the {body} (and weight)",
     quantities=(Quantity("scale", 1.0, "factor of M_b", above=0.0, search=(0.5, 2.0)),),
 )
 

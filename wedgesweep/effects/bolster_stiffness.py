@@ -14,7 +14,7 @@ EFFECT = Effect(
     name="bolster_stiffness",
     family="parameters",
     branch=NUMERICAL,
-    meaning="another stiffness under the {mass}",
+    meaning="a different stiffness under the {mass}",
     quantities=(Quantity("scale", 1.0, "factor of k_b", above=0.0, search=(0.5, 2.0)),),
 )
 

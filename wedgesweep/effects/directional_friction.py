@@ -15,7 +15,7 @@ EFFECT = Effect(
     name="directional_friction",
     family="friction-law",
     branch=NUMERICAL,
-    meaning="friction of another strength up than down",
+    meaning="friction that is stronger in one direction than in the other",
     quantities=(
         Quantity(
             "asymmetry", 0.0, "share more upward, less downward", above=-1.0, below=1.0, search=(-0.5, 0.5)

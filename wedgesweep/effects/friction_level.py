@@ -14,7 +14,7 @@ EFFECT = Effect(
     name="friction_level",
     family="parameters",
     branch=NUMERICAL,
-    meaning="another level of friction on the {faces}",
+    meaning="a different level of friction on the {faces}",
     quantities=(Quantity("scale", 1.0, "factor of mu_s and mu_d", minimum=0.0, search=(0.5, 2.0)),),
 )
 

@@ -14,7 +14,7 @@ EFFECT = Effect(
     name="wedge_stiffness",
     family="parameters",
     branch=NUMERICAL,
-    meaning="another stiffness under the wedges",
+    meaning="a different stiffness under the wedges",
     quantities=(Quantity("scale", 1.0, "factor of k_w", above=0.0, search=(0.5, 2.0)),),
 )
 

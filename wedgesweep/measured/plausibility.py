@@ -28,7 +28,7 @@ def channel_faults(test: TestRecord, file: str) -> list[str]:
         told = f"velocity is {share:.2g} times the rate of displacement at {at:.4g} Hz"
         return [f"{file}: {told}; correct the units in measurement.columns, or the columns"]
     if abs(np.angle(speed / expected)) > ANGLE:
-        told = "velocity and displacement have opposite signs; both are side frame minus bolster"
+        told = "velocity and displacement have opposite signs; velocity must be the rate of displacement"
         return [f"{file}: {told}; change the sign of one"]
     return []
 

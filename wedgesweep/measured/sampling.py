@@ -66,7 +66,7 @@ def _line(stamps: np.ndarray) -> tuple[float, float]:
 def _too_few(stamps: np.ndarray, where: Callable[[int], str]) -> str | None:
     if stamps.size >= FEWEST:
         return None
-    return f"{where(stamps.size - 1)}: ends after {stamps.size} samples; 4 periods of vibration are needed"
+    return f"{where(stamps.size - 1)}: ends after {stamps.size} samples; at least {FEWEST} are needed"
 
 
 def _step_fault(stamps: np.ndarray, where: Callable[[int], str]) -> str | None:

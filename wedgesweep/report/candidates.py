@@ -10,6 +10,8 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 SHOWN = 12
+# The effect that adds a tone to a response.
+TONE = "stray_vibration"
 TEXT_COLUMNS = 3
 HEAD = (
     "candidate",
@@ -45,8 +47,8 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
 
 COLUMNS = (
     "Q is the squared distance between model and measurement in units of the noise, summed over all "
-    "harmonics. A correct model leaves Q close to dof, the degrees of freedom; p is the probability that "
-    "noise alone leaves more.",
+    "compared numbers. A correct model leaves Q close to dof, the degrees of freedom; p is the probability "
+    "that noise alone leaves more.",
     "“Behind the best” compares Q plus a penalty for each fitted parameter. A candidate that is behind by "
     "less than the tie width cannot be distinguished from the best.",
     "The score says, before anything is fitted, how clearly the misfit of the base model points to this one "
@@ -79,11 +81,14 @@ def _without_parameters(result: DiagnosisResult) -> str:
 
 
 def _not_fitted(result: DiagnosisResult) -> str:
-    """The effect that was not fitted because no test has a spurious tone."""
+    """Effects that were not fitted because the tests cannot show them, or have no spurious tone."""
     document = result.document
     fitted = {effect for each in document["candidates"] for effect in each["effects"]}
     left = sorted({*document["detectable"], *document["not_testable"]} - fitted)
-    return f" Not fitted, because no test has a spurious tone: {phrases.listing(left)}." if left else ""
+    silent = [effect for effect in left if effect == TONE and document.get("kind", "steady") == "steady"]
+    others = [effect for effect in left if effect not in silent]
+    told = f" Not fitted, as these tests cannot show them: {phrases.listing(others)}." if others else ""
+    return told + (f" Not fitted, as no test has a spurious tone: {silent[0]}." if silent else "")
 
 
 def _ranking(result: DiagnosisResult) -> str:

@@ -36,7 +36,7 @@ def _hidden(effects: list[str]) -> str:
         return "These tests can show every candidate."
     one = len(effects) == 1
     return (
-        f"Not testable: {phrases.listing(effects)}. Start phases, amplitudes and uncertain parameters can "
-        f"imitate whatever {'this effect' if one else 'these effects'} would change in these tests, so the "
-        f"verdict says nothing about {'it' if one else 'them'}."
+        f"Not testable: {phrases.listing(effects)}. These tests do not show what {'it' if one else 'they'} "
+        "would change, or start phases, amplitudes and uncertain parameters can imitate it; the verdict says "
+        f"nothing about {'it' if one else 'them'}."
     )

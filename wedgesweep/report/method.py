@@ -5,27 +5,40 @@ from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 
+# What is compared, by the kind of the tests, and what is left out of a fit to measure the gain.
+COMPARED = {
+    "steady": "Steady tests: the forced response repeats in every period and noise does not. Least squares "
+    "gives the harmonics of each test, and what does not repeat gives their noise (Pintelon and Schoukens "
+    "2012).",
+    "transient": "Transients: records are cut into windows whose starts are fitted. The cosine coefficients "
+    "of each window are compared, under coloured noise.",
+    "loop": "Loops: the force under the imposed motion is compared below the cut-off frequency of a "
+    "low-pass. Its noise is what no smooth function of the motion explains, or what differs between repeats.",
+}
+LEFT_OUT = {
+    "steady": "each frequency, then each amplitude, is left out of the fit and predicted",
+    "transient": "records, or windows of a single one, are left out of the fit and predicted",
+    "loop": "records, or blocks of a single one, are left out of the fit and predicted",
+}
 STEPS = (
-    "The forced response repeats in every period and noise does not: least squares gives the harmonics of "
-    "each test, and what does not repeat gives their noise (Pintelon and Schoukens 2012).",
-    "Q is the squared distance between measured and simulated harmonics in units of that noise, which for a "
+    "Q is the squared distance between measurement and simulation in units of the noise, which for a "
     "correct model has a chi-squared distribution. Start phases, amplitudes and uncertain parameters are "
     "fitted first, for the base model too.",
     "Every candidate is fitted alone, then in pairs; each fitted parameter costs a penalty. A cause must "
     "leave only noise, have the same parameters in all tests (Lagrange multiplier test), and lead its rivals "
     "by more than the tie width. To be named, it must be the only candidate that leaves only noise. A pair "
     "that many others imitate is not reported.",
-    "The gain is measured on held-out tests: each frequency, then each amplitude, is left out of the fit and "
-    "predicted.",
 )
 
 
 def section(result: DiagnosisResult) -> Markup:
     """Section for readers who want to check or repeat the diagnosis."""
+    kinds = [*result.parts] or [result.document.get("kind", "steady")]
+    compared, left_out = [COMPARED[kind] for kind in kinds], [LEFT_OUT[kind] for kind in kinds]
     return html.section(
         "method",
         "How it was done",
-        html.items(STEPS),
+        html.items([*compared, *STEPS, f"Gain on held-out tests: {'; '.join(left_out)}."]),
         html.table("Settings", ("setting", "value"), _settings(result)),
     )
 

@@ -25,7 +25,7 @@ from wedgesweep.report.sentence import sentence
 MEANINGS = {
     "nothing-missing": "the misfit is noise",
     "named": "a cause is named",
-    "consistent-with": "named, but on weak evidence",
+    "consistent-with": "one explanation fits, but the evidence for it is weak",
     "tied": "two or more explanations fit equally well",
     "data-insufficient": "something is wrong, and these tests cannot show what",
     "none-of-mine": "something is wrong, and no candidate explains it",

@@ -15,15 +15,17 @@ def lead(result: DiagnosisResult) -> str:
         case "nothing-missing":
             return "The model misses nothing that these tests show."
         case "named":
-            return f"The model misses {causes}."
+            return f"Missing or wrong in the model: {causes}."
         case "consistent-with":
-            return f"The model probably misses {causes}; the evidence is weak."
+            return f"Probably missing or wrong in the model: {causes}; the evidence is weak."
         case "tied":
             rivals = [
                 phrases.meanings(each["effects"], result.document) for each in result.document["rivals"]
             ]
             either = phrases.listing([causes, *rivals], "or")
-            return f"The model misses {either}; {phrases.these_tests(result)} cannot tell which."
+            return (
+                f"Missing or wrong in the model: {either}; {phrases.these_tests(result)} cannot tell which."
+            )
         case "data-insufficient":
             return f"The model misses something, and {phrases.these_tests(result)} cannot show what."
         case _:
