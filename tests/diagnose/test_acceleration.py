@@ -6,6 +6,10 @@ import pytest
 from tests.diagnose.test_transients import MEASURED, OSCILLATOR, WEDGE
 from wedgesweep import api
 from wedgesweep.config import parse
+from wedgesweep.diagnose.diagnosis import data_of
+from wedgesweep.diagnose.next_test.sensors import sensors
+from wedgesweep.diagnose.next_test.transients import releases
+from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.synthesize.plan import PlannedTest
@@ -59,6 +63,22 @@ def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_p
     (estimate,), (true,) = numbers.values(), next(iter(effects.values())).values()
     assert estimate["value"] == pytest.approx(true, rel=0.03)
     assert list(found.data["channel"].values) == ["acceleration"]
+
+
+def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path):
+    rig, effects, travel, rate, noise = RIGS["oscillator"]
+    test = PlannedTest(0.0, 0.0, "mm", 0.0, True, "transient", "release", 2.0, None, travel)
+    run = made(rig, test, rate, effects)
+    a = run.acceleration + noise * np.random.default_rng(1).standard_normal(run.acceleration.size)
+    path = write(tmp_path, rig, [[np.arange(a.size) / rate, a]], CHANNEL.format(""))
+    base = base_fit(Search.of(data_of(read(path)), [])).base.fit
+    known = sensors(base.model.data)
+    assert known.orders == (2,)
+    assert known.displacement_noise < 0.03 * 1e-3 * travel
+    offered = releases(base, known).data
+    assert all(own.orders == (2,) for own in offered.releases)
+    # Beside the motion noise is about as small as it was.
+    assert (offered.power > 30.0 * offered.observations).all()
 
 
 @pytest.mark.parametrize("name", RIGS)

@@ -147,6 +147,24 @@ def test_motion_against_the_ground_is_the_motion_against_the_base_and_its_own(tm
     assert [each["effect"] for each in found.causes] == ["viscous_damping"]
 
 
+def test_a_gain_error_of_the_input_is_in_a_motion_that_was_converted_with_it(tmp_path):
+    """What was recorded is the motion against the ground, and an input that is 3 % too small."""
+    path = write(tmp_path, [4e-3 * chirp()], more="[measurement.uncertain]\nbolster_mass = 0.01\n")
+    table = np.loadtxt(tmp_path / "t0.csv", delimiter=",", skiprows=1)
+    table[:, 1] += table[:, 2]
+    table[:, 2] /= 1.03
+    np.savetxt(tmp_path / "t0.csv", table, "%.12g", ",", header="t,x,u", comments="")
+    text = path.read_text().replace('"x", unit = "mm"', '"x", unit = "mm", of = "absolute"')
+    path.write_text(text.replace("[measurement]\n", "[measurement]\ninput_gain_std = 0.05\n", 1))
+    data = transient_data(read(path))
+    fit = base_fit(Search.of(data, [])).base.fit
+    assert fit.p > 1e-4
+    gains = np.exp(fit.point.nuisance[:, 2])
+    assert gains == pytest.approx(1.03, abs=0.003)
+    # What the sensor shows is not what is compared: its own errors cannot be told.
+    assert data.candidates(["displacement_gain", "viscous_damping"]) == ("viscous_damping",)
+
+
 def test_the_same_from_one_netcdf_file(tmp_path):
     path = write(tmp_path, [4e-3 * chirp()])
     write_netcdf(read(path), tmp_path / "all.nc")

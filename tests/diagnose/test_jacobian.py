@@ -60,7 +60,8 @@ def test_what_is_held_is_not_simulated(monkeypatch):
 
 def largest_change(model, derivatives, sizes):
     """Of any test by the first parameter, in noise."""
-    return sizes[0] * np.sqrt((derivatives.by_parameter[..., 0] ** 2).mean(axis=1)).max()
+    squared = (derivatives.by_parameter[..., 0] ** 2).sum(axis=1) / model.data.observations
+    return sizes[0] * np.sqrt(squared).max()
 
 
 def test_next_to_where_a_wedge_locks_the_near_side_tells():

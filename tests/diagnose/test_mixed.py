@@ -6,11 +6,14 @@ import pytest
 from tests.command import invoke
 from tests.diagnose import test_loops, test_transients
 from wedgesweep import diagnosis_result
+from wedgesweep.config import parse
 from wedgesweep.diagnose.diagnosis import data_of
 from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.steady import simulation
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
+from wedgesweep.solvers.periodic import at_rest
 
 MODEL = test_transients.OSCILLATOR
 HIDDEN = {"viscous_damping": {"coefficient": 2.0}}
@@ -71,6 +74,37 @@ def test_a_cause_is_named_over_all_kinds(tmp_path):
     assert "natural" in invoke("check", path)
     write_netcdf(read(path), tmp_path / "all.nc")
     assert read(tmp_path / "all.nc").kinds == ("transient", "loop")
+
+
+def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):
+    """Steady tests share a gain, each transient has its own, and a release has none."""
+    write(tmp_path)
+    config = parse(MODEL, "model")
+    time = np.arange(4000) / 500.0
+    base, turns = 4e-3, 2.0 * np.pi * 2.0 * time
+    omega = np.array([2.0 * np.pi * 2.0])
+    rows = simulation.records(config, "coulomb", {}, omega, np.array([base]))
+    found = simulation.respond(rows, at_rest(1), 8).harmonics[0, 0]
+    moved = (np.exp(1j * np.outer(turns, np.arange(1, 9))) @ found).real
+    rng = np.random.default_rng(4)
+    table = [time, 1e3 * moved + 0.02 * rng.standard_normal(time.size), 1e3 * base * np.sin(turns)]
+    np.savetxt(tmp_path / "sine.csv", np.array(table).T, "%.12g", ",", header="t,x,u", comments="")
+    text = test_loops.MEASURED.replace("[measurement]\n", "[measurement]\ninput_gain_std = 0.02\n", 1)
+    text += 'input = { column = "u", unit = "mm", quantity = "displacement" }\n'
+    for name, more in (
+        ("sine", ""),
+        ("drop0", 'kind = "transient"\nundriven = true\n'),
+        ("loop0", 'kind = "loop"\n'),
+    ):
+        text += f'[[measurement.test]]\nfile = "{name}.csv"\n{more}'
+    (tmp_path / "measured.toml").write_text(text)
+    data = data_of(read(tmp_path / "measured.toml"))
+    assert all("input_gain" in part.uncertain for part in data.parts)
+    fit = base_fit(Search.of(data, [])).base.fit
+    for test in range(data.tests):
+        alone = Search.of(data.subset(np.array([test])), []).model()
+        found = alone.evaluate(fit.point.subset(np.array([test]))).chi2
+        assert found - fit.evaluation.chi2_by_test[test] < 5.0
 
 
 def test_a_channel_that_one_of_the_kinds_needs_is_missing(tmp_path):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LEANING, drawn, searched, steady_test
+from tests.diagnose.synthetic import LAG, LEANING, drawn, searched, steady_test
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
@@ -105,3 +105,11 @@ def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     usual, undetermined = distances
     assert (undetermined > 0.0).all()
     assert (undetermined < usual).all()
+
+
+def test_what_a_model_may_be_wrong_by_separates_no_explanations():
+    """An error of 5 % of the response is far more than what noise of 4 % of a sample leaves in a harmonic."""
+    data = drawn(LAG)
+    exact, wrong = (rig_of(replace(data, model_error=error)).noise for error in (0.0, 0.05))
+    assert wrong == pytest.approx(np.hypot(exact, 0.05 / np.sqrt(data.shape[1])))
+    assert wrong > 5.0 * exact

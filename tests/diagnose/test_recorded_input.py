@@ -147,6 +147,18 @@ def test_every_channel_tells_the_same_motion(columns):
     assert np.mean(ratios) == pytest.approx(1.0, abs=0.12)
 
 
+def test_effects_of_sensors_are_candidates_where_the_sensor_is_compared_as_it_is():
+    """Beside a velocity that stands for the displacement, what is compared as velocity is an acceleration."""
+
+    def shown(*names, **more):
+        columns = {name: {"column": name[0], "unit": "m"} | more for name in names}
+        return harmonic_data(measurement(columns=columns)).candidates(["displacement_gain", "velocity_lag"])
+
+    assert shown("displacement", "velocity") == ("displacement_gain", "velocity_lag")
+    assert shown("velocity", "acceleration") == ()
+    assert shown("displacement", of="absolute") == ()
+
+
 def test_a_harmonic_within_its_noise_is_left_out():
     measured = np.array([1.0, 0.3, 0.01 + 0.005j])
     kept, variance = without_noise(measured, np.full(3, 1e-4))

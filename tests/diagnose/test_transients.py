@@ -195,3 +195,28 @@ def test_a_ring_down_that_is_taken_for_steady_is_told_what_it_is(tmp_path):
     path.write_text(path.read_text().replace('kind = "transient"', "frequency_hz = 2.5"))
     with pytest.raises(MeasuredError, match='write kind = "transient" if it is a ring-down'):
         read(path)
+
+
+def test_a_test_with_numbers_of_its_own_is_the_same_beside_others_and_alone(tmp_path):
+    """A rig that is released empty and loaded."""
+    loaded = parse(OSCILLATOR.replace("mass_kg = 2.0", "mass_kg = 8.0"), "model")
+    rng, text = np.random.default_rng(3), MEASURED
+    (tmp_path / "model.toml").write_text(OSCILLATOR)
+    for name, config, more in (
+        ("loaded", loaded, 'model = { "oscillator.mass_kg" = 8.0 }\n'),
+        ("empty", parse(OSCILLATOR, "model"), ""),
+    ):
+        x = free_motion(config, {}, (0.02, 0.0), 500.0, 1500) + 2e-5 * rng.standard_normal(1500)
+        table = np.column_stack([np.arange(1500) / 500.0, 1e3 * x])
+        np.savetxt(tmp_path / f"{name}.csv", table, "%.12g", ",", header="t,x", comments="")
+        text += TEST.format(name) + more
+    (tmp_path / "measured.toml").write_text(text)
+    measurement = read(tmp_path / "measured.toml")
+    data = transient_data(measurement)
+    point = base_fit(Search.of(data, [])).base.fit.point
+    for test in range(data.tests):
+        rows = np.array([test])
+        alone = data.subset(rows).starts(point.subset(rows))
+        np.testing.assert_allclose(alone, data.starts(point)[rows])
+    found = api.diagnose_measurement(measurement, effects=["viscous_damping"])
+    assert "mass_kg = 2.0" in found.extended_toml

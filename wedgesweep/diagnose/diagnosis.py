@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
-from wedgesweep.diagnose import cross_validation, score_test, verdict
+from wedgesweep.diagnose import cross_validation, score_test, verdict, work
 from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.ladder import Level, ladder
-from wedgesweep.diagnose.least_squares import from_other_nuisances, tight_refit
+from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise, tight_refit
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
@@ -43,6 +43,8 @@ from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
+# Explanations are close that are behind the best by less than so many times the gap of a tie.
+CLOSE = 5.0
 # Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
 MUCH = 0.9
 Data = HarmonicData | LoopData | TransientData | MixedData
@@ -113,11 +115,14 @@ def diagnose(
     data = data_of(measurement)
     effects = _candidates(effects, measurement, progress)
     search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
-    thresholds, calibration = verdict.thresholds_for(data), None
+    thresholds, calibration = verdict.thresholds_for(search.data), None
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
-        result = calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
-        thresholds = verdict.thresholds_for(data, result.thresholds)
+        # What it simulates is not part of the search's budget.
+        result = work.apart(
+            lambda: calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
+        ).result
+        thresholds = verdict.thresholds_for(search.data, result.thresholds)
         calibration = result.as_dict()
         finding = verdict.decide(base, explanations, thresholds)
     finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
@@ -148,7 +153,11 @@ def diagnose(
 def data_of(measurement: Measurement) -> Data:
     """What a fit sees of the tests."""
     parts = [DATA[kind](measurement.of_kind(kind)) for kind in measurement.kinds]
-    return parts[0] if len(parts) == 1 else MixedData.of(parts)
+    if len(parts) == 1:
+        return parts[0]
+    # Only steady tests have the gain of the input among the uncertain numbers; all parts have the same ones.
+    uncertain = {name: std for part in parts for name, std in part.uncertain.items()}
+    return MixedData.of([replace(part, uncertain=uncertain) for part in parts])
 
 
 def of_each_kind(found: Diagnosis) -> dict[str, Diagnosis]:
@@ -186,8 +195,12 @@ def refit_cause(
 ) -> tuple[Finding, list[Explanation]]:
     """The finding with its best explanation fitted tightly, and all explanations, best first.
 
-    An explanation that was best only by the error of its simulations gives way to the next.
+    An explanation that was best only by the error of its simulations gives way to the next. Rivals whose fits
+    had not ended are followed further first, as the gap to them decides.
     """
+    if finding.best is not None:
+        found = best_of_each([*_continued(search, found, thresholds), *found], penalised)
+        finding = verdict.decide(base, found, thresholds)
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
         search.progress(f"final fit of {' + '.join(finding.best.effects)}")
@@ -200,6 +213,15 @@ def refit_cause(
         found.sort(key=penalised)
         finding = verdict.decide(base, found, thresholds)
     return finding, found
+
+
+def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresholds) -> list[Explanation]:
+    """Explanations close to the best one, and that itself, whose fits had not converged, followed further."""
+    limit = min(map(penalised, found)) + CLOSE * thresholds.gap
+    waiting = [each for each in found if penalised(each) < limit and not each.fit.converged]
+    return search.each(
+        lambda each: search.explanation(minimise(each.fit.model, each.fit.evaluation)), waiting
+    )
 
 
 def on_held_out_tests(search: Search, base: Explanation, finding: Finding) -> tuple[Finding, Gain | None]:

@@ -44,8 +44,9 @@ def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.n
         return sizes
     by_nuisance = near.by_nuisance[..., model.data.eliminated :]
     columns = np.concatenate([near.by_parameter, by_nuisance], axis=-1)
-    change = np.sqrt((columns**2).mean(axis=1)) * sizes
-    simulated = np.sqrt(model.data.power / columns.shape[1])
+    count = np.maximum(model.data.observations, 1)
+    change = np.sqrt((columns**2).sum(axis=1) / count[:, None]) * sizes
+    simulated = np.sqrt(model.data.power / count)
     allowed = np.maximum(LARGEST_CHANGE, RESOLVED * model.tolerance * simulated)
     return sizes / np.maximum((change / allowed[:, None]).max(axis=0), 1.0)
 

@@ -291,6 +291,6 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     """
     model = job.search.model(*subset.effects)
     known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]
-    starts = [model.start(fit, subset.x[: model.size]) for fit in known]
+    starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
     start = replace(starts[0], nuisance=model.best_nuisances(starts))
     return job.search.explanation(minimise(model, model.evaluate(start)))

@@ -98,6 +98,8 @@ def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) ->
         if rise < -LOWER:
             return ProfileEnd(middle, held)
         low, high = (middle, high) if rise < RISE else (low, middle)
+        if low == high:
+            break
         middle = 0.5 * (low + high)
     return ProfileEnd(high, fit)
 

@@ -39,9 +39,9 @@ def refit_without_influential_tests(fit: Fit) -> Fit:
     kept = subset_fit(fit, rows)
     trimmed = minimise(kept.model, kept.evaluation).point
     stated, at_rest = model.data.start()
-    priors = model.nuisance_weight.shape[1]
+    priors, known = model.nuisance_weight.shape[1], np.isfinite(model.data.nuisance_std)
     nuisance = point.nuisance.copy()
-    nuisance[:, :priors] = stated[:, :priors]
+    nuisance[:, :priors] = np.where(known, stated[:, :priors], nuisance[:, :priors])
     nuisance[rows, :priors] = trimmed.nuisance[:, :priors]
     start = Point(trimmed.x, nuisance, point.warm.where(left_out, at_rest))
     again = minimise(model, model.evaluate(_at_best_nuisances(model, start, left_out)))

@@ -82,8 +82,8 @@ def _measured(data: LoopData) -> _Machine:
 def _unmeasured(best: Fit, known: Sensors) -> _Machine:
     """Forces that are recorded with as large a share of noise as displacements are."""
     own = best.model.data
-    mass, std = moving_mass(own.model, own.law), known.spectra[0].std
-    force = mass * known.omega**2 * float(known.rms[0])
+    mass, std = moving_mass(own.model, own.law), known.displacement_noise
+    force = mass * known.omega**2 * known.displacement_rms
     low_pass = LowPass(highest_cutoff(std, force, mass, known.rate), known.rate)
     return _Machine(low_pass, low_pass.noise(known.share) ** 2, None)
 
@@ -92,7 +92,7 @@ def _recording(
     known: Sensors, machine: _Machine, values: Values, amplitude: float, frequency: float
 ) -> Recording:
     """A loop that was not recorded; its force is the one under the values of the best explanation."""
-    low_pass, std = machine.low_pass, known.spectra[0].std
+    low_pass, std = machine.low_pass, known.displacement_noise
     ends, omega = low_pass.settling, 2.0 * pi * frequency
     time = np.arange(round(CYCLES / frequency * known.rate) + 2 * ends) / known.rate
     motion = Motion(

@@ -1,6 +1,7 @@
 """The next test over all kinds: one like those that were made, or of another kind where they tell nothing."""
 
 from collections.abc import Callable, Sequence
+from math import hypot
 
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.loop.loop_data import LoopData
@@ -77,13 +78,9 @@ def _steady(fits: Sequence[Fit], parts: Sequence[FitData]) -> Offer | None:
 def _rig(parts: Sequence[FitData]) -> steady.Rig:
     """What a steady test would be like where none was made."""
     known = sensors(parts[0])
-    return steady.Rig(
-        known.model,
-        known.law,
-        parts[0].units,
-        len(known.spectra),
-        steady.noise_of(known.share, known.rate / known.omega),
-    )
+    noise = steady.noise_of(known.share, known.rate / known.omega)
+    noise = hypot(noise, steady.error_of(parts[0].model_error, steady.HARMONICS))
+    return steady.Rig(known.model, known.law, parts[0].units, len(known.spectra), noise)
 
 
 def _release(fits: Sequence[Fit], parts: Sequence[FitData]) -> Offer | None:

@@ -20,9 +20,9 @@ Each = TypeVar("Each")
 class Sensors(NamedTuple):
     """A typical test.
 
-    ``rate`` (Hz) of sampling; ``spectra``: noise of the displacement and, where it was recorded, of the
-    velocity; ``rms`` (C,) of these channels (m, m/s); ``travel`` (m): the largest displacement of all tests;
-    ``drive``: the largest recorded input as a displacement (m), 0 for none.
+    ``rate`` (Hz) of sampling; ``spectra``: noise of the channels; ``rms`` (C,) of these (m, m/s, m/s^2);
+    ``travel`` (m): the largest displacement of all tests; ``drive``: the largest recorded input as a
+    displacement (m), 0 for none; ``orders`` (C,): the derivative of the displacement that each channel is.
     """
 
     model: Config
@@ -32,11 +32,22 @@ class Sensors(NamedTuple):
     rms: np.ndarray
     travel: float
     drive: float = 0.0
+    orders: tuple[int, ...] = (0, 1)
 
     @property
     def share(self) -> float:
-        """Noise of the displacement over its rms."""
+        """Noise of the first channel over its rms."""
         return self.spectra[0].std / float(self.rms[0])
+
+    @property
+    def displacement_rms(self) -> float:
+        """Rms (m) of the displacement, from the first channel at the natural frequency."""
+        return float(self.rms[0]) / self.omega ** self.orders[0]
+
+    @property
+    def displacement_noise(self) -> float:
+        """Standard deviation (m) of a displacement with as large a share of noise as the first channel."""
+        return self.share * self.displacement_rms
 
     @property
     def omega(self) -> float:
@@ -46,7 +57,8 @@ class Sensors(NamedTuple):
 
 def louder(noise: NoiseSpectrum, factor: float) -> NoiseSpectrum:
     """A noise whose samples are larger by a factor."""
-    return replace(noise, red=factor**2 * noise.red, white=factor**2 * noise.white)
+    likewise = tuple(louder(each, factor) for each in noise.likewise)
+    return replace(noise, red=factor**2 * noise.red, white=factor**2 * noise.white, likewise=likewise)
 
 
 def scaled(noise: NoiseSpectrum, rms: float, measured: float) -> NoiseSpectrum:
@@ -70,7 +82,8 @@ def _(data: TransientData) -> Sensors:
             times = np.arange(each.grid.samples) * each.step
             drive = max(drive, 0.5 * float(np.ptp(each.input(times))))
     drive /= data.units.mass / data.units.time**2 if data.model.forced else 1.0
-    return Sensors(data.model, data.law, 1.0 / own.step, own.spectra, own.rms, travel, drive)
+    rate, orders = 1.0 / own.step, own.orders[: len(own.channels)]
+    return Sensors(data.model, data.law, rate, own.spectra, own.rms, travel, drive, orders)
 
 
 @sensors.register

@@ -82,13 +82,15 @@ def _window(known: Sensors, start: float, duration: float) -> Release:
         input_noise=None,
         length=start,
         guess=(start, 0.0),
+        orders=known.orders,
     )
 
 
 def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientData:
     """The tests as if the best explanation were measured, with the noise that sensors would have."""
     own = best.model.data
-    data = TransientData(tests, dict(own.uncertain), own.model_error, getattr(own, "gain_std", 0.0))
+    gain_std = getattr(own, "gain_std", 0.0) if any(each.driven for each in tests) else 0.0
+    data = TransientData(tests, dict(own.uncertain), own.model_error, gain_std)
     nuisance, warm = data.start()
     found = best.model.on(data).evaluate(Point(best.x, nuisance, warm))
     return replace(

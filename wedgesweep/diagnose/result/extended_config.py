@@ -14,7 +14,7 @@ from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 def extended(found: Diagnosis) -> str:
     """The extended model as a config that runs the measured tests."""
     best, data = found.extended, found.data
-    document = {**data.model.document, "title": f"{found.measurement.title}: extended model"}
+    document = {**found.measurement.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: each for name, each in uncertain_values(best).items() if name != INPUT_GAIN}
     document["effects"] = _as_written(effects.merge(document["effects"], {**nuisance, **best.values}))
     if not isinstance(data, HarmonicData):

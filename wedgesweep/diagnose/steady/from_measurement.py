@@ -84,7 +84,9 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
             for parts in zip(*(each[1] for each in read), strict=True)
         )
     )
-    as_measured = {name for (name, *_), (_, share) in zip(named, motions, strict=True) if share == 0.0}
+    as_measured = {
+        name for (name, slot, _), (_, share) in zip(named, motions, strict=True) if name == slot and not share
+    }
     gain = {INPUT_GAIN: measurement.input_gain_std} if measurement.input_gain_std else {}
     data = RecordedInputData(
         model=measurement.model,
@@ -98,7 +100,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         input_phase=inputs.phase,
         inputs=inputs,
         model_error=measurement.model_error,
-        untold=_untold(as_measured, len(as_measured) < len(named)),
+        untold=_untold(as_measured, any(share for _, share in motions)),
     )
     return data.with_covariance(stated(data))
 

@@ -8,7 +8,7 @@ some percent (with the fit's covariance as prior). A test does not count where a
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from math import pi, sqrt
+from math import hypot, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -50,7 +50,9 @@ FREE_PHASE = 1e3
 
 @dataclass(frozen=True)
 class Rig:
-    """What a steady test would be like: C ``channels``, and ``noise`` of a harmonic over the response.
+    """What a steady test would be like.
+
+    It has C ``channels``; ``noise`` of a harmonic over the response includes the model error that is allowed.
 
     ``tone``: frequency (Hz) of a spurious tone, which shows under the effect ``TONE``.
     """
@@ -69,15 +71,20 @@ class Rig:
 
 
 def rig_of(data: HarmonicData) -> Rig:
-    """New tests are as noisy as those that were made."""
+    """New tests are as noisy as those that were made, and their model may be as wrong."""
     level = [
         np.sqrt(s.variance[c].mean() / (np.abs(s.mean[c]) ** 2).sum())
         for s in data.spectra
         for c in range(s.mean.shape[0])
     ]
-    return Rig(
-        data.model, data.law, data.units, *data.shape[:1], float(np.median(level)), data.shape[1], data.tone
-    )
+    channels, harmonics = data.shape
+    noise = hypot(float(np.median(level)), error_of(data.model_error, harmonics))
+    return Rig(data.model, data.law, data.units, channels, noise, harmonics, data.tone)
+
+
+def error_of(model_error: float, harmonics: int) -> float:
+    """Model error of a harmonic over the response, from that of the response."""
+    return model_error / sqrt(harmonics)
 
 
 def noise_of(share: float, samples: float) -> float:

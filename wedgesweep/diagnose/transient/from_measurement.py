@@ -30,7 +30,7 @@ def transient_data(measurement: Measurement) -> TransientData:
         tuple(found),
         dict(measurement.uncertain),
         measurement.model_error,
-        measurement.input_gain_std,
+        measurement.input_gain_std if any(own.driven for own in found) else 0.0,
         evidence=evidence,
     )
 

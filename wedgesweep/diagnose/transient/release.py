@@ -108,6 +108,24 @@ class Release:
         """The derivative of the displacement that each channel is."""
         return self.orders[: len(self.channels)]
 
+    @property
+    def _shares(self) -> tuple[float, ...]:
+        """Share of the base's recorded motion that was added to each channel to have it as simulated."""
+        return (0.0,) * len(self.channels) if self.input_noise is None else self.input_noise.shares
+
+    @property
+    def shown_as_measured(self) -> tuple[int, ...]:
+        """The derivatives of the displacement that sensors show without conversion."""
+        both = zip(self._orders, self._shares, strict=True)
+        return tuple(order for order, share in both if share == 0.0)
+
+    @cached_property
+    def _converted(self) -> np.ndarray:
+        """What was added to the channels, (C, n); an error of the input's gain is in it as well."""
+        times = self.step * np.arange(self.grid.lead, self.grid.samples)
+        both = zip(self._orders, self._shares, strict=True)
+        return np.array([share * self.input(times, order) if share else 0.0 * times for order, share in both])
+
     @cached_property
     def _frequency(self) -> np.ndarray:
         """Frequency (K,) of each coefficient in rad a sample."""
@@ -203,7 +221,8 @@ class Release:
         """
         rows = self._records(scenarios)
         self._drive(rows, self.input, gains)
-        return dct(self._motions(rows, starts, tolerance), norm="ortho")[..., : self.coefficients]
+        motions = self._motions(rows, starts, tolerance) - (gains - 1.0)[:, None, None] * self._converted
+        return dct(motions, norm="ortho")[..., : self.coefficients]
 
     def _records(self, scenarios: list[Values]) -> np.ndarray:
         """Parameter records of scenarios, without an input."""

@@ -50,6 +50,7 @@ class TransientData(SampledData):
 
     ``decorrelations``: combinations with independent noise of the first coefficients of each channel of each
     test; without them coefficients count as independent. ``evidence``: what tells the noise of the channels.
+    ``gain_std``: relative standard deviation of the gain of recorded inputs, 0 for exact ones or none.
     """
 
     releases: tuple[Release, ...]
@@ -168,15 +169,10 @@ class TransientData(SampledData):
     @property
     def nuisance_std(self) -> np.ndarray:
         start = np.full((self.tests, len(START)), np.inf)
-        if not self._gains:
+        if not self.gain_std:
             return start
         driven = np.array([own.driven for own in self.releases])
         return np.column_stack([start, np.where(driven, self.gain_std, 1.0)])
-
-    @property
-    def _gains(self) -> bool:
-        """Whether gains of inputs are fitted."""
-        return self.gain_std > 0.0 and any(own.driven for own in self.releases)
 
     @cached_property
     def units(self) -> NaturalUnits:
@@ -186,7 +182,7 @@ class TransientData(SampledData):
     def _scale(self) -> np.ndarray:
         """Displacement (m) and velocity (m/s) of the largest displacement of each test, (T, 2)."""
         length = np.array([own.length for own in self.releases])
-        return np.column_stack([length, length / self.units.time])
+        return np.column_stack([length, length * np.array([own.grid.omega for own in self.releases])])
 
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
@@ -194,14 +190,14 @@ class TransientData(SampledData):
 
     def _gain(self, point: Point) -> np.ndarray:
         """True input over the recorded one in each test, (T,)."""
-        return np.exp(point.nuisance[:, len(START)]) if self._gains else np.ones(self.tests)
+        return np.exp(point.nuisance[:, len(START)]) if self.gain_std else np.ones(self.tests)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        return (*START, GAIN) if self._gains else START
+        return (*START, GAIN) if self.gain_std else START
 
     def start(self) -> tuple[np.ndarray, NoStart]:
         start = np.array([own.guess for own in self.releases]) / self._scale
-        return np.pad(start, ((0, 0), (0, int(self._gains)))), NoStart()
+        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0)))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         releases = tuple(self.releases[row] for row in np.arange(self.tests)[rows])
@@ -213,7 +209,7 @@ class TransientData(SampledData):
         return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        shown = {order for own in self.releases for order in own.orders[: len(own.channels)]}
+        shown = {order for own in self.releases for order in own.shown_as_measured}
         hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
         return tuple(name for name in effects if name not in hidden)
 
