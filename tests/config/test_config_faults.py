@@ -248,3 +248,16 @@ def test_unilateral_joints_need_an_angle_and_friction_that_does_not_grow():
     angle, static = problems(law + joints)
     assert "suspension.column_angle_deg" in angle
     assert "friction.static" in static
+
+
+@pytest.mark.parametrize(
+    ("law", "effect"), [("lugre", "stribeck"), ("lugre", "ageing"), ("hyperbolic", "stribeck")]
+)
+def test_an_effect_that_a_law_has_no_place_for(law, effect):
+    own = "[oscillator]\nmass_kg = 1.0\nspring_N_per_mm = 1.0\nnormal_force_N = 1.0\n"
+    own += "bristle_stiffness_N_per_mm = 100.0\n" if law == "lugre" else ""
+    model = own + SWEEP.replace("coulomb", law)
+    assert effect not in config.parse(model).possible_effects
+    numbers = {"stribeck": "peak = 0.1\nvelocity_mm_per_s = 10.0\n", "ageing": "rate = 0.1\ntime_s = 0.1\n"}
+    (problem,) = problems(model + f"[effects.{effect}]\n{numbers[effect]}")
+    assert f"effects.{effect}: {law}" in problem

@@ -9,7 +9,7 @@ from numpy.lib.recfunctions import structured_to_unstructured
 
 from tests.physics.cases import OMEGA_N
 from tests.physics.effect_cases import EXTENDING, NOT_PERIODIC, REPEATING, mild, typical
-from wedgesweep import config, response
+from wedgesweep import config, response, systems
 from wedgesweep.effects import EFFECTS, FAMILIES, acting, go_together, merge
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, periodic, radau
@@ -72,7 +72,7 @@ def test_a_config_switches_it_on_and_its_range_is_allowed(name):
             assert quantity.fault(quantity.search[0]) is None
     assert read.sweep.omega_n == pytest.approx(OMEGA_N)
     assert record["input"]["omega"][0] == pytest.approx(OMEGA_N)
-    assert parameters.has_own_mechanics(record)[0] == bool(EFFECTS[name].extends)
+    assert systems.has_own_mechanics(record)[0] == bool(EFFECTS[name].extends)
 
 
 @pytest.mark.parametrize("name", EFFECTS)

@@ -73,6 +73,18 @@ def test_energy_balances_and_solvers_agree(name, law):
     assert abs(found[0][changed] - without[changed]) > 1e-3 * abs(found[0][changed])
 
 
+@pytest.mark.parametrize("level", [0.5, 1.5])
+def test_bent_bristles_hold_a_mass_between_the_frictions_of_both_directions(level):
+    """At zero slip friction jumps by the asymmetry times what the bristles hold."""
+    both = {name: STRENGTHS[name] for name in ("presliding", "directional_friction")}
+    found = [steady(case("coulomb", level=level, **both), each, rtol=1e-8, settle=30) for each in SOLVERS]
+    for number in ("amplitude_ratio", "mean_displacement", "dissipated_energy"):
+        one, other = (each.numbers[number] for each in found)
+        assert one == pytest.approx(other, rel=1e-5, abs=1e-9), number
+    for each in found:
+        assert each.numbers["supplied_energy"] == pytest.approx(each.numbers["dissipated_energy"], rel=2e-5)
+
+
 @pytest.mark.parametrize("name", STRENGTHS)
 def test_neutral_values_change_nothing(name):
     neutral = {each.name: each.neutral * each.factor for each in EFFECTS[name].quantities}

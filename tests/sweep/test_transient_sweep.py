@@ -125,6 +125,44 @@ def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
         assert work == pytest.approx(2.0 * travel, rel=0.15)
 
 
+def test_the_force_is_that_of_spring_and_friction_whatever_shakes_the_base(folder):
+    tone = "[effects.stray_vibration]\nacceleration_m_per_s2 = 3.0\nfrequency_hz = 9.0\n"
+    (folder / "shaken.toml").write_text(HEAD + SWEPT + TAIL + tone)
+    ds = Sweep(config.load("shaken.toml"), folder / "a.nc").run_here()
+    friction = ds["force"] - 800.0 * ds["displacement"]
+    # Coulomb and static friction are 2 N and 2.4 N; ten times as much would be left of the tone.
+    assert float(np.abs(friction.sel(friction_law="coulomb")).max()) < 2.0 * 1.02
+    assert float(np.abs(friction.sel(friction_law="static-dynamic")).max()) < 2.4 * 1.02
+    yielding = "[effects.column_compliance]\nstiffness_N_per_mm = 50.0\n"
+    (folder / "yielding.toml").write_text(SWEPT.replace("4.0\nstart", "1.0\nstart") + TAIL + yielding)
+    assert Sweep(config.load("yielding.toml"), folder / "b.nc").run_here()["force"].isnull().all()
+
+
+def test_an_exported_row_has_its_scale(folder):
+    Sweep(config.load("release.toml"), folder / "a.nc").run(n_jobs=1).to_netcdf(folder / "whole.nc")
+    invoke("export", "whole.nc", "-o", "out.csv", "--variables", "peak_displacement")
+    table = np.genfromtxt("out.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
+    assert table["scale"].tolist() == [0.5, 1.0, 2.0] * 2
+    assert "a waveform of" in invoke(
+        "export", "whole.nc", "-o", "b.csv", "--variables", "displacement", code=2
+    )
+    assert "beta: no such variable" in invoke(
+        "export", "whole.nc", "-o", "b.csv", "--variables", "beta", code=2
+    )
+
+
+def test_what_does_not_decay_by_a_constant_friction_has_no_such_decay(folder):
+    text = (HEAD + RELEASE + TAIL).replace("[sweep]", "[effects.ageing]\nrate = 0.02\ntime_s = 0.1\n[sweep]")
+    physics = Sweep(config.parse(text), folder / "a.nc").run_here().attrs
+    assert np.isnan(physics["friction_decay_per_cycle"])
+
+
+def test_a_release_at_rest_on_a_belt_is_measured_by_the_motion_on_the_belt():
+    text = HEAD + 'contact = "belt"\nbelt_velocity_mm_per_s = 10.0\n' + RELEASE + TAIL
+    given = config.parse(text.replace("displacement_mm = 30.0", "displacement_mm = 0.0"))
+    assert given.solver.transient.length == pytest.approx(0.01 / 20.0)
+
+
 def test_peaks_of_a_decay_fall_by_four_friction_over_stiffness(folder):
     ds = Sweep(config.load("release.toml"), folder / "a.nc").run_here()
     assert ds.attrs["friction_decay_per_cycle"] == pytest.approx(4.0 * 2.0 / 800.0)

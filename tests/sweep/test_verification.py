@@ -96,7 +96,7 @@ def test_a_motion_that_radau_itself_cannot_pin_down_is_not_judged(here, broken, 
     )
     told = run(SOLVERS["fixed"], "--verify", 2, code=1)
     assert "verified by Radau at rtol 1e-09: 0 cases" in told
-    assert "not judged: " in told
+    assert "not verified: " in told
     assert "Radau moves by 0.03 itself from rtol 1e-09 to 1e-10" in told
 
 
@@ -107,7 +107,7 @@ def test_a_judge_that_fails_is_told(here, monkeypatch):
 
     run(SOLVERS["fixed"])
     monkeypatch.setattr(radau, "solve", fails)
-    assert "not judged: " in (told := run(SOLVERS["fixed"], "--verify", 1, code=1))
+    assert "not verified: " in (told := run(SOLVERS["fixed"], "--verify", 1, code=1))
     assert "Radau fails: gave up" in told
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from wedgesweep.sweep.run import Sweep
-    from wedgesweep.sweep.verification import Judged
+    from wedgesweep.sweep.verification import VerifiedCase
 
 
 def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, n_jobs: int) -> int:
@@ -21,33 +21,33 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
 
     log.info(f"verifying {count} random cases by Radau")
     found = verification.verify(sweep, ds, count, seed, n_jobs)
-    judged = found.judged
+    verifiable = found.verifiable
     click.echo(
-        f"verified by Radau at rtol {verification.RTOL:g}: {len(judged)} cases out of {found.candidates} "
+        f"verified by Radau at rtol {verification.RTOL:g}: {len(verifiable)} cases out of {found.candidates} "
         f"that were solved (random, seed {found.seed})"
     )
     for name, words in (("ratio", "amplitude ratio"), ("stick", "stick fraction")):
-        if judged:
-            worst = verification.largest(judged, name)
+        if verifiable:
+            worst = verification.largest(verifiable, name)
             apart = getattr(worst.apart, name)
             click.echo(f"  largest difference of the {words}: {apart:.2g}, at {_told(worst, name)}")
     for case in [case for case in found.cases if case.message][:LISTED]:
-        click.echo(f"  not judged: {case.case}: {case.message}")
-    wrong = [case for case in judged if case.is_wrong]
+        click.echo(f"  not verified: {case.case}: {case.message}")
+    wrong = [case for case in verifiable if case.is_wrong]
     if wrong:
         ratio, small, stick = verification.RATIO_BOUND, verification.SMALL_RATIO, verification.STICK_BOUND
         click.echo(
-            f"  {len(wrong)} of {len(judged)} cases differ by more than {ratio:g} of the amplitude ratio (of "
-            f"{small:g} where it is smaller) or a stick fraction of {stick:g}:"
+            f"  {len(wrong)} of {len(verifiable)} cases differ by more than {ratio:g} of the amplitude ratio "
+            f"(of {small:g} where it is smaller) or a stick fraction of {stick:g}:"
         )
     for case in wrong[:LISTED]:
         click.echo(f"    {_told(case, 'ratio')}; stick fraction {_pair(case, 'stick')}")
-    return SOME_FAILED if wrong or not judged else 0
+    return SOME_FAILED if wrong or not verifiable else 0
 
 
-def _told(case: "Judged", name: str) -> str:
+def _told(case: "VerifiedCase", name: str) -> str:
     return f"{case.case}: {_pair(case, name)}"
 
 
-def _pair(case: "Judged", name: str) -> str:
-    return f"{getattr(case.stored, name):.6g}, by Radau {getattr(case.judge, name):.6g}"
+def _pair(case: "VerifiedCase", name: str) -> str:
+    return f"{getattr(case.stored, name):.6g}, by Radau {getattr(case.reference, name):.6g}"

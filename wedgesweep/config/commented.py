@@ -18,7 +18,7 @@ CHOSEN: dict[str, Any] = {"solver.method": "event-driven", "solver.settle": "ste
 REASONS = {
     "solver": """\
 # Here: steady states by the event-driven solver. Radau, the default of method, is the slower, independent
-# choice: write method = "radau", and settle_periods or duration_s in place of settle. To have Radau judge
+# choice: write method = "radau", and settle_periods or duration_s in place of settle. To have Radau verify
 # some cases of any sweep: wedgesweep run CONFIG --verify 20
 """,
 }

@@ -7,7 +7,7 @@ from typing import Any
 from wedgesweep.config.input_contradictions import input_contradictions
 from wedgesweep.effects import lift_off, with_lift_off
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
-from wedgesweep.systems.oscillator.parameters import OF_BASE, effect_names
+from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, effect_names
 from wedgesweep.systems.suspension.parameters import UNILATERAL
 
 
@@ -87,6 +87,9 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     if not on_belt and "belt_velocity_mm_per_s" in own:
         yield f'oscillator.belt_velocity_mm_per_s: contact is "{own.get("contact")}"; write contact = "belt"'
     yield from _bristles(document)
+    falling = OF_LAW["hyperbolic"] if "hyperbolic" in _named_laws(sweep) else ()
+    for name in set(falling).intersection(document.get("effects", {})):
+        yield f"effects.{name}: hyperbolic falls with velocity by itself; remove it, or choose another law"
     forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
     if not on_belt and 0.0 in forces:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
@@ -138,7 +141,7 @@ def _bristles(document: Mapping[str, Any]) -> Iterator[str]:
         return
     if "bristle_stiffness_N_per_mm" not in own:
         yield "oscillator.bristle_stiffness_N_per_mm: missing; lugre needs it, as in 100.0"
-    for name in {"presliding", "guide_friction", "ageing"}.intersection(document.get("effects", {})):
+    for name in {*OF_LAW["lugre"], "guide_friction"}.intersection(document.get("effects", {})):
         yield f"effects.{name}: lugre has bristles of its own; remove it, or choose another law"
 
 

@@ -91,7 +91,8 @@ class Config:
 
         Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
         rubs, more friction of its surface is another level of friction; if not, there is nothing that the
-        effects on the law of friction could change. Under a force the base is at rest.
+        effects on the law of friction could change. Some laws have what an effect would add. Under a force
+        the base is at rest.
         """
         if self.system != OSCILLATOR:
             return tuple(name for name in EFFECTS if name in self.effects or self._may_have(name))
@@ -101,6 +102,8 @@ class Config:
             without.update(oscillator.OF_SPRING)
         if self.forced:
             without.add(oscillator.OF_BASE)
+        for law in self.sweep.laws:
+            without.update(oscillator.OF_LAW.get(law, ()))
         return tuple(name for name in oscillator.effect_names() if name not in without)
 
     def _may_have(self, effect: str) -> bool:
@@ -163,7 +166,8 @@ class Config:
         """How the input is run."""
         absolute = self.system == OSCILLATOR and self.oscillator["contact"] != "base"
         rate = self.document["input"].get("sampling_hz")
-        return transient_of(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR)
+        belt = self.oscillator.get("belt_velocity", 0.0) if absolute else 0.0
+        return transient_of(self.input, self.sweep.omega_n, rate, absolute, self.system == OSCILLATOR, belt)
 
     def case_list(self) -> list[Case]:
         """All cases, which may be many: ``sweep.case`` makes one of them."""

@@ -1,4 +1,4 @@
-"""Compared forces as combinations that are independent under coloured noise."""
+"""Compared numbers (forces of a loop, coefficients of a transient) as combinations with independent noise."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -97,9 +97,9 @@ def diagnose(
     Parameters
     ----------
     measurement : Measurement
-        Tests of one suspension, and the config of the base model.
+        Tests of one rig, and the config of its base model.
     effects : sequence of str
-        Candidates. An effect that the base model has is none, unless it scales a parameter.
+        Candidates. Effects that the base model already has are skipped, unless they scale a parameter.
     threads : int
         Fits that run at the same time.
     progress : callable

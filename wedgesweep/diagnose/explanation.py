@@ -32,7 +32,7 @@ class Explanation:
 
     @property
     def p_value(self) -> float:
-        """Probability of its misfit, or that its parameters are constant, whichever is less.
+        """The smaller of two p-values: that of the misfit, and that of the test for constant parameters.
 
         Constancy takes simulations, and is not looked at where the misfit alone rules the explanation out.
         """

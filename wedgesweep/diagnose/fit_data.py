@@ -1,7 +1,7 @@
 """What a fit needs to know of the measured tests: the interface that every kind of record implements.
 
-A kind of record (steady harmonics; later a transient, a hysteresis loop) says how its tests are simulated,
-how a simulation is compared with the measurement, and which nuisance parameters each test has. Everything
+A kind of record (steady harmonics, transient, loop) defines how its tests are simulated, how a simulation is
+compared with the measurement, and which nuisance parameters each test has. Everything
 else in this package (least squares, profile likelihood, score tests, search, verdict, cross-validation) sees
 the tests through ``FitData`` only. To add a kind, subclass ``FitData``; the methods with a body are
 optional.

@@ -19,7 +19,7 @@ FAINT = 1e-3
 
 
 class Constancy(NamedTuple):
-    """Probability that all parameters are constant, and the least constant one ("effect.key")."""
+    """P-value of the test that all parameters are constant, and the least constant one ("effect.key")."""
 
     p: float
     parameter: str | None
@@ -39,7 +39,7 @@ def parameter_constancy(fit: Fit) -> Constancy:
 
 
 def _constant(project: Projector, derivative: np.ndarray, variance: float = 1.0) -> float:
-    """Probability of the misfit along changes of one parameter in single tests; ``derivative`` (T, m)."""
+    """P-value of the misfit along changes of one parameter in single tests; ``derivative`` (T, m)."""
     alone = derivative[None] * np.eye(len(derivative))[..., None]
     directions = np.array([project(each) for each in alone])
     _, size, basis = np.linalg.svd(directions, full_matrices=False)

@@ -71,7 +71,7 @@ class Budget:
         return self.total - (done() - self.begun)
 
     def grant(self, work: float) -> None:
-        """See to it that so much is left, whatever was spent before."""
+        """Raise the budget, if necessary, so that this much work is left."""
         self.total = max(self.total, done() - self.begun + work)
 
     def ended(self, what: str, done: int, effects: Sequence[tuple[str, ...]]) -> None:

@@ -1,4 +1,4 @@
-"""Columns that yield sideways: one more degree of freedom, the way Q outward.
+"""Columns that yield sideways: one more degree of freedom, the displacement Q outward.
 
 The wedge follows the column. Q starts at its static place. Under the Coulomb law the faces are regularised:
 mu_d |v|/v_t up to v_t = 1e-3 mm/s.

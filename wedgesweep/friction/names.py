@@ -1,4 +1,4 @@
-"""Config names of the friction laws; a law's place in this tuple is its code in compiled code."""
+"""Config names of the friction laws; a law's place in ``friction.LAWS`` is its code in parameter records."""
 
 LAW_NAMES = ("coulomb", "static-dynamic", "exponential")
 # Laws that only oscillators have.

@@ -123,7 +123,7 @@ by_record(add_impact, lambda fields: _of_impact if provided(impact, fields) else
 
 @inner
 def add_motion(sums, y, weight, mode, p):
-    """Add what one point says without its forces; ``weight`` (s) as in a quadrature."""
+    """Add the motion at one point, without forces and energies; ``weight`` (s): of the quadrature node."""
     x, velocity = observed(y, p)
     stuck = sticks(y, mode, p)
     sums.lowest = min(sums.lowest, x)

@@ -130,9 +130,8 @@ def run_batch(
 def _settled(y, near, settle_periods, settings, search):
     """Settle the case of a search; y moves along.
 
-    Returns the outcome, the period of the response and the periods run.
-
-    ``near``: period of the response that y lies close to, 0 if unknown.
+    ``near``: period of the response that y lies close to, 0 if unknown. Returns the outcome, the period of
+    the response and the periods run.
     """
     if settings.steady:
         unknown = np.empty((y.size, y.size))

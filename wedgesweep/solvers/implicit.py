@@ -8,7 +8,7 @@ from math import inf, isfinite
 import numpy as np
 
 from wedgesweep.compiled import allocating
-from wedgesweep.hybrid.interface import active, cycle, growth, perturbation, rate, stiff_error
+from wedgesweep.hybrid.interface import active, fastest, growth, perturbation, rate, stiff_error
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
 from wedgesweep.solvers.linear_algebra import inverted
 from wedgesweep.solvers.step import connected, inside, over_tolerance
@@ -65,7 +65,7 @@ def _derivatives(t, y, k1, mode, p):
         for j in range(n):
             if moves[j]:
                 by_state[j, i] = (upper[j] - lower[j]) / (high - low)
-    change = MOVED * cycle(p) / (2.0 * np.pi)
+    change = MOVED / fastest(p)
     store(combination(1.0 / change, (1.0, -1.0), (rate(t + change, y, mode, p)[0], k1)), by_time)
     return by_state, by_time
 

@@ -3,8 +3,8 @@
 Drivers of the map (shooting, batches) see records as bytes and the map as an address, so that one compiled
 driver serves the records of all systems and kits.
 
-Contacts that may open take turns with contacts that hold: as long as all are closed, the smaller system of
-these has the same motion, and is faster.
+A suspension with joints that can open is integrated by two models in turn: while both contacts are closed by
+that of bilateral joints, which has two states and is faster; else by the model with gaps.
 """
 
 from functools import cache

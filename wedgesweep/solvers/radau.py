@@ -18,6 +18,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from wedgesweep.hybrid import accumulators
 from wedgesweep.solvers import radau_system as system
+from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.trajectory import CaseError, Trajectory, Window, empty_samples
 from wedgesweep.systems import compact, while_closed
 
@@ -29,7 +30,6 @@ ABSOLUTE = 1e-2
 # Least number of steps per period of the fastest input: a step is too short for a stop and the start after
 # it. While contacts hold the mass nothing else limits its length.
 STEPS_PER_PERIOD, STEPS_HELD = 16, 64
-EVENTS_PER_PERIOD = 1000
 # Phase (rad) after which an event function that is passing zero is safely away from it.
 LOOK_AHEAD = 1e-8
 # Error of the place of a minimum, as a share of a step.
@@ -106,7 +106,7 @@ def _taking_turns(case: np.ndarray) -> list[np.ndarray]:
 
 
 class _Run:
-    """One case on its way: the current state, and what is kept so far."""
+    """A run of one case: its current state, and what it has kept."""
 
     def __init__(self, parameters: np.ndarray, window: Window, rtol: float, time_limit: float) -> None:
         self.window, self.rtol = window, rtol

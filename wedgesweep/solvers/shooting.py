@@ -35,8 +35,8 @@ STALE, GAIN = 0.2, 0.5
 GROWN, CONTACT_TIME_LIMIT = 1.0 - 1e-9, 100.0
 # Below this distance the next period may be the last one, and is kept.
 KEPT_BELOW = 1e-3
-# Periods of integration of a response to an input that does not repeat.
-PERIODS_OF_NO_RESPONSE = 30
+# Periods of integration where a spurious tone keeps the input from repeating.
+PERIODS_UNDER_TWO_TONES = 30
 # An extrapolated state is taken if it reduces the distance to its image by this factor.
 EXTRAPOLATION_GAIN = 0.5
 
@@ -258,7 +258,8 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
     shortest, last, fresh, run = np.inf, np.inf, False, 0
-    judged = False
+    # Whether the monodromy matrix has passed the test of stability once.
+    accepted = False
     while run < most:
         image = y.copy()
         keeping = last < KEPT_BELOW or run == 0
@@ -283,9 +284,9 @@ def newton_shooting(y, periods, jacobian, most, shooting):
             copy(image, y)
             last = now
             continue
-        if judged:
+        if accepted:
             _update(jacobian, y, image, before, image_before, size)
-        if now > STALE * last or not (judged or _stable_and_regular(jacobian, moves)):
+        if now > STALE * last or not (accepted or _stable_and_regular(jacobian, moves)):
             if (fresh and now > GAIN * last) or run + periods * (1 + _places(moves).size) > most:
                 break
             outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
@@ -295,7 +296,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
                 break
         else:
             fresh = False
-        judged = True
+        accepted = True
         copy(y, before)
         copy(image, image_before)
         last = now
@@ -367,7 +368,7 @@ def settle(y, periods, jacobian, shooting):
         y[:], periods = 0.0, 0
         jacobian[:] = np.nan
     if not shooting.cases.repeats[shooting.number]:
-        most = min(most, PERIODS_OF_NO_RESPONSE)
+        most = min(most, PERIODS_UNDER_TWO_TONES)
         outcome = run_map(0, most, y, False, shooting)
         return Found(outcome, 0, most, 0)
     if periods:

@@ -177,10 +177,7 @@ def _shape_faults(
             yield f"{name} holds {found.dtype}"
         elif not found.size:
             yield f"{name} is empty"
-        elif (
-            name in FLAGS
-            and not np.isin(found, FLAGS[str(name)][0] + np.arange(len(FLAGS[str(name)][1]))).all()
-        ):
+        elif name in FLAGS and not np.isin(found, _flag_values(str(name))).all():
             yield f"{name} holds numbers without a meaning"
 
 

@@ -275,11 +275,12 @@ class Sweep:
         """Properties of the system that figures refer to (SI)."""
         p = self.config.records(np.array([0]))[0]
         if self.config.system == "oscillator":
+            decay = {"friction_decay_per_cycle": oscillator.friction_decay(p)}
             return {
                 "omega_n": self.config.sweep.omega_n,
                 "frictionless_resonance": oscillator.resonance(p) or nan,
                 "breakaway_acceleration": oscillator.breakaway_acceleration(p),
-                **({"friction_decay_per_cycle": _decay(p)} if self.config.transient else {}),
+                **(decay if self.config.transient else {}),
                 **labels.attributes(self.config),
             }
         numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
@@ -291,13 +292,6 @@ class Sweep:
             "frictionless_resonance": resonance(p),
             "breakaway_acceleration": breakaway_acceleration(coulomb),
         }
-
-
-def _decay(p: np.void) -> float:
-    """What a free motion of an oscillator loses a cycle by dry friction, 4F/k (m); NaN without a spring."""
-    own = p["oscillator"]
-    force = p["friction"]["mu_d"] * own["normal_force"] + p["guide_friction"]["force"]
-    return float(4.0 * force / own["spring"]) if own["spring"] > 0.0 else nan
 
 
 def _read_sweep(path: Path) -> "xr.Dataset":

@@ -9,7 +9,9 @@ from wedgesweep.errors import SweepError
 
 # Units of coordinates where a dataset that passed through other hands does not state them.
 UNITS = {"frequency": "Hz", "amplitude": "m"}
-COORDINATES = ("friction_law", "beta", "frequency", "amplitude")
+COORDINATES = ("friction_law", "beta", "frequency", "amplitude", "scale")
+# Dimensions of waveforms.
+SAMPLED = ("phase", "time")
 # So many cases are turned into text at a time.
 AT_A_TIME = 10_000
 
@@ -25,10 +27,11 @@ def variables_of(ds: xr.Dataset, chosen: Sequence[str] | None) -> list[str]:
         return scalar
     spectra = [str(name) for name in ds.data_vars if "harmonic" in ds[name].dims]
     for name in chosen:
-        if name in ds.data_vars and "phase" in ds[name].dims:
-            message = f"{name}: a waveform of {ds.sizes['phase']} samples a case; read it with xarray"
+        samples = [ds.sizes[dim] for dim in SAMPLED if name in ds.data_vars and dim in ds[name].dims]
+        if samples:
+            message = f"{name}: a waveform of {samples[0]} samples a case; read it with xarray"
             raise SweepError(message)
-        if name not in (*scalar, *spectra, *COORDINATES):
+        if name not in (*scalar, *spectra, *(each for each in COORDINATES if each in ds.coords)):
             message = f"{name}: no such variable; valid here: {', '.join((*scalar, *spectra))}"
             raise SweepError(message)
     return [name for name in dict.fromkeys(chosen) if name not in COORDINATES]
@@ -37,8 +40,9 @@ def variables_of(ds: xr.Dataset, chosen: Sequence[str] | None) -> list[str]:
 def rows(ds: xr.Dataset, variables: Sequence[str]) -> Iterator[list[list[str]]]:
     """The header, then rows of cells, some at a time; numbers in full precision.
 
-    The first columns are the case: law, beta, frequency and amplitude. A column's name ends with its unit in
-    brackets; the parts of a variable that has several a case are columns of their own.
+    The first columns are the case: law, and beta, frequency and amplitude, or the scale of an input. A
+    column's name ends with its unit in brackets; the parts of a variable that has several a case are columns
+    of their own.
     """
     names = [name for name in COORDINATES if name in ds.coords]
     columns = [column for name in (*names, *variables) for column in _columns(ds, name)]

@@ -1,7 +1,7 @@
 """Cases whose input does not repeat: a whole motion becomes a record, and its times coordinates."""
 
 from collections.abc import Mapping
-from math import inf, nan
+from math import inf, nan, pi
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,9 @@ from wedgesweep.inputs.sampled import Input
 from wedgesweep.simulate import Settings, Transient
 from wedgesweep.solvers.trajectory import CaseError, Trajectory
 from wedgesweep.systems import driven_mass, is_oscillator, moving_mass, opens
+
+# Effects with a body of their own that drives the mass, and the numbers that are above 0 where they act.
+DRIVING = (("fixture_resonance", "frequency"), ("column_compliance", "stiffness"))
 
 
 def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
@@ -41,13 +44,21 @@ def solve_case(case: np.ndarray, settings: Settings, record: np.void) -> None:
 
 
 def _force(case: np.ndarray, given: Transient, run: Trajectory) -> np.ndarray:
-    """Force (N) of springs, dampers and friction against the displacement: what is left of inertia."""
+    """Force (N) of springs, dampers and friction against the displacement: what is left of inertia.
+
+    NaN where not only the base drives the mass: of a fixture that resonates, and columns that yield.
+    """
+    if any(name in (case.dtype.names or ()) and case[name][key][0] > 0.0 for name, key in DRIVING):
+        return np.full(run.samples.t.shape, nan)
     scale, inertia = float(case["input"]["amplitude"][0]), moving_mass(case)[0] * run.samples.acceleration
     if is_oscillator(case) and case["oscillator"]["forced"][0]:
         return inertia + scale * given.sampled(run.samples.t)
     if is_oscillator(case) and case["oscillator"]["absolute"][0]:
         return inertia
-    driven = driven_mass(case)[0] * scale * given.sampled(run.samples.t, 2)
+    tone = case["stray_vibration"][0]
+    base = scale * given.sampled(run.samples.t, 2)
+    base += tone["acceleration"] * np.sin(2.0 * pi * tone["frequency"] * run.samples.t + tone["phase"])
+    driven = driven_mass(case)[0] * base
     # The displacement of a suspension is that of the side frame against the bolster.
     return inertia - driven if is_oscillator(case) else inertia + driven
 

@@ -1,9 +1,9 @@
-"""The judge: random cases of a finished sweep, solved again by Radau at a tight tolerance.
+"""Verification: random cases of a finished sweep, solved again by Radau at a tight tolerance.
 
 A case of a fixed length is run from rest as it was. A steady state that was found by shooting is begun in its
 state, and must come back to it: from rest it may take thousands of periods, or lead to another of several
-coexisting responses. Where Radau's own answer depends on its tolerance, the motion multiplies errors, and
-nobody can judge it.
+coexisting responses. Where Radau's own result changes with its tolerance, the motion amplifies errors, and
+the case cannot be verified.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ RTOL, TIGHTER = 1e-9, 1e-10
 # Wall time (s) after which Radau gives up a case.
 TIME_LIMIT = 600.0
 # Largest difference of amplitude ratios, as a share of the ratio or of a tenth, and of stick fractions. Radau
-# is no judge where its answers at both tolerances differ by more than STEADY of that.
+# verifies nothing where its results at both tolerances differ by more than STEADY of that.
 RATIO_BOUND, SMALL_RATIO, STICK_BOUND, STEADY = 1e-3, 0.1, 1e-2, 0.1
 
 
@@ -51,23 +51,23 @@ class Numbers(NamedTuple):
         return max(shares) if all(map(isfinite, shares)) else inf
 
 
-class Judged(NamedTuple):
-    """A case in words, its numbers as stored and by Radau, and why Radau cannot judge it, if so."""
+class VerifiedCase(NamedTuple):
+    """A case in words, its numbers as stored and by Radau, and why Radau cannot verify it, if so."""
 
     case: str
     stored: Numbers
-    judge: Numbers
+    reference: Numbers
     message: str = ""
 
     @property
     def apart(self) -> Numbers:
         """How far the stored numbers are off."""
-        return self.stored.apart(self.judge)
+        return self.stored.apart(self.reference)
 
     @property
     def is_wrong(self) -> bool:
         """Whether the stored numbers are off by more than the bounds."""
-        return not self.message and self.stored.over_bound(self.judge) > 1.0
+        return not self.message and self.stored.over_bound(self.reference) > 1.0
 
 
 @dataclass(frozen=True)
@@ -76,11 +76,11 @@ class Verification:
 
     seed: int
     candidates: int
-    cases: tuple[Judged, ...]
+    cases: tuple[VerifiedCase, ...]
 
     @property
-    def judged(self) -> list[Judged]:
-        """Cases that Radau can judge."""
+    def verifiable(self) -> list[VerifiedCase]:
+        """Cases whose results by Radau do not depend on its tolerance."""
         return [case for case in self.cases if not case.message]
 
 
@@ -110,7 +110,7 @@ def verify(sweep: Sweep, ds: xr.Dataset, count: int, seed: int, n_jobs: int) -> 
     tasks = [_task(sweep, stored, index) for index in np.sort(drawn).tolist()]
     compile_once("radau", sweep.kit, sweep.config.system)
     with loky(n_jobs, dict) as pool:
-        found = list(pool.parallel()(joblib.delayed(_judged)(task) for task in tasks))
+        found = list(pool.parallel()(joblib.delayed(_verified)(task) for task in tasks))
     return Verification(seed, candidates.size, tuple(sorted(found)))
 
 
@@ -142,18 +142,18 @@ def _state(sweep: Sweep, index: int) -> np.ndarray:
     return states[row.tolist().index(index)]
 
 
-def _judged(task: _Task) -> Judged:
+def _verified(task: _Task) -> VerifiedCase:
     try:
         numbers = _solved(task, RTOL)
         if task.stored.over_bound(numbers) <= 1.0:
-            return Judged(task.words, task.stored, numbers)
+            return VerifiedCase(task.words, task.stored, numbers)
         tighter = _solved(task, TIGHTER)
     except CaseError as error:
-        return Judged(task.words, task.stored, Numbers(nan, nan), f"Radau fails: {error}")
+        return VerifiedCase(task.words, task.stored, Numbers(nan, nan), f"Radau fails: {error}")
     moved = numbers.apart(tighter)
     unsteady = numbers.over_bound(tighter) > STEADY
     message = f"Radau moves by {moved.ratio:.1g} itself from rtol {RTOL:g} to {TIGHTER:g}" if unsteady else ""
-    return Judged(task.words, task.stored, tighter, message)
+    return VerifiedCase(task.words, task.stored, tighter, message)
 
 
 def _solved(task: _Task, rtol: float) -> Numbers:
@@ -166,10 +166,10 @@ def _solved(task: _Task, rtol: float) -> Numbers:
     return found
 
 
-def largest(cases: Sequence[Judged], name: str) -> Judged:
+def largest(cases: Sequence[VerifiedCase], name: str) -> VerifiedCase:
     """The case whose ``ratio`` or ``stick`` is farthest off."""
 
-    def size(case: Judged) -> float:
+    def size(case: VerifiedCase) -> float:
         apart = float(getattr(case.apart, name))
         return apart if isfinite(apart) else inf
 

@@ -60,7 +60,9 @@ def kits(parameters: np.ndarray) -> np.ndarray:
 def example(system: str, kit: int) -> np.ndarray:
     """A case, shape (1,), of a kit, which sticks and slips."""
     if system == "suspension":
-        case = suspension_parameters.record("coulomb", 5e-3, 85.0)
+        opens = kit // 2 in suspension_parameters.OPENING
+        joints = suspension_parameters.UNILATERAL if opens else suspension_parameters.BILATERAL
+        case = suspension_parameters.record("coulomb", 5e-3, 85.0, {"joints": joints})
     else:
         body = {"mass": 1.0, "spring": 7e3, "normal_force": 30.0}
         case = oscillator_parameters.record("coulomb", 5e-3, 85.0, body)
@@ -73,13 +75,6 @@ def example(system: str, kit: int) -> np.ndarray:
 def has_own_mechanics(parameters: np.ndarray) -> np.ndarray:
     """Whether effects of records, shape (n,), need more than the base model's mechanics."""
     return _kits(parameters) != 0
-
-
-def has_impacts(parameters: np.ndarray) -> np.ndarray:
-    """Whether contacts of records, shape (n,), may open and hit."""
-    if is_oscillator(parameters):
-        return np.zeros(len(parameters), bool)
-    return suspension_parameters.has_unilateral_joints(parameters)
 
 
 def driven_mass(parameters: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from wedgesweep.diagnose.loop.recording import Recording
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.natural_units import NaturalUnits
 
-# Effects that act by how a motion comes about, or on sensors of it.
+# Effects on how a motion comes about, or on its sensors: where the motion is imposed, no force shows them.
 OF_MOTION = (
     *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
     *("displacement_gain", "velocity_lag", "cross_slip", "lift_off"),

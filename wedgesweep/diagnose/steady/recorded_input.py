@@ -37,7 +37,7 @@ class InputHarmonics(NamedTuple):
 
     ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, from the first sample, what may
     be noise left out; or likewise a force in N. ``variance`` (T, N): of such a number that remains unknown.
-    ``absolute`` (T, C, N): share of each of them in a channel's data, which are as simulated.
+    ``absolute`` (T, C, N): factor by which each of them was added to a channel to have it as simulated.
     ``shared`` (T, C, H), complex: covariance of the noise of channels and input, over both standard
     deviations.
     """

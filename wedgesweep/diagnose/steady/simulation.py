@@ -52,7 +52,7 @@ def records(model: Config, law: str, values: Values, omega: np.ndarray, amplitud
 
 def respond(rows: np.ndarray, warm: Warm, harmonics: int, tolerance: float = TOLERANCE) -> Responses:
     """Steady responses to parameter records (n,)."""
-    opens = systems.has_impacts(rows).any()
+    opens = systems.opens(rows).any()
     accuracy = periodic.Accuracy(tolerance, MOST_WITH_IMPACTS if opens else MOST_PERIODS, rtol=tolerance)
     found = periodic.respond(rows, warm, accuracy, SAMPLES_PER_PERIOD, harmonics)
     _count(rows, found.periods)

@@ -81,13 +81,13 @@ def friction_force(y, mode, p):
     if bristles.acts(p):
         return factor * bristles.force(rubbing, y, p)
     if presliding.acts(p):
-        most = p.friction.mu_d * normal + guide_friction.acts(p) * p.guide_friction.force
-        return factor * most * presliding.bristle(y, p)
+        most = factor * p.friction.mu_d * normal + guide_friction.acts(p) * p.guide_friction.force
+        return most * presliding.bristle(y, p)
     if p.friction.set_valued and mode.clock:
         coefficient = mode.column * friction.static(1, y, p)
     else:
         coefficient = friction.coefficient(rubbing, mode.column, friction.static(mode.clock, y, p), p)
-    return factor * (coefficient * normal - guide_friction.force(rubbing, mode.column, p))
+    return factor * coefficient * normal - guide_friction.force(rubbing, mode.column, p)
 
 
 @inlined

@@ -153,11 +153,11 @@ def _slip_events(now, y, mode, p, out):
     if stuck(mode, p):
         out[SLIP] = _breakaway(now, y, -1, p)
         out[SLIP + 1] = -_breakaway(now, y, 1, p)
+    elif abs(branch) == HELD:
+        out[SLIP] = now - friction_force(y, _beside(mode, 0, p), p)
+        out[SLIP + 1] = friction_force(y, _beside(mode, 1, p), p) - now
     elif p.friction.set_valued or creeps(p):
         out[SLIP if branch > 0 else SLIP + 1] = branch * value
-    elif abs(branch) == HELD:
-        out[SLIP] = now - friction_force(y, _beside(mode, 0), p)
-        out[SLIP + 1] = friction_force(y, _beside(mode, 1), p) - now
     else:
         friction.write_branch_ends(value, p.friction.v_t, branch, SLIP, out)
 
@@ -202,8 +202,10 @@ def _slipping(direction, segment, clock, p):
 
 
 @inlined
-def _beside(mode, higher):
+def _beside(mode, higher, p):
     """Mode on the lower (0) or higher (1) side of the jump that holds the slip velocity."""
+    if creeps(p):
+        return _slipping(2 * higher - 1, mode.segment, mode.clock, p)
     column = (0 if mode.column > 0 else -1) + higher
     return Mode(column, mode.direction, mode.segment, 0 if abs(column) == 1 else 1)
 
@@ -254,11 +256,15 @@ def initial_mode(t, y, p):
 @inner
 def _cross(t, y, mode, upward, p):
     """Mode on the next branch of a regularised law, or held where the next branch points back."""
-    if creeps(p):
-        direction = -mode.column if directional_friction.acts(p) else 0
-        return Mode(-mode.column, direction, mode.segment, mode.clock)
     if abs(mode.column) == HELD:
-        return _beside(mode, upward)
+        return _beside(mode, upward, p)
+    if creeps(p):
+        across = _slipping(-mode.column, mode.segment, mode.clock, p)
+        # Friction that depends on the direction jumps while bristles are bent.
+        pulled = across.column * (load(t, y, across, p) - friction_force(y, across, p))
+        if pulled >= 0.0 or not directional_friction.acts(p):
+            return across
+        return Mode(HELD, 0, mode.segment, mode.clock)
     column = mode.column + 2 * upward - 1
     across = Mode(column, mode.direction, mode.segment, 0 if abs(column) == 1 else 1)
     onward = (2 * upward - 1) * (load(t, y, across, p) - friction_force(y, across, p))

@@ -15,6 +15,7 @@ import numpy as np
 
 from wedgesweep import effects as known
 from wedgesweep.excitation import has_series
+from wedgesweep.friction import code
 from wedgesweep.friction import lugre_bristles as bristles
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
@@ -57,7 +58,10 @@ OF_BASE = "stray_vibration"
 OF_SPRING = ("bolster_stiffness", "backlash")
 # Friction beside that of the normal force, and effects on the latter.
 LATERAL = "guide_friction"
+# The first one scales its coefficients, the others change the law.
 OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")
+# Effects that a law has no place for: bristles of its own, or friction that falls with velocity by itself.
+OF_LAW = {"lugre": ("stribeck", "presliding", "ageing"), "hyperbolic": ("stribeck",)}
 # Marks records of the kit without effects that have mechanics of their own.
 PLAIN = "plain_oscillator"
 
@@ -160,9 +164,32 @@ def resonance(p: np.void) -> float:
 def breakaway_acceleration(p: np.void) -> float:
     """Amplitude of the base's acceleration (m/s^2) at which set-valued friction slips from rest.
 
-    NaN where friction holds the mass to something else than the base, or nothing but a force moves it.
+    NaN where friction holds the mass to something else than the base, where nothing but a force moves it, and
+    where an effect changes the law of friction.
     """
     own = p["oscillator"]
-    if own["absolute"] or own["forced"]:
+    if own["absolute"] or own["forced"] or _changes_friction(p):
         return nan
-    return float((p["friction"]["mu_d"] * own["normal_force"] + p["guide_friction"]["force"]) / own["mass"])
+    return _breakaway_force(p) / float(own["mass"])
+
+
+def friction_decay(p: np.void) -> float:
+    """What a free motion loses a cycle by dry friction, 4F/k (m).
+
+    NaN without a spring, and where dry friction is not constant.
+    """
+    spring = float(p["oscillator"]["spring"])
+    if not spring or p["friction"]["law"] == code("hyperbolic") or _changes_friction(p):
+        return nan
+    return 4.0 * _breakaway_force(p) / spring
+
+
+def _changes_friction(p: np.void) -> bool:
+    """Whether an effect or bristles change the law of friction."""
+    return bool(records.acting(p, OF_FRICTION[1:])) or bool(p[bristles.NAME]["stiffness"])
+
+
+def _breakaway_force(p: np.void) -> float:
+    """Force (N) at which set-valued friction lets go."""
+    name = "mu_s" if p["friction"]["law"] == code("hyperbolic") else "mu_d"
+    return float(p["friction"][name] * p["oscillator"]["normal_force"] + p["guide_friction"]["force"])

@@ -38,10 +38,3 @@ def follow(state, stop, p, keeping, recorder, counts):
     if keeping:
         keep(state, end, o, recorder, p)
     return True, State(end, (x, velocity), mode, last_event, step), event
-
-
-@implement(closed_form, "suspension")
-@inlined
-def no_closed_form(state, stop, p, keeping, recorder, counts):
-    """No closed form: effects with their own mechanics are integrated."""
-    return False, state, NO_EVENT

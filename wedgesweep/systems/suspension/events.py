@@ -60,7 +60,7 @@ def _slip_events(t, y, mode, p, out):
 
 @allocating
 def _held_events(t, y, mode, p, out):
-    """Write the events of the jumps that hold a velocity: the sides must point at the jump."""
+    """Write the events of held velocities: on both sides of the jump the slip accelerates towards it."""
     sides = np.empty((2, WIDTH))
     for axis in range(AXES):
         if abs(branch(mode, axis)) == HELD:

@@ -147,7 +147,7 @@ def advanced(phase, time, o, p):
 
 @inlined
 def small_angles(time, o, p):
-    """As ``_angles``, for at most an interval of the scan."""
+    """As ``angles``, for at most an interval of the scan."""
     input_cos, input_sin = small_turn(p.input.omega * time)
     free_cos, free_sin = small_turn(o.frequency * time)
     return input_cos, input_sin, free_cos, free_sin

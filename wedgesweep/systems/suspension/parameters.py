@@ -73,6 +73,7 @@ TURNS: list[tuple] = [("while_closed", np.int64)]
 # unilateral joints without effects that have mechanics of their own, and with those that go with them; the
 # latter while both contacts are closed.
 BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS, CLOSED_WITH_EFFECTS = range(6)
+OPENING = JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS
 # Coulomb friction that is regularised reaches mu_d at this velocity (m/s) on the bench; see natural_units.
 REGULARISED_VELOCITY = 1e-6
 
@@ -294,11 +295,6 @@ def while_closed(rows: np.ndarray) -> np.ndarray | None:
     plain = rows["geometry"]["kit"].max(initial=BASE) == JOINTS_OPEN
     kits = _kits(tuple(known.EFFECTS), records.SERIES[0][0] in names)
     return records.converted(rows, kits[BASE if plain else CLOSED_WITH_EFFECTS])
-
-
-def has_own_mechanics(rows: np.ndarray) -> np.ndarray:
-    """Whether effects of records, shape (n,), need more than the base model's mechanics."""
-    return rows["geometry"]["kit"] != BASE
 
 
 def driven_mass(rows: np.ndarray) -> np.ndarray:

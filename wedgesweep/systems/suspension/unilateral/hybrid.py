@@ -276,8 +276,10 @@ def _at_rest(mode):
 @inner
 def well_posed(t, y, mode, p):
     """Whether exactly one mode is possible."""
-    if p.geometry.always_well_posed or held(mode):
+    if p.geometry.always_well_posed:
         return True
+    if held(mode):
+        return transitions.well_posed(t, y, mode, p)
     return resolve(t, y, _of_mode(mode), mode.segment, p)[1]
 
 
@@ -288,7 +290,8 @@ def _after_slip(t, y, mode, place, p):
         if closed(mode):
             y = replaced(y, VELOCITY, 0.0)
         found, certain = resolve(t, y, _at_rest(mode), mode.segment, p)
-        # What stops to hold the bolster, and then holds it again, may have touched its limit: if proved.
+        # If sticking ends and the bolster sticks again at once, friction has only touched its limit. That is
+        # accepted where every state is proved to be well-posed; elsewhere the case counts as locked.
         again = stuck(mode, p) and stuck(found, p)
         return y, found, certain and (not again or p.geometry.always_well_posed != 0)
     if not closed(mode):
