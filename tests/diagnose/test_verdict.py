@@ -54,6 +54,7 @@ def explained(
         effects=effects,
         x=None,
         implausible=far,
+        converged=True,
     )
     return priced(fit, constant)
 
@@ -377,3 +378,18 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     found, order = diagnosis.refit_cause(search, base, tied, [first, second], verdict.DEFAULT)
     assert (found.verdict, found.best.effects) == ("named", ("preload",))
     assert [each.fit.chi2 for each in order] == [709.0, 900.0]
+
+
+def test_a_rival_whose_fit_had_not_ended_is_followed_before_the_gap_to_it_counts(monkeypatch):
+    base, first, second = explained(5000.0), explained(705.0, "stribeck"), explained(730.0, "preload")
+    second.fit.converged = False
+    further = explained(706.0, "preload").fit
+    monkeypatch.setattr(diagnosis, "minimise", lambda model, start: further)
+    for name in ("tight_refit", "from_other_nuisances"):
+        monkeypatch.setattr(diagnosis, name, lambda fit: fit)
+    monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
+    search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
+    early = verdict_of(base, first, second)
+    assert early.verdict != "tied"
+    found, _ = diagnosis.refit_cause(search, base, early, [first, second], verdict.DEFAULT)
+    assert found.verdict == "tied"
