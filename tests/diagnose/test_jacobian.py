@@ -46,7 +46,7 @@ def test_steps_change_a_test_by_more_than_the_error_of_its_simulation():
     assert largest_change(model, found, step_sizes(model, lag.fit.point, found)) > 5.0
 
 
-def test_what_is_held_is_not_simulated(monkeypatch):
+def test_what_is_held_or_exact_is_not_simulated(monkeypatch):
     *_, (lag,) = searched(drawn(LAG), "velocity_lag")
     model, here = lag.fit.model, lag.fit.evaluation
     free, scenarios = jacobian(model, here), []
@@ -56,6 +56,10 @@ def test_what_is_held_is_not_simulated(monkeypatch):
     assert len(scenarios) == 1
     assert not held.by_parameter.any()
     np.testing.assert_array_equal(held.by_nuisance, free.by_nuisance)
+    stated = model.on(replace(model.data, amplitude_std=np.zeros(model.data.tests)))
+    exact = jacobian(stated, here)
+    assert len(scenarios) == 2
+    np.testing.assert_array_equal(exact.by_parameter, free.by_parameter)
 
 
 def largest_change(model, derivatives, sizes):

@@ -54,7 +54,7 @@ def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.n
 def jacobian(
     model: Model, evaluation: Evaluation, side: float = 1.0, sizes: np.ndarray | None = None
 ) -> Jacobian:
-    """Derivatives at an evaluation, one simulation for each parameter; 0 by those that are held.
+    """Derivatives at an evaluation, one simulation for each parameter; 0 by those that are held or exact.
 
     Parameters
     ----------
@@ -71,7 +71,10 @@ def jacobian(
     steps = side * (step_sizes(model, point) if sizes is None else sizes)
     unbounded = [np.inf] * (len(steps) - size)
     low, high = np.r_[model.low - point.x, np.negative(unbounded)], np.r_[model.high - point.x, unbounded]
-    fitted = np.flatnonzero(low < high)
+    moves = low < high
+    exact = (data.nuisance_std == 0.0).all(axis=0)
+    moves[size : size + exact.size] &= ~exact
+    fitted = np.flatnonzero(moves)
     steps = np.where((low <= steps) & (steps <= high), steps, -steps)
     back = (low <= -steps) & (-steps <= high)
 
