@@ -92,7 +92,11 @@ def scores(search: Search, base: Fit, scans: Scans) -> list[Score]:
 
 def _score_undetected(search: Search, base: Fit, effect: str) -> Score:
     """What would have shown of an effect of which the records show nothing."""
-    silent = Search(search.data.with_undetected(effect), (effect,))
+    data = search.data.with_undetected(effect)
+    if data is search.data:  # nothing: such records do not depend on it
+        key = search.model(effect).hypothesis.parameters[0].name.split(".")[1]
+        return Score(effect, None, 0.0, key, None)
+    silent = Search(data, (effect,))
     model = silent.model()
     fit = Fit(model, model.evaluate(base.point), base.covariance, base.converged)
     return replace(_score(_Baseline(silent, fit, Projector(fit)), effect, ()), t2=None)
