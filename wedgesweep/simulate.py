@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep import response
 from wedgesweep.response import Response
 from wedgesweep.sampled_input import SampledInput, set_sampled
-from wedgesweep.solvers.trajectory import Span, Trajectory, Window
+from wedgesweep.solvers.trajectory import TransientWindow, Trajectory, Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def transient(parameters: np.ndarray, given: Transient, scale: float, settings: 
     """Run a case under an input times ``scale``; parameters: a full record, shape (1,). Raises CaseError."""
     case = parameters.copy()
     set_sampled(case, given.sampled, scale * given.length, given.omega, given.span, scale)
-    window = Span(given.omega, 0, 1, given.samples, given.span)
+    window = TransientWindow(given.omega, 0, 1, given.samples, given.span)
     start = (scale * given.start[0], scale * given.start[1])
     return _solver(settings).solve(case, window, settings.rtol, settings.case_timeout, start)
 

@@ -16,7 +16,7 @@ from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.shooting import copy, run_map, settle, shooting
-from wedgesweep.solvers.trajectory import CaseError, Samples, Span, TimedWindow, Trajectory, Window
+from wedgesweep.solvers.trajectory import CaseError, Samples, TransientWindow, TimedWindow, Trajectory, Window
 from wedgesweep.systems import compact, state_count
 
 MESSAGES = {
@@ -43,7 +43,9 @@ def solve(
         message = "sample times of one's own are for radau.solve; this solver samples even phases"
         raise TypeError(message)
     case = prepared(compact(parameters))
-    room = memory(rtol, window.samples_per_period, window.periods, acceleration=isinstance(window, Span))
+    room = memory(
+        rtol, window.samples_per_period, window.periods, acceleration=isinstance(window, TransientWindow)
+    )
     y, settle_periods, outcome = np.zeros(case.scales.shape[1]), window.settle_periods, OK
     y[:2] = start
     if settle_periods:

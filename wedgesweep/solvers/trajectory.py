@@ -45,7 +45,7 @@ class TimedWindow(Window):
 
 
 @dataclass(frozen=True)
-class Span(Window):
+class TransientWindow(Window):
     """A window that is one period of length ``span`` (s): that of an input which does not repeat."""
 
     span: float
