@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep import response
 from wedgesweep.response import Response
 from wedgesweep.sampled_input import SampledInput, set_sampled
-from wedgesweep.solvers.trajectory import TransientWindow, Trajectory, Window
+from wedgesweep.solvers.trajectory import Trajectory, TransientWindow, Window
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.shooting import copy, run_map, settle, shooting
-from wedgesweep.solvers.trajectory import CaseError, Samples, TransientWindow, TimedWindow, Trajectory, Window
+from wedgesweep.solvers.trajectory import CaseError, Samples, TimedWindow, Trajectory, TransientWindow, Window
 from wedgesweep.systems import compact, state_count
 
 MESSAGES = {
