@@ -14,6 +14,7 @@ from wedgesweep.diagnose.search import (
     base_fit,
     beside_stated,
     best_of,
+    from_special_cases,
     multistart,
     refit_base,
     single_fit,
@@ -162,3 +163,18 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
     again = refit_base(search, short, [search.explanation(minimise(model, there))]).base
     assert again.fit.p > 1e-3
     assert refit_base(search, again, [short]).base is again
+
+
+def test_an_effect_fits_no_worse_than_a_special_case_of_it():
+    """A damper; the fit of one that differs by direction has ended at a wrong asymmetry."""
+    data = drawn({"viscous_damping": {"coefficient": 4.0}})
+    search, _, (damper, other) = searched(data, "viscous_damping", "directional_damping")
+    model = other.fit.model
+    wrong = model.hypothesis.at({"directional_damping": {"coefficient_N_s_per_m": 1.5, "asymmetry": 0.9}})
+    evaluation = model.evaluate(replace(other.fit.point, x=wrong))
+    stuck = search.explanation(replace(other.fit, evaluation=evaluation))
+    assert stuck.fit.chi2 > damper.fit.chi2 + 100.0
+    same, mended = from_special_cases(search, [damper, stuck])
+    assert same is damper
+    assert mended.effects == ("directional_damping",)
+    assert mended.fit.chi2 < damper.fit.chi2 + 0.1

@@ -25,6 +25,7 @@ from wedgesweep.diagnose.search import (
     PAIRS_SHARE,
     Search,
     base_fit,
+    from_special_cases,
     multistart,
     quiet,
     refit_base,
@@ -243,6 +244,7 @@ def explain(search: Search) -> Explained:
     if better.fit.chi2 < MUCH * base.fit.chi2:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
+    found = from_special_cases(search, found)
     search, base, found, scans = with_renewed_covariance(Explained(search, better, found, scans))
     if verdict.none_adequate([base]):
         found = refit_best(search, found)

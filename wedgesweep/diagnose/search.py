@@ -22,6 +22,7 @@ from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
 from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
+from wedgesweep.effects import EFFECTS
 
 
 class Round(NamedTuple):
@@ -272,6 +273,30 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     if data.brings_nuisances(effect):
         fit = _aligned(fit)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
+
+
+def from_special_cases(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """Single effects; one that fits worse than a special case of it is fitted from where that ended."""
+    fits = {each.effects: each.fit for each in found}
+
+    def refitted(each: Explanation) -> Explanation:
+        (effect,) = each.effects
+        special = [fits[part,] for part in EFFECTS[effect].contains if (part,) in fits]
+        better = [_from_special_case(each.fit, fit) for fit in special if fit.chi2 < each.fit.chi2]
+        best = min([each.fit, *better], key=_chi2)
+        return each if best is each.fit else search.explanation(best)
+
+    return search.each(refitted, found)
+
+
+def _from_special_case(fit: Fit, special: Fit) -> Fit:
+    """A single effect fitted from the numbers of a special case, its other numbers neutral."""
+    (effect,), (part,) = fit.effects, special.effects
+    neutral = {quantity.key: quantity.neutral for quantity in EFFECTS[effect].quantities}
+    model = replace(special.model, hypothesis=fit.model.hypothesis)
+    own = model.hypothesis.at({effect: neutral | special.values[part]})
+    x = np.r_[own, special.x[special.model.size :]]
+    return minimise(model, model.evaluate(replace(special.point, x=x)))
 
 
 def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
