@@ -85,6 +85,18 @@ def test_bent_bristles_hold_a_mass_between_the_frictions_of_both_directions(leve
         assert each.numbers["supplied_energy"] == pytest.approx(each.numbers["dissipated_energy"], rel=2e-5)
 
 
+@pytest.mark.parametrize(("side", "factor"), [(1.0, 0.7), (-1.0, 1.3)])
+def test_friction_by_direction_leaves_the_friction_of_the_guide(side, factor):
+    """A spring that is stretched pulls downward; friction of the surface is weaker against that."""
+    effects = {"directional_friction": {"asymmetry": 0.3}, "guide_friction": {"force": 0.2}}
+    record = case(contact="ground", **effects)
+    record["input"]["amplitude"] = 1e-9
+    for share, sticks in ((0.99, True), (1.01, False)):
+        start = (side * share * (factor * 0.5 + 0.2) / K, 0.0)
+        run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, 60.0, start=start)
+        assert run.samples.sticks[0] == sticks
+
+
 @pytest.mark.parametrize("name", STRENGTHS)
 def test_neutral_values_change_nothing(name):
     neutral = {each.name: each.neutral * each.factor for each in EFFECTS[name].quantities}

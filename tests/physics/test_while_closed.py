@@ -11,7 +11,7 @@ from wedgesweep.solvers import radau
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.solvers.periodic import sampled
 from wedgesweep.solvers.trajectory import Window
-from wedgesweep.systems import compact, while_closed
+from wedgesweep.systems import compact, example, opens, while_closed
 from wedgesweep.systems.suspension import parameters
 
 RTOL, PERIODS = 1e-9, 3
@@ -195,3 +195,10 @@ def test_a_run_may_begin_and_end_with_an_open_contact():
     found = sampled(case, np.zeros((1, last.size)), 1, 3, 32, RTOL)
     assert found.x[0] == pytest.approx(whole.x[32:], abs=1e-10)
     assert found.state[0, : last.size] == pytest.approx(last, abs=1e-7)
+
+
+@pytest.mark.parametrize("kit", range(6))
+def test_an_example_of_a_kit_for_contacts_that_open_has_such_contacts(kit):
+    """Or code for open contacts would be compiled in the middle of the first case."""
+    case = example("suspension", 2 * kit)
+    assert opens(case)[0] == (kit in parameters.OPENING)

@@ -10,6 +10,9 @@ from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, effect_names
 from wedgesweep.systems.suspension.parameters import UNILATERAL
 
+# What some laws of oscillators do without an effect.
+OF_ITSELF = {"lugre": "has bristles of its own", "hyperbolic": "falls with velocity by itself"}
+
 
 def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield all contradictions, each as a line that names the key and a valid setting."""
@@ -87,9 +90,9 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     if not on_belt and "belt_velocity_mm_per_s" in own:
         yield f'oscillator.belt_velocity_mm_per_s: contact is "{own.get("contact")}"; write contact = "belt"'
     yield from _bristles(document)
-    falling = OF_LAW["hyperbolic"] if "hyperbolic" in _named_laws(sweep) else ()
-    for name in set(falling).intersection(document.get("effects", {})):
-        yield f"effects.{name}: hyperbolic falls with velocity by itself; remove it, or choose another law"
+    for law in set(OF_LAW).intersection(_named_laws(sweep)):
+        for name in set(OF_LAW[law]).intersection(document.get("effects", {})):
+            yield f"effects.{name}: {law} {OF_ITSELF[law]}; remove it, or choose another law"
     forces = [force for each in given for force in _listed(each.get("amplitude_N", inf))]
     if not on_belt and 0.0 in forces:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
@@ -133,7 +136,7 @@ def _joints(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _bristles(document: Mapping[str, Any]) -> Iterator[str]:
-    """What the law of bristles needs, and what it replaces."""
+    """What the law of bristles needs."""
     own, lugre = document["oscillator"], "lugre" in _named_laws(document.get("sweep", {}))
     given = [key for key in own if key.startswith("bristle_")]
     if not lugre:
@@ -141,8 +144,6 @@ def _bristles(document: Mapping[str, Any]) -> Iterator[str]:
         return
     if "bristle_stiffness_N_per_mm" not in own:
         yield "oscillator.bristle_stiffness_N_per_mm: missing; lugre needs it, as in 100.0"
-    for name in {*OF_LAW["lugre"], "guide_friction"}.intersection(document.get("effects", {})):
-        yield f"effects.{name}: lugre has bristles of its own; remove it, or choose another law"
 
 
 def _listed(value: Any) -> list[Any]:

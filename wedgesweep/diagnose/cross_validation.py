@@ -184,16 +184,16 @@ def held_out_groups(data: FitData) -> list[tuple[str, np.ndarray]]:
 
 def local_numbers(fit: Fit) -> np.ndarray:
     """Number (T,) of its nuisance parameters that each test determines, beyond what priors say."""
-    model, known = fit.model, fit.model.holding(slice(None), fit.x)
-    equations = normal_equations(known, fit.evaluation)
+    model = fit.model
+    equations = normal_equations(model.holding(slice(None), fit.x), fit.evaluation)
     first, last = equations.eliminated, equations.eliminated + model.nuisance_weight.shape[1]
     block = equations.local_block[:, :last, :last]
     coupling = block[:, :first, first:]
     reduced = block[:, first:, first:] - np.swapaxes(coupling, 1, 2) @ np.linalg.solve(
         block[:, :first, :first], coupling
     )
-    told = model.nuisance_weight**2 * np.diagonal(np.linalg.inv(reduced), axis1=1, axis2=2)
-    determined = np.clip(1.0 - told, 0.0, 1.0).sum(axis=1)
+    known = model.nuisance_weight**2 * np.diagonal(np.linalg.inv(reduced), axis1=1, axis2=2)
+    determined = np.clip(1.0 - known, 0.0, 1.0).sum(axis=1)
     return equations.eliminated + determined + model.data.extra_nuisances(fit.effects)
 
 

@@ -52,7 +52,7 @@ def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.n
 
 
 def jacobian(
-    model: Model, evaluation: Evaluation, side: float = 1.0, sizes: np.ndarray | None = None
+    model: Model, evaluation: Evaluation, side: float = 1.0, near: Jacobian | None = None
 ) -> Jacobian:
     """Derivatives at an evaluation, one simulation for each parameter; 0 by those that are held or exact.
 
@@ -64,17 +64,17 @@ def jacobian(
         Where derivatives are taken.
     side : float
         To which side (1 or -1) parameters are changed where the bounds allow it.
-    sizes : ndarray, optional
-        Steps, see ``step_sizes``.
+    near : Jacobian, optional
+        Derivatives at a point nearby, see ``step_sizes``.
     """
     point, data, size = evaluation.point, model.data, len(evaluation.point.x)
-    steps = side * (step_sizes(model, point) if sizes is None else sizes)
+    steps = side * step_sizes(model, point, near)
     unbounded = [np.inf] * (len(steps) - size)
     low, high = np.r_[model.low - point.x, np.negative(unbounded)], np.r_[model.high - point.x, unbounded]
-    moves = low < high
+    free = low < high
     exact = (data.nuisance_std == 0.0).all(axis=0)
-    moves[size : size + exact.size] &= ~exact
-    fitted = np.flatnonzero(moves)
+    free[size : size + exact.size] &= ~exact
+    fitted = np.flatnonzero(free)
     steps = np.where((low <= steps) & (steps <= high), steps, -steps)
     back = (low <= -steps) & (-steps <= high)
 
@@ -93,10 +93,9 @@ def jacobian(
 
 def accurate_jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
     """Derivatives at an evaluation, taken again by shorter steps where a response has changed a lot."""
-    near = jacobian(model, evaluation, side)
-    sizes = step_sizes(model, evaluation.point, near)
-    enough = np.array_equal(sizes, step_sizes(model, evaluation.point))
-    return near if enough else jacobian(model, evaluation, side, sizes)
+    point, near = evaluation.point, jacobian(model, evaluation, side)
+    enough = np.array_equal(step_sizes(model, point, near), step_sizes(model, point))
+    return near if enough else jacobian(model, evaluation, side, near)
 
 
 def conservative_jacobian(model: Model, evaluation: Evaluation) -> Jacobian:

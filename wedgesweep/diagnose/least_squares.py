@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.jacobian import conservative_jacobian, jacobian, step_sizes
+from wedgesweep.diagnose.jacobian import conservative_jacobian, jacobian
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
 
@@ -39,7 +39,7 @@ def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> F
     for _ in range(iterations):
         if not evaluation.found:
             break
-        derivatives = jacobian(model, evaluation, sizes=step_sizes(model, evaluation.point, derivatives))
+        derivatives = jacobian(model, evaluation, near=derivatives)
         equations = normal_equations(model, evaluation, derivatives)
         matrix = equations.schur_complement().matrix
         better, predicted = None, np.inf

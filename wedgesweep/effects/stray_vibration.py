@@ -7,6 +7,8 @@ Neutral and default: acceleration = 0; frequency must be given.
 
 from math import cos, nan, pi, sin
 
+import numpy as np
+
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, Effect
 from wedgesweep.equations.symbols import Meaning
@@ -40,6 +42,11 @@ EFFECT = Effect(
 
 # ``phase`` (rad) is another one in every measurement.
 DERIVED = ("phase",)
+
+
+def sampled(t: np.ndarray, own: np.void) -> np.ndarray:
+    """What is added to u'' (m/s^2) at some times (s); ``own``: the part of a record."""
+    return own["acceleration"] * np.sin(2.0 * pi * own["frequency"] * t + own["phase"])
 
 
 @term("stray_vibration", off="False")

@@ -4,14 +4,12 @@ from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER, DiagnosisResult
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, stray_vibration
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 SHOWN = 12
-# The effect that adds a tone to a response.
-TONE = "stray_vibration"
 TEXT_COLUMNS = 3
 HEAD = (
     "candidate",
@@ -85,10 +83,10 @@ def _not_fitted(result: DiagnosisResult) -> str:
     document = result.document
     fitted = {effect for each in document["candidates"] for effect in each["effects"]}
     left = sorted({*document["detectable"], *document["not_testable"]} - fitted)
-    silent = [effect for effect in left if effect == TONE and document.get("kind", "steady") == "steady"]
-    others = [effect for effect in left if effect not in silent]
+    tone, steady = stray_vibration.EFFECT.name, document.get("kind", "steady") == "steady"
+    others = [effect for effect in left if not (steady and effect == tone)]
     told = f" Not fitted, as these tests cannot show them: {phrases.listing(others)}." if others else ""
-    return told + (f" Not fitted, as no test has a spurious tone: {silent[0]}." if silent else "")
+    return told + (f" Not fitted, as no test has a spurious tone: {tone}." if len(others) < len(left) else "")
 
 
 def _ranking(result: DiagnosisResult) -> str:

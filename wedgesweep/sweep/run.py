@@ -275,12 +275,12 @@ class Sweep:
         """Properties of the system that figures refer to (SI)."""
         p = self.config.records(np.array([0]))[0]
         if self.config.system == "oscillator":
-            decay = {"friction_decay_per_cycle": oscillator.friction_decay(p)}
+            decay = oscillator.friction_decay(p)
             return {
                 "omega_n": self.config.sweep.omega_n,
                 "frictionless_resonance": oscillator.resonance(p) or nan,
                 "breakaway_acceleration": oscillator.breakaway_acceleration(p),
-                **(decay if self.config.transient else {}),
+                **({"friction_decay_per_cycle": decay} if self.config.transient else {}),
                 **labels.attributes(self.config),
             }
         numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}

@@ -1,12 +1,13 @@
 """Cases whose input does not repeat: a whole motion becomes a record, and its times coordinates."""
 
 from collections.abc import Mapping
-from math import inf, nan, pi
+from math import inf, nan
 from typing import Any
 
 import numpy as np
 
 from wedgesweep import response, simulate
+from wedgesweep.effects import stray_vibration
 from wedgesweep.inputs import sine_sweep
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.simulate import Settings, Transient
@@ -55,9 +56,8 @@ def _force(case: np.ndarray, given: Transient, run: Trajectory) -> np.ndarray:
         return inertia + scale * given.sampled(run.samples.t)
     if is_oscillator(case) and case["oscillator"]["absolute"][0]:
         return inertia
-    tone = case["stray_vibration"][0]
     base = scale * given.sampled(run.samples.t, 2)
-    base += tone["acceleration"] * np.sin(2.0 * pi * tone["frequency"] * run.samples.t + tone["phase"])
+    base += stray_vibration.sampled(run.samples.t, case["stray_vibration"][0])
     driven = driven_mass(case)[0] * base
     # The displacement of a suspension is that of the side frame against the bolster.
     return inertia - driven if is_oscillator(case) else inertia + driven

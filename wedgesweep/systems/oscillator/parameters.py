@@ -60,8 +60,8 @@ OF_SPRING = ("bolster_stiffness", "backlash")
 LATERAL = "guide_friction"
 # The first one scales its coefficients, the others change the law.
 OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")
-# Effects that a law has no place for: bristles of its own, or friction that falls with velocity by itself.
-OF_LAW = {"lugre": ("stribeck", "presliding", "ageing"), "hyperbolic": ("stribeck",)}
+# Effects that a law has no place for.
+OF_LAW = {"lugre": ("stribeck", "presliding", "ageing", "guide_friction"), "hyperbolic": ("stribeck",)}
 # Marks records of the kit without effects that have mechanics of their own.
 PLAIN = "plain_oscillator"
 
