@@ -4,7 +4,8 @@ import numpy as np
 
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
-from wedgesweep.systems.suspension import release
+from wedgesweep.systems.suspension import filippov, release
+from wedgesweep.systems.suspension.modes import HELD, ContactMode
 from wedgesweep.systems.suspension.unilateral import contacts, impact, modes, motion
 
 
@@ -30,6 +31,14 @@ def solve(free, faces, case):
 def resolve(t, y, case):
     """Mode of the contacts that touch in a state, and whether it is unique."""
     return modes.resolve(t, y, modes.touching(y, case[0]), 0, case[0])
+
+
+@compiled
+def well_posed_where_a_jump_holds(t, y, case):
+    """Whether a state whose column slips at a jump is well-posed, by the interface and by its forces."""
+    p = case[0]
+    mode = ContactMode(HELD, 1, 0, 1, 1, 0, 0, 0)
+    return interface.well_posed(t, y, mode, p), filippov.filippov_forces(t, y, mode, p)[2]
 
 
 @compiled

@@ -316,6 +316,18 @@ def test_a_wedge_that_locks_is_never_a_number(law):
     assert raised.value.status == "locked"
 
 
+@pytest.mark.parametrize(("mu", "well_posed"), [(0.35, True), (0.45, False)])
+def test_a_state_that_locks_while_a_jump_holds_a_velocity_is_seen(mu, well_posed):
+    """Its forces would be those of one of several solutions."""
+    case = record("static-dynamic", friction={"dynamic": mu, "static": 1.1 * mu}, column_angle=-0.07)
+    assert not case["geometry"]["always_well_posed"][0]
+    generator = np.random.default_rng(2)
+    for t in generator.uniform(0.0, 2.0 * np.pi / OMEGA_N, 50):
+        y = (generator.uniform(-2e-3, 2e-3), float(case["friction"]["v_t"][0]), 0.0, 0.0, 0.0, 0.0)
+        asked, known = mechanics.well_posed_where_a_jump_holds(t, y, compact(case))
+        assert asked == known == well_posed
+
+
 def test_friction_that_presses_a_face_on_has_two_solutions_or_none():
     """Painleve: the bolster face alone, with so much friction that it pulls the faces together."""
     case = record(wedge_mass=2.0)
