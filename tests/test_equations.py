@@ -12,10 +12,8 @@ from wedgesweep.friction import LAWS
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.systems import SYSTEMS
-from wedgesweep.systems.oscillator.parameters import effect_names
 
-OF_EFFECTS = [(name, "suspension") for name in NAMES]
-OF_EFFECTS += [(name, "oscillator") for name in effect_names() if name in NAMES]
+OF_EFFECTS = [(name, system) for name in NAMES for system in EFFECTS[name].systems]
 
 
 def stated(name, system):

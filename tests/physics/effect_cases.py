@@ -5,16 +5,18 @@ from math import cos, exp, hypot, log, sin
 import numpy as np
 
 from tests.physics.compiled_mechanics import owned
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, of_system
+from wedgesweep.effects.base import SUSPENSION
 
 # Where in the range that a fit searches a quantity is taken; not its middle, which may be neutral.
 PLACE = 0.6
 # Out of the input's rhythm: its response does not repeat.
 NOT_PERIODIC = "stray_vibration"
-REPEATING = [name for name in EFFECTS if name != NOT_PERIODIC]
+OF_SUSPENSION = of_system(SUSPENSION)
+REPEATING = [name for name in OF_SUSPENSION if name != NOT_PERIODIC]
 # Has contacts of its own: see test_unilateral.py.
 OPENS = "lift_off"
-EXTENDING = [name for name, effect in EFFECTS.items() if effect.extends and name != OPENS]
+EXTENDING = [name for name in OF_SUSPENSION if EFFECTS[name].extends and name != OPENS]
 
 
 def typical(name, place=PLACE):

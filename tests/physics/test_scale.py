@@ -5,15 +5,14 @@ from math import pi
 import numpy as np
 import pytest
 
-from tests.physics.effect_cases import mild
+from tests.physics.effect_cases import OF_SUSPENSION, mild
 from tests.scaling import BENCH_SIZE, POWERS_OF_TWO, SIZES
-from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.suspension import parameters
 
 HERTZ, AMPLITUDE = 20.0, 0.1e-3
-EXPLICIT = [(name, "static-dynamic") for name in EFFECTS] + [("cross_slip", "coulomb")]
+EXPLICIT = [(name, "static-dynamic") for name in OF_SUSPENSION] + [("cross_slip", "coulomb")]
 # Rounding of implicit steps depends on the order of pivots, and that on the units.
 CASES = [*EXPLICIT, ("column_compliance", "coulomb")]
 

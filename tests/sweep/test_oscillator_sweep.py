@@ -100,6 +100,11 @@ def test_no_spring():
         ('excitation = "base"', 'excitation = "force"', 'sweep.amplitude_mm: excitation is "force"'),
         ("[solver]", "[effects.column_compliance]\nstiffness_N_per_mm = 1.0\n[solver]", "no such part"),
         (
+            "[solver]",
+            "[effects.damper_play]\nclearance_mm = 0.1\n[effects.presliding]\nlength_mm = 0.1\n[solver]",
+            "effects.damper_play: does not go with effects.presliding",
+        ),
+        (
             "spring_N_per_mm = 1.191",
             "spring_N_per_mm = 0.0",
             "sweep.beta: without a spring there is no omega_n; write frequency_hz",

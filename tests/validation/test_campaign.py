@@ -23,7 +23,7 @@ ERRORS = RIGS[:2]
 
 
 def test_every_effect_is_hidden_within_the_range_of_the_fit():
-    assert set(ranges.EFFECTS) == set(EFFECTS)
+    assert set(ranges.LEADING) == set(EFFECTS)
     for name, effect in EFFECTS.items():
         for seed in range(20):
             path = ranges.path(name, np.random.default_rng(seed))

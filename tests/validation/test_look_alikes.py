@@ -13,6 +13,7 @@ NAMED = {
     "drag, random force": {"quadratic_drag"},
     "pendulum from 10 deg": {"viscous_damping", "cubic_stiffness"},
     "damper that differs by direction": {"directional_damping"},
+    "damper with play of 1 mm": {"damper_play"},
     "spring with play": {"backlash"},
     "spring that stiffens": {"cubic_stiffness"},
 }
@@ -22,7 +23,6 @@ CLOSE = {
     "pendulum from 60 deg": [["cubic_stiffness"], ["cubic_stiffness", "viscous_damping"]],
     "pendulum with drag": [["cubic_stiffness"], ["cubic_stiffness", "quadratic_drag"]],
     "pendulum with dry friction": [["cubic_stiffness"], ["cubic_stiffness", "guide_friction"]],
-    "damper with play of 1 mm": [["presliding"]],
 }
 
 

@@ -5,9 +5,10 @@ from math import inf, nan
 from typing import Any
 
 from wedgesweep.config.input_contradictions import input_contradictions
-from wedgesweep.effects import lift_off, with_lift_off
+from wedgesweep.effects import EFFECTS, lift_off, of_system, with_lift_off
+from wedgesweep.effects.base import OSCILLATOR, SUSPENSION
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
-from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, effect_names
+from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD
 from wedgesweep.systems.suspension.parameters import UNILATERAL
 
 # What some laws of oscillators do without an effect.
@@ -23,6 +24,7 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
         yield from _oscillator(document)
     else:
         yield from _joints(document)
+    yield from _effects(document)
     yield from _settling(document)
     if "input" in document:
         yield from input_contradictions(document)
@@ -98,9 +100,22 @@ def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
         yield 'sweep.amplitude_N: 0 moves nothing without contact = "belt"; it must be greater than 0'
     if OF_BASE in document.get("effects", {}) and sweep.get("excitation") == "force":
         yield f"effects.{OF_BASE}: under a force the base does not move; remove it"
-    for name in document.get("effects", {}):
-        if name not in effect_names():
-            yield f"effects.{name}: an oscillator has no such part; valid here: {', '.join(effect_names())}"
+    if on_belt and OF_ROD in document.get("effects", {}):
+        yield f"effects.{OF_ROD}: a mass on a belt has no rod; remove it"
+
+
+def _effects(document: Mapping[str, Any]) -> Iterator[str]:
+    """Effects on parts that the system does not have, and those that cannot be in one model."""
+    given = document.get("effects", {})
+    system = OSCILLATOR if OSCILLATOR in document else SUSPENSION
+    possible = of_system(system)
+    article = "an" if system == OSCILLATOR else "a"
+    for name in given:
+        if name not in possible:
+            told = f"{article} {system} has no such part"
+            yield f"effects.{name}: {told}; valid here: {', '.join(possible)}"
+        for other in set(given).intersection(EFFECTS[name].excludes):
+            yield f"effects.{name}: does not go with effects.{other}; remove one of them"
 
 
 def _joints(document: Mapping[str, Any]) -> Iterator[str]:

@@ -92,16 +92,20 @@ class Config:
         Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
         rubs, more friction of its surface is another level of friction; if not, there is nothing that the
         effects on the law of friction could change. Some laws have what an effect would add. Under a force
-        the base is at rest.
+        the base is at rest. A mass on a belt has no rod.
         """
         if self.system != OSCILLATOR:
-            return tuple(name for name in EFFECTS if name in self.effects or self._may_have(name))
+            return tuple(
+                name for name in suspension.effect_names() if name in self.effects or self._may_have(name)
+            )
         rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
         without = {oscillator.LATERAL} if rubs else {*oscillator.OF_FRICTION}
         if self.oscillator["spring"] == 0.0:
             without.update(oscillator.OF_SPRING)
         if self.forced:
             without.add(oscillator.OF_BASE)
+        if self.oscillator["contact"] == oscillator.BELT or not (rubs or self.oscillator["damping"]):
+            without.add(oscillator.OF_ROD)
         for law in self.sweep.laws:
             without.update(oscillator.OF_LAW.get(law, ()))
         return tuple(name for name in oscillator.effect_names() if name not in without)

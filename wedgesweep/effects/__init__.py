@@ -5,7 +5,7 @@ from importlib import import_module
 from types import ModuleType
 
 from wedgesweep.effects import lift_off
-from wedgesweep.effects.base import Effect
+from wedgesweep.effects.base import SUSPENSION, Effect
 
 # Numbers of effects by name, in SI units or in those of their keys.
 Numbers = Mapping[str, Mapping[str, float]]
@@ -16,6 +16,7 @@ NAMES = (
     *("stribeck", "presliding", "ageing", "directional_friction", "load_dependent_friction"),
     *("cross_slip", "column_compliance"),
     lift_off.NAME,
+    "damper_play",
     *("viscous_damping", "directional_damping", "quadratic_drag"),
     *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),
@@ -41,6 +42,11 @@ def register(module: ModuleType) -> None:
     EFFECTS[module.EFFECT.name] = module.EFFECT
 
 
+def of_system(system: str) -> tuple[str, ...]:
+    """Names of the effects that a system may have, those from ``register`` among them."""
+    return tuple(name for name, effect in EFFECTS.items() if system in effect.systems)
+
+
 def merge(own: Numbers, added: Numbers) -> dict[str, dict[str, float]]:
     """Numbers of effects with others beside them, or in their place; what scales a number scales it again."""
     scaled = {
@@ -64,15 +70,17 @@ def with_lift_off() -> tuple[str, ...]:
     """Names of the effects that joints which lift off go with."""
     return tuple(
         name
-        for name, effect in EFFECTS.items()
-        if name in lift_off.GO_WITH or not (effect.extends or name == lift_off.NOT_WITH)
+        for name in of_system(SUSPENSION)
+        if name in lift_off.GO_WITH or not (EFFECTS[name].extends or name == lift_off.NOT_WITH)
     )
 
 
 def go_together(names: Iterable[str]) -> bool:
     """Whether one model can have all of these effects."""
-    others = set(names) - {lift_off.NAME}
-    return lift_off.NAME not in names or others <= set(with_lift_off())
+    all_of_them = set(names)
+    if any(all_of_them.intersection(EFFECTS[name].excludes) for name in all_of_them):
+        return False
+    return lift_off.NAME not in all_of_them or all_of_them <= {lift_off.NAME, *with_lift_off()}
 
 
 def parts(names: Sequence[str]) -> set[str]:

@@ -10,13 +10,14 @@ from wedgesweep.quantity import Quantity
 NUMERICAL, EXPERIMENTAL = "numerical-model", "experimental-model"
 
 
-# What the parts that effects act on are called in each system.
+# Systems that effects may act on, and what the parts that they act on are called in each.
+SUSPENSION, OSCILLATOR = SYSTEMS = ("suspension", "oscillator")
 PARTS = {
-    "suspension": {
+    SUSPENSION: {
         **{"body": "bolster", "mass": "bolster", "base": "side frame"},
         **{"face": "column face", "faces": "wedges", "guide": "its lateral guide"},
     },
-    "oscillator": {
+    OSCILLATOR: {
         **{"body": "oscillator", "mass": "mass", "base": "base"},
         **{"face": "rubbing face", "faces": "rubbing surface", "guide": "the surface that it rubs on"},
     },
@@ -30,7 +31,8 @@ class Effect:
     At the neutral value of each quantity the effect is absent, bit for bit. ``extends`` names the quantities
     that add forces, coefficients, states or events to the base model when they are not off. An effect
     without any is one that the base model's mechanics can do. ``contains``: effects that are special cases
-    of this one. ``meaning`` may hold names of PARTS in braces; see ``described``.
+    of this one. ``systems``: those that have the part which it acts on. ``excludes``: effects that cannot be
+    in one model with it. ``meaning`` may hold names of PARTS in braces; see ``described``.
     """
 
     name: str
@@ -40,8 +42,10 @@ class Effect:
     quantities: tuple[Quantity, ...]
     extends: tuple[str, ...] = ()
     contains: tuple[str, ...] = ()
+    systems: tuple[str, ...] = SYSTEMS
+    excludes: tuple[str, ...] = ()
 
-    def described(self, system: str = "suspension") -> str:
+    def described(self, system: str = SUSPENSION) -> str:
         """What the effect is, in words, on a system."""
         return self.meaning.format(**PARTS[system])
 

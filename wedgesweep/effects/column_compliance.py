@@ -12,7 +12,7 @@ from math import nan, sqrt
 import numpy as np
 
 from wedgesweep.compiled import inlined, term
-from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.effects.base import EXPERIMENTAL, SUSPENSION, Effect
 from wedgesweep.effects.states import LENGTH, VELOCITY, place_of, state
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
@@ -31,6 +31,7 @@ EFFECT = Effect(
     name="column_compliance",
     family="two-dimensional",
     branch=EXPERIMENTAL,
+    systems=(SUSPENSION,),
     meaning="columns that yield sideways",
     quantities=(
         Quantity(

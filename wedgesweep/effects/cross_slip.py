@@ -9,7 +9,7 @@ for it between -90 and 90 degrees.
 from math import cos, hypot, sin
 
 from wedgesweep.compiled import term
-from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.effects.base import NUMERICAL, SUSPENSION, Effect
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
 
@@ -22,6 +22,7 @@ EFFECT = Effect(
     name="cross_slip",
     family="two-dimensional",
     branch=NUMERICAL,
+    systems=(SUSPENSION,),
     meaning="slip out of the plane of both faces, at the input frequency",
     quantities=(
         Quantity(

@@ -57,13 +57,7 @@ by_record(_damper, _of_system)
 
 
 @inlined
-def force_on_mass(z, velocity, y, p):
-    """Force on the mass (N, up positive) at z (m) and z' (m/s)."""
+def damping(velocity, y, p):
+    """Force on the mass (N, up positive) at z' (m/s)."""
     own = p.directional_damping
     return -own.coefficient * velocity - (own.coefficient + _damper(p)) * own.asymmetry * abs(velocity)
-
-
-@inlined
-def power(velocity, y, p):
-    """Power (W) that the damper takes."""
-    return -force_on_mass(0.0, velocity, y, p) * velocity

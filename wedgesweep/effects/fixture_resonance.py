@@ -10,7 +10,7 @@ from math import nan, pi
 import numpy as np
 
 from wedgesweep.compiled import inlined, term
-from wedgesweep.effects.base import EXPERIMENTAL, Effect
+from wedgesweep.effects.base import EXPERIMENTAL, SUSPENSION, Effect
 from wedgesweep.effects.states import LENGTH, VELOCITY, state
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
@@ -34,6 +34,7 @@ EFFECT = Effect(
     name="fixture_resonance",
     family="excitation",
     branch=EXPERIMENTAL,
+    systems=(SUSPENSION,),
     meaning="a side frame on a compliant table",
     quantities=(
         Quantity(

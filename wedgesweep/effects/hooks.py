@@ -58,8 +58,13 @@ def force_on_mass(z, velocity, y, p):
 
 
 @_sum(nothing="0.0")
+def damping(velocity, y, p):
+    """Further damping: force on the mass (N) that takes the power -force velocity."""
+
+
+@_sum(nothing="0.0")
 def power(velocity, y, p):
-    """Power (W) that the dampers of effects take."""
+    """Power (W) that dampers take which do not act on the mass."""
 
 
 @_sum(nothing="()")

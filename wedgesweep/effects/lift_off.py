@@ -4,7 +4,7 @@ The mechanics stand in systems/suspension/unilateral; ``joints = "unilateral"`` 
 Neutral: none, the joints hold; off where the table is absent (-1 in the record). Default: restitution = 0.
 """
 
-from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.effects.base import NUMERICAL, SUSPENSION, Effect
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
 
@@ -27,6 +27,7 @@ EFFECT = Effect(
     name=NAME,
     family="contact",
     branch=NUMERICAL,
+    systems=(SUSPENSION,),
     meaning="wedges that lift off their faces, fall back and hit",
     quantities=(
         Quantity(

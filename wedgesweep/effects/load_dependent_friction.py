@@ -9,7 +9,7 @@ from math import nan
 import numpy as np
 
 from wedgesweep.compiled import term
-from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.effects.base import NUMERICAL, SUSPENSION, Effect
 from wedgesweep.quantity import Quantity
 
 EQUATIONS = ("mu -> mu (|N|/reference)^(-exponent)",)
@@ -18,6 +18,7 @@ EFFECT = Effect(
     name="load_dependent_friction",
     family="friction-law",
     branch=NUMERICAL,
+    systems=(SUSPENSION,),
     meaning="coefficients of friction that depend on the normal force",
     quantities=(
         Quantity(

@@ -5,7 +5,7 @@ Neutral and default: force = 0.
 
 import numpy as np
 
-from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.effects.base import NUMERICAL, SUSPENSION, Effect
 from wedgesweep.quantity import Quantity
 
 EQUATIONS = ("F_w0 -> F_w0 + force",)
@@ -14,6 +14,7 @@ EFFECT = Effect(
     name="preload",
     family="parameters",
     branch=NUMERICAL,
+    systems=(SUSPENSION,),
     meaning="more force of each wedge spring",
     quantities=(
         Quantity("force_N", 0.0, "added to the force of each wedge spring at z = 0", search=(-5.0, 30.0)),

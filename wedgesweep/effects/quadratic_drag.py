@@ -22,12 +22,6 @@ EFFECT = Effect(
 
 
 @inlined
-def force_on_mass(z, velocity, y, p):
-    """Force on the mass (N, up positive) at z (m) and z' (m/s)."""
+def damping(velocity, y, p):
+    """Force on the mass (N, up positive) at z' (m/s)."""
     return -p.quadratic_drag.coefficient * abs(velocity) * velocity
-
-
-@inlined
-def power(velocity, y, p):
-    """Power (W) that the drag takes."""
-    return -force_on_mass(0.0, velocity, y, p) * velocity

@@ -22,12 +22,6 @@ EFFECT = Effect(
 
 
 @inlined
-def force_on_mass(z, velocity, y, p):
-    """Force on the bolster (N, up positive) at z (m) and z' (m/s)."""
+def damping(velocity, y, p):
+    """Force on the mass (N, up positive) at z' (m/s)."""
     return -p.viscous_damping.coefficient * velocity
-
-
-@inlined
-def power(velocity, y, p):
-    """Power (W) that the damper takes."""
-    return p.viscous_damping.coefficient * velocity * velocity

@@ -5,7 +5,7 @@ Neutral and default: scale = 1.
 
 import numpy as np
 
-from wedgesweep.effects.base import NUMERICAL, Effect
+from wedgesweep.effects.base import NUMERICAL, SUSPENSION, Effect
 from wedgesweep.quantity import Quantity
 
 EQUATIONS = ("k_w -> scale k_w",)
@@ -14,6 +14,7 @@ EFFECT = Effect(
     name="wedge_stiffness",
     family="parameters",
     branch=NUMERICAL,
+    systems=(SUSPENSION,),
     meaning="a different stiffness under the wedges",
     quantities=(Quantity("scale", 1.0, "factor of k_w", above=0.0, search=(0.5, 2.0)),),
 )

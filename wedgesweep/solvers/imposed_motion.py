@@ -2,7 +2,7 @@
 
 States of effects (bristles, time at rest) follow the motion. Each is integrated by the exponential Euler
 method, which is exact for a rate that is linear in its state, however stiff (Hochbruck and Ostermann, 2010,
-"Exponential integrators").
+"Exponential integrators"). The rod of a damper moves freely in its play, exactly.
 """
 
 from math import expm1
@@ -10,6 +10,7 @@ from math import expm1
 import numpy as np
 
 from wedgesweep.compiled import compiled, inner
+from wedgesweep.effects import damper_play
 from wedgesweep.hybrid.interface import driving_force, initial_mode, rate, scales
 from wedgesweep.hybrid.vectors import replaced, vector
 from wedgesweep.systems import grouped
@@ -49,21 +50,58 @@ def forces(
     places = np.broadcast_to(displacement, found.shape)
     motion = np.stack([velocity, acceleration])
     for rows, cases in grouped(parameters):
-        part = np.empty((rows.size, velocity.size))
-        _follow_all(cases, places[rows], motion, step, part)
-        jumps = cases["friction"]["set_valued"] != 0
-        part[jumps] = with_jumps(part[jumps], velocity)
-        found[rows] = part
+        found[rows] = _with_all_jumps(cases, *_followed(cases, places[rows], motion, step), velocity)
     return found
 
 
-def with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Forces (n, k) in which a jump at a reversal between two samples counts for its share of the interval.
+def _followed(
+    cases: np.ndarray, places: np.ndarray, motion: np.ndarray, step: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces (n, k) at the samples, and the share of the interval after each at which a rod begins to press.
 
-    Otherwise the time of each reversal would be rounded to the grid.
+    The latter is NaN where none does, and has no columns without a rod that has play.
     """
+    found = np.empty(places.shape)
+    rods = (
+        damper_play.EFFECT.name in (cases.dtype.names or ())
+        and (cases["damper_play"]["clearance"] > 0.0).any()
+    )
+    pressed = np.full((len(cases), places.shape[1] - 1 if rods else 0), np.nan)
+    _follow_all(cases, places, motion, step, found, pressed)
+    return found, pressed
+
+
+def _with_all_jumps(
+    cases: np.ndarray, forces: np.ndarray, pressed: np.ndarray, velocity: np.ndarray
+) -> np.ndarray:
+    """Forces (n, k) with the jumps of set-valued friction at reversals, and of rods that begin to press."""
+    turns, when = reversals(velocity)
+    jumps = cases["friction"]["set_valued"] != 0
+    if not pressed.size:
+        forces[jumps] = with_jumps(forces[jumps], turns, when)
+        return forces
+    for row, own, at_turns in zip(forces, pressed, jumps, strict=True):
+        begun = np.flatnonzero(np.isfinite(own))
+        before, share = begun, own[begun]
+        if at_turns:
+            before, share = np.r_[turns, begun], np.r_[when, share]
+        row[:] = with_jumps(row[None], before, share)[0]
+    return forces
+
+
+def reversals(velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The samples (j,) before the reversals of a velocity (k,), and the share of the interval until each."""
     before = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)
-    late = velocity[before] / (velocity[before] - velocity[before + 1]) - 0.5
+    return before, velocity[before] / (velocity[before] - velocity[before + 1])
+
+
+def with_jumps(forces: np.ndarray, before: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Forces (n, k) in which a jump between two samples counts for its share of the interval.
+
+    Otherwise the time of each jump would be rounded to the grid. ``before`` (j,): the sample before each;
+    ``share`` (j,): of the interval, after which it jumps.
+    """
+    late = share - 0.5
     jump = forces[:, before + 1] - forces[:, before]
     forces[:, before] += np.maximum(-late, 0.0) * jump
     forces[:, before + 1] -= np.maximum(late, 0.0) * jump
@@ -71,10 +109,12 @@ def with_jumps(forces: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def _follow_all(cases, places, motion, step, out):
+def _follow_all(cases, places, motion, step, out, pressed):
     for k in range(cases.size):
         p = cases[k]
         y = vector(np.zeros(len(scales(p))), scales(p))
+        # Nobody knows where the rod begins: a motion that goes on presses it to its own side.
+        y = damper_play.put(y, 1 if motion[0, 0] >= 0.0 else -1, p)
         for i in range(motion.shape[1]):
             y = replaced(replaced(y, 0, places[k, i]), 1, motion[0, i])
             out[k, i] = _force(y, motion[1, i], step, p)
@@ -82,7 +122,10 @@ def _follow_all(cases, places, motion, step, out):
             # States of effects see the mean motion between two samples.
             y = replaced(y, 0, 0.5 * (places[k, i] + places[k, following]))
             y = replaced(y, 1, 0.5 * (motion[0, i] + motion[0, following]))
-            y = _advanced(y, step, p)
+            moved = damper_play.moved(y, y[1] * step, p)
+            if i < pressed.shape[1] and motion[0, i] * motion[0, i + 1] > 0.0:
+                pressed[k, i] = damper_play.share_before_end(y, y[1] * step, p)
+            y = damper_play.with_rod(_advanced(y, step, p), moved, p)
 
 
 @inner

@@ -4,10 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from wedgesweep.effects import EFFECTS
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.synthesize.names import NOISES
-from wedgesweep.validation import imperfect, plan, rigs
+from wedgesweep.validation import imperfect, plan, ranges, rigs
 from wedgesweep.validation.draft import Draft
 from wedgesweep.validation.imperfect import MODEL_ERROR
 from wedgesweep.validation.rigs import Rig
@@ -47,7 +46,7 @@ def _draw_bench(one: DataSet, random: np.random.Generator, attempt: int) -> Draf
 
 def _noise(one: DataSet, attempt: int) -> str:
     """Every effect comes with every kind of noise in which it can show."""
-    return NOISES[(one.index + one.index // len(EFFECTS) + attempt // SAME_NOISE) % len(NOISES)]
+    return NOISES[(one.index + one.index // len(ranges.EFFECTS) + attempt // SAME_NOISE) % len(NOISES)]
 
 
 def _draw_imperfect(one: DataSet, random: np.random.Generator, attempt: int) -> Draft | None:

@@ -72,8 +72,8 @@ def _hide_next(one: DataSet, draft: Draft, random: np.random.Generator, attempt:
 def _hide_possible(one: DataSet, draft: Draft, random: np.random.Generator, attempt: int) -> bool:
     """One effect that the measurement can show; those of a seed take turns in an order of their own."""
     possible = _possible(draft)
-    order = np.random.default_rng([one.seed, 97]).permutation(len(ranges.EFFECTS))
-    turns = [ranges.EFFECTS[i] for i in order if ranges.EFFECTS[i] in possible]
+    order = np.random.default_rng([one.seed, 97]).permutation(tuple(ranges.LEADING)).tolist()
+    turns = [effect for effect in order if effect in possible]
     effect = turns[(one.index + one.index // len(turns) + attempt // SAME_NOISE) % len(turns)]
     return _hide_single(draft, effect, one.draw_target(random), random)
 

@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.effects import EFFECTS as EFFECTS_BY_NAME
+from wedgesweep.effects import of_system
+from wedgesweep.effects.base import SUSPENSION
 from wedgesweep.natural_units import BENCH, NaturalUnits
 
 Numbers = dict[str, float]
@@ -41,6 +43,7 @@ LEADING = {
     "cross_slip": Leading("velocity_mm_per_s", 0.1, 150.0),
     "column_compliance": Leading("stiffness_N_per_mm", 5000.0, 4.0),
     "lift_off": Leading("restitution", 1e-3, 0.7),  # how strongly it shows, louder tests decide
+    "damper_play": Leading("clearance_mm", 1.1e-4, 0.9),
     "viscous_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
     "directional_damping": Leading("coefficient_N_s_per_m", 1e-3, 90.0),
     "quadratic_drag": Leading("coefficient_N_s2_per_m2", 1e-2, 1800.0),
@@ -73,7 +76,8 @@ OTHERS: dict[str, dict[str, tuple[float, float, str]]] = {
     "stray_vibration": {"frequency_hz": (6.5, 80.0, LOGARITHMIC)},
     "fixture_resonance": {"damping_ratio": (0.01, 0.4, LOGARITHMIC)},
 }
-EFFECTS = tuple(LEADING)
+# Those of the bench.
+EFFECTS = tuple(name for name in LEADING if name in of_system(SUSPENSION))
 
 
 def path(effect: str, random: np.random.Generator, units: NaturalUnits = BENCH) -> Callable[[float], Numbers]:

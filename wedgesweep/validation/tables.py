@@ -88,7 +88,8 @@ def _times(sets: Sets) -> list[str]:
 def confusion(sets: Sets) -> str:
     """Hidden effect against what was named; abstentions by verdict."""
     records = sets.singles + sets.of("clean")
-    names = list(EFFECTS)
+    present = {name for record in records for name in (*record["truth"], *judge.answer(record))}
+    names = [name for name in EFFECTS if name in present]
     numbers = "".join(f"{i:4d}" for i in range(1, len(names) + 1))
     lines = [f"{'hidden':28}{numbers} many nothing tied data none"]
     widths = [4] * len(names) + [5, 8, 5, 5, 5]

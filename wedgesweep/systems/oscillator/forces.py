@@ -12,7 +12,7 @@ from wedgesweep.compiled import inlined
 from wedgesweep.effects import directional_friction, guide_friction, hooks, presliding, states, travel
 from wedgesweep.excitation import acceleration, displacement, force, velocity
 from wedgesweep.friction import lugre_bristles as bristles
-from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, X, slip, stuck
+from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, X, crosses, slip, stuck
 
 
 @states.measured_by("oscillator")
@@ -53,8 +53,16 @@ def support(t, y, mode, p):
     """Force on the mass (N) of all that stands between it and the base."""
     stretch, rate = elongation(t, y, p), elongation_rate(t, y, p)
     spring = p.oscillator.spring
-    own = -spring * stretch - p.oscillator.damping * rate
-    return own + hooks.force_on_mass(stretch, rate, y, p) + travel.force(stretch, mode.segment, spring, p)
+    springs = travel.force(stretch, mode.segment, spring, p) - spring * stretch
+    return springs + damping(rate, y, mode, p) + hooks.force_on_mass(stretch, rate, y, p)
+
+
+@inlined
+def damping(rate, y, mode, p):
+    """Force on the mass (N) of all dampers; none while a rod that they are behind crosses its play."""
+    if crosses(mode) and (p.oscillator.forced or not p.oscillator.absolute):
+        return 0.0
+    return hooks.damping(rate, y, p) - p.oscillator.damping * rate
 
 
 @inlined
@@ -76,6 +84,8 @@ def load(t, y, mode, p):
 @inlined
 def friction_force(y, mode, p):
     """Friction T (N) on a branch that no jump and no sticking holds, positive against positive slip."""
+    if crosses(mode):
+        return 0.0
     rubbing, normal = slip(y, p), p.oscillator.normal_force
     factor = directional_friction.factor(mode.direction, p)
     if bristles.acts(p):
@@ -104,7 +114,7 @@ def powers(t, y, mode, p):
     own, pull = p.oscillator, support(t, y, mode, p)
     against = resistance(pull + applied(t, p), y, mode, p)
     rate = elongation_rate(t, y, p)
-    taken = against * slip(y, p) + own.damping * rate * rate + hooks.power(rate, y, p)
+    taken = against * slip(y, p) - damping(rate, y, mode, p) * rate + hooks.power(rate, y, p)
     supplied = applied(t, p) * y[VELOCITY] - against * own.belt_velocity
     if own.absolute and not own.forced:
         supplied += pull * velocity(t, p)

@@ -6,6 +6,7 @@ from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import (
     ageing,
+    damper_play,
     directional_friction,
     hooks,
     states,
@@ -21,13 +22,13 @@ from wedgesweep.systems.oscillator.forces import (
     powers,
     resistance,
 )
-from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, Mode, X, creeps, slip, stuck
+from wedgesweep.systems.oscillator.modes import HELD, VELOCITY, Mode, X, creeps, crosses, slip, stuck
 from wedgesweep.systems.oscillator.parameters import PLAIN
 from wedgesweep.systems.shared import implement_shared
 
 OSCILLATOR = "oscillator"
-# Pairs of event functions: ends of a slip branch (the only one without effects), segment of travel, sign of
-# the slip, time at rest.
+# Pairs of event functions: ends of a slip branch or of a rod's play (the only pair without effects), segment
+# of travel, sign of the slip, time at rest.
 SLIP, TRAVEL, DIRECTION, CLOCK = 0, 2, 4, 6
 PLAIN_EVENTS, EVENTS = 2, 8
 # Phase (rad) after which a force that passes zero now exceeds rounding errors, and the share that does not.
@@ -83,9 +84,10 @@ def holds(mode, p):
 @implement(interface.free, OSCILLATOR)
 @inlined
 def free(y, p):
-    """A mass that friction holds keeps its velocity."""
+    """A mass that friction holds keeps its velocity, and a rod that presses its place."""
     pinned = p.friction.set_valued != 0 and slip(y, p) == 0.0
-    return replaced(states.active(p), VELOCITY, not pinned)
+    found = replaced(states.active(p), VELOCITY, not pinned)
+    return damper_play.freed(found, y, p)
 
 
 @implement(interface.observed, OSCILLATOR)
@@ -101,7 +103,7 @@ def sticks(y, mode, p):
     """Whether the mass sticks, or slips below the threshold velocity."""
     if creeps(p):
         return abs(slip(y, p)) <= p.friction.v_t
-    return abs(mode.column) != 1
+    return abs(mode.column) != 1 and not crosses(mode)
 
 
 @implement(interface.contact_forces, OSCILLATOR)
@@ -143,23 +145,28 @@ def rate(t, y, mode, p):
 @inlined
 def _breakaway(now, y, direction, p):
     """Net force (N) under the load ``now`` if a mass that sticks slipped in a direction."""
-    return now - friction_force(y, _slipping(direction, 0, 1, p), p)
+    return now - friction_force(y, _slipping(direction, y, 0, 1, p), p)
 
 
 @inlined
 def _slip_events(now, y, mode, p, out):
     """Write the distances of slip to both ends of its branch, or of the load to where friction lets go."""
     value, branch = slip(y, p), mode.column
-    if stuck(mode, p):
+    if crosses(mode):
+        damper_play.write_events(y, SLIP, p, out)
+    elif stuck(mode, p):
         out[SLIP] = _breakaway(now, y, -1, p)
         out[SLIP + 1] = -_breakaway(now, y, 1, p)
     elif abs(branch) == HELD:
-        out[SLIP] = now - friction_force(y, _beside(mode, 0, p), p)
-        out[SLIP + 1] = friction_force(y, _beside(mode, 1, p), p) - now
+        out[SLIP] = now - friction_force(y, _beside(y, mode, 0, p), p)
+        out[SLIP + 1] = friction_force(y, _beside(y, mode, 1, p), p) - now
     elif p.friction.set_valued or creeps(p):
         out[SLIP if branch > 0 else SLIP + 1] = branch * value
     else:
         friction.write_branch_ends(value, p.friction.v_t, branch, SLIP, out)
+        end = damper_play.side(y, p)
+        if end != 0 and branch == 0:  # a rod that presses cannot pull
+            out[SLIP if end > 0 else SLIP + 1] = end * value
 
 
 @inlined
@@ -167,7 +174,8 @@ def _effect_events(t, y, mode, p, out):
     """Write the events of effects."""
     if travel.acts(p):
         travel.write_events(elongation(t, y, p), mode.segment, p, TRAVEL, out)
-    if mode.direction != 0 and mode.column == 0 and not p.friction.set_valued:
+    ramp = mode.column == 0 and not p.friction.set_valued
+    if mode.direction != 0 and ramp and not damper_play.acts(p):
         out[DIRECTION if mode.direction > 0 else DIRECTION + 1] = mode.direction * slip(y, p)
     if ageing.acts(p) and creeps(p):
         inside = p.friction.v_t - abs(slip(y, p))
@@ -196,16 +204,27 @@ def event(place, t, y, mode, p, out):
 
 
 @inlined
-def _slipping(direction, segment, clock, p):
-    """Mode of slip in a direction; ``clock`` = 1: about to slip, still at rest."""
+def _slipping(direction, y, segment, clock, p):
+    """Mode of slip in a direction; ``clock`` = 1: about to slip, still at rest.
+
+    A rod that presses to one side crosses its play in the other direction.
+    """
+    if direction * damper_play.side(y, p) < 0:
+        return _crossing(segment)
     return Mode(direction, direction if directional_friction.acts(p) else 0, segment, clock)
 
 
 @inlined
-def _beside(mode, higher, p):
+def _crossing(segment):
+    """Mode in which a rod crosses its play, and the damper rests."""
+    return Mode(damper_play.CROSSING, 0, segment, 1)
+
+
+@inlined
+def _beside(y, mode, higher, p):
     """Mode on the lower (0) or higher (1) side of the jump that holds the slip velocity."""
     if creeps(p):
-        return _slipping(2 * higher - 1, mode.segment, mode.clock, p)
+        return _slipping(2 * higher - 1, y, mode.segment, mode.clock, p)
     column = (0 if mode.column > 0 else -1) + higher
     return Mode(column, mode.direction, mode.segment, 0 if abs(column) == 1 else 1)
 
@@ -218,9 +237,9 @@ def _mode_at_rest(t, y, segment, p):
     forward, backward = _breakaway(now, y, 1, p), _breakaway(now, y, -1, p)
     nothing = ROUNDING * (abs(now) + p.oscillator.mass * p.input.omega**2 * states.input_length(p))
     if forward > nothing:
-        return _slipping(1, segment, 0, p)
+        return _slipping(1, y, segment, 0, p)
     if backward < -nothing:
-        return _slipping(-1, segment, 0, p)
+        return _slipping(-1, y, segment, 0, p)
     if backward - forward > nothing:
         return held
     return _without_friction(t, y, segment, p)
@@ -229,37 +248,45 @@ def _mode_at_rest(t, y, segment, p):
 @inner
 def _without_friction(t, y, segment, p):
     """Mode that follows zero slip where nothing holds the mass: the direction in which it soon moves."""
-    mode = _slipping(1, segment, 0, p)
+    mode = _slipping(1, y, segment, 0, p)
     for _ in range(4):
         moment = LOOK_AHEAD / fastest(p)
         y = weighted(y, moment, (1.0,), (rate(t + 0.5 * moment, y, mode, p)[0],))
         t += moment
-    return mode if slip(y, p) >= 0.0 else _slipping(-1, segment, 0, p)
+    return mode if slip(y, p) >= 0.0 else _slipping(-1, y, segment, 0, p)
 
 
 @implement(interface.initial_mode, OSCILLATOR)
 @inner
 def initial_mode(t, y, p):
     """Mode in which a run begins."""
-    segment, rubbing = travel.segment_at(elongation(t, y, p), p), slip(y, p)
+    return _mode_at(t, y, travel.segment_at(elongation(t, y, p), p), p), True
+
+
+@inner
+def _mode_at(t, y, segment, p):
+    """Mode that a state is in, at a segment of the travel."""
+    rubbing = slip(y, p)
     sign = 1 if rubbing >= 0.0 else -1
     direction = sign if directional_friction.acts(p) else 0
+    if damper_play.acts(p) and (damper_play.side(y, p) == 0 or damper_play.side(y, p) * rubbing < 0.0):
+        return _crossing(segment)
     if p.friction.set_valued:
         if rubbing == 0.0:
-            return _mode_at_rest(t, y, segment, p), True
-        return _slipping(sign, segment, 0, p), True
+            return _mode_at_rest(t, y, segment, p)
+        return _slipping(sign, y, segment, 0, p)
     branch = friction.branch_at(rubbing, p)
     clock = 1 if branch == 0 else 0
-    return Mode(sign if creeps(p) else branch, direction, segment, clock), True
+    return Mode(sign if creeps(p) else branch, direction, segment, clock)
 
 
 @inner
 def _cross(t, y, mode, upward, p):
     """Mode on the next branch of a regularised law, or held where the next branch points back."""
     if abs(mode.column) == HELD:
-        return _beside(mode, upward, p)
+        return _beside(y, mode, upward, p)
     if creeps(p):
-        across = _slipping(-mode.column, mode.segment, mode.clock, p)
+        across = _slipping(-mode.column, y, mode.segment, mode.clock, p)
         # Friction that depends on the direction jumps while bristles are bent.
         pulled = across.column * (load(t, y, across, p) - friction_force(y, across, p))
         if pulled >= 0.0 or not directional_friction.acts(p):
@@ -278,6 +305,9 @@ def _cross(t, y, mode, upward, p):
 @inner
 def _transition(t, y, mode, place, p):
     upward = place % 2
+    if crosses(mode) and place < TRAVEL:
+        y = damper_play.put(y, 2 * upward - 1, p)
+        return y, _mode_at(t, y, mode.segment, p)
     if place >= CLOCK:
         return y, Mode(mode.column, mode.direction, mode.segment, 1 - mode.clock)
     if place >= DIRECTION:
@@ -285,11 +315,14 @@ def _transition(t, y, mode, place, p):
     if place >= TRAVEL:
         segment = travel.next_segment(mode.segment, upward, p)
         return y, Mode(mode.column, mode.direction, segment, mode.clock)
+    at_rest = replaced(y, VELOCITY, p.oscillator.belt_velocity)
     if not p.friction.set_valued:
+        if mode.column == 0 and (2 * upward - 1) * damper_play.side(y, p) < 0:
+            return at_rest, _crossing(mode.segment)
         return y, _cross(t, y, mode, upward, p)
-    y = replaced(y, VELOCITY, p.oscillator.belt_velocity)
+    y = at_rest
     if stuck(mode, p):
-        return y, _slipping(2 * upward - 1, mode.segment, 0, p)
+        return y, _slipping(2 * upward - 1, y, mode.segment, 0, p)
     y = ageing.rejuvenated(y, p)
     return y, _mode_at_rest(t, y, mode.segment, p)
 

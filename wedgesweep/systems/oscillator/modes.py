@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects import presliding
+from wedgesweep.effects.damper_play import CROSSING
 from wedgesweep.friction import lugre_bristles as bristles
 
 # Displacement (m), against the base or the ground, and its rate: the first two states.
@@ -16,8 +17,9 @@ class Mode(NamedTuple):
     """Which smooth piece of the equations holds.
 
     ``column``: slip branch (-1, 0, 1, or +-HELD) of the rubbing face, by the name that effects know; 0 is
-    stuck under a set-valued law. ``direction``: sign of the slip where friction depends on it, else 0.
-    ``segment`` of the travel: see effects/travel.py. ``clock``: 1 while the time at rest runs.
+    stuck under a set-valued law; CROSSING: a rod crosses its play, and nothing rubs. ``direction``: sign of
+    the slip where friction depends on it, else 0. ``segment`` of the travel: see effects/travel.py.
+    ``clock``: 1 while the time at rest runs.
     """
 
     column: int
@@ -36,6 +38,12 @@ def creeps(p):
 def stuck(mode, p):
     """Whether set-valued friction holds the mass to the rubbing surface."""
     return p.friction.set_valued != 0 and mode.column == 0
+
+
+@inlined
+def crosses(mode):
+    """Whether the rod of the damper crosses its play."""
+    return mode.column == CROSSING
 
 
 @inlined

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import effects as known
+from wedgesweep.effects import base
 from wedgesweep.excitation import has_series
 from wedgesweep.friction import code
 from wedgesweep.friction import lugre_bristles as bristles
@@ -45,13 +46,6 @@ EXCITATIONS = (BASE, FORCE)
 
 # Effects that scale a number of the oscillator.
 SCALED = {"bolster_stiffness": "spring", "bolster_mass": "mass"}
-# All effects that need no wedge.
-EFFECTS = (
-    *(*SCALED, "friction_level", "stribeck", "presliding", "ageing", "directional_friction"),
-    *("viscous_damping", "directional_damping", "quadratic_drag"),
-    *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
-    *("input_distortion", "stray_vibration", "velocity_lag", "displacement_gain"),
-)
 # A motion of the base beside the input.
 OF_BASE = "stray_vibration"
 # Effects on the spring.
@@ -61,14 +55,19 @@ LATERAL = "guide_friction"
 # The first one scales its coefficients, the others change the law.
 OF_FRICTION = ("friction_level", "stribeck", "presliding", "ageing", "directional_friction")
 # Effects that a law has no place for.
-OF_LAW = {"lugre": ("stribeck", "presliding", "ageing", "guide_friction"), "hyperbolic": ("stribeck",)}
+OF_LAW = {
+    "lugre": ("stribeck", "presliding", "ageing", "guide_friction", "damper_play"),
+    "hyperbolic": ("stribeck",),
+}
+# One that needs a rod between the mass and what damps it.
+OF_ROD = "damper_play"
 # Marks records of the kit without effects that have mechanics of their own.
 PLAIN = "plain_oscillator"
 
 
 def effect_names() -> tuple[str, ...]:
     """Effects that an oscillator may have, those that ``effects.register`` added among them."""
-    return tuple(name for name in known.EFFECTS if name in EFFECTS or name not in known.NAMES)
+    return known.of_system(base.OSCILLATOR)
 
 
 @cache
@@ -186,7 +185,7 @@ def friction_decay(p: np.void) -> float:
 
 def _changes_friction(p: np.void) -> bool:
     """Whether an effect or bristles change the law of friction."""
-    return bool(records.acting(p, OF_FRICTION[1:])) or bool(p[bristles.NAME]["stiffness"])
+    return bool(records.acting(p, (*OF_FRICTION[1:], OF_ROD))) or bool(p[bristles.NAME]["stiffness"])
 
 
 def _breakaway_force(p: np.void) -> float:

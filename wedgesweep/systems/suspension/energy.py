@@ -25,7 +25,8 @@ def friction_power(t, y, mode, now, p):
 @inlined
 def damping_power(y, p):
     """Power (W) that all dampers take."""
-    return hooks.power(y[VELOCITY], y, p)
+    velocity = y[VELOCITY]
+    return hooks.power(velocity, y, p) - hooks.damping(velocity, y, p) * velocity
 
 
 @inlined

@@ -101,7 +101,8 @@ def loads(t, y, mode, p):
     s, g = p.suspension, p.geometry
     z, velocity = g.rest + y[X], y[VELOCITY]
     wedge = s.wedge_preload - s.wedge_spring * _rise(z, y, p) - s.wedge_mass * s.gravity
-    bolster = hooks.force_on_mass(z, velocity, y, p) + travel.force(y[X], mode.segment, s.bolster_spring, p)
+    bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
+    bolster += travel.force(y[X], mode.segment, s.bolster_spring, p)
     bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
     bolster += guide_friction.force(velocity, mode.guide, p)
     return Loads(

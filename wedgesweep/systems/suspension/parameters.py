@@ -17,7 +17,7 @@ import numpy as np
 from wedgesweep import effects as known
 from wedgesweep import excitation
 from wedgesweep import friction as laws
-from wedgesweep.effects import lift_off
+from wedgesweep.effects import base, lift_off
 from wedgesweep.natural_units import VELOCITY, NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
@@ -109,9 +109,14 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
     return np.dtype([*marker, *effects, *records.COMMON, ("suspension", own), ("geometry", geometry)])
 
 
+def effect_names() -> tuple[str, ...]:
+    """Effects that a suspension may have, those that ``effects.register`` added among them."""
+    return known.of_system(base.SUSPENSION)
+
+
 def record_type() -> np.dtype:
     """Type of the full record, with all effects that are known now."""
-    return _full_type(tuple(known.EFFECTS))
+    return _full_type(effect_names())
 
 
 @cache
@@ -144,7 +149,7 @@ def record(
     structured array, shape (1,)
         Of ``record_type()``.
     """
-    case = records.blank(record_type(), known.EFFECTS)
+    case = records.blank(record_type(), effect_names())
     p = case[0]
     for quantity in SUSPENSION:
         p["suspension"][quantity.name] = suspension.get(quantity.name, quantity.default * quantity.factor)
@@ -153,7 +158,7 @@ def record(
         effects = {**effects, lift_off.NAME: {"restitution": restitution}}
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
-    records.set_effects(p, known.EFFECTS, effects)
+    records.set_effects(p, effect_names(), effects)
     acting = _acting(p)
     p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
     if _made_regularised(p, acting):
@@ -164,7 +169,7 @@ def record(
 
 def _acting(p: np.void) -> list[str]:
     """Effects of a record that need mechanics of their own."""
-    return records.acting(p, known.EFFECTS)
+    return records.acting(p, effect_names())
 
 
 def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
@@ -280,7 +285,7 @@ def _bolster_face_never_locks(most: float, p: np.void) -> bool:
 
 def compact(rows: np.ndarray) -> np.ndarray:
     """Full records, shape (n,), as records of the smallest kit for all of them, for compiled code."""
-    kits = _kits(tuple(known.EFFECTS), bool(excitation.has_series(rows).any()))
+    kits = _kits(effect_names(), bool(excitation.has_series(rows).any()))
     return records.converted(rows, kits[int(rows["geometry"]["kit"].max(initial=BASE))])
 
 
@@ -293,7 +298,7 @@ def while_closed(rows: np.ndarray) -> np.ndarray | None:
     if lift_off.NAME not in names:
         return None
     plain = rows["geometry"]["kit"].max(initial=BASE) == JOINTS_OPEN
-    kits = _kits(tuple(known.EFFECTS), records.SERIES[0][0] in names)
+    kits = _kits(effect_names(), records.SERIES[0][0] in names)
     return records.converted(rows, kits[BASE if plain else CLOSED_WITH_EFFECTS])
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import hooks, travel
+from wedgesweep.effects import travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.vectors import replaced
@@ -369,7 +369,7 @@ def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces."""
     column, bolster, power = _forces_and_power(t, y, mode, p)
     supplied = -excitation.acceleration(t, p) * momentum(velocities(y, p), p)
-    return power + hooks.power(y[VELOCITY], y, p), supplied, column, bolster
+    return power + energy.damping_power(y, p), supplied, column, bolster
 
 
 @implement(interface.contact_forces, UNILATERAL)

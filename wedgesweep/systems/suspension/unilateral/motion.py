@@ -59,7 +59,8 @@ def free_accelerations(t, y, segment, p):
     s, g, z, velocity = p.suspension, p.geometry, p.geometry.rest + y[X], y[VELOCITY]
     base = acceleration(t, p)
     wedge = s.wedge_preload - s.wedge_spring * wedge_rise(y, p) - s.wedge_mass * (s.gravity + base)
-    bolster = hooks.force_on_mass(z, velocity, y, p) + travel.force(y[X], segment, s.bolster_spring, p)
+    bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
+    bolster += travel.force(y[X], segment, s.bolster_spring, p)
     bolster -= s.bolster_spring * z + s.bolster_mass * (s.gravity + base)
     return Motion(
         wedge * g.cos_column / s.wedge_mass, -wedge * g.sin_column / s.wedge_mass, bolster / s.bolster_mass
