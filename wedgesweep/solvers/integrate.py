@@ -6,7 +6,6 @@ then repeated with a length that ends just past the event, and the event located
 accurate near its ends, and stages far beyond an event would see friction that the mode does not have.
 """
 
-from collections.abc import Callable, Mapping
 from math import inf, nan, pi, sqrt
 from typing import Any, NamedTuple
 
@@ -231,97 +230,24 @@ def keep(step, share, mode, recorder, p):
 
 
 def _implicit_step(t, h, y, k1, mode, p, rtol):
-    """``implicit.step`` where the system may be stiff; elsewhere nothing calls it."""
-
-
-def _if_stiff(some: Callable, none: Callable) -> Callable[[Mapping[str, Any]], Callable]:
-    """Code for records whose system may be stiff, and for others."""
-    return lambda fields: some if provided(stiff, fields) else none
-
-
-def _begins_stiff(mode, p):
-    """Whether a mode needs implicit steps."""
-
-
-def _becomes_stiff(h, y, p):
-    """Whether a state needs implicit steps."""
-
-
-def _after_event(h, p):
-    """First step (s) of a stiff mode after an event."""
+    """``implicit.step`` for records of systems that may be stiff; for others it is never called."""
 
 
 by_record(
     _implicit_step,
-    _if_stiff(
-        lambda t, h, y, k1, mode, p, rtol: implicit.step(t, h, y, k1, mode, p, rtol),
-        lambda t, h, y, k1, mode, p, rtol: explicit.step(t, h, y, k1, mode, p, rtol),
-    ),
-)
-by_record(_begins_stiff, _if_stiff(lambda mode, p: stiff(mode, p), lambda mode, p: False))
-by_record(_becomes_stiff, _if_stiff(lambda h, y, p: outruns(h, y, p), lambda h, y, p: False))
-by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda h, p: h))
-
-
-def _expected(forces, t, y, mode, p):
-    """Time (s) after which the system expects an event; inf where it does not say."""
-
-
-by_record(
-    _expected,
     lambda fields: (
-        (lambda forces, t, y, mode, p: expected_event(forces, t, y, mode, p))
-        if provided(expected_event, fields)
-        else (lambda forces, t, y, mode, p: inf)
+        (lambda t, h, y, k1, mode, p, rtol: implicit.step(t, h, y, k1, mode, p, rtol))
+        if provided(stiff, fields)
+        else (lambda t, h, y, k1, mode, p, rtol: explicit.step(t, h, y, k1, mode, p, rtol))
     ),
 )
-
-
-def _least_aim(h, mode, p):
-    """Least length (s) of a step that aims at an expected event."""
 
 
 @inlined
-def _least_aim_at_impact(h, mode, p):
-    """A flight between two impacts may be far shorter than a step."""
+def _least_aim(h, mode, p):
+    """Least length (s) of a step that aims at an expected event: flights between impacts may be short."""
     first, second = opened(mode, p)
     return SHORTEST * 2.0 * pi / fastest(p) if first or second else LEAST_SHARE * h
-
-
-by_record(
-    _least_aim,
-    lambda fields: _least_aim_at_impact if provided(opened, fields) else (lambda h, mode, p: LEAST_SHARE * h),
-)
-
-
-def _closed_form(state, stop, p, keeping, recorder, counts):
-    """The closed form of a mode, if the system has one."""
-
-
-by_record(
-    _closed_form,
-    lambda fields: (
-        (
-            lambda state, stop, p, keeping, recorder, counts: closed_form(
-                state, stop, p, keeping, recorder, counts
-            )
-        )
-        if provided(closed_form, fields)
-        else (lambda state, stop, p, keeping, recorder, counts: (False, state, NO_EVENT))
-    ),
-)
-
-
-def _leaves(y, mode, p):
-    """Whether another system goes on with a mode, if the system takes turns with one."""
-
-
-by_record(
-    _leaves,
-    lambda fields: (
-        (lambda y, mode, p: leaves(y, mode, p)) if provided(leaves, fields) else (lambda y, mode, p: False)
-    ),
-)
 
 
 @inner
@@ -336,11 +262,11 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     to_event = inf
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
-    expected = _expected(forces, t, y, mode, p)
+    expected = expected_event(forces, t, y, mode, p)
     most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
-    implicitly = _begins_stiff(mode, p)
+    implicitly = stiff(mode, p)
     if implicitly and last_event >= 0:
-        h = _after_event(h, p)
+        h = min(h, settling_step(p))
     while t < stop:
         h = min(h, longest)
         aim = max((1.0 + PAST_EXPECTED) * expected, _least_aim(h, mode, p))
@@ -377,8 +303,8 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         y, k1, last_event = step.end, step.end_rate, NO_EVENT
         for i in range(event_count(p)):
             work.at_start[i] = work.at_end[i]
-        expected = _expected(ahead, t, y, mode, p)
-        implicitly = implicitly or _becomes_stiff(taken, y, p)
+        expected = expected_event(ahead, t, y, mode, p)
+        implicitly = implicitly or outruns(taken, y, p)
         if taken < longest or error > NOT_GROWING:
             grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
             h = max(h, grown) if taken < h else grown
@@ -403,11 +329,11 @@ def integrate(state, keep_from, stop, p, recorder, work):
         return FAILED, state
     limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + window)
     while state.t < stop:
-        if _leaves(state.y, state.mode, p):
+        if leaves(state.y, state.mode, p):
             return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        done, state, number = _closed_form(state, end, p, keeping, recorder, work.counts)
+        done, state, number = closed_form(state, end, p, keeping, recorder, work.counts)
         if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
         if number == NO_EVENT and work.counts[2] <= limit:
