@@ -16,7 +16,7 @@ import numpy as np
 from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
-from wedgesweep.solvers.linear_algebra import inverted, spectral_radius
+from wedgesweep.solvers.linear_algebra import inverted, places_of, spectral_radius
 from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
 from wedgesweep.solvers.period_map import run_case
 
@@ -152,20 +152,9 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
 
 
 @allocating
-def _places(moves):
-    """Indices of the states that move."""
-    places, count = np.empty(moves.size, np.int64), 0
-    for i in range(moves.size):
-        if moves[i]:
-            places[count] = i
-            count += 1
-    return places[:count]
-
-
-@allocating
 def _part(jacobian, moves):
     """J of the states that move."""
-    places = _places(moves)
+    places = places_of(moves)
     part = np.empty((places.size, places.size))
     for i in range(places.size):
         for j in range(places.size):
@@ -213,7 +202,7 @@ def _stable_and_regular(jacobian, moves):
 @allocating
 def _newton_step(y, image, jacobian, moves, size):
     """Newton's next state."""
-    places = _places(moves)
+    places = places_of(moves)
     inverse = _newton_matrix(_part(jacobian, moves))[0]
     following = image.copy()
     for i in range(places.size):
@@ -287,7 +276,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         if accepted:
             _update(jacobian, y, image, before, image_before, size)
         if now > STALE * last or not (accepted or _stable_and_regular(jacobian, moves)):
-            if (fresh and now > GAIN * last) or run + periods * (1 + _places(moves).size) > most:
+            if (fresh and now > GAIN * last) or run + periods * (1 + places_of(moves).size) > most:
                 break
             outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
             run += more
