@@ -1,7 +1,7 @@
-"""Running sums over the kept window of a run: all numbers that need no waveform.
+"""Running sums over the kept window of a run: all results that need no waveform.
 
-A solver adds points as it goes: quadrature nodes with their weights, and points of weight 0 where a mode
-begins or ends and where displacement or velocity is extreme.
+A solver adds points as it goes: nodes of a quadrature in time with their weights, and points of weight 0
+where a mode begins or ends and where displacement or velocity is extreme.
 """
 
 from math import inf
@@ -61,7 +61,7 @@ def clear(sums):
 
 @inner
 def _count_onset(sums, is_stuck):
-    """Follow the sequence of sticking and slipping spans."""
+    """Count a transition from slip to sticking, and the first span if it sticks."""
     if sums.time == 0.0:
         sums.began_stuck = is_stuck
     if is_stuck and not sums.is_stuck:
@@ -165,7 +165,7 @@ def add_span(sums, span):
 
 @inlined
 def add_extremes(sums, x, velocity, normal_force, energies):
-    """Add what may be an extreme; ``normal_force`` (N) is the smaller one."""
+    """Add a point that may be an extreme; ``normal_force`` (N): the smaller one of both contacts."""
     sums.lowest = min(sums.lowest, x)
     sums.highest = max(sums.highest, x)
     sums.peak_velocity = max(sums.peak_velocity, abs(velocity))
