@@ -8,7 +8,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.effects import states
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.solvers import explicit, implicit, period_detection
-from wedgesweep.solvers.step import inside
+from wedgesweep.solvers.step import dense_output
 from wedgesweep.systems.suspension import (
     filippov,
     first_event,
@@ -109,14 +109,14 @@ def branch_at(speed, p):
 def explicit_step(t, h, y, mode, p, rtol):
     """State at the end of an explicit step and in its middle, and the error over the tolerance."""
     made, _, _, error = explicit.step(t, h, y, transitions.rate(t, y, mode, p)[0], mode, p, rtol)
-    return made.end, inside(0.5, made), error
+    return made.end, dense_output(0.5, made), error
 
 
 @compiled
 def implicit_step(t, h, y, mode, p, rtol):
     """State at the end of an implicit step and in its middle, and the error over the tolerance."""
     made, _, _, error = implicit.step(t, h, y, transitions.rate(t, y, mode, p)[0], mode, p, rtol)
-    return made.end, inside(0.5, made), error
+    return made.end, dense_output(0.5, made), error
 
 
 @compiled

@@ -11,7 +11,7 @@ from wedgesweep.compiled import allocating
 from wedgesweep.hybrid.interface import active, fastest, growth, perturbation, rate, stiff_error
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
 from wedgesweep.solvers.linear_algebra import inverted, places_of
-from wedgesweep.solvers.step import connected, inside, over_tolerance
+from wedgesweep.solvers.step import dense_output, over_tolerance, with_dense_output
 
 STAGES = 6
 ORDER = 4
@@ -88,7 +88,7 @@ def step(t, h, y, k1, mode, p, rtol):
     n, places = len(y), places_of(active(p))
     by_state, by_time = _derivatives(t, y, k1, mode, p)
     forces = rate(t, y, mode, p)[1]
-    failed = connected(t, h, y, y, k1, k1, combination(0.0, (1.0,), (y,)))
+    failed = with_dense_output(t, h, y, y, k1, k1, combination(0.0, (1.0,), (y,)))
     if h * growth(by_state, p) > LARGEST_GROWTH:
         return failed, forces, forces, inf
     inverse = _inverse(by_state, places, h)
@@ -120,5 +120,5 @@ def step(t, h, y, k1, mode, p, rtol):
         over_tolerance(error, y, last, tolerance, p), stiff_error(error, mode, p) / (ON_RAMP * tolerance)
     )
     # RODAS's own dense output has errors of 1e-5 in steps whose ends have errors of 1e-9: a cubic is better.
-    made = connected(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,)))
-    return made, rate(t + 0.5 * h, inside(0.5, made), mode, p)[1], forces, over
+    made = with_dense_output(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,)))
+    return made, rate(t + 0.5 * h, dense_output(0.5, made), mode, p)[1], forces, over

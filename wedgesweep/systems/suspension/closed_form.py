@@ -2,11 +2,11 @@
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.interface import closed_form, implement
-from wedgesweep.hybrid.recorder import keep_constant
+from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.first_event import slide
 from wedgesweep.systems.suspension.linear_slip import oscillator
-from wedgesweep.systems.suspension.linear_slip_sums import keep
+from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import stuck
 from wedgesweep.systems.suspension.release import release
 from wedgesweep.systems.suspension.stick_slip import stick_slip
@@ -29,12 +29,12 @@ def follow(state, stop, p, keeping, recorder, counts):
     if stuck(mode, p):
         end, event = release(state, stop, p)
         if keeping:
-            keep_constant(t, end, y, mode, recorder, p)
+            record_constant(t, end, y, mode, recorder, p)
         return True, State(end, y, mode, last_event, step), event
     o = oscillator(y, mode, p)
     if not o.linear:
         return False, state, NO_EVENT
     end, x, velocity, event = slide(state, stop, o, p)
     if keeping:
-        keep(state, end, o, recorder, p)
+        record_slip(state, end, o, recorder, p)
     return True, State(end, (x, velocity), mode, last_event, step), event

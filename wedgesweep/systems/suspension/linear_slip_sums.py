@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
 from wedgesweep.hybrid.accumulators import Span, add_extremes, add_span
-from wedgesweep.hybrid.recorder import first_sample, put_sample
+from wedgesweep.hybrid.recorder import first_sample, record_sample
 from wedgesweep.hybrid.search import Bracket, searched, zero
 from wedgesweep.systems.suspension.energy import supplied_power
 from wedgesweep.systems.suspension.linear_slip import (
@@ -133,7 +133,7 @@ def _put_span(start, end, duration, o, mode, recorder, p):
 
 
 @inner
-def keep(state, end, o, recorder, p):
+def record_slip(state, end, o, recorder, p):
     """Keep a piece that ``slide`` has followed from a state to ``end``."""
     t, (x, velocity), mode, _, _ = state
     start = phase_at(t, x, velocity, o, p)
@@ -144,5 +144,5 @@ def keep(state, end, o, recorder, p):
     there = advanced(start, recorder.start + first * recorder.step - t, o, p)
     turn = angles(recorder.step, o, p)
     for i in range(first, first_sample(end, recorder)):
-        put_sample(i, motion(there, o, p), mode, recorder, p)
+        record_sample(i, motion(there, o, p), mode, recorder, p)
         there = rotated(there, *turn)

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.excitation import acceleration
-from wedgesweep.hybrid.recorder import keep_constant
+from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.first_event import slide
 from wedgesweep.systems.suspension.linear_slip import Oscillator, forces_at, oscillator
-from wedgesweep.systems.suspension.linear_slip_sums import keep
+from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import COLUMN, ContactMode, slipping, stuck
 from wedgesweep.systems.suspension.newton import ROUNDING
 from wedgesweep.systems.suspension.release import UP, release, release_between
@@ -102,12 +102,12 @@ def _piece(state, stop, directions, p, keeping, recorder):
     if stuck(state.mode, p):
         end, event = _rest(state, stop, up, down, p)
         if keeping:
-            keep_constant(state.t, end, state.y, state.mode, recorder, p)
+            record_constant(state.t, end, state.y, state.mode, recorder, p)
         return State(end, state.y, state.mode, state.last_event, state.step), event
     o = up.slip if state.mode.column > 0 else down.slip
     end, x, velocity, event = slide(state, stop, o, p)
     if keeping:
-        keep(state, end, o, recorder, p)
+        record_slip(state, end, o, recorder, p)
     return State(end, (x, velocity), state.mode, state.last_event, state.step), event
 
 
