@@ -82,9 +82,9 @@ def loaded_reactions(load, column_mu, bolster_mu, p):
 
 
 @compiled
-def breakaway(t, y, direction, stop, p):
+def breakaway(t, y, direction, segment, p):
     """Acceleration z'' (m/s^2) if set-valued friction let go in a direction."""
-    return set_valued.breakaway(t, y, direction, stop, p)
+    return set_valued.acceleration_on_breakaway(t, y, direction, segment, p)
 
 
 @compiled
@@ -129,5 +129,5 @@ def detected_period(distances, tolerance):
 def slid(t, stop, y, mode, p):
     """Oscillator of a mode, and where it ends: time and event."""
     o = linear_slip.oscillator(y, mode, p)
-    end, _, _, event = first_event.slide(State(t, y, mode, NO_EVENT, 0.0), stop, o, p)
+    end, _, _, event = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), stop, o, p)
     return o, end, event

@@ -123,7 +123,7 @@ def zero_after_start(context, bracket, nearest, close):
 
 @inner
 def minimum(context, low, high, close):
-    """Place between two others at which a function is smallest, or the first one found where it is not above 0.
+    """Place between two others where a function is smallest, or the first one found where it is <= 0.
 
     By golden section.
     """

@@ -23,7 +23,7 @@ from wedgesweep.systems.suspension.modes import (
     stuck,
 )
 from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
-from wedgesweep.systems.suspension.set_valued import breakaway
+from wedgesweep.systems.suspension.set_valued import acceleration_on_breakaway
 
 # Places of the event functions beside those of the axes: normal forces, ends of the segment of travel (two),
 # time at rest. Those of the base model end with the normal forces.
@@ -90,8 +90,8 @@ def events(now, t, y, mode, p, out):
     for i in range(EVENTS):
         out[i] = inf
     if stuck(mode, p):
-        out[2 * COLUMN] = breakaway(t, y, -1, mode.segment, p)
-        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.segment, p)
+        out[2 * COLUMN] = acceleration_on_breakaway(t, y, -1, mode.segment, p)
+        out[2 * COLUMN + 1] = -acceleration_on_breakaway(t, y, 1, mode.segment, p)
         return
     _kinematic_events(t, y, mode, p, out)
     if held(mode):

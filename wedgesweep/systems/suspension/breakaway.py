@@ -1,8 +1,8 @@
-"""Time of breakaway of the base model from rest under set-valued friction, without integration.
+"""Time at which a bolster that set-valued friction holds breaks away, without integration (base model).
 
-While the bolster sticks only the base moves, so that the event functions are known functions of time. The
-time of breakaway has a closed form while both normal forces stay positive. Elsewhere the event functions
-are sampled, and their minimum is sought between samples where it may be negative.
+While it sticks only the base moves, so that the event functions are known functions of time. As long as both
+normal forces stay positive the time of breakaway has a closed form. Elsewhere the event functions are
+sampled, and a minimum is sought between samples where it may be negative.
 """
 
 from math import asin, ceil, inf, nan, pi
@@ -71,14 +71,14 @@ def breakaway_input(y, direction, segment, p):
 
 
 @inlined
-def is_known(y, segment, p):
-    """Whether both faces keep their load until a stuck bolster breaks away, in either direction."""
+def carries_load_until_breakaway(y, segment, p):
+    """Whether both faces carry load until a stuck bolster breaks away, whatever its direction."""
     forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
     return p.geometry.always_well_posed != 0 and forward < backward
 
 
 @inner
-def release(state, stop, p):
+def breakaway_time(state, stop, p):
     """Time at which a stuck bolster breaks away, and the event.
 
     The event is NO_EVENT if nothing happens before ``stop``, LOCKED where breakaway is not unique, and
@@ -91,13 +91,16 @@ def release(state, stop, p):
     if not (p.geometry.always_well_posed and forward < backward):
         if p.geometry.opens:
             return state.t, HANDED_OVER
-        return scanned_release(state, stop, p)
-    return release_between(forward, backward, state.t, stop, p)
+        return scanned_breakaway(state, stop, p)
+    return breakaway_between(forward, backward, state.t, stop, p)
 
 
 @inner
-def release_between(forward, backward, t, stop, p):
-    """As ``release``, at known base accelerations: below the first it slips up, above the second down."""
+def breakaway_between(forward, backward, t, stop, p):
+    """As ``breakaway_time``, from the base accelerations below and above which the bolster slips (m/s^2).
+
+    It slips up below ``forward``, and down above ``backward``.
+    """
     omega = p.input.omega
     most = p.input.amplitude * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
@@ -121,8 +124,8 @@ def release_between(forward, backward, t, stop, p):
 
 
 @allocating
-def scanned_release(state, stop, p):
-    """As ``release``, from samples: for any base motion and for normal forces of either sign."""
+def scanned_breakaway(state, stop, p):
+    """As ``breakaway_time``, from samples: for any base motion and for normal forces of either sign."""
     out = np.empty(EVENTS)
     context = _Held(state.y, state.mode, p, out)
     step = 2.0 * np.pi / p.input.omega / SAMPLES_PER_PERIOD
