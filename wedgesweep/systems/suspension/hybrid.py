@@ -73,7 +73,7 @@ def observed(y, p):
 @implement(interface.sticks, SUSPENSION)
 @inlined
 def sticks(y, mode, p):
-    """Whether the column face sticks: bristles end no branch at the threshold velocity."""
+    """Whether the column face sticks, or slips below v_t: bristles end no branch there."""
     if abs(mode.column) == 1 and presliding.acts(p) and not p.friction.set_valued:
         return abs(column_slip(y, p)) <= p.friction.v_t
     return abs(mode.column) != 1
@@ -88,7 +88,7 @@ def force_of_motion(t, acceleration, y, mode, p):
 
 @inlined
 def _forces_and_power(t, y, mode, p):
-    """Normal forces on column and bolster, and the power (W) of friction, on a mode that slips."""
+    """Normal forces on column and bolster (N), and the power of friction (W), in a mode that slips."""
     if held(mode):
         now, power, _ = filippov_forces(t, y, mode, p)
         return now.column, now.bolster, power
