@@ -30,10 +30,10 @@ NEWTON_INTERVAL = 8
 # If the distance is above STALE times the last one, J is computed again; with a new J, Newton's method has
 # failed if it is above GAIN times the last one.
 STALE, GAIN = 0.2, 0.5
-# Share of a period by which a clock grows if nothing resets it, less rounding; and its reading, in periods,
-# in a response in which nothing ever does.
+# Share of a period by which a clock grows at least if nothing resets it; and its value, in periods, in a
+# response in which nothing ever does.
 GROWN, CONTACT_TIME_LIMIT = 1.0 - 1e-9, 100.0
-# Below this distance the next period may be the last one, and is kept.
+# Below this distance of a state from its image the next run may be the last one, and is kept.
 KEPT_BELOW = 1e-3
 # Periods of integration where a spurious tone keeps the input from repeating.
 PERIODS_UNDER_TWO_TONES = 30
@@ -67,7 +67,7 @@ def shooting(cases, number, accuracy, memory, records):
 
 @inlined
 def run_map(first, periods, y, keeping, shooting):
-    """Run the case from phase 0 of period ``first``; y (n,) moves along. Returns the outcome."""
+    """Run the case from phase 0 of period ``first``; y (n,) is replaced. Returns the outcome."""
     return run_case(shooting.cases, shooting.number, first, periods, y, keeping, shooting.memory)
 
 
@@ -94,7 +94,7 @@ def copy(source, target):
 
 @inner
 def _distance(a, b, size):
-    """Largest difference of two states in their units."""
+    """Largest difference of two states over their natural sizes; NaN if there is one."""
     largest = 0.0
     for i in range(size.size):
         difference = abs(a[i] - b[i]) / size[i]
@@ -115,10 +115,10 @@ def _moving(y, periods, shooting):
 
 @allocating
 def _run(y, periods, keeping, shooting):
-    """Run some periods; y moves along. Returns the outcome.
+    """Run some periods; y is replaced by the state reached. Returns the outcome.
 
     A clock that was not reset although all other states came back never will be; nor will one that was not
-    reset in as many periods as a response may have.
+    reset in as many periods as a response may have. Both are set to CONTACT_TIME_LIMIT.
     """
     before, cycle = y.copy(), shooting.cycle
     outcome = run_map(0, periods, y, keeping, shooting)
@@ -132,7 +132,7 @@ def _run(y, periods, keeping, shooting):
 
 @allocating
 def monodromy(y, image, periods, moves, jacobian, shooting):
-    """Write J at y, whose image is known; returns the outcome and the periods run."""
+    """Write J at y, whose image is known, by differences; returns the outcome and the periods run."""
     jacobian[:] = 0.0
     size = shooting.size
     run = 0
@@ -153,7 +153,7 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
 
 @allocating
 def _part(jacobian, moves):
-    """J of the states that move."""
+    """Rows and columns of J for the states that move."""
     places = places_of(moves)
     part = np.empty((places.size, places.size))
     for i in range(places.size):
@@ -164,7 +164,7 @@ def _part(jacobian, moves):
 
 @inner
 def known(matrix):
-    """Whether all of a matrix is finite."""
+    """Whether all numbers of a matrix are finite: NaN stands for what is not known."""
     for i in range(matrix.shape[0]):
         for j in range(matrix.shape[1]):
             if not isfinite(matrix[i, j]):
@@ -184,7 +184,10 @@ def _newton_matrix(part):
 
 @allocating
 def _stable_and_regular(jacobian, moves):
-    """Whether J is known, the response stable by it, and its position determined."""
+    """Whether J is known, its eigenvalues are inside the unit circle, and I - J is regular.
+
+    If I - J is singular the mean position of the response is not determined.
+    """
     if not known(jacobian):
         return False
     part = _part(jacobian, moves)
@@ -215,7 +218,7 @@ def _newton_step(y, image, jacobian, moves, size):
 
 @allocating
 def _update(jacobian, y, image, before, image_before, size):
-    """Broyden's update of J from two states and their images, unless they are too close to tell."""
+    """Broyden's update of J from two states and their images, unless the states are too close together."""
     step, square = np.empty(size.size), 0.0
     for i in range(size.size):
         step[i] = (y[i] - before[i]) / size[i]
@@ -232,17 +235,17 @@ def _update(jacobian, y, image, before, image_before, size):
 
 @inner
 def _leave_out_closed(moves, y, shooting):
-    """Leave out states that a contact holds at y, and not at its image: they can only change to one side."""
+    """Leave out states that a closed contact holds at y: they are 0, and can change to one side only."""
     for i in range(moves.size):
         moves[i] = moves[i] and not (shooting.cases.impacts and y[i] == 0.0)
 
 
 @allocating
 def newton_shooting(y, periods, jacobian, most, shooting):
-    """Newton's method from y for a state that comes back; J is computed where it is unknown or out of date.
+    """Newton's method from y for a state that comes back; J is computed if it is unknown or out of date.
 
-    Returns whether y repeats now, the outcome and the periods run; if y repeats the last of them are kept.
-    If the method fails, y is the state closest to its own image so far.
+    Returns whether y now repeats, the outcome and the periods run; if y repeats the memory keeps the last of
+    them. If the method fails, y is the image of the state that came closest to its own image.
     """
     size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
