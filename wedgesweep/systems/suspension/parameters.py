@@ -84,17 +84,21 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
 
     No type is the beginning of another: numba would mistake one for the other.
     """
-    simple = [name for name in names if not known.EFFECTS[name].extends]
     own = [name for name in names if name not in known.NAMES]
-    plain = [name for name in simple if name not in own]
-    some = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
-    held = [name for name in names if name != lift_off.NAME]
+    plain = [name for name in names if not known.EFFECTS[name].extends and name not in own]
+    go_with_opening = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
+    all_but_opening = [name for name in names if name != lift_off.NAME]
     opens = records.effect_parts([lift_off.NAME])
     # Records with ``base`` have a closed form (closed_form.py); those with a series have none.
     part, base = (records.SERIES, []) if series else ([], [("base", np.int64)])
-    bilateral = _dtype(base + TURNS + part, plain), _dtype(part, own + plain), _dtype(part, held)
-    unilateral = _dtype(opens + part, plain), _dtype(opens + part, some)
-    return *bilateral, *unilateral, _dtype(TURNS + part, some)
+    return (
+        _dtype(base + TURNS + part, plain),
+        _dtype(part, own + plain),
+        _dtype(part, all_but_opening),
+        _dtype(opens + part, plain),
+        _dtype(opens + part, go_with_opening),
+        _dtype(TURNS + part, go_with_opening),
+    )
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -156,7 +160,7 @@ def record(
     records.set_effects(p, known.EFFECTS, effects)
     acting = _acting(p)
     p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
-    if _made_regularised(p, acting):
+    if _needs_regularisation(p, acting):
         _regularise(p, nominal)
     prepare(case, acting)
     return case
@@ -198,10 +202,10 @@ def regularised_velocity(suspension: Mapping[str, float] | np.void) -> float:
 
 def is_regularised(p: np.void) -> bool:
     """Whether effects regularise the case's Coulomb law: it is a steep ramp then."""
-    return _made_regularised(p, _acting(p))
+    return _needs_regularisation(p, _acting(p))
 
 
-def _made_regularised(p: np.void, acting: Sequence[str]) -> bool:
+def _needs_regularisation(p: np.void, acting: Sequence[str]) -> bool:
     regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in acting)
     return regularising and laws.LAWS["coulomb"].SET_VALUED and p["friction"]["law"] == laws.code("coulomb")
 
