@@ -249,9 +249,10 @@ def newton_shooting(y, periods, jacobian, most, shooting):
     """
     size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
-    shortest, last, fresh, run = np.inf, np.inf, False, 0
-    # Whether the monodromy matrix has passed the test of stability once.
-    accepted = False
+    # Distances of the state from its image: ``now``, in the step before, and the shortest so far.
+    last, shortest, run = np.inf, np.inf, 0
+    # Whether J was computed in the step before, and whether it has passed the test of stability once.
+    fresh = accepted = False
     while run < most:
         image = y.copy()
         keeping = last < KEPT_BELOW or run == 0
@@ -355,7 +356,7 @@ def settle(y, periods, jacobian, shooting):
     ``periods``: period of the response that y should be close to, for which Newton's method is tried first;
     0 if none is known. y and J are updated in place; J is that over one period of the response.
     """
-    size, most, run = shooting.size, shooting.most_periods, 0
+    most, run = shooting.most_periods, 0
     if not known(y.reshape(1, y.size)):
         y[:], periods = 0.0, 0
         jacobian[:] = np.nan
@@ -371,6 +372,16 @@ def settle(y, periods, jacobian, shooting):
         if found.outcome != OK:
             # The neighbour's state may be impossible in this case: rest decides.
             y[:] = 0.0
+    return _integrate(y, periods, jacobian, run, shooting)
+
+
+@allocating
+def _integrate(y, periods, jacobian, run, shooting):
+    """Integrate from y until the state repeats, or Newton's method, tried now and then, finds one that does.
+
+    As ``settle``; ``periods``: period of the response over which J was taken, ``run``: periods run before.
+    """
+    size, most = shooting.size, shooting.most_periods
     past, back = np.empty((LONGEST_PERIOD, size.size)), np.empty(LONGEST_PERIOD)
     past[:] = np.inf
     count = 0
