@@ -66,7 +66,7 @@ def resolve_mode(t, y, mode, p):
 @compiled
 def contact_forces(t, y, mode, p):
     """Forces on any mode but a stuck one."""
-    return filippov.contact_forces(t, y, mode, p)
+    return filippov.forces_of_mode(t, y, mode, p)
 
 
 @compiled
@@ -128,6 +128,6 @@ def detected_period(distances, tolerance):
 @compiled
 def slid(t, stop, y, mode, p):
     """Oscillator of a mode, and where it ends: time and event."""
-    o = linear_slip.oscillator(y, mode, p)
-    end, _, _, event = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), stop, o, p)
-    return o, end, event
+    oscillator = linear_slip.linear_oscillator(y, mode, p)
+    end, _, _, event = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), stop, oscillator, p)
+    return oscillator, end, event

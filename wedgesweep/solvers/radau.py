@@ -185,9 +185,9 @@ class _Run:
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the event before
         places = np.flatnonzero(np.isfinite(ahead)).tolist()
-        held = system.holds(mode, self.case)
-        result = self._integrate(t, stop, y, mode, places, held)
-        if held:
+        at_rest = system.holds(mode, self.case)
+        result = self._integrate(t, stop, y, mode, places, at_rest)
+        if at_rest:
             _truncate_at_grazing(result, lambda t: system.events(t, result.sol(t), mode, self.case)[places])
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
         if reached and result.t[-1] == t:
@@ -215,7 +215,7 @@ class _Run:
             raise CaseError(message, "solver_failure")
 
     def _integrate(
-        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], held: bool
+        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], at_rest: bool
     ) -> Any:
         result = solve_ivp(
             self._rate(mode),
@@ -224,10 +224,10 @@ class _Run:
             method=SmallRadau if y.size == 2 else Radau,
             jac=lambda t, y: system.jacobian(t, y, mode, self.case),
             events=[*(self._event(t, mode, place) for place in places), _turn],
-            dense_output=held or t >= self.window.keep,
+            dense_output=at_rest or t >= self.window.keep,
             rtol=self.rtol,
             atol=ABSOLUTE * self.rtol * self.scales,
-            max_step=self.period / (STEPS_HELD if held else STEPS_PER_PERIOD),
+            max_step=self.period / (STEPS_HELD if at_rest else STEPS_PER_PERIOD),
             first_step=min(self.first_step, stop - t) if self.first_step else None,
         )
         self._check(result)

@@ -26,7 +26,7 @@ CLOSE = 1e-13
 DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
 
 
-class _Held(NamedTuple):
+class _StuckBolster(NamedTuple):
     """A bolster at rest, with room for event functions."""
 
     y: tuple
@@ -45,12 +45,12 @@ def _smallest(values):
     return place
 
 
-@searched(_Held)
+@searched(_StuckBolster)
 @inner
-def _lowest(t, held):
+def _lowest(t, stuck):
     """Smallest event function at time t."""
-    events(UNDETERMINED, t, held.y, held.mode, held.p, held.out)
-    return held.out[_smallest(held.out)], nan
+    events(UNDETERMINED, t, stuck.y, stuck.mode, stuck.p, stuck.out)
+    return stuck.out[_smallest(stuck.out)], nan
 
 
 @inner
@@ -127,26 +127,26 @@ def breakaway_between(forward, backward, t, stop, p):
 def scanned_breakaway(state, stop, p):
     """As ``breakaway_time``, from samples: for any base motion and for normal forces of either sign."""
     out = np.empty(EVENTS)
-    context = _Held(state.y, state.mode, p, out)
+    context = _StuckBolster(state.y, state.mode, p, out)
     step = 2.0 * np.pi / p.input.omega / SAMPLES_PER_PERIOD
-    earlier, held = state.t, state.t
-    before, now = inf, _lowest(held, context)[0]
-    while held < stop:
-        if not well_posed(held, state.y, state.mode, p):
-            return held, LOCKED
-        following = min(held + step, stop)
+    earlier, current = state.t, state.t
+    before, now = inf, _lowest(current, context)[0]
+    while current < stop:
+        if not well_posed(current, state.y, state.mode, p):
+            return current, LOCKED
+        following = min(current + step, stop)
         after = _lowest(following, context)[0]
         if after > 0.0 and before > now and now < after:
             lowest = minimum(context, earlier, following, CLOSE * step)
             value = _lowest(lowest, context)[0]
             if value < 0.0:
-                held, now, following, after = earlier, before, lowest, value
+                current, now, following, after = earlier, before, lowest, value
         if after < 0.0:
-            moment = held
+            moment = current
             if now > 0.0:
-                moment = zero(context, Bracket(held, now, following, after), CLOSE * step)
+                moment = zero(context, Bracket(current, now, following, after), CLOSE * step)
             _lowest(moment, context)
             return moment, _smallest(out)
-        earlier, before = held, now
-        held, now = following, after
+        earlier, before = current, now
+        current, now = following, after
     return stop, NO_EVENT

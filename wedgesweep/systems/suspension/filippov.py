@@ -80,7 +80,7 @@ def filippov_forces(t, y, mode, p):
 
 
 @inlined
-def contact_forces(t, y, mode, p):
+def forces_of_mode(t, y, mode, p):
     """Forces in any mode but a stuck one."""
     if held(mode):
         return filippov_forces(t, y, mode, p)[0]
@@ -89,7 +89,7 @@ def contact_forces(t, y, mode, p):
 
 @inner
 def resolve_mode(t, y, mode, p):
-    """``contact_forces`` with the signs of the normal forces found: mode, forces, whether they are unique."""
+    """``forces_of_mode`` with the signs of the normal forces found: mode, forces, whether they are unique."""
     if held(mode):
         now, _, unique = filippov_forces(t, y, mode, p)
         return mode, now, unique

@@ -13,7 +13,7 @@ from wedgesweep.hybrid.search import Bracket, minimum, searched, zero_after_star
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.linear_slip import (
-    Oscillator,
+    LinearOscillator,
     Phase,
     acceleration,
     advanced_briefly,
@@ -45,23 +45,24 @@ class _EventFunction(NamedTuple):
 
     which: int
     phase: Phase
-    oscillator: Oscillator
+    oscillator: LinearOscillator
     mode: tuple
     p: Any
 
 
 @inlined
-def _slip(phase, o, mode, p):
+def _slip(phase, oscillator, mode, p):
     """How far |z'| is above the threshold at which the mode ends (m/s)."""
     return _Sample(
-        mode.column * motion(phase, o, p)[1] - o.threshold, mode.column * acceleration(phase, o, p)
+        mode.column * motion(phase, oscillator, p)[1] - oscillator.threshold,
+        mode.column * acceleration(phase, oscillator, p),
     )
 
 
 @inlined
-def _force(which, phase, o, mode, p):
+def _force(which, phase, oscillator, mode, p):
     """The normal force on a face (N), times the sign that it has on the mode."""
-    values, slopes = normal_forces(phase, o, p), force_rates(phase, o, p)
+    values, slopes = normal_forces(phase, oscillator, p), force_rates(phase, oscillator, p)
     if which == COLUMN_FORCE:
         return _Sample(mode.column_sign * values[0], mode.column_sign * slopes[0])
     return _Sample(mode.bolster_sign * values[1], mode.bolster_sign * slopes[1])
@@ -83,21 +84,37 @@ def _value(time, function):
 
 
 @inlined
-def _least_force(sign, offset, by_x, by_u, amplitude, o, p):
+def _least_force(sign, offset, by_x, by_u, amplitude, oscillator, p):
     """Lower bound of a normal force (N) offset + by_x x + by_u u'', times its sign, while the mode lasts.
 
     ``amplitude`` (m): of the free part of x.
     """
-    driven = by_x * o.forced - by_u * p.input.amplitude * p.input.omega**2
-    return sign * (offset + by_x * o.centre) - abs(driven) - abs(by_x) * amplitude
+    driven = by_x * oscillator.forced - by_u * p.input.amplitude * p.input.omega**2
+    return sign * (offset + by_x * oscillator.centre) - abs(driven) - abs(by_x) * amplitude
 
 
 @inlined
-def _forces_may_vanish(phase, o, mode, p):
+def _forces_may_vanish(phase, oscillator, mode, p):
     """Whether a normal force may become zero on the mode."""
     amplitude = sqrt(phase.free**2 + phase.quadrature**2)
-    column = _least_force(mode.column_sign, o.column, o.column_x, o.column_u, amplitude, o, p)
-    bolster = _least_force(mode.bolster_sign, o.bolster, o.bolster_x, o.bolster_u, amplitude, o, p)
+    column = _least_force(
+        mode.column_sign,
+        oscillator.column,
+        oscillator.column_x,
+        oscillator.column_u,
+        amplitude,
+        oscillator,
+        p,
+    )
+    bolster = _least_force(
+        mode.bolster_sign,
+        oscillator.bolster,
+        oscillator.bolster_x,
+        oscillator.bolster_u,
+        amplitude,
+        oscillator,
+        p,
+    )
     return min(column, bolster) <= 0.0
 
 
@@ -158,34 +175,43 @@ def _earlier(found, function, later, span, at_zero):
 
 
 @inlined
-def _begins_at(state, o):
+def _begins_at(state, oscillator):
     """Event function that is zero where a mode begins; -1 if none is."""
     # Either event of that face may have led to the mode: the one that ends it, or the end of a held jump.
-    if state.y[1] == 0.0 or state.last_event // 2 == o.event // 2:
+    if state.y[1] == 0.0 or state.last_event // 2 == oscillator.event // 2:
         return SLIP
     return state.last_event - COLUMN_NORMAL + COLUMN_FORCE if state.last_event >= COLUMN_NORMAL else -1
 
 
 @inner
-def slip_to_event(state, stop, o, p):
+def slip_to_event(state, stop, oscillator, p):
     """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
-    t, mode, at_zero = state.t, state.mode, _begins_at(state, o)
-    step = 2.0 * pi / max(p.input.omega, o.frequency) / SCAN
-    turn = small_angles(step, o, p)
-    phase = phase_at(t, state.y[0], state.y[1], o, p)
-    forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, o, mode, p)
+    t, mode, at_zero = state.t, state.mode, _begins_at(state, oscillator)
+    step = 2.0 * pi / max(p.input.omega, oscillator.frequency) / SCAN
+    turn = small_angles(step, oscillator, p)
+    phase = phase_at(t, state.y[0], state.y[1], oscillator, p)
+    forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, oscillator, mode, p)
     while t < stop:
         span = min(step, stop - t)
-        later = rotated(phase, *turn) if span == step else advanced_briefly(phase, span, o, p)
-        found = _earlier((inf, -1), _EventFunction(SLIP, phase, o, mode, p), later, span, at_zero)
+        later = rotated(phase, *turn) if span == step else advanced_briefly(phase, span, oscillator, p)
+        found = _earlier((inf, -1), _EventFunction(SLIP, phase, oscillator, mode, p), later, span, at_zero)
         if forces:
-            found = _earlier(found, _EventFunction(COLUMN_FORCE, phase, o, mode, p), later, span, at_zero)
-            found = _earlier(found, _EventFunction(BOLSTER_FORCE, phase, o, mode, p), later, span, at_zero)
+            found = _earlier(
+                found, _EventFunction(COLUMN_FORCE, phase, oscillator, mode, p), later, span, at_zero
+            )
+            found = _earlier(
+                found, _EventFunction(BOLSTER_FORCE, phase, oscillator, mode, p), later, span, at_zero
+            )
         time, which = found
         if which >= 0:
-            x, velocity = motion(advanced_briefly(phase, time, o, p), o, p)
-            return t + time, x, velocity, o.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which
+            x, velocity = motion(advanced_briefly(phase, time, oscillator, p), oscillator, p)
+            return (
+                t + time,
+                x,
+                velocity,
+                oscillator.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which,
+            )
         t += span
         phase, at_zero = later, -1
-    x, velocity = motion(phase, o, p)
+    x, velocity = motion(phase, oscillator, p)
     return stop, x, velocity, NO_EVENT

@@ -12,7 +12,7 @@ from wedgesweep.systems.shared import implement_shared
 from wedgesweep.systems.suspension import closed_form, events, stiffness, transitions, while_closed  # noqa: F401
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip
-from wedgesweep.systems.suspension.filippov import contact_forces, filippov_forces
+from wedgesweep.systems.suspension.filippov import filippov_forces, forces_of_mode
 from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
 from wedgesweep.systems.suspension.newton import driving_force, forces
 
@@ -113,5 +113,5 @@ def normal_forces(t, y, mode, p):
     """Normal forces on column and bolster face; they are not determined while set-valued friction holds."""
     if stuck(mode, p):
         return nan, nan
-    now = contact_forces(t, y, mode, p)
+    now = forces_of_mode(t, y, mode, p)
     return now.column, now.bolster

@@ -21,7 +21,7 @@ from wedgesweep.trigonometry import cosine, sine, small_turn
 RESONANT = 1e-4
 
 
-class Oscillator(NamedTuple):
+class LinearOscillator(NamedTuple):
     """Linear equations of a mode and their solution, see the module's docstring; and how the mode ends."""
 
     linear: bool  # whether there is a closed form
@@ -66,10 +66,10 @@ def _constant_friction(mode, p):
 
 
 @inner
-def oscillator(y, mode, p):
-    """The ``Oscillator`` of a mode; ``linear`` is False if friction is not constant, or near resonance."""
+def linear_oscillator(y, mode, p):
+    """Closed form of a mode; ``linear`` is False if friction is not constant, or near resonance."""
     if not (p.geometry.always_well_posed and _constant_friction(mode, p)):
-        return Oscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
+        return LinearOscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
     s, g, omega = p.suspension, p.geometry, p.input.omega
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(mode.column_sign * column_mu, mode.bolster_sign * bolster_mu, 0.0, 0.0)
@@ -84,7 +84,7 @@ def oscillator(y, mode, p):
     if not linear:
         square = inf
     threshold, event = _threshold(mode, p)
-    return Oscillator(
+    return LinearOscillator(
         linear,
         sqrt(square),
         at_rest.acceleration / square,
@@ -113,11 +113,11 @@ class Phase(NamedTuple):
 
 
 @inlined
-def phase_at(t, x, velocity, o, p):
+def phase_at(t, x, velocity, oscillator, p):
     """Phase of a state at time t."""
     c, s = cosine(p.input.omega * t), sine(p.input.omega * t)
-    free = x - o.centre - o.forced * s
-    quadrature = (velocity - o.forced * p.input.omega * c) / o.frequency
+    free = x - oscillator.centre - oscillator.forced * s
+    quadrature = (velocity - oscillator.forced * p.input.omega * c) / oscillator.frequency
     return Phase(c, s, free, quadrature)
 
 
@@ -133,58 +133,67 @@ def rotated(phase, input_cos, input_sin, free_cos, free_sin):
 
 
 @inlined
-def angles(time, o, p):
+def angles(time, oscillator, p):
     """Cosines and sines of the angles by which input and free vibration turn in some time (s)."""
-    a, b = p.input.omega * time, o.frequency * time
+    a, b = p.input.omega * time, oscillator.frequency * time
     return cosine(a), sine(a), cosine(b), sine(b)
 
 
 @inner
-def advanced(phase, time, o, p):
+def advanced(phase, time, oscillator, p):
     """Phase some time (s) later."""
-    return rotated(phase, *angles(time, o, p))
+    return rotated(phase, *angles(time, oscillator, p))
 
 
 @inlined
-def small_angles(time, o, p):
+def small_angles(time, oscillator, p):
     """As ``angles``, for at most an interval of the scan."""
     input_cos, input_sin = small_turn(p.input.omega * time)
-    free_cos, free_sin = small_turn(o.frequency * time)
+    free_cos, free_sin = small_turn(oscillator.frequency * time)
     return input_cos, input_sin, free_cos, free_sin
 
 
 @inlined
-def advanced_briefly(phase, time, o, p):
+def advanced_briefly(phase, time, oscillator, p):
     """As ``advanced``, for at most an interval of the scan."""
-    return rotated(phase, *small_angles(time, o, p))
+    return rotated(phase, *small_angles(time, oscillator, p))
 
 
 @inlined
-def motion(phase, o, p):
+def motion(phase, oscillator, p):
     """Displacement (m) and velocity (m/s)."""
-    x = o.centre + o.forced * phase.sine + phase.free
-    return x, o.forced * p.input.omega * phase.cosine + o.frequency * phase.quadrature
+    x = oscillator.centre + oscillator.forced * phase.sine + phase.free
+    return x, oscillator.forced * p.input.omega * phase.cosine + oscillator.frequency * phase.quadrature
 
 
 @inlined
-def acceleration(phase, o, p):
+def acceleration(phase, oscillator, p):
     """Relative acceleration x'' (m/s^2)."""
-    return -o.forced * p.input.omega**2 * phase.sine - o.frequency**2 * phase.free
+    return -oscillator.forced * p.input.omega**2 * phase.sine - oscillator.frequency**2 * phase.free
 
 
 @inlined
-def normal_forces(phase, o, p):
+def normal_forces(phase, oscillator, p):
     """Normal forces (N) on column and bolster face."""
-    x, u2 = motion(phase, o, p)[0], base_acceleration(phase, p)
-    return o.column + o.column_x * x + o.column_u * u2, o.bolster + o.bolster_x * x + o.bolster_u * u2
+    return _forces_at(motion(phase, oscillator, p)[0], base_acceleration(phase, p), oscillator)
 
 
 @inlined
-def force_rates(phase, o, p):
+def _forces_at(x, u2, oscillator):
+    column = oscillator.column + oscillator.column_x * x + oscillator.column_u * u2
+    bolster = oscillator.bolster + oscillator.bolster_x * x + oscillator.bolster_u * u2
+    return column, bolster
+
+
+@inlined
+def force_rates(phase, oscillator, p):
     """Rates of the ``normal_forces`` (N/s)."""
-    velocity = motion(phase, o, p)[1]
+    velocity = motion(phase, oscillator, p)[1]
     u3 = -p.input.amplitude * p.input.omega**3 * phase.cosine
-    return o.column_x * velocity + o.column_u * u3, o.bolster_x * velocity + o.bolster_u * u3
+    return (
+        oscillator.column_x * velocity + oscillator.column_u * u3,
+        oscillator.bolster_x * velocity + oscillator.bolster_u * u3,
+    )
 
 
 @inlined
@@ -194,14 +203,13 @@ def base_acceleration(phase, p):
 
 
 @inlined
-def acceleration_at(x, u2, o):
+def acceleration_at(x, u2, oscillator):
     """Acceleration z'' (m/s^2) at a displacement x (m) and a base acceleration u2 (m/s^2)."""
-    return o.driven * u2 - o.frequency**2 * (x - o.centre)
+    return oscillator.driven * u2 - oscillator.frequency**2 * (x - oscillator.centre)
 
 
 @inlined
-def smaller_force_at(x, u2, o):
+def smaller_force_at(x, u2, oscillator):
     """The smaller one of both normal forces (N), likewise."""
-    column = o.column + o.column_x * x + o.column_u * u2
-    bolster = o.bolster + o.bolster_x * x + o.bolster_u * u2
+    column, bolster = _forces_at(x, u2, oscillator)
     return min(column, bolster)

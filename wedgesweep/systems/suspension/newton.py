@@ -252,7 +252,7 @@ def solve_for_signs(t, y, mode, p):
 
 
 @inner
-def at_rest(t, y, mode, p):
+def stuck_forces(t, y, mode, p):
     """Forces while set-valued friction holds the bolster: the side frame carries the whole suspension."""
     frame = 0.0
     if fixture_resonance.acts(p):

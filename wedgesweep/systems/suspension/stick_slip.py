@@ -15,9 +15,9 @@ from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.breakaway import UP, breakaway_between, breakaway_time
 from wedgesweep.systems.suspension.first_event import slip_to_event
 from wedgesweep.systems.suspension.linear_slip import (
-    Oscillator,
+    LinearOscillator,
     acceleration_at,
-    oscillator,
+    linear_oscillator,
     smaller_force_at,
 )
 from wedgesweep.systems.suspension.linear_slip_sums import record_slip
@@ -33,17 +33,17 @@ class _Direction(NamedTuple):
     """A direction of slip: its mode, the oscillator of that mode, and the one on the verge of slip."""
 
     mode: Any
-    slip: Oscillator
-    verge: Oscillator
+    slip: LinearOscillator
+    verge: LinearOscillator
 
 
 @inlined
 def _direction(sign, y, segment, p):
     mode = slipping(sign, segment, 0, p)
-    slip = oscillator(y, mode, p)
+    slip = linear_oscillator(y, mode, p)
     if friction.static(1, y, p) == friction.sliding(0.0, p):
         return _Direction(mode, slip, slip)
-    return _Direction(mode, slip, oscillator(y, slipping(sign, segment, 1, p), p))
+    return _Direction(mode, slip, linear_oscillator(y, slipping(sign, segment, 1, p), p))
 
 
 @inlined
@@ -109,10 +109,10 @@ def _follow_mode(state, stop, directions, p, keeping, recorder):
         if keeping:
             record_constant(state.t, end, state.y, state.mode, recorder, p)
         return State(end, state.y, state.mode, state.last_event, state.step), event
-    o = up.slip if state.mode.column > 0 else down.slip
-    end, x, velocity, event = slip_to_event(state, stop, o, p)
+    oscillator = up.slip if state.mode.column > 0 else down.slip
+    end, x, velocity, event = slip_to_event(state, stop, oscillator, p)
     if keeping:
-        record_slip(state, end, o, recorder, p)
+        record_slip(state, end, oscillator, recorder, p)
     return State(end, (x, velocity), state.mode, state.last_event, state.step), event
 
 

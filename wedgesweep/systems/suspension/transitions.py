@@ -7,7 +7,7 @@ from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid.vectors import replaced, weighted
 from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, TRAVEL
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
-from wedgesweep.systems.suspension.filippov import contact_forces, resolve_mode
+from wedgesweep.systems.suspension.filippov import forces_of_mode, resolve_mode
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
@@ -25,7 +25,7 @@ from wedgesweep.systems.suspension.modes import (
     with_clock,
     with_segment,
 )
-from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, at_rest, solve_for_signs
+from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, solve_for_signs, stuck_forces
 from wedgesweep.systems.suspension.set_valued import (
     LOOK_AHEAD,
     breakaway_direction,
@@ -39,7 +39,7 @@ STEPS_FROM_REST = 4
 @inlined
 def rate(t, y, mode, p):
     """dy/dt, and the forces."""
-    now = at_rest(t, y, mode, p) if stuck(mode, p) else contact_forces(t, y, mode, p)
+    now = stuck_forces(t, y, mode, p) if stuck(mode, p) else forces_of_mode(t, y, mode, p)
     others = Accelerations(now.column_acceleration, now.frame_acceleration)
     own = hooks.rates(column_slip(y, p), others, mode, y, p)
     return (y[VELOCITY], now.acceleration) + own, now  # noqa: RUF005

@@ -214,7 +214,7 @@ def all_events(now, t, y, mode, p, out):
     elif closed(mode):
         events.events(now, t, y, mode, p, out)
         if held(mode):  # by a jump of friction: the forces are those of its convex combination
-            both = filippov.contact_forces(t, y, mode, p)
+            both = filippov.forces_of_mode(t, y, mode, p)
             out[COLUMN_NORMAL], out[BOLSTER_NORMAL] = both.column, both.bolster
     else:
         _open_events(now, y, mode, p, out)
