@@ -94,12 +94,13 @@ def copy(source, target):
 
 @inner
 def _distance(a, b, size):
-    """Largest difference of two states over their natural sizes; NaN if there is one."""
+    """Largest difference of two states over their natural sizes; NaN if one of these is NaN."""
     largest = 0.0
     for i in range(size.size):
         difference = abs(a[i] - b[i]) / size[i]
-        if not difference <= largest:
-            largest = difference
+        if difference != difference:
+            return difference
+        largest = max(largest, difference)
     return largest
 
 
