@@ -77,7 +77,7 @@ def resonance(p: np.void) -> float:
 
 
 @compiled
-def _weight_and_inertia(direction, mu_d, p):
+def _acceleration_on_verge(direction, mu_d, p):
     """Acceleration z'' at rest on the verge of slip in a direction, and its derivative by the base's u''."""
     s, g = p.suspension, p.geometry
     bolster = direction if g.bolster_ratio > 0.0 else -direction if g.bolster_ratio < 0.0 else 0.0
@@ -98,6 +98,6 @@ def breakaway_acceleration(p: np.void) -> float:
     """
     least = inf
     for direction in (1.0, -1.0):
-        at_rest, inertia = _weight_and_inertia(direction, float(p["friction"]["mu_d"]), p)
+        at_rest, inertia = _acceleration_on_verge(direction, float(p["friction"]["mu_d"]), p)
         least = min(least, abs(at_rest / inertia))
     return least
