@@ -43,11 +43,11 @@ def _cache_home() -> Path:
 
 
 def _usable(home: Path) -> tuple[Path, Path | None]:
-    """A cache folder that can be written to, and the wanted one if that cannot.
+    """The cache folder to use; and the one below ``home`` if that cannot be written to, else None.
 
-    The folder in its place ends with this process; the jobs that it starts use it as well.
+    A temporary folder then takes its place: until this process ends, and for the jobs that it starts as well.
     """
-    # numba's entries hold for one place of the sources only.
+    # numba's cache is valid for sources in one place only.
     sources = source_digest(containing=b"from wedgesweep.compiled") + str(PACKAGE)
     wanted = home / sha256(sources.encode()).hexdigest()[:16]
     try:
@@ -68,7 +68,7 @@ Function = TypeVar("Function", bound=Callable)
 
 
 class _PausedCollector(event.Listener):
-    """Pauses the garbage collector while numba compiles: it finds next to nothing, in a tenth of the time."""
+    """Pauses the garbage collector while numba compiles: it would find nothing, in a tenth of the time."""
 
     def __init__(self) -> None:
         self._depth, self._was_on = 0, False
@@ -88,8 +88,8 @@ class _PausedCollector(event.Listener):
 event.register("numba:compile", _PausedCollector())
 
 # A division by zero gives inf or NaN, as in numpy. Threads run without the interpreter's lock. Nothing calls
-# these functions from C, and without C wrappers they compile in nine tenths of the time.
-# Without the last two options a function inherits its caller's.
+# these functions from C, and without C wrappers compilation takes nine tenths of the time. The last two
+# options stand here because a function inherits those of its caller otherwise.
 OPTIONS: dict[str, Any] = {
     "error_model": "numpy",
     "nogil": True,
@@ -97,8 +97,7 @@ OPTIONS: dict[str, Any] = {
     "forceinline": False,
     "_nrt": True,
 }
-# Any: stubs of numba know other options of ``overload``. References to arrays are not counted: callers hold
-# them.
+# References to arrays are not counted: callers hold the arrays. (Any: numba's stubs know only some options.)
 INNER: Any = {**OPTIONS, "_nrt": False, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
 CONTRACTED: Any = INNER | {"forceinline": True, "fastmath": {"contract"}}
 
@@ -115,12 +114,12 @@ def _inner(function: Function, options: dict[str, Any]) -> Function:
 
 
 def inner(function: Function) -> Function:
-    """Compile a function that only compiled functions call; see inner_code.py."""
+    """Compile a function that only compiled functions call (see inner_code.py); it cannot make arrays."""
     return _inner(function, INNER)
 
 
 def allocating(function: Function) -> Function:
-    """As ``inner``, for a function that makes arrays, or gets one from a function that does."""
+    """As ``inner``, for a function that makes arrays, or calls one that returns them."""
     return _inner(function, INNER | {"_nrt": True})
 
 
@@ -191,10 +190,10 @@ _MADE_BY_RECORD: dict[Callable, types.Function] = {}
 
 
 def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
-    """A function for compiled code, made anew for every type of its parameter record ``p``.
+    """Let compiled code call another function in place of this one, chosen by the type of the record ``p``.
 
-    ``choose`` gets the fields of the record's type and returns the function, compiled or plain, so that
-    what a record has no fields for costs nothing. Python calls ``function`` itself.
+    ``choose`` gets the fields of the record's type and returns the function, compiled or plain, so that what
+    a record has no fields for costs nothing. Returns ``function`` itself, which is what Python would call.
     """
     place = list(inspect.signature(function).parameters).index("p")
     made: dict[types.Record, Any] = {}
@@ -227,10 +226,9 @@ def forward(arguments: Sequence[str], target: Callable) -> Callable:
 
 
 def term(owner: str, off: str, **scope: Any) -> Callable[[Function], Function]:
-    """Let a function of a record p act where the record has a part named ``owner``.
+    """Let compiled code call a function only for records p that have a part named ``owner``.
 
-    For other records it is the expression ``off`` of its arguments, which costs nothing; ``scope`` holds the
-    functions in it.
+    For other records it is the expression ``off`` of its arguments; ``scope`` holds the names in it.
     """
 
     def decorate(function: Function) -> Function:

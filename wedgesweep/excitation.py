@@ -1,11 +1,11 @@
-"""Input: a force, or motion of the base (the paper's Eq. 4: u = a sin(omega t)), with the effects on it.
+"""The input: motion of the base (the paper's Eq. 4: u = a sin(omega t)) or a force, with the effects on it.
 
 A recorded input is a Fourier series in place of the sine:
 
     u = a sum_h (cosine_h cos(h omega t) + sine_h sin(h omega t)),  h = 1..count
 
-with the phase of omega t so that its fundamental is the sine (cosine_1 = 0, sine_1 = 1); or it is known by
-samples (``sampled_input``). Records without the part ``series`` do not contain the code of either.
+with time counted so that its fundamental is the sine (cosine_1 = 0, sine_1 = 1). An input that does not
+repeat is known by samples (``sampled_input``). Code for records without the part ``series`` contains neither.
 """
 
 from math import pi
@@ -18,7 +18,7 @@ from wedgesweep.effects import hooks
 from wedgesweep.sampled_input import is_sampled
 from wedgesweep.trigonometry import cosine, sine
 
-# Harmonics of a Fourier series that a record has room for, a multiple of those that are summed at a time.
+# Harmonics that a record has room for, a multiple of the CHAINS that are summed at a time.
 HARMONICS, CHAINS = 16, 4
 # Share of the mean square acceleration above the highest order that the steps of a solver must resolve.
 # What lies above is as small as the noise of a record: it shifts an event, but causes none of its own.
@@ -134,7 +134,7 @@ def _bend(t, p):
 
 @term("series", off="p.input.omega")
 def _highest(p):
-    """Highest angular frequency (rad/s) of the input, or of the motions to expect."""
+    """Highest angular frequency (rad/s) of the input, or of the motions that it causes if that is higher."""
     if p.series.rows > 0:
         return max(p.series.fastest, p.input.omega)
     return max(p.series.resolved, 1) * p.input.omega
@@ -148,19 +148,19 @@ def cycle(p):
 
 @inlined
 def displacement(t, p):
-    """U in m of the side frame, or of the table that carries it."""
+    """Displacement u (m) of the side frame, or of the table that carries it."""
     return hooks.base_displacement(p.input.amplitude * _shape(t, p), t, p)
 
 
 @inlined
 def velocity(t, p):
-    """U' in m/s of the side frame, or of the table that carries it."""
+    """Velocity u' (m/s) of the side frame, or of the table that carries it."""
     return hooks.base_velocity(p.input.amplitude * p.input.omega * _slope(t, p), t, p)
 
 
 @inlined
 def acceleration(t, p):
-    """U'' in m/s^2 of the side frame, or of the table that carries it."""
+    """Acceleration u'' (m/s^2) of the side frame, or of the table that carries it."""
     return hooks.base_acceleration(-p.input.amplitude * p.input.omega**2 * _bend(t, p), t, p)
 
 

@@ -32,7 +32,7 @@ from numba.core.untyped_passes import (
 class _InnerLibrary(JITCodeLibrary):
     """Code that is linked, with all that it calls itself, into the functions that Python calls.
 
-    Linked into every caller on the way, too, it would be copied as often as calls are deep.
+    If it were linked into every caller on the way as well, it would be copied once for each level of calls.
     """
 
     def _optimize_functions(self, ll_module: Any) -> None:
@@ -60,7 +60,7 @@ class _InnerLibrary(JITCodeLibrary):
 
 
 def _refuse_arrays(state: Any) -> None:
-    """Refuse what would go wrong without reference counts: arrays that a function makes, or hands on."""
+    """Raise TypeError if a function returns arrays, or calls one that does: they need reference counts."""
     counted = state.targetctx.data_model_manager.lookup
     calls = (expression for expression in state.calltypes if getattr(expression, "op", "") == "call")
     made = [

@@ -1,8 +1,8 @@
-"""Natural units of a model: mass, length and time, on which search ranges and plans of tests depend.
+"""Natural units of a model (mass, length, time), which scale search ranges and test plans.
 
-Whatever is declared in SI, such as the range in which a fit looks for a force, is declared for the bench of
-the paper's Table 1. For another model it is multiplied by the ratio of the natural units, so that a model
-whose masses, lengths and times are all in proportion gets the same search.
+Ranges, such as that in which a fit looks for a force, are declared in SI for the bench of the paper's Table
+1. For another model they are multiplied by the ratio of the natural units, so that a model whose masses,
+lengths and times are all in proportion gets the same search.
 """
 
 from math import sqrt

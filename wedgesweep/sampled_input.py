@@ -1,13 +1,12 @@
-"""An input that is known by samples at even times: a piecewise polynomial, with u' and u'' as its slopes.
+"""An input that is known by evenly spaced samples: a piecewise polynomial of degree 5.
 
-Between two samples the input is a polynomial of degree 5, so that u, u' and u'' agree exactly:
+Its derivatives are the rates of the input, so that u, u' and u'' agree exactly:
 
     displacement or force:  spline of degree 5 through the samples
     velocity, acceleration: spline of degree 3 through the samples, integrated once or twice
 
-Parameter records hold the address of the coefficients, not the coefficients: compiled code finds those of a
-time in one step, however long the record is. Whoever runs records keeps the ``SampledInput`` alive, and puts
-it into them (``set_sampled``) in the process that runs them.
+Parameter records hold the address of the coefficients, not the coefficients themselves. Whoever runs records
+keeps the ``SampledInput`` alive, and puts it into them (``set_sampled``) in the process that runs them.
 """
 
 from dataclasses import dataclass
@@ -21,9 +20,10 @@ from numba.extending import intrinsic
 from wedgesweep.compiled import inlined
 
 DEGREE = 5
-# How often each quantity is integrated to what acts: a displacement of the base, or a force.
+# How often each quantity is integrated to become what acts: a displacement of the base, or a force.
 INTEGRATED = {"displacement": 0, "force": 0, "velocity": 1, "acceleration": 2}
-# Steps of a solver in a period of the fastest input, at least: none is longer than the time between samples.
+# Least number of a solver's steps in a period of the fastest input: none is longer than the time between
+# samples.
 STEPS = 12.0
 # What a record says of its samples; ``rows`` = 0: nothing. ``gain``: of the samples, over the amplitude.
 FIELDS: list[tuple] = [
@@ -166,7 +166,7 @@ number_at = cast(Any, intrinsic(_number_at))
 
 @inlined
 def _located(t, p):
-    """Place of the coefficients of a time, the share of the interval there, and how far it is beyond it."""
+    """Place of the coefficients for a time, its share of the interval, and by how many it is beyond."""
     place = (t - p.series.begin) / p.series.step
     row = min(max(int(place), 0), p.series.rows - 1)
     share = min(max(place - row, 0.0), 1.0)
@@ -175,7 +175,7 @@ def _located(t, p):
 
 @inlined
 def value(t, p):
-    """The input over its amplitude."""
+    """The input over its amplitude; beyond the samples it goes on at a constant rate."""
     first, s, beyond = _located(t, p)
     a = p.series.address
     found = number_at(a, first + 5)
@@ -186,7 +186,7 @@ def value(t, p):
 
 @inlined
 def slope(t, p):
-    """Its rate (1/s)."""
+    """Rate of ``value`` (1/s)."""
     first, s, _ = _located(t, p)
     a = p.series.address
     found = 5.0 * number_at(a, first + 5)
@@ -197,7 +197,7 @@ def slope(t, p):
 
 @inlined
 def bend(t, p):
-    """Rate of its rate (1/s^2)."""
+    """Rate of ``slope`` (1/s^2)."""
     first, s, beyond = _located(t, p)
     if beyond != 0.0:
         return 0.0

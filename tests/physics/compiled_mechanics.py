@@ -8,7 +8,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.effects import states
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.solvers import explicit, implicit, period_detection
-from wedgesweep.solvers.step import inside
+from wedgesweep.solvers.step import dense_output
 from wedgesweep.systems.suspension import (
     filippov,
     first_event,
@@ -66,7 +66,7 @@ def resolve_mode(t, y, mode, p):
 @compiled
 def contact_forces(t, y, mode, p):
     """Forces on any mode but a stuck one."""
-    return filippov.contact_forces(t, y, mode, p)
+    return filippov.forces_of_mode(t, y, mode, p)
 
 
 @compiled
@@ -82,9 +82,9 @@ def loaded_reactions(load, column_mu, bolster_mu, p):
 
 
 @compiled
-def breakaway(t, y, direction, stop, p):
+def breakaway(t, y, direction, segment, p):
     """Acceleration z'' (m/s^2) if set-valued friction let go in a direction."""
-    return set_valued.breakaway(t, y, direction, stop, p)
+    return set_valued.acceleration_on_breakaway(t, y, direction, segment, p)
 
 
 @compiled
@@ -109,14 +109,14 @@ def branch_at(speed, p):
 def explicit_step(t, h, y, mode, p, rtol):
     """State at the end of an explicit step and in its middle, and the error over the tolerance."""
     made, _, _, error = explicit.step(t, h, y, transitions.rate(t, y, mode, p)[0], mode, p, rtol)
-    return made.end, inside(0.5, made), error
+    return made.end, dense_output(0.5, made), error
 
 
 @compiled
 def implicit_step(t, h, y, mode, p, rtol):
     """State at the end of an implicit step and in its middle, and the error over the tolerance."""
     made, _, _, error = implicit.step(t, h, y, transitions.rate(t, y, mode, p)[0], mode, p, rtol)
-    return made.end, inside(0.5, made), error
+    return made.end, dense_output(0.5, made), error
 
 
 @compiled
@@ -128,6 +128,6 @@ def detected_period(distances, tolerance):
 @compiled
 def slid(t, stop, y, mode, p):
     """Oscillator of a mode, and where it ends: time and event."""
-    o = linear_slip.oscillator(y, mode, p)
-    end, _, _, event = first_event.slide(State(t, y, mode, NO_EVENT, 0.0), stop, o, p)
-    return o, end, event
+    oscillator = linear_slip.linear_oscillator(y, mode, p)
+    end, _, _, event = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), stop, oscillator, p)
+    return oscillator, end, event

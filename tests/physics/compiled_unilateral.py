@@ -4,7 +4,7 @@ import numpy as np
 
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
-from wedgesweep.systems.suspension import filippov, release
+from wedgesweep.systems.suspension import breakaway, filippov
 from wedgesweep.systems.suspension.modes import HELD, ContactMode
 from wedgesweep.systems.suspension.unilateral import contacts, impact, modes, motion
 
@@ -78,5 +78,5 @@ def contacts_at(t, y, opening):
 @compiled
 def breakaway_inputs(y, closed):
     """Base accelerations below and above which a bolster at rest breaks away; NaN if a face opens before."""
-    forward = release.breakaway_input(y, 1, 0, closed[0])
-    return forward, release.breakaway_input(y, -1, 0, closed[0])
+    forward = breakaway.breakaway_input(y, 1, 0, closed[0])
+    return forward, breakaway.breakaway_input(y, -1, 0, closed[0])

@@ -92,7 +92,7 @@ def restarted(case, state, period):
 def test_both_sides_are_steady_states(tmp_path, steep):
     swept = small_sweep.sweep(tmp_path, STEEP)
     line = swept.rows.cases(np.array([0]))[0]
-    both = continuation.there_and_back(line)
+    both = continuation.up_and_down(line)
     found, ends = batch.solve_batch(
         swept.config.records()[both], both, swept.settings, swept.dtype, continuation=True
     )
@@ -119,7 +119,7 @@ def test_the_way_down_begins_in_the_whole_state_of_the_way_up(tmp_path):
     assert (top["coexisting"] == 0).all()
     assert (top["period"] == top["period_down"]).all()
     line = swept.rows.cases(np.array([0]))[0]
-    both = continuation.there_and_back(line)
+    both = continuation.up_and_down(line)
     found, _ = batch.solve_batch(
         swept.config.records()[both], both, swept.settings, swept.dtype, continuation=True
     )

@@ -1,10 +1,9 @@
 """Friction laws: the signed coefficient of a face as a function of its slip velocity.
 
-A law is a file of its own with two smooth functions, ``static`` (the coefficient at the end of the
-sticking branch, or at which set-valued friction lets go) and ``sliding`` (beyond it), and the ``bound`` of
-both. It has three branches, -1, 0 and 1: sliding backward, the branch around v = 0, and sliding forward.
-The contact mode says which branch holds, so that no integrator ever steps across a corner. Under a
-set-valued law branch 0 means stuck.
+A law is a file of its own with two smooth functions and their ``bound``: ``static`` is the coefficient at the
+end of the ramp around v = 0, or at which set-valued friction lets go, ``sliding`` the one beyond. It has
+three branches: -1 and 1, sliding backward and forward, and 0, the ramp, or sticking under a set-valued law.
+The contact mode says which branch holds, so that no integrator ever steps across a corner.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,8 +21,8 @@ LAWS: dict[str, ModuleType] = {
     name: import_module(f"{__name__}.{name.replace('-', '_')}") for name in (*LAW_NAMES, *OSCILLATOR_LAWS)
 }
 
-# A ramp of friction reaches this much into the branches beside it, so that a slip velocity that grazes its
-# end cannot go back and forth between both at one instant.
+# The ramp overlaps the branches beside it by this share of v_t, so that a slip velocity that grazes its end
+# cannot go back and forth between two branches at one instant.
 OVERLAP = 1e-9
 
 
@@ -38,7 +37,7 @@ def code(name: str) -> int:
 
 
 def _of_the_law(function: Callable) -> Callable:
-    """A function that calls that of the law which a record names."""
+    """A function (..., p) that calls the function of the same name of the law in the record p."""
     arguments = list(signature(function).parameters)
 
     def choose(fields: Mapping[str, Any]) -> Callable:
@@ -85,7 +84,7 @@ def sliding(speed, p):
 
 @inlined
 def coefficient(velocity, branch, highest, p):
-    """Signed coefficient of a face on a branch of the law; ``highest`` is its static one."""
+    """Signed coefficient at a slip velocity on a branch of the law; ``highest``: the static coefficient."""
     if branch == 0 and not p.friction.set_valued:
         return highest / p.friction.v_t * velocity
     return branch * sliding(branch * velocity, p)
@@ -101,7 +100,7 @@ def branch_at(speed, p):
 
 @inlined
 def write_branch_ends(slip, threshold, branch, place, out):
-    """Write the distances of a slip velocity to the lower and the upper end of its branch."""
+    """Write the distances (m/s) of a slip velocity to the ends of its branch, the lower and the upper one."""
     if branch == 0:
         threshold *= 1.0 + OVERLAP
     if branch >= 0:

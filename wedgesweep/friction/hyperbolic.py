@@ -1,4 +1,4 @@
-"""Friction that falls with velocity for good, as in studies of stick-slip (Leine et al., 1998).
+"""Friction that falls hyperbolically with velocity, as in studies of stick-slip (Leine et al., 1998).
 
 It is set-valued at rest. For oscillators only. v_t is the velocity at which it has fallen to half.
 """

@@ -1,7 +1,7 @@
-"""Running sums over the kept window of a run: all numbers that need no waveform.
+"""Running sums over the kept window of a run: all results that need no waveform.
 
-A solver adds points as it goes: quadrature nodes with their weights, and points of weight 0 where a mode
-begins or ends and where displacement or velocity is extreme.
+A solver adds points as it goes: nodes of a quadrature in time with their weights, and points of weight 0
+where a mode begins or ends and where displacement or velocity is extreme.
 """
 
 from math import inf
@@ -61,7 +61,7 @@ def clear(sums):
 
 @inner
 def _count_onset(sums, is_stuck):
-    """Follow the sequence of sticking and slipping spans."""
+    """Count a transition from slip to sticking, and the first span if it sticks."""
     if sums.time == 0.0:
         sums.began_stuck = is_stuck
     if is_stuck and not sums.is_stuck:
@@ -69,16 +69,9 @@ def _count_onset(sums, is_stuck):
     sums.is_stuck = is_stuck
 
 
-def _add_open(sums, weight, mode, p):
-    """Add the time for which contacts are open, if those of the system can be."""
-
-
-def add_impact(sums, y, mode, place, p):
-    """Add an event that is an impact, before the state changes, if the system has any."""
-
-
 @inlined
-def _of_contacts(sums, weight, mode, p):
+def _add_open(sums, weight, mode, p):
+    """Add the time for which contacts are open."""
     first, second = opened(mode, p)
     if first:
         sums.first_open += weight
@@ -88,8 +81,9 @@ def _of_contacts(sums, weight, mode, p):
         sums.either_open += weight
 
 
-@inner
-def _of_impact(sums, y, mode, place, p):
+@inlined
+def add_impact(sums, y, mode, place, p):
+    """Add an event that is an impact; ``y``: the state before it."""
     strikes, impulse, energy = impact(y, mode, place, p)
     if strikes:
         sums.impacts += 1.0
@@ -97,19 +91,10 @@ def _of_impact(sums, y, mode, place, p):
         sums.struck += energy
 
 
-def _nothing_open(sums, weight, mode, p):
-    return None
-
-
-def _no_impact(sums, y, mode, place, p):
-    return None
-
-
 def _pulls(first, second, p):
-    """Whether a contact pulls where a real one would open."""
+    """Whether a contact pulls where a real one would open; one that can open never does."""
 
 
-by_record(_add_open, lambda fields: _of_contacts if provided(opened, fields) else _nothing_open)
 by_record(
     _pulls,
     lambda fields: (
@@ -118,7 +103,6 @@ by_record(
         else (lambda first, second, p: first < 0.0 or second < 0.0)
     ),
 )
-by_record(add_impact, lambda fields: _of_impact if provided(impact, fields) else _no_impact)
 
 
 @inner
@@ -181,7 +165,7 @@ def add_span(sums, span):
 
 @inlined
 def add_extremes(sums, x, velocity, normal_force, energies):
-    """Add what may be an extreme; ``normal_force`` (N) is the smaller one."""
+    """Add a point that may be an extreme; ``normal_force`` (N): the smaller one of both contacts."""
     sums.lowest = min(sums.lowest, x)
     sums.highest = max(sums.highest, x)
     sums.peak_velocity = max(sums.peak_velocity, abs(velocity))

@@ -6,14 +6,16 @@ mode holds, all its event functions are positive; where one reaches zero the sys
 follows (``transition``).
 
 Each function below is declared here and written in ``systems/``: ``implement`` ties it to the records of a
-system, which are known by the name of one of their fields; of several the first in the record counts. Times
-in s, all else in the units of ``scales``.
+system, which are known by the name of one of their fields; if several fields of a record name systems, the
+first one decides. Times are in s, all else in the units of ``scales``.
 """
 
 from collections.abc import Callable, Mapping
+from math import inf
 from typing import Any, TypeVar
 
-from wedgesweep.compiled import by_record
+from wedgesweep.compiled import by_record, inlined
+from wedgesweep.hybrid.state import NO_EVENT
 
 Function = TypeVar("Function", bound=Callable)
 
@@ -21,18 +23,29 @@ Function = TypeVar("Function", bound=Callable)
 _IMPLEMENTED: dict[Callable, dict[str, Callable]] = {}
 
 
-def declared(function: Function) -> Function:
-    """Declare a function that every system writes for its own records."""
+def _declared(function: Function, default: Callable | None) -> Function:
     _IMPLEMENTED[function] = {}
 
     def choose(fields: Mapping[str, Any]) -> Callable:
         for field in fields:
             if field in _IMPLEMENTED[function]:
                 return _IMPLEMENTED[function][field]
+        if default:
+            return default
         message = f"no system with these records has {function.__name__}: {', '.join(fields)}"
         raise NotImplementedError(message)
 
     return by_record(function, choose)
+
+
+def required(function: Function) -> Function:
+    """Declare a function that a system writes for its own records; without it a call does not compile."""
+    return _declared(function, None)
+
+
+def optional(function: Function) -> Function:
+    """Declare a function that a system may leave out; then it is as written here."""
+    return _declared(function, inlined(function))
 
 
 def implement(what: Callable, owner: str) -> Callable[[Function], Function]:
@@ -53,107 +66,107 @@ def provided(what: Callable, fields: Mapping[str, Any]) -> bool:
 # What every system writes.
 
 
-@declared
+@required
 def scales(p):
     """Natural sizes of the states, a vector: what an error or a distance of each is measured by."""
 
 
-@declared
+@required
 def error_scales(p):
     """What an integration error of each state is compared with; inf where there is none."""
 
 
-@declared
+@required
 def active(p):
     """Which states move at all, a vector of booleans."""
 
 
-@declared
+@required
 def event_count(p):
     """Number of event functions: a constant of the record's type."""
 
 
-@declared
+@required
 def fastest(p):
     """Highest angular frequency of the input (rad/s)."""
 
 
-@declared
+@required
 def cycle(p):
     """Period of the input (s)."""
 
 
-@declared
+@required
 def repeats(p):
     """Whether the whole input repeats after its period."""
 
 
-@declared
+@required
 def initial_mode(t, y, p):
     """Mode in which a run begins, and whether the state is well-posed."""
 
 
-@declared
+@required
 def rate(t, y, mode, p):
     """dy/dt, a vector, and the forces, in the form in which the system's ``events`` takes them."""
 
 
-@declared
+@required
 def events(forces, t, y, mode, p, out):
     """Write the event functions (positive while the mode holds; inf: not of this mode) under known forces."""
 
 
-@declared
+@required
 def event(place, t, y, mode, p, out):
     """One event function, with ``out`` as working space."""
 
 
-@declared
+@required
 def transition(t, y, mode, place, p):
     """State and mode after the event at a place of the event functions, and whether they are well-posed."""
 
 
-@declared
+@required
 def well_posed(t, y, mode, p):
     """Whether exactly one set of contact forces fits the state: else the system locks."""
 
 
-@declared
+@required
 def never_locks(p):
     """Whether it is proved that every state of the case is well-posed."""
 
 
-@declared
+@required
 def clocks(p):
     """Which states only count time between events, a vector of booleans: they may grow for ever."""
 
 
-@declared
+@required
 def free(y, p):
     """Which states may take other values near y, a vector of booleans: not those that a contact holds."""
 
 
-@declared
+@required
 def holds(mode, p):
     """Whether the mode keeps the mass at rest, so that nothing limits a step but the input."""
 
 
-@declared
+@required
 def sticks(y, mode, p):
     """Whether the observed contact sticks."""
 
 
-@declared
+@required
 def observed(y, p):
     """Displacement from rest and velocity that are recorded, of the state."""
 
 
-@declared
+@required
 def contact_forces(t, y, mode, p):
     """Normal forces of both contacts (N); NaN while they are not determined."""
 
 
-@declared
+@required
 def powers(t, y, mode, p):
     """Power that friction and damping take, power of the input (W), and the normal forces (N, or NaN)."""
 
@@ -161,74 +174,91 @@ def powers(t, y, mode, p):
 # What a system may leave out.
 
 
-@declared
+@optional
 def expected_event(forces, t, y, mode, p):
     """Time (s) in which a velocity would reach the end of its branch at its present rate; inf: in none."""
+    return inf
 
 
-@declared
-def driving_force(t, acceleration, y, mode, p):
-    """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined."""
-
-
-@declared
-def stiff(mode, p):
-    """Whether an explicit step could not follow the mode."""
-
-
-@declared
-def outruns(h, y, p):
-    """Whether the state is so stiff that it limits an explicit step h (s)."""
-
-
-@declared
-def settling_step(p):
-    """A step (s) that resolves the beginning of a stiff mode."""
-
-
-@declared
-def perturbation(place, y, p):
-    """Step of a state for the derivative of the rate by differences, and whether these are central."""
-
-
-@declared
-def growth(by_state, p):
-    """Growth rate (1/s) of velocities, from the derivative of the rate by the states, shape (n, n)."""
-
-
-@declared
-def stiff_error(error, mode, p):
-    """Largest error of a velocity on which the mode is stiff, over the width of the stiff range."""
-
-
-@declared
-def opened(mode, p):
-    """Whether the first contact and the second one are open."""
-
-
-@declared
-def impact(y, mode, place, p):
-    """Whether an event is an impact, its largest impulse (N s), and the energy (J) that it takes."""
-
-
-@declared
+@optional
 def closed_form(state, stop, p, keeping, recorder, counts):
     """Follow a mode that has a closed form to its event or ``stop``, or several modes, one after the other.
 
     Returns whether it has one, the state reached, and the event, NO_EVENT or HANDED_OVER; ``counts[2]``
     counts the events passed.
     """
+    return False, state, NO_EVENT
+
+
+@required
+def driving_force(t, acceleration, y, mode, p):
+    """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined.
+
+    Only imposed motions need it (solvers/imposed_motion.py).
+    """
+
+
+# Contacts that open and hit.
+
+
+@optional
+def opened(mode, p):
+    """Whether the first contact and the second one are open."""
+    return False, False
+
+
+@optional
+def impact(y, mode, place, p):
+    """Whether an event is an impact, its largest impulse (N s), and the energy (J) that it takes."""
+    return False, 0.0, 0.0
+
+
+# Stiff modes. A system that writes ``stiff`` writes all of these.
+
+
+@optional
+def stiff(mode, p):
+    """Whether an explicit step could not follow the mode."""
+    return False
+
+
+@optional
+def outruns(h, y, p):
+    """Whether the state is so stiff that it limits an explicit step h (s)."""
+    return False
+
+
+@optional
+def settling_step(p):
+    """A step (s) that resolves the beginning of a stiff mode."""
+    return inf
+
+
+@required
+def perturbation(place, y, p):
+    """Step of a state for the derivative of the rate by differences, and whether these are central."""
+
+
+@required
+def growth(by_state, p):
+    """Growth rate (1/s) of velocities, from the derivative of the rate by the states, shape (n, n)."""
+
+
+@required
+def stiff_error(error, mode, p):
+    """Largest error of a velocity on which the mode is stiff, over the width of the stiff range."""
 
 
 # Two systems may take turns in following a motion: one that holds while contacts are closed, and one for all
-# motions.
+# motions. Both write these.
 
 
-@declared
+@optional
 def leaves(y, mode, p):
     """Whether a mode is for the other system to follow."""
+    return False
 
 
-@declared
+@required
 def taken_over(t, y, mode, p):
     """Mode with which a system goes on, and whether it is unique; ``mode``: an array, the other system's."""

@@ -1,4 +1,4 @@
-"""Records the kept window of a run: quadrature nodes into running sums, states onto an even grid of times."""
+"""Records the kept window of a run: running sums by quadrature, and samples at evenly spaced times."""
 
 from typing import Any, NamedTuple
 
@@ -14,12 +14,12 @@ WEIGHTS = tuple(float(0.5 * weight) for weight in np.polynomial.legendre.leggaus
 
 
 class Recorder(NamedTuple):
-    """Where a run is kept: sums of shape (1,), and samples at ``start + i step`` (s).
+    """What is recorded of a run: running sums, shape (1,), and samples at the times ``start + i step`` (s).
 
-    ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks.
-    ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), or has shape (2, 0):
-    then none are kept; so does ``acceleration`` (n,), the rate of the velocity. Without ``energies`` the sums
-    leave out forces and energies, which saves half of the time.
+    ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks,
+    ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), ``acceleration`` (n,)
+    the rate of the velocity. The last two are not recorded if they have the shapes (2, 0) and (0,). Without
+    ``energies`` the sums leave out forces and energies, which saves half of the time.
     """
 
     start: float
@@ -40,8 +40,8 @@ def first_sample(t, recorder):
 
 
 @inlined
-def put_node(t, y, weight, mode, recorder, p):
-    """Add a node to the sums; ``weight`` in s."""
+def record_node(t, y, weight, mode, recorder, p):
+    """Add a point to the sums, with its weight (s) in the quadrature."""
     if recorder.energies:
         accumulators.add(recorder.sums[0], t, y, weight, mode, p)
     else:
@@ -49,7 +49,7 @@ def put_node(t, y, weight, mode, recorder, p):
 
 
 @inlined
-def put_sample(i, y, mode, recorder, p):
+def record_sample(i, y, mode, recorder, p):
     """Store sample i if the grid has it."""
     if i >= recorder.x.size:
         return
@@ -64,8 +64,8 @@ def put_sample(i, y, mode, recorder, p):
 
 
 @inner
-def keep_constant(t, end, y, mode, recorder, p):
-    """Keep a span during which the state stays as it is."""
-    put_node(t, y, end - t, mode, recorder, p)
+def record_constant(t, end, y, mode, recorder, p):
+    """Record a span from t to ``end`` (s) in which the state does not change."""
+    record_node(t, y, end - t, mode, recorder, p)
     for i in range(first_sample(t, recorder), first_sample(end, recorder)):
-        put_sample(i, y, mode, recorder, p)
+        record_sample(i, y, mode, recorder, p)

@@ -1,8 +1,8 @@
 """Zeros and minima of functions of one variable: how all events are located.
 
-A function has the arguments (place, context) and is found by the type of its context, a NamedTuple: numba
-cannot cache code that takes functions as arguments. The same search serves event functions on the dense
-output of a step, on a closed form, and of a system at rest.
+A function has the arguments (place, context). The type of the context, a NamedTuple, says which function it
+is: numba cannot cache code that takes functions as arguments. The same search serves event functions on the
+dense output of a step, along a closed form, and of a system at rest.
 """
 
 from collections.abc import Callable
@@ -15,8 +15,8 @@ from wedgesweep.compiled import INNER, forward, inlined, inner
 
 GOLDEN = 0.6180339887498949
 MOST_ITERATIONS = 100
-# Share of a bracket: after a smaller change by the secant method only rounding errors are left, and by
-# Newton's, which squares the error.
+# A change of the place, as a share of the first bracket, after which only rounding errors are left: of the
+# secant method, and of Newton's, which squares the error.
 LAST_CHANGE, LAST_CHANGE_BY_SLOPE = 1e-10, 1e-7
 
 Function = TypeVar("Function", bound=Callable)
@@ -67,8 +67,8 @@ def zero(context, bracket, close):
 def zero_near(context, bracket, place, close):
     """As ``zero``, from a first estimate of the place.
 
-    Newton's method, or the secant method where the slope is unknown. The Illinois method replaces a step
-    that leaves the bracket.
+    Newton's method, or the secant method where the slope is unknown. A step that leaves the bracket is
+    replaced by one of the Illinois method (regula falsi).
     """
     low, at_low, high, at_high = bracket
     width = high - low
@@ -108,7 +108,7 @@ def zero_near(context, bracket, place, close):
 def zero_after_start(context, bracket, nearest, close):
     """As ``zero``, of a function that is zero at the low end and positive after it.
 
-    The low end itself if no positive value is found farther than ``nearest`` from it.
+    The low end itself if halving the bracket finds no positive value farther than ``nearest`` from it.
     """
     start, _, high, at_high = bracket
     place = 0.5 * (start + high)
@@ -123,7 +123,10 @@ def zero_after_start(context, bracket, nearest, close):
 
 @inner
 def minimum(context, low, high, close):
-    """Place between two others at which a function is smallest, or at least not positive (golden section)."""
+    """Place between two others where a function is smallest, or the first one found where it is <= 0.
+
+    By golden section.
+    """
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     at_left, at_right = _value(left, context)[0], _value(right, context)[0]
     # The count ends a search whose places are too large for rounding to let them come this close.

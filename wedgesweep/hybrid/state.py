@@ -1,9 +1,9 @@
-"""Where a run is, and how it got there."""
+"""State of a run, and the ways in which following a mode can end."""
 
 from typing import Any, NamedTuple
 
-# How a run ends. A mode ends with the number of an event, from 0 up, or with one of the numbers below 0.
-# HANDED_OVER: another system goes on (see period_map.run_case).
+# A run ends with OK or one of LOCKED to HANDED_OVER; a mode with the number of an event, from 0 up, or with a
+# number below 0. HANDED_OVER: another system follows the motion from there on (see period_map.run_case).
 OK, NO_EVENT, LOCKED, FAILED, CHATTERING, HANDED_OVER = 0, -1, -2, -3, -4, -5
 
 

@@ -3,7 +3,8 @@
 ``vector`` and ``store`` convert from and to arrays.
 """
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
@@ -14,6 +15,18 @@ from wedgesweep.compiled import CONTRACTED, function_of, inlined
 _set_item: Any = tuple_setitem
 
 
+def _sum_of_products(arguments: str, size: int, count: int) -> Callable:
+    """A function that adds ``count`` vectors of ``size`` numbers, to ``start`` if that is an argument."""
+    factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
+    parts = []
+    for i in range(size):
+        first = [f"start[{i}]"] if "start" in arguments else []
+        parts.append(" + ".join([*first, *(f"w{j} * vectors[{j}][{i}]" for j in range(count))]))
+    scope: dict[str, Any] = {}
+    exec(f"def sum({arguments}):\n{factors}\n    return ({', '.join(parts)},)", scope)
+    return cast(Callable, scope["sum"])
+
+
 def weighted(start, scale, weights, vectors):
     """Start + scale (w_1 v_1 + w_2 v_2 + ...), each product with the scale taken first."""
     raise NotImplementedError
@@ -21,14 +34,7 @@ def weighted(start, scale, weights, vectors):
 
 @overload(weighted, jit_options=CONTRACTED)
 def _weighted(start, scale, weights, vectors):
-    size, count = len(start), len(vectors)
-    parts = ", ".join(
-        " + ".join([f"start[{i}]", *(f"w{j} * vectors[{j}][{i}]" for j in range(count))]) for i in range(size)
-    )
-    factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
-    scope: dict[str, Any] = {}
-    exec(f"def sum(start, scale, weights, vectors):\n{factors}\n    return ({parts},)", scope)
-    return scope["sum"]
+    return _sum_of_products("start, scale, weights, vectors", len(start), len(vectors))
 
 
 def combination(scale, weights, vectors):
@@ -38,12 +44,7 @@ def combination(scale, weights, vectors):
 
 @overload(combination, jit_options=CONTRACTED)
 def _combination(scale, weights, vectors):
-    size, count = len(vectors[0]), len(vectors)
-    parts = ", ".join(" + ".join(f"w{j} * vectors[{j}][{i}]" for j in range(count)) for i in range(size))
-    factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
-    scope: dict[str, Any] = {}
-    exec(f"def sum(scale, weights, vectors):\n{factors}\n    return ({parts},)", scope)
-    return scope["sum"]
+    return _sum_of_products("scale, weights, vectors", len(vectors[0]), len(vectors))
 
 
 def vector(array, like):

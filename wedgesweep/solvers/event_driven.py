@@ -1,7 +1,7 @@
 """Compiled solver that goes from event to event, for one case or for many in one compiled loop.
 
-It asks the system for the same modes, rates and event functions as the Radau solver, and integrates
-between events by its own methods (integrate.py).
+Modes, rates and event functions are those of the Radau solver; between events it integrates by methods of its
+own (integrate.py).
 """
 
 from typing import Any, NamedTuple
@@ -36,8 +36,8 @@ def solve(
 ) -> Trajectory:
     """Run one case; arguments and errors as for ``radau.solve``.
 
-    The compiled loop cannot be interrupted: in place of the time limit it counts steps and events. It
-    samples even phases only: a TimedWindow is a TypeError.
+    The compiled loop cannot be interrupted: it limits steps and events instead of the time. It samples evenly
+    spaced phases only, and raises TypeError for a TimedWindow.
     """
     if isinstance(window, TimedWindow):
         message = "sample times of one's own are for radau.solve; this solver samples even phases"
@@ -130,10 +130,10 @@ def run_batch(
 
 @allocating
 def _settled(y, near, settle_periods, settings, search):
-    """Settle the case of a search; y moves along.
+    """Settle the case of a search; y is replaced by the state reached.
 
     ``near``: period of the response that y lies close to, 0 if unknown. Returns the outcome, the period of
-    the response and the periods run.
+    the response (-1: not looked for) and the periods run.
     """
     if settings.steady:
         unknown = np.empty((y.size, y.size))

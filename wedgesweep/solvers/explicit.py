@@ -7,7 +7,7 @@ of the tableau are left out: each weight belongs to the stage at the same place 
 from wedgesweep.compiled import inlined
 from wedgesweep.hybrid.interface import rate
 from wedgesweep.hybrid.vectors import combination, weighted
-from wedgesweep.solvers.step import connected, over_tolerance
+from wedgesweep.solvers.step import over_tolerance, with_dense_output
 
 STAGES = 7
 ORDER = 5
@@ -44,4 +44,4 @@ def step(t, h, y, k1, mode, p, rtol):
     k7, forces = rate(t + h, end, mode, p)
     stages = (k1, k3, k4, k5, k6, k7)
     error = over_tolerance(combination(h, ERROR, stages), y, end, rtol, p)
-    return connected(t, h, y, end, k1, k7, combination(h, DENSE, stages)), within, forces, error
+    return with_dense_output(t, h, y, end, k1, k7, combination(h, DENSE, stages)), within, forces, error

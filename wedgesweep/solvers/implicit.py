@@ -10,8 +10,8 @@ import numpy as np
 from wedgesweep.compiled import allocating
 from wedgesweep.hybrid.interface import active, fastest, growth, perturbation, rate, stiff_error
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
-from wedgesweep.solvers.linear_algebra import inverted
-from wedgesweep.solvers.step import connected, inside, over_tolerance
+from wedgesweep.solvers.linear_algebra import inverted, places_of
+from wedgesweep.solvers.step import dense_output, over_tolerance, with_dense_output
 
 STAGES = 6
 ORDER = 4
@@ -41,8 +41,8 @@ COUPLING = np.array(
         [8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054],
     ]
 )
-# Step of time for the derivative by differences (rad).
-MOVED = 1e-7
+# Step of time for the derivative by differences, as a phase of the fastest input (rad).
+PHASE_STEP = 1e-7
 # These steps are long: a steady response needs this share of the tolerance in them. The error of a stiff
 # velocity, over the width of the stiff range, may be larger by the second factor.
 TIGHTER, ON_RAMP = 0.1, 3000.0
@@ -65,14 +65,14 @@ def _derivatives(t, y, k1, mode, p):
         for j in range(n):
             if moves[j]:
                 by_state[j, i] = (upper[j] - lower[j]) / (high - low)
-    change = MOVED / fastest(p)
+    change = PHASE_STEP / fastest(p)
     store(combination(1.0 / change, (1.0, -1.0), (rate(t + change, y, mode, p)[0], k1)), by_time)
     return by_state, by_time
 
 
 @allocating
 def _inverse(by_state, places, h):
-    """Inverse of the matrix of all stages, of the active states."""
+    """Inverse of I/(gamma h) - J, the matrix of all stages, for the active states ``places``."""
     n = places.size
     matrix = np.empty((n, n))
     for i in range(n):
@@ -83,23 +83,12 @@ def _inverse(by_state, places, h):
 
 
 @allocating
-def _active_places(p):
-    moves = active(p)
-    places, count = np.empty(len(moves), np.int64), 0
-    for i in range(len(moves)):
-        if moves[i]:
-            places[count] = i
-            count += 1
-    return places[:count]
-
-
-@allocating
 def step(t, h, y, k1, mode, p, rtol):
     """As ``explicit.step``."""
-    n, places = len(y), _active_places(p)
+    n, places = len(y), places_of(active(p))
     by_state, by_time = _derivatives(t, y, k1, mode, p)
     forces = rate(t, y, mode, p)[1]
-    failed = connected(t, h, y, y, k1, k1, combination(0.0, (1.0,), (y,)))
+    failed = with_dense_output(t, h, y, y, k1, k1, combination(0.0, (1.0,), (y,)))
     if h * growth(by_state, p) > LARGEST_GROWTH:
         return failed, forces, forces, inf
     inverse = _inverse(by_state, places, h)
@@ -131,5 +120,5 @@ def step(t, h, y, k1, mode, p, rtol):
         over_tolerance(error, y, last, tolerance, p), stiff_error(error, mode, p) / (ON_RAMP * tolerance)
     )
     # RODAS's own dense output has errors of 1e-5 in steps whose ends have errors of 1e-9: a cubic is better.
-    made = connected(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,)))
-    return made, rate(t + 0.5 * h, inside(0.5, made), mode, p)[1], forces, over
+    made = with_dense_output(t, h, y, last, k1, k_end, combination(0.0, (1.0,), (y,)))
+    return made, rate(t + 0.5 * h, dense_output(0.5, made), mode, p)[1], forces, over

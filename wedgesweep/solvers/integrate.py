@@ -1,12 +1,13 @@
 """A run from one event to the next: closed form where the system has one, Runge-Kutta steps elsewhere.
 
 After each step the event functions are known at its start, middle and end. Where one may have been zero in
-between, its minimum is sought. An event is located on the step's dense output, roughly at first. The step is
-then repeated with a length that ends just past the event, and the event located there: dense output is most
-accurate near its ends, and stages far beyond an event would see friction that the mode does not have.
+between, its minimum is sought. An event is located on the step's dense output, roughly at first. Then the
+step is repeated with a length that ends just past the event, and the event is located there: dense output is
+most accurate near the ends of a step, and stages far beyond an event would see friction of another mode.
+
+Places within a step are shares of it, from 0 to 1.
 """
 
-from collections.abc import Callable, Mapping
 from math import inf, nan, pi, sqrt
 from typing import Any, NamedTuple
 
@@ -35,21 +36,24 @@ from wedgesweep.hybrid.interface import (
     transition,
     well_posed,
 )
-from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, put_node, put_sample
+from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, record_node, record_sample
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
 from wedgesweep.solvers import explicit, implicit
-from wedgesweep.solvers.step import inside, slope
+from wedgesweep.solvers.step import dense_output, dense_slope
 
 EVENTS_PER_PERIOD = 1000
+# Room for event functions.
+MOST_EVENTS = 32
 # First step of a run, as a share of a period.
 FIRST_STEP = 1e-3
 # Least number of steps per period of the fastest input: a longer step could miss a whole motion. While
 # contacts hold the mass nothing else limits its length.
 LEAST_STEPS, LEAST_STEPS_HELD = 12, 64
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
-# At an error below this share of the tolerance, which is less than SAFETY**5, a step can only grow.
+# At an error below this share of the tolerance, which is less than SAFETY**5, the next step is longer.
 NOT_GROWING = 0.5
+# Shortest step, as a share of a period of the fastest input; a mode that needs a shorter one has failed.
 SHORTEST = 1e-13
 # A mode that needs more steps than this per period of the fastest input will not end.
 MOST_STEPS = 100_000
@@ -57,19 +61,23 @@ MOST_STEPS = 100_000
 LONGEST_WINDOW = 1_000_000
 # A minimum is looked for where the parabola through three values falls below this share of the least.
 SUSPECT = 0.3
-# Errors of a place in a step, as shares of it: of an event, a minimum, an extreme; and the phase (rad) after
-# an event in which no other one is sought.
+# Errors of places in a step: of an event, of a minimum, of an extreme; and the phase (rad) after an event in
+# which no other one is sought.
 CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
-# Error of a place at which a step is only to be cut, and how far beyond it the step then goes.
+# Error of the place of an event that a repeated step will locate, and how far beyond it that step goes, as a
+# share of the first one.
 ROUGHLY, PAST_EVENT = 1e-3, 2e-2
-# How far a step goes beyond an event that is expected, as a share of the time to it; the least share of a
-# step that it then has; and the share of the step before which an event must not lie: stages would see too
-# much of the friction beyond it.
+# A step that aims at an expected event goes beyond it by the first share of the time to it, and has at least
+# the second share of the length that accuracy allows. It is repeated if it finds an event before the last
+# share of its length: its stages have seen too much of the friction beyond.
 PAST_EXPECTED, LEAST_SHARE, NEAR_END = 0.15, 0.02, 0.75
 
 
 class Workspace(NamedTuple):
-    """Tolerance of a run, counts of its rate evaluations, steps and events, and room for event functions."""
+    """Tolerance of a run, counts of its rate evaluations, steps and events, and room for event functions.
+
+    ``counts`` has shape (3,); the event functions at places of a step have shape (MOST_EVENTS,).
+    """
 
     rtol: float
     counts: Any
@@ -79,15 +87,12 @@ class Workspace(NamedTuple):
     at_point: Any
 
 
-MOST_EVENTS = 32
-
-
 def workspace(rtol: float) -> Workspace:
     """A fresh Workspace."""
     return Workspace(rtol, np.zeros(3, np.int64), *(np.full(MOST_EVENTS, inf) for _ in range(4)))
 
 
-class _Place(NamedTuple):
+class _EventFunction(NamedTuple):
     """An event function on a step: what is searched for zeros and minima."""
 
     number: int
@@ -97,17 +102,17 @@ class _Place(NamedTuple):
     out: Any
 
 
-@searched(_Place)
+@searched(_EventFunction)
 @inlined
-def _value(share, place):
-    step = place.step
-    y = inside(share, step)
-    return event(place.number, step.t + share * step.h, y, place.mode, place.p, place.out), nan
+def _value(share, function):
+    step = function.step
+    y = dense_output(share, step)
+    return event(function.number, step.t + share * step.h, y, function.mode, function.p, function.out), nan
 
 
 @inlined
 def _may_graze(before, now, following):
-    """Whether a function, positive at three even points, may have been zero between them."""
+    """Whether a function that is positive at three evenly spaced points may have a zero between them."""
     if not before > now <= following:
         return False
     curvature = before - 2.0 * now + following
@@ -116,46 +121,47 @@ def _may_graze(before, now, following):
 
 @inlined
 def _parabola_zero(start, middle, end):
-    """First zero on [0, 1] of a parabola that begins above zero, from its values at three even points."""
+    """First zero on [0, 1] of a parabola that begins above zero, from its values at 0, 1/2 and 1."""
     bend, rise = 2.0 * (start - 2.0 * middle + end), 4.0 * middle - 3.0 * start - end
     return 2.0 * start / (sqrt(max(rise * rise - 4.0 * bend * start, 0.0)) - rise)
 
 
 @inner
-def _first_zero(place, start, end, from_zero, close):
+def _first_zero(function, start, end, from_zero, close):
     """Share of a step at which an event function is first zero, to within ``close``; 2 if nowhere.
 
-    ``start``, ``end``: its values at the ends of the step.
+    ``start``, ``end``: its values at the ends of the step. ``from_zero``: the start is an event of the same
+    pair, so that its value there is zero but for rounding errors.
     """
-    nearest = UNSEEN / (place.step.h * fastest(place.p))
-    high, at_high = 0.5, _value(0.5, place)[0]
+    nearest = UNSEEN / (function.step.h * fastest(function.p))
+    high, at_high = 0.5, _value(0.5, function)[0]
     if at_high > 0.0 and start > 0.0 and _may_graze(start, at_high, end):
-        high = minimum(place, 0.0, 1.0, CLOSE_TO_MINIMUM)
-        at_high = _value(high, place)[0]
+        high = minimum(function, 0.0, 1.0, CLOSE_TO_MINIMUM)
+        at_high = _value(high, function)[0]
     elif close == ROUGHLY and start > 0.0 and not from_zero and min(at_high, end) <= 0.0:
         return _parabola_zero(start, at_high, end)
     if at_high <= 0.0:
         bracket = Bracket(0.0, start, high, at_high)
         if start > 0.0 and not from_zero:
-            return zero(place, bracket, close)
-        return zero_after_start(place, bracket, nearest, close)
+            return zero(function, bracket, close)
+        return zero_after_start(function, bracket, nearest, close)
     if end <= 0.0:
-        return zero(place, Bracket(high, at_high, 1.0, end), close)
+        return zero(function, Bracket(high, at_high, 1.0, end), close)
     return 2.0
 
 
 @inlined
 def first_event(step, mode, last_event, forces, close, p, work):
-    """Share of a step, to within ``close``, and place of its first event; (1, NO_EVENT) if there is none.
+    """Place in a step, to within ``close``, and number of its first event; (1, NO_EVENT) if there is none.
 
-    ``forces``: near the middle of the step and at its end. The event functions there show which of them are
-    worth a closer look. Where the system may lock, they are evaluated in the middle itself: a missed event
-    could hide that it locks.
+    ``forces``: of a stage near the middle of the step, and at its end. The event functions at start, middle
+    and end show which of them are worth a closer look. If the system may lock, the forces in the middle are
+    computed: a missed event could hide that it locks.
     """
-    middle, within = inside(0.5, step), forces[0]
+    y, at_middle = dense_output(0.5, step), forces[0]
     if not never_locks(p):
-        within = rate(step.t + 0.5 * step.h, middle, mode, p)[1]
-    events(within, step.t + 0.5 * step.h, middle, mode, p, work.at_middle)
+        at_middle = rate(step.t + 0.5 * step.h, y, mode, p)[1]
+    events(at_middle, step.t + 0.5 * step.h, y, mode, p, work.at_middle)
     events(forces[1], step.t + step.h, step.end, mode, p, work.at_end)
     earliest, first = 1.0, NO_EVENT
     for number in range(event_count(p)):
@@ -163,7 +169,8 @@ def first_event(step, mode, last_event, forces, close, p, work):
         if end == inf or (min(middle, end) > 0.0 and not _may_graze(start, middle, end)):
             continue
         from_zero = last_event >= 0 and number // 2 == last_event // 2
-        share = _first_zero(_Place(number, step, mode, p, work.at_point), start, end, from_zero, close)
+        function = _EventFunction(number, step, mode, p, work.at_point)
+        share = _first_zero(function, start, end, from_zero, close)
         if share <= 1.0 and (first < 0 or share < earliest):
             earliest, first = share, number
     return earliest, first
@@ -178,7 +185,7 @@ class _Velocity(NamedTuple):
 
 
 class _Acceleration(NamedTuple):
-    """Slope of the observed velocity on a step, times a sign."""
+    """Derivative of the observed velocity by the share of a step, times a sign."""
 
     sign: float
     step: Any
@@ -189,146 +196,90 @@ class _Acceleration(NamedTuple):
 @inner
 def _velocity(share, context):
     step, p = context.step, context.p
-    velocity, rate_of_share = observed(inside(share, step), p)[1], observed(slope(share, step), p)[1]
-    return context.sign * velocity, context.sign * rate_of_share
+    velocity = observed(dense_output(share, step), p)[1]
+    return context.sign * velocity, context.sign * observed(dense_slope(share, step), p)[1]
 
 
 @searched(_Acceleration)
 @inner
 def _acceleration(share, context):
-    return context.sign * observed(slope(share, context.step), context.p)[1], nan
+    return context.sign * observed(dense_slope(share, context.step), context.p)[1], nan
 
 
 @inner
-def _keep_extremes(share, step, mode, recorder, p):
-    """Record the extremes of displacement and velocity below a share of a step."""
+def _record_extremes(share, step, mode, recorder, p):
+    """Record the extremes of displacement and velocity in a step up to a share of it."""
     first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
     if first * last < 0.0:
         turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
         there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
-        put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
+        record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
     upward = _Acceleration(1.0, step, p)
     first, last = _acceleration(0.0, upward)[0], _acceleration(share, upward)[0]
     if first * last < 0.0:
-        fastest = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(fastest, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
-        put_node(step.t + there * step.h, inside(there, step), 0.0, mode, recorder, p)
+        peak = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
+        there = zero(peak, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
+        record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
 
 
 @inner
-def keep(step, share, mode, recorder, p):
+def record_step(step, share, mode, recorder, p):
     """Record a step up to a share of it."""
-    t, h, end = step.t, step.h, inside(share, step)
-    put_node(t, step.start, 0.0, mode, recorder, p)
+    t, h, end = step.t, step.h, dense_output(share, step)
+    record_node(t, step.start, 0.0, mode, recorder, p)
     for node in range(len(NODES)):
         there = share * NODES[node]
-        put_node(t + there * h, inside(there, step), share * h * WEIGHTS[node], mode, recorder, p)
-    put_node(t + share * h, end, 0.0, mode, recorder, p)
-    _keep_extremes(share, step, mode, recorder, p)
+        record_node(t + there * h, dense_output(there, step), share * h * WEIGHTS[node], mode, recorder, p)
+    record_node(t + share * h, end, 0.0, mode, recorder, p)
+    _record_extremes(share, step, mode, recorder, p)
     for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
         place = (recorder.start + i * recorder.step - t) / h
-        put_sample(i, inside(place, step), mode, recorder, p)
+        record_sample(i, dense_output(place, step), mode, recorder, p)
 
 
 def _implicit_step(t, h, y, k1, mode, p, rtol):
-    """``implicit.step`` where the system may be stiff; elsewhere nothing calls it."""
-
-
-def _if_stiff(some: Callable, none: Callable) -> Callable[[Mapping[str, Any]], Callable]:
-    """Code for records whose system may be stiff, and for others."""
-    return lambda fields: some if provided(stiff, fields) else none
-
-
-def _begins_stiff(mode, p):
-    """Whether a mode needs implicit steps."""
-
-
-def _becomes_stiff(h, y, p):
-    """Whether a state needs implicit steps."""
-
-
-def _after_event(h, p):
-    """First step (s) of a stiff mode after an event."""
+    """``implicit.step`` for records of systems that may be stiff; for others it is never called."""
 
 
 by_record(
     _implicit_step,
-    _if_stiff(
-        lambda t, h, y, k1, mode, p, rtol: implicit.step(t, h, y, k1, mode, p, rtol),
-        lambda t, h, y, k1, mode, p, rtol: explicit.step(t, h, y, k1, mode, p, rtol),
-    ),
-)
-by_record(_begins_stiff, _if_stiff(lambda mode, p: stiff(mode, p), lambda mode, p: False))
-by_record(_becomes_stiff, _if_stiff(lambda h, y, p: outruns(h, y, p), lambda h, y, p: False))
-by_record(_after_event, _if_stiff(lambda h, p: min(h, settling_step(p)), lambda h, p: h))
-
-
-def _expected(forces, t, y, mode, p):
-    """Time (s) after which the system expects an event; inf where it does not say."""
-
-
-by_record(
-    _expected,
     lambda fields: (
-        (lambda forces, t, y, mode, p: expected_event(forces, t, y, mode, p))
-        if provided(expected_event, fields)
-        else (lambda forces, t, y, mode, p: inf)
+        (lambda t, h, y, k1, mode, p, rtol: implicit.step(t, h, y, k1, mode, p, rtol))
+        if provided(stiff, fields)
+        else (lambda t, h, y, k1, mode, p, rtol: explicit.step(t, h, y, k1, mode, p, rtol))
     ),
 )
-
-
-def _least_aim(h, mode, p):
-    """Least length (s) of a step that aims at an expected event."""
 
 
 @inlined
-def _least_aim_at_impact(h, mode, p):
-    """A flight between two impacts may be far shorter than a step."""
+def _least_aim(h, mode, p):
+    """Least length (s) of a step that aims at an expected event: flights between impacts may be short."""
     first, second = opened(mode, p)
     return SHORTEST * 2.0 * pi / fastest(p) if first or second else LEAST_SHARE * h
 
 
-by_record(
-    _least_aim,
-    lambda fields: _least_aim_at_impact if provided(opened, fields) else (lambda h, mode, p: LEAST_SHARE * h),
-)
+@inlined
+def _shorter(taken, error, exponent):
+    """Length (s) of the next try after a step whose error is too large, or not finite."""
+    return taken * max(SHRINK, SAFETY * error**exponent) if error < inf else taken * SHRINK
 
 
-def _closed_form(state, stop, p, keeping, recorder, counts):
-    """The closed form of a mode, if the system has one."""
-
-
-by_record(
-    _closed_form,
-    lambda fields: (
-        (
-            lambda state, stop, p, keeping, recorder, counts: closed_form(
-                state, stop, p, keeping, recorder, counts
-            )
-        )
-        if provided(closed_form, fields)
-        else (lambda state, stop, p, keeping, recorder, counts: (False, state, NO_EVENT))
-    ),
-)
-
-
-def _leaves(y, mode, p):
-    """Whether another system goes on with a mode, if the system takes turns with one."""
-
-
-by_record(
-    _leaves,
-    lambda fields: (
-        (lambda y, mode, p: leaves(y, mode, p)) if provided(leaves, fields) else (lambda y, mode, p: False)
-    ),
-)
+@inlined
+def _next_length(h, taken, longest, error, exponent):
+    """Length (s) of the next step after one that was accepted, which may have been cut short of ``h``."""
+    if taken < longest or error > NOT_GROWING:
+        grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
+        return max(h, grown) if taken < h else grown
+    return h
 
 
 @inner
 def _integrate_mode(state, stop, p, keeping, recorder, work):
     """Follow a mode by steps until its first event or ``stop``: the state there and the event.
 
-    In place of an event NO_EVENT, LOCKED or FAILED.
+    In place of an event NO_EVENT, LOCKED or FAILED. Of a step ``h`` is the length that accuracy allows,
+    ``aim`` one that ends past the event that the system expects, ``to_event`` one that ends just past the
+    event that was found in the step before (inf: none), and ``taken`` the shortest of them.
     """
     t, y, mode, last_event, h = state
     period = 2.0 * pi / fastest(p)
@@ -336,40 +287,40 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     to_event = inf
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
-    expected = _expected(forces, t, y, mode, p)
-    most = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
-    implicitly = _begins_stiff(mode, p)
+    expected = expected_event(forces, t, y, mode, p)
+    most_steps = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
+    implicitly = stiff(mode, p)
     if implicitly and last_event >= 0:
-        h = _after_event(h, p)
+        h = min(h, settling_step(p))
     while t < stop:
         h = min(h, longest)
         aim = max((1.0 + PAST_EXPECTED) * expected, _least_aim(h, mode, p))
         taken = min(h, stop - t, to_event, aim)
         if implicitly:
-            step, within, ahead, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
+            step, at_middle, at_end, error = _implicit_step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / implicit.ORDER, implicit.STAGES
         else:
-            step, within, ahead, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
+            step, at_middle, at_end, error = explicit.step(t, taken, y, k1, mode, p, work.rtol)
             exponent, evaluations = -1.0 / explicit.ORDER, explicit.STAGES - 1
         work.counts[0] += evaluations
         if not error <= 1.0:
-            h = taken * max(SHRINK, SAFETY * error**exponent) if error < inf else taken * SHRINK
+            h = _shorter(taken, error, exponent)
             if h < SHORTEST * period:
                 return State(t, y, mode, last_event, h), FAILED
             continue
         close = CLOSE if taken == aim or to_event < inf else ROUGHLY
-        share, number = first_event(step, mode, last_event, (within, ahead), close, p, work)
+        share, number = first_event(step, mode, last_event, (at_middle, at_end), close, p, work)
         if number >= 0 and to_event == inf and (taken != aim or share < NEAR_END):
             to_event = (share + PAST_EVENT) * taken
             continue
         to_event = inf
         work.counts[1] += 1
-        if work.counts[1] > most:
+        if work.counts[1] > most_steps:
             return State(t, y, mode, last_event, h), FAILED
         if keeping:
-            keep(step, share, mode, recorder, p)
+            record_step(step, share, mode, recorder, p)
         if number >= 0:
-            y = inside(share, step) if share < 1.0 else step.end
+            y = dense_output(share, step) if share < 1.0 else step.end
             return State(t + share * taken, y, mode, last_event, h), number
         if not well_posed(t + taken, step.end, mode, p):
             return State(t, y, mode, last_event, h), LOCKED
@@ -377,16 +328,14 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
         y, k1, last_event = step.end, step.end_rate, NO_EVENT
         for i in range(event_count(p)):
             work.at_start[i] = work.at_end[i]
-        expected = _expected(ahead, t, y, mode, p)
-        implicitly = implicitly or _becomes_stiff(taken, y, p)
-        if taken < longest or error > NOT_GROWING:
-            grown = taken * min(GROW, SAFETY * max(error, 1e-10) ** exponent)
-            h = max(h, grown) if taken < h else grown
+        expected = expected_event(at_end, t, y, mode, p)
+        implicitly = implicitly or outruns(taken, y, p)
+        h = _next_length(h, taken, longest, error, exponent)
     return State(stop, y, mode, last_event, h), NO_EVENT
 
 
 @inner
-def begin(t, y, p):
+def initial_state(t, y, p):
     """State at the start of a run, and whether it is well-posed."""
     mode, unique = initial_mode(t, y, p)
     return State(t, y, mode, np.int64(NO_EVENT), FIRST_STEP * 2.0 * pi / fastest(p)), unique
@@ -394,20 +343,20 @@ def begin(t, y, p):
 
 @inner
 def integrate(state, keep_from, stop, p, recorder, work):
-    """Follow a run from event to event up to ``stop``, and keep the part from a time on.
+    """Follow a run from event to event up to ``stop``, and record the part from ``keep_from`` (s) on.
 
     Returns how it ended (OK, LOCKED, FAILED, CHATTERING, HANDED_OVER) and the state reached.
     """
-    window = (stop - state.t) * fastest(p) / (2.0 * pi)
-    if window > LONGEST_WINDOW:
+    periods = (stop - state.t) * fastest(p) / (2.0 * pi)
+    if periods > LONGEST_WINDOW:
         return FAILED, state
-    limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + window)
+    limit = work.counts[2] + EVENTS_PER_PERIOD * (1.0 + periods)
     while state.t < stop:
-        if _leaves(state.y, state.mode, p):
+        if leaves(state.y, state.mode, p):
             return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        done, state, number = _closed_form(state, end, p, keeping, recorder, work.counts)
+        done, state, number = closed_form(state, end, p, keeping, recorder, work.counts)
         if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
         if number == NO_EVENT and work.counts[2] <= limit:

@@ -14,6 +14,17 @@ SQUARINGS = 32
 
 
 @allocating
+def places_of(chosen):
+    """Indices of what is chosen: of the true ones of an array, or a tuple, of booleans."""
+    places, count = np.empty(len(chosen), np.int64), 0
+    for i in range(len(chosen)):
+        if chosen[i]:
+            places[count] = i
+            count += 1
+    return places[:count]
+
+
+@allocating
 def inverted(matrix):
     """Inverse and determinant of a matrix (n, n), which is overwritten.
 

@@ -4,10 +4,10 @@ from wedgesweep.compiled import inner
 
 # Longest period that is detected, in forcing periods.
 LONGEST_PERIOD = 8
-# With a period above one, a state comes back this many times closer than it moves in one forcing period.
+# A response has a period of several forcing periods only if its state comes back this many times closer than
+# it moves in one of them.
 CLOSER = 1e3
-# A response may have a longer period if its state comes back this many times closer after that than after one
-# forcing period.
+# While a response settles, the same ratio for the period that Newton's method tries.
 SEEMS = 10.0
 
 
@@ -15,9 +15,9 @@ SEEMS = 10.0
 def detected_period(distances, tolerance):
     """Number of periods after which a state came back within the tolerance, 0 if it did not.
 
-    ``distances`` (LONGEST_PERIOD,): from the state one period before, two periods before, and so on. A
-    spiral into a fixed point also comes close to itself after a few periods: a longer period counts only
-    where the state moves far away in between.
+    ``distances`` (LONGEST_PERIOD,): of the state from those one period before, two periods before, and so on.
+    A spiral into a fixed point also comes close to itself after a few periods: a longer period counts only if
+    the state moves far away in between.
     """
     if distances[0] <= tolerance:
         return 1

@@ -1,10 +1,10 @@
 """The Poincare map of a case: whole periods of the input, from phase 0 to phase 0.
 
-Drivers of the map (shooting, batches) see records as bytes and the map as an address, so that one compiled
-driver serves the records of all systems and kits.
+Callers (shooting, batches) get records as bytes and the map as an address, so that they are compiled once for
+the records of all systems and kits.
 
-A suspension with joints that can open is integrated by two models in turn: while both contacts are closed by
-that of bilateral joints, which has two states and is faster; else by the model with gaps.
+A suspension whose joints can open is followed by two systems in turn: while both contacts are closed by that
+of bilateral joints, which has fewer states and is faster; else by the one with gaps.
 """
 
 from functools import cache
@@ -30,22 +30,22 @@ from wedgesweep.hybrid.interface import (
 from wedgesweep.hybrid.recorder import Recorder
 from wedgesweep.hybrid.state import CHATTERING, HANDED_OVER, LOCKED, State
 from wedgesweep.hybrid.vectors import store, vector
-from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD, Workspace, begin, integrate, workspace
+from wedgesweep.solvers.integrate import EVENTS_PER_PERIOD, Workspace, initial_state, integrate, workspace
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.systems import while_closed
 
 # Room for the states and for the numbers of a mode of any system.
 MOST_STATES, MOST_MODE = 32, 16
-# Places in what one system hands over to another: time (s), step (s), last event; from MODE on the mode.
+# Places in what one system hands over to another: time (s), next step (s), last event; from MODE on the mode.
 TIME, STEP, EVENT, MODE = range(4)
 
 
 class Memory(NamedTuple):
-    """Room for a run and for what it keeps; see ``memory`` and ``Recorder``.
+    """Room for a run and for what is recorded of it; see ``memory`` and ``Recorder``.
 
     ``reached`` (1,): time (s) at which the last run ended; ``free`` (MOST_STATES,): which states may take
-    other values near the one reached; ``handed`` (MODE + MOST_MODE,): where another system goes on (time NaN:
-    nowhere).
+    other values near the one reached; ``handed`` (MODE + MOST_MODE,): from where another system goes on, with
+    a time of NaN if none does.
     """
 
     work: Workspace
@@ -70,9 +70,10 @@ def memory(
     forces: bool = True,
     acceleration: bool = False,
 ) -> Memory:
-    """Room for runs that keep at most this many periods.
+    """Room for runs of which at most this many periods are recorded.
 
-    ``energies``: of forces and energies the sums tell; ``forces``, ``acceleration``: they are sampled.
+    ``energies``: whether the sums include forces and energies; ``forces``, ``acceleration``: whether these
+    are sampled.
     """
     n = periods * samples_per_period
     return Memory(
@@ -98,7 +99,7 @@ def _first_state(start, y, handed, p):
 @inlined
 def _handed_state(start, y, handed, p):
     if isnan(handed[TIME]):
-        return begin(start, y, p)
+        return initial_state(start, y, p)
     mode, unique = taken_over(handed[TIME], y, handed[MODE:], p)
     return State(handed[TIME], y, mode, np.int64(handed[EVENT]), handed[STEP]), unique
 
@@ -106,7 +107,9 @@ def _handed_state(start, y, handed, p):
 by_record(
     _first_state,
     lambda fields: (
-        _handed_state if provided(taken_over, fields) else (lambda start, y, handed, p: begin(start, y, p))
+        _handed_state
+        if provided(taken_over, fields)
+        else (lambda start, y, handed, p: initial_state(start, y, p))
     ),
 )
 
@@ -159,12 +162,13 @@ def period_map(kind: np.dtype) -> Pointer:
 
 
 class Cases(NamedTuple):
-    """What drivers know of cases, one row each: how to run them, and what their states are.
+    """What callers of the map know of cases, one row each: how to run them, and what their states are.
 
-    ``records`` (n, bytes) for ``period_map``; natural sizes of the states and whether they only count time
-    (n, S), the input's period (s) and whether all of the input repeats after it (n,). ``impacts``: whether
-    velocities may jump. ``turns`` (n,): whether a case is run by ``closed_map`` and ``closed_records`` while
-    its contacts are closed; these have the first ``closed_states`` of its states.
+    ``records`` (n, bytes) for ``period_map``; ``scales`` (n, S): natural sizes of the states, ``clocks``
+    (n, S): whether they only count time; ``cycle`` (n,): period of the input (s), ``repeats`` (n,): whether
+    all of the input repeats after it. ``impacts``: whether velocities may jump. ``turns`` (n,): whether
+    ``closed_map`` follows a case, with ``closed_records``, while its contacts are closed; that system has the
+    first ``closed_states`` of the states.
     """
 
     period_map: Any
@@ -181,7 +185,7 @@ class Cases(NamedTuple):
 
 
 def prepared(records: np.ndarray) -> Cases:
-    """Compact records, shape (n,), for drivers."""
+    """Cases of compact records, shape (n,)."""
     n, states, closed = len(records), count_states(records), while_closed(records)
     smaller = records if closed is None else closed
     found = Cases(
@@ -232,9 +236,10 @@ def which_never_lock(records, proved):
 
 @inner
 def run_case(cases, number, first, periods, y, keeping, memory):
-    """Run a case from phase 0 of period ``first``; the states y (n,) move along. Returns how it ended.
+    """Run a case from phase 0 of period ``first``; y (n,) is replaced by the state reached.
 
-    A case that takes turns begins with closed contacts if its gaps, and their rates, are zero.
+    Returns how the run ended. It begins with the system for closed contacts, if the case has one and gaps and
+    their rates are zero.
     """
     memory.handed[TIME] = np.nan
     closed = cases.turns[number]

@@ -1,4 +1,4 @@
-"""Steady responses of many cases by shooting (shooting.py), each from a state nearby: for fits."""
+"""Steady responses of many cases by shooting (shooting.py), each from a neighbour's state: for fits."""
 
 from collections.abc import Sequence
 from math import ceil, pi
@@ -22,7 +22,7 @@ LAG_TIMES = 16.0
 
 
 class Warm(NamedTuple):
-    """Start of a search for steady responses, one row per case: where those of neighbours were found.
+    """Warm start of a search for steady responses, one row per case: what was found for a neighbour.
 
     ``state`` (n, S) at phase 0 (NaN: nowhere; start at rest), ``period`` (n,) of the response in forcing
     periods (0: it does not repeat), ``map`` (n, S, S) the derivative of the state a period later by
@@ -42,7 +42,7 @@ class Warm(NamedTuple):
         return Warm(*(each[rows] for each in self))
 
     def where(self, chosen: np.ndarray, other: "Warm") -> "Warm":
-        """Rows from another where ``chosen`` (n,), else from this one."""
+        """The rows with those of another one where ``chosen`` (n,) is true."""
         found = Warm(*(each.copy() for each in self))
         for mine, its in zip(found, other, strict=True):
             mine[chosen] = its[chosen]
@@ -50,13 +50,13 @@ class Warm(NamedTuple):
 
 
 def at_rest(cases: int) -> Warm:
-    """Start without neighbours."""
+    """Start at rest, without neighbours."""
     n = state_count()
     return Warm(np.full((cases, n), np.nan), np.zeros(cases, np.int64), np.full((cases, n, n), np.nan))
 
 
 def joined(some: Sequence[Warm]) -> Warm:
-    """Rows of all, one after the other."""
+    """The rows of several, one after the other."""
     return Warm(*map(np.concatenate, zip(*some, strict=True)))
 
 

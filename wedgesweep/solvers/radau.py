@@ -1,8 +1,8 @@
 """scipy's Radau, mode by mode: it never steps across a corner of the equations.
 
-Each call of ``solve_ivp`` follows one mode until one of its event functions reaches zero. Right-hand side
-and event functions are compiled; what remains is scipy's. Contacts that may open take turns with contacts
-that hold, as in period_map.py.
+Each call of ``solve_ivp`` follows one mode until one of its event functions reaches zero. Right-hand side and
+event functions are compiled; what remains is scipy's. Two systems take turns in following a suspension whose
+joints can open, as in period_map.py.
 """
 
 from collections import Counter
@@ -34,7 +34,7 @@ STEPS_PER_PERIOD, STEPS_HELD = 16, 64
 LOOK_AHEAD = 1e-8
 # Error of the place of a minimum, as a share of a step.
 CLOSE = 1e-9
-# When a mode ends where it began, its first step is made shorter, down to this share of a period.
+# If a mode ends where it began, its first step is divided by SHORTER, down to this share of a period.
 SHORTER, SHORTEST = 10.0, 1e-13
 # While a run settles, its tolerance may be this much coarser.
 COARSER = 100.0
@@ -100,7 +100,7 @@ def solve(
 
 
 def _taking_turns(case: np.ndarray) -> list[np.ndarray]:
-    """A compact record, and that of the system which follows it while contacts are closed, if it has one."""
+    """A compact record, and the record for closed contacts if it has one and no state of it can lock."""
     closed = while_closed(case)
     return [case] if closed is None or not system.never_locks(case) else [case, closed]
 
@@ -135,11 +135,11 @@ class _Run:
         return Trajectory(self.samples, self.sums, self.window.periods, dict(self.statistics))
 
     def _use(self, case: np.ndarray) -> None:
-        """Let a system follow the motion from here on."""
+        """Follow the motion from here on with the system of another record."""
         self.case, self.scales = case, system.scales(case)[0]
 
     def _full(self, y: np.ndarray) -> np.ndarray:
-        """The state in the larger of two systems: closed contacts have no gap."""
+        """The state in the larger of two systems: the gaps of closed contacts are 0."""
         return np.append(y, np.zeros(self.all_scales.size - y.size))
 
     def _handed_over(self, t: float, y: np.ndarray, mode: Mode) -> tuple[np.ndarray, Mode]:
@@ -153,7 +153,7 @@ class _Run:
         return y, mode
 
     def _settle(self, y: np.ndarray, mode: Mode, settled: float | None) -> tuple[np.ndarray, Mode]:
-        """Follow the modes to the kept part of the window; it is moved to where the state repeats."""
+        """Follow the modes to the kept part of the window, which begins earlier if the state repeats."""
         if settled is None:
             return self._follow(0.0, self.window.keep, y, mode)
         most, close = self.window.settle_periods, self.all_scales * settled
@@ -185,9 +185,9 @@ class _Run:
             if not self._just_passed(place):
                 return t, y, place  # it came at the same time as the event before
         places = np.flatnonzero(np.isfinite(ahead)).tolist()
-        held = system.holds(mode, self.case)
-        result = self._integrate(t, stop, y, mode, places, held)
-        if held:
+        at_rest = system.holds(mode, self.case)
+        result = self._integrate(t, stop, y, mode, places, at_rest)
+        if at_rest:
             _truncate_at_grazing(result, lambda t: system.events(t, result.sol(t), mode, self.case)[places])
         reached = [place for place, times in zip(places, result.t_events, strict=False) if times.size]
         if reached and result.t[-1] == t:
@@ -215,7 +215,7 @@ class _Run:
             raise CaseError(message, "solver_failure")
 
     def _integrate(
-        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], held: bool
+        self, t: float, stop: float, y: np.ndarray, mode: Mode, places: list[int], at_rest: bool
     ) -> Any:
         result = solve_ivp(
             self._rate(mode),
@@ -224,10 +224,10 @@ class _Run:
             method=SmallRadau if y.size == 2 else Radau,
             jac=lambda t, y: system.jacobian(t, y, mode, self.case),
             events=[*(self._event(t, mode, place) for place in places), _turn],
-            dense_output=held or t >= self.window.keep,
+            dense_output=at_rest or t >= self.window.keep,
             rtol=self.rtol,
             atol=ABSOLUTE * self.rtol * self.scales,
-            max_step=self.period / (STEPS_HELD if held else STEPS_PER_PERIOD),
+            max_step=self.period / (STEPS_HELD if at_rest else STEPS_PER_PERIOD),
             first_step=min(self.first_step, stop - t) if self.first_step else None,
         )
         self._check(result)
@@ -306,10 +306,10 @@ def _turn(t: float, y: np.ndarray) -> float:
 
 
 def _truncate_at_grazing(result: Any, values: Callable[[float], np.ndarray]) -> None:
-    """Let a piece that ``solve_ivp`` made, with its dense output, end where an event function is first zero.
+    """Let a result of ``solve_ivp``, with dense output, end where an event function is first zero.
 
-    One that passes zero and comes back within a step is not seen by looking at the step's ends.
-    ``values``: the event functions (k,) at a time, in the order of the first k events.
+    ``solve_ivp`` looks at the ends of each step, and misses one that passes zero and comes back within a
+    step. ``values``: the event functions (k,) at a time, in the order of the first k events.
     """
     at_ends = np.array([values(t) for t in result.t])
     for i in range(1, len(at_ends) - 1):
@@ -325,7 +325,7 @@ def _truncate_at_grazing(result: Any, values: Callable[[float], np.ndarray]) -> 
 
 
 def _first_zero(values: Callable[[float], np.ndarray], k: int, before: float, after: float) -> float:
-    """When an event function is first zero between two times that its minimum lies between; inf if never."""
+    """Time at which an event function is first zero between two times around its minimum; inf if never."""
 
     def value(t: float) -> float:
         return float(values(t)[k])
@@ -338,7 +338,7 @@ def _first_zero(values: Callable[[float], np.ndarray], k: int, before: float, af
 
 
 def _end_at(result: Any, t: float, k: int) -> None:
-    """End a piece at a time, with event k."""
+    """Let a result of ``solve_ivp`` end at a time, with event k."""
     y = result.sol(t)
     kept = result.t < t
     result.t, result.y = np.append(result.t[kept], t), np.column_stack([result.y[:, kept], y])

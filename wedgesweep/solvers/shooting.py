@@ -16,7 +16,7 @@ import numpy as np
 from wedgesweep.compiled import allocating, inlined, inner
 from wedgesweep.hybrid.accumulators import clear
 from wedgesweep.hybrid.state import OK
-from wedgesweep.solvers.linear_algebra import inverted, spectral_radius
+from wedgesweep.solvers.linear_algebra import inverted, places_of, spectral_radius
 from wedgesweep.solvers.period_detection import CLOSER, LONGEST_PERIOD, detected_period, guessed_period
 from wedgesweep.solvers.period_map import run_case
 
@@ -30,10 +30,10 @@ NEWTON_INTERVAL = 8
 # If the distance is above STALE times the last one, J is computed again; with a new J, Newton's method has
 # failed if it is above GAIN times the last one.
 STALE, GAIN = 0.2, 0.5
-# Share of a period by which a clock grows if nothing resets it, less rounding; and its reading, in periods,
-# in a response in which nothing ever does.
+# Share of a period by which a clock grows at least if nothing resets it; and its value, in periods, in a
+# response in which nothing ever does.
 GROWN, CONTACT_TIME_LIMIT = 1.0 - 1e-9, 100.0
-# Below this distance the next period may be the last one, and is kept.
+# Below this distance of a state from its image the next run may be the last one, and is kept.
 KEPT_BELOW = 1e-3
 # Periods of integration where a spurious tone keeps the input from repeating.
 PERIODS_UNDER_TWO_TONES = 30
@@ -67,7 +67,7 @@ def shooting(cases, number, accuracy, memory, records):
 
 @inlined
 def run_map(first, periods, y, keeping, shooting):
-    """Run the case from phase 0 of period ``first``; y (n,) moves along. Returns the outcome."""
+    """Run the case from phase 0 of period ``first``; y (n,) is replaced. Returns the outcome."""
     return run_case(shooting.cases, shooting.number, first, periods, y, keeping, shooting.memory)
 
 
@@ -94,12 +94,13 @@ def copy(source, target):
 
 @inner
 def _distance(a, b, size):
-    """Largest difference of two states in their units."""
+    """Largest difference of two states over their natural sizes; NaN if one of these is NaN."""
     largest = 0.0
     for i in range(size.size):
         difference = abs(a[i] - b[i]) / size[i]
-        if not difference <= largest:
-            largest = difference
+        if difference != difference:
+            return difference
+        largest = max(largest, difference)
     return largest
 
 
@@ -115,10 +116,10 @@ def _moving(y, periods, shooting):
 
 @allocating
 def _run(y, periods, keeping, shooting):
-    """Run some periods; y moves along. Returns the outcome.
+    """Run some periods; y is replaced by the state reached. Returns the outcome.
 
     A clock that was not reset although all other states came back never will be; nor will one that was not
-    reset in as many periods as a response may have.
+    reset in as many periods as a response may have. Both are set to CONTACT_TIME_LIMIT.
     """
     before, cycle = y.copy(), shooting.cycle
     outcome = run_map(0, periods, y, keeping, shooting)
@@ -132,7 +133,7 @@ def _run(y, periods, keeping, shooting):
 
 @allocating
 def monodromy(y, image, periods, moves, jacobian, shooting):
-    """Write J at y, whose image is known; returns the outcome and the periods run."""
+    """Write J at y, whose image is known, by differences; returns the outcome and the periods run."""
     jacobian[:] = 0.0
     size = shooting.size
     run = 0
@@ -152,20 +153,9 @@ def monodromy(y, image, periods, moves, jacobian, shooting):
 
 
 @allocating
-def _places(moves):
-    """Indices of the states that move."""
-    places, count = np.empty(moves.size, np.int64), 0
-    for i in range(moves.size):
-        if moves[i]:
-            places[count] = i
-            count += 1
-    return places[:count]
-
-
-@allocating
 def _part(jacobian, moves):
-    """J of the states that move."""
-    places = _places(moves)
+    """Rows and columns of J for the states that move."""
+    places = places_of(moves)
     part = np.empty((places.size, places.size))
     for i in range(places.size):
         for j in range(places.size):
@@ -175,7 +165,7 @@ def _part(jacobian, moves):
 
 @inner
 def known(matrix):
-    """Whether all of a matrix is finite."""
+    """Whether all numbers of a matrix are finite: NaN stands for what is not known."""
     for i in range(matrix.shape[0]):
         for j in range(matrix.shape[1]):
             if not isfinite(matrix[i, j]):
@@ -195,7 +185,10 @@ def _newton_matrix(part):
 
 @allocating
 def _stable_and_regular(jacobian, moves):
-    """Whether J is known, the response stable by it, and its position determined."""
+    """Whether J is known, its eigenvalues are inside the unit circle, and I - J is regular.
+
+    If I - J is singular the mean position of the response is not determined.
+    """
     if not known(jacobian):
         return False
     part = _part(jacobian, moves)
@@ -213,7 +206,7 @@ def _stable_and_regular(jacobian, moves):
 @allocating
 def _newton_step(y, image, jacobian, moves, size):
     """Newton's next state."""
-    places = _places(moves)
+    places = places_of(moves)
     inverse = _newton_matrix(_part(jacobian, moves))[0]
     following = image.copy()
     for i in range(places.size):
@@ -226,7 +219,7 @@ def _newton_step(y, image, jacobian, moves, size):
 
 @allocating
 def _update(jacobian, y, image, before, image_before, size):
-    """Broyden's update of J from two states and their images, unless they are too close to tell."""
+    """Broyden's update of J from two states and their images, unless the states are too close together."""
     step, square = np.empty(size.size), 0.0
     for i in range(size.size):
         step[i] = (y[i] - before[i]) / size[i]
@@ -243,23 +236,24 @@ def _update(jacobian, y, image, before, image_before, size):
 
 @inner
 def _leave_out_closed(moves, y, shooting):
-    """Leave out states that a contact holds at y, and not at its image: they can only change to one side."""
+    """Leave out states that a closed contact holds at y: they are 0, and can change to one side only."""
     for i in range(moves.size):
         moves[i] = moves[i] and not (shooting.cases.impacts and y[i] == 0.0)
 
 
 @allocating
 def newton_shooting(y, periods, jacobian, most, shooting):
-    """Newton's method from y for a state that comes back; J is computed where it is unknown or out of date.
+    """Newton's method from y for a state that comes back; J is computed if it is unknown or out of date.
 
-    Returns whether y repeats now, the outcome and the periods run; if y repeats the last of them are kept.
-    If the method fails, y is the state closest to its own image so far.
+    Returns whether y now repeats, the outcome and the periods run; if y repeats the memory keeps the last of
+    them. If the method fails, y is the image of the state that came closest to its own image.
     """
     size = shooting.size
     before, image_before, best = y.copy(), y.copy(), y.copy()
-    shortest, last, fresh, run = np.inf, np.inf, False, 0
-    # Whether the monodromy matrix has passed the test of stability once.
-    accepted = False
+    # Distances of the state from its image: ``now``, in the step before, and the shortest so far.
+    last, shortest, run = np.inf, np.inf, 0
+    # Whether J was computed in the step before, and whether it has passed the test of stability once.
+    fresh = accepted = False
     while run < most:
         image = y.copy()
         keeping = last < KEPT_BELOW or run == 0
@@ -287,7 +281,7 @@ def newton_shooting(y, periods, jacobian, most, shooting):
         if accepted:
             _update(jacobian, y, image, before, image_before, size)
         if now > STALE * last or not (accepted or _stable_and_regular(jacobian, moves)):
-            if (fresh and now > GAIN * last) or run + periods * (1 + _places(moves).size) > most:
+            if (fresh and now > GAIN * last) or run + periods * (1 + places_of(moves).size) > most:
                 break
             outcome, more = monodromy(y, image, periods, moves, jacobian, shooting)
             run += more
@@ -363,7 +357,7 @@ def settle(y, periods, jacobian, shooting):
     ``periods``: period of the response that y should be close to, for which Newton's method is tried first;
     0 if none is known. y and J are updated in place; J is that over one period of the response.
     """
-    size, most, run = shooting.size, shooting.most_periods, 0
+    most, run = shooting.most_periods, 0
     if not known(y.reshape(1, y.size)):
         y[:], periods = 0.0, 0
         jacobian[:] = np.nan
@@ -379,6 +373,16 @@ def settle(y, periods, jacobian, shooting):
         if found.outcome != OK:
             # The neighbour's state may be impossible in this case: rest decides.
             y[:] = 0.0
+    return _integrate(y, periods, jacobian, run, shooting)
+
+
+@allocating
+def _integrate(y, periods, jacobian, run, shooting):
+    """Integrate from y until the state repeats, or Newton's method, tried now and then, finds one that does.
+
+    As ``settle``; ``periods``: period of the response over which J was taken, ``run``: periods run before.
+    """
+    size, most = shooting.size, shooting.most_periods
     past, back = np.empty((LONGEST_PERIOD, size.size)), np.empty(LONGEST_PERIOD)
     past[:] = np.inf
     count = 0

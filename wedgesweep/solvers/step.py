@@ -12,7 +12,10 @@ ABSOLUTE = 1e-2
 
 
 class Step(NamedTuple):
-    """A step from t, h (s) long: states and rates at both ends, and the coefficients of its dense output."""
+    """A step from t, h (s) long: states and rates at both ends, and the coefficients of its dense output.
+
+    With s = share, y(s) = start + s (rise + (1 - s) (bend + s (turn + (1 - s) quartic))).
+    """
 
     t: float
     h: float
@@ -27,8 +30,8 @@ class Step(NamedTuple):
 
 
 @inlined
-def connected(t, h, start, end, start_rate, end_rate, quartic):
-    """A step whose dense output is Hermite's cubic through both ends plus a term of order 4."""
+def with_dense_output(t, h, start, end, start_rate, end_rate, quartic):
+    """A step whose dense output is Hermite's cubic through both ends plus a term of order 4, ``quartic``."""
     rise = combination(1.0, (1.0, -1.0), (end, start))
     bend = combination(1.0, (h, -1.0), (start_rate, rise))
     turn = combination(1.0, (1.0, -h, -1.0), (rise, end_rate, bend))
@@ -36,7 +39,7 @@ def connected(t, h, start, end, start_rate, end_rate, quartic):
 
 
 @inlined
-def inside(share, step):
+def dense_output(share, step):
     """State at a share of a step."""
     rest = 1.0 - share
     mixed = share * rest
@@ -45,8 +48,8 @@ def inside(share, step):
 
 
 @inlined
-def slope(share, step):
-    """Derivative of ``inside`` by the share."""
+def dense_slope(share, step):
+    """Derivative of ``dense_output`` by the share."""
     rest = 1.0 - share
     weights = (1.0, rest - share, share * (2.0 - 3.0 * share), 2.0 * share * rest * (rest - share))
     return combination(1.0, weights, (step.rise, step.bend, step.turn, step.quartic))
@@ -54,7 +57,7 @@ def slope(share, step):
 
 @inlined
 def over_tolerance(error, y, end, rtol, p):
-    """Error over the tolerance: root mean square over all states that are not zero."""
+    """Error over the tolerance: root mean square over the states, but for those that are 0 at both ends."""
     scales = error_scales(p)
     total, count = 0.0, 0
     for i in range(len(y)):

@@ -35,7 +35,7 @@ class Window:
 
 @dataclass(frozen=True, eq=False)
 class TimedWindow(Window):
-    """A window with sample times of one's own: ``offsets`` (s, increasing, shape (n,)) from ``keep``."""
+    """A window with given sample times: ``offsets`` (s, increasing, shape (n,)) from ``keep``."""
 
     offsets: np.ndarray
 

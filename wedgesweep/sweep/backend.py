@@ -14,7 +14,7 @@ from joblib._parallel_backends import LokyBackend
 from wedgesweep.errors import SweepError
 from wedgesweep.processes import end_with
 
-# Tasks that a worker has, or that wait for it.
+# Number of tasks per worker that are sent out at a time.
 SENT_AHEAD = 2
 
 
@@ -22,7 +22,8 @@ SENT_AHEAD = 2
 class Pool:
     """Workers: ``parallel()`` is a joblib.Parallel on those that are there now.
 
-    A joblib.Parallel is of no more use after one of the errors ``lost``, which show that a worker has died.
+    The errors ``lost`` show that a worker has died; after one of them that joblib.Parallel cannot be used
+    again.
     """
 
     parallel: Callable[[], joblib.Parallel]

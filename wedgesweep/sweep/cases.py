@@ -15,7 +15,7 @@ from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import transients, variables
 from wedgesweep.sweep.batch import solve_batch
-from wedgesweep.sweep.continuation import solve_lines
+from wedgesweep.sweep.continuation import solve_rows
 from wedgesweep.systems import example
 
 SUSPENSION = "suspension"
@@ -76,7 +76,7 @@ def solve_cases(
     Parameters
     ----------
     cases : structured array, shape (n,)
-        Parameter records (see parameters.record); in a continuation whole lines of the grid.
+        Parameter records (see parameters.record); in a continuation whole rows (see chunks.Rows).
     indices : array, shape (n,)
         Indices of the cases in the sweep.
     settings : Settings
@@ -92,7 +92,7 @@ def solve_cases(
         Records of the cases.
     """
     if settings.transient is None and settings.continuation:
-        return solve_lines(cases, indices, settings, dtype)
+        return solve_rows(cases, indices, settings, dtype)
     if settings.transient is None and settings.method == "event-driven":
         return solve_batch(cases, indices, settings, dtype)[0]
     records = variables.blank(dtype, indices)

@@ -61,7 +61,7 @@ class Rows:
         return np.flatnonzero(left)
 
     def chunks(self, rows: Sequence[int] | np.ndarray, method: str) -> Iterator[np.ndarray]:
-        """Divide rows into the chunks that jobs solve: one slow row, or many fast ones.
+        """Divide rows into the chunks that jobs solve: one row for Radau, many for the event-driven solver.
 
         A chunk takes rows from all over the grid: the cost of a case varies along the grid, so that chunks of
         neighbours would leave some jobs idle at the end.

@@ -14,7 +14,7 @@ from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
 SECONDS = 0.3
-# Of a Radau run of a set number of periods, one in so many is run, as each takes about as long.
+# A Radau run of a given number of periods is timed over the share 1/PART of them, as all take about as long.
 PART = 4
 GOLDEN = 0.6180339887498949
 

@@ -35,10 +35,10 @@ def differences(found: Mapping[str, str], expected: Mapping[str, str]) -> list[s
     Both may also hold the ``config`` as TOML text, so that changed keys can be named.
     """
     keys = [key for key in expected if found.get(key) != expected[key] and key != "config"]
-    return [words for key in keys for words in _in_words(key, found, expected)]
+    return [each for key in keys for each in _descriptions(key, found, expected)]
 
 
-def _in_words(key: str, found: Mapping[str, str], expected: Mapping[str, str]) -> list[str]:
+def _descriptions(key: str, found: Mapping[str, str], expected: Mapping[str, str]) -> list[str]:
     if key == "source_sha256":
         return ["the code of wedgesweep has changed"]
     if key == "config_sha256":

@@ -25,12 +25,12 @@ except ImportError:  # Windows: two runs at once are not detected
     fcntl = None  # type: ignore[assignment]
 
 
-# A header holds at least these; with the first one every journal begins.
+# Keys that every header holds; each journal begins with the first one.
 _REQUIRED = {"config", "config_sha256"}
 _BEGINNING = b'{"config": "'
 
 
-# What a file system says that has no locks.
+# Errors of file systems that have no locks.
 NO_LOCKS = (errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.ENOLCK, errno.EINVAL)
 
 
@@ -138,7 +138,7 @@ def _suppressed(numbers: tuple[int, ...]) -> Iterator[None]:
 
 
 def _kept(path: Path, dtype: np.dtype, expected: dict[str, str]) -> tuple[int, np.ndarray]:
-    """Length of the complete part of the file, and its records; 0 if even the header is cut off."""
+    """Length (bytes) of the intact part of the file, 0 if even the header is cut off, and its records."""
     content = path.read_bytes()
     _require_journal(path, content)
     if b"\n" not in content:
@@ -199,7 +199,7 @@ def _checksums(framed: np.ndarray) -> list[int]:
 
 
 def _whole_records(content: bytes, start: int, dtype: np.dtype) -> tuple[int, np.ndarray]:
-    """Length of the journal up to its first damaged record, and the records before that."""
+    """Length (bytes) of the journal up to its first damaged record, and the records before that."""
     framed = np.frombuffer(content, _framed(dtype), (len(content) - start) // _framed(dtype).itemsize, start)
     torn = np.flatnonzero(framed["checksum"] != _checksums(framed))
     whole = framed[: torn[0]] if torn.size else framed

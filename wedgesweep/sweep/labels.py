@@ -1,11 +1,11 @@
-"""What the variables of a dataset are called where they are not those of the suspension."""
+"""Long names of a dataset's variables where they differ from those of a suspension with bilateral joints."""
 
 from typing import TypedDict
 
 from wedgesweep.config import Config
 from wedgesweep.sweep.variables import OF_LIFT_OFF
 
-# What only datasets of unilateral joints have, and what other variables mean there.
+# Variables that only datasets of unilateral joints have, and what others mean there.
 _OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)
 _OPEN: dict[str, str | None] = {
     "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
@@ -13,9 +13,9 @@ _OPEN: dict[str, str | None] = {
     "stick_fraction": "share of time stuck (coulomb) or with the column face closed and below the "
     "threshold velocity",
 }
-# Where the input does not repeat. A wedge that lifts off does not move with the bolster: what is left of the
-# inertia of both is no force on either.
-_OPEN_IN_ALL: dict[str, str | None] = {
+# The same where the input does not repeat. ``force`` takes wedge and bolster to move together, which they do
+# not if a wedge lifts off.
+_OPEN_TRANSIENT: dict[str, str | None] = {
     "impacts": "impacts of a wedge in all",
     "impact_energy": "energy lost in impacts in all, beside dissipated_energy",
     "force": None,
@@ -32,7 +32,7 @@ class Attributes(TypedDict, total=False):
 
 
 def attributes(config: Config) -> Attributes:
-    """Return what tells how to read the dataset of an oscillator; nothing for the suspension."""
+    """Return the attributes that the dataset of an oscillator needs; none for the suspension."""
     if config.system != "oscillator":
         return {}
     return {
@@ -43,14 +43,14 @@ def attributes(config: Config) -> Attributes:
     }
 
 
-def of(config: Config) -> dict[str, str | None]:
+def long_names(config: Config) -> dict[str, str | None]:
     """Return the long names of variables by name, None for those that the system does not have."""
     if config.opens:
-        return _OPEN | (_OPEN_IN_ALL if config.transient else {})
+        return _OPEN | (_OPEN_TRANSIENT if config.transient else {})
     if config.system != "oscillator":
         return _OF_LIFT_OFF
     if config.transient:
-        return _of_transients(config)
+        return _of_transient(config)
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced
     x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
@@ -78,7 +78,7 @@ def of(config: Config) -> dict[str, str | None]:
     }
 
 
-def _of_transients(config: Config) -> dict[str, str | None]:
+def _of_transient(config: Config) -> dict[str, str | None]:
     """Long names of an oscillator whose input does not repeat."""
     contact = config.oscillator["contact"]
     relative = contact == "base" and not config.forced

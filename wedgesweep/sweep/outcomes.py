@@ -41,7 +41,7 @@ class CaseResult(NamedTuple):
 
     @property
     def lifted(self) -> bool:
-        """Whether a joint that should lift off was held: the model is outside of its validity."""
+        """Whether a bilateral joint pulled where a real one would open: the model is outside its validity."""
         return self.lift_off_fraction > 0.0
 
     def __str__(self) -> str:
@@ -98,7 +98,7 @@ class Outcomes:
 
     @property
     def lifted(self) -> int:
-        """Number of cases that were solved, but lie outside of the model's validity."""
+        """Number of cases that were solved, but lie outside the model's validity."""
         return int(((self.status == Outcome.OK) & (self.lift_off_fraction > 0.0)).sum())
 
 

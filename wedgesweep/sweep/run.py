@@ -38,8 +38,8 @@ log = logging.getLogger(__name__)
 # Called with the records of cases as they finish, and the number of all cases of the sweep.
 Progress = Callable[[np.ndarray, int], None]
 
-# How a case can end by the load or the state of the machine: such a case is run again.
-PASSING = (Outcome.TIME_LIMIT, Outcome.WORKER_LOST)
+# Outcomes that depend on the load or the state of the machine: such a case is run again when a sweep resumes.
+RETRIED = (Outcome.TIME_LIMIT, Outcome.WORKER_LOST)
 
 
 class CaseFailedError(SweepError):
@@ -195,7 +195,7 @@ class Sweep:
         return self.assembled(self.solve(np.arange(self.count)), started)
 
     def solve(self, indices: np.ndarray, case_timeout: float | None = None) -> np.ndarray:
-        """Solve the cases with these indices (in a continuation: whole lines) in this process."""
+        """Solve the cases with these indices (in a continuation: whole rows) in this process."""
         limit = self._limit(case_timeout)
         return solve_cases(self.config.records(indices), indices, self.settings, limit, self.dtype)
 
@@ -206,7 +206,7 @@ class Sweep:
     def _all_records(
         self, kept: Journal, pool: Pool, case_timeout: float | None, tell: Callable[[str], None]
     ) -> Generator[np.ndarray, None, None]:
-        whole = kept.records[~np.isin(kept.records["status"], PASSING)]
+        whole = kept.records[~np.isin(kept.records["status"], RETRIED)]
         complete = self.rows.complete(whole["index"])
         todo = self.rows.without(complete)
         if len(todo):
@@ -261,7 +261,7 @@ class Sweep:
             dataset.coordinates(coords, self.sizes),
             shape,
             {**self._physics(), **provenance.attributes(self.config, started, self.command)},
-            labels.of(self.config),
+            labels.long_names(self.config),
         )
 
     def _time(self) -> dict[str, Any]:

@@ -60,8 +60,8 @@ def _columns(ds: xr.Dataset, name: str) -> Iterator[tuple[str, np.ndarray]]:
     unit = given.attrs.get("units", UNITS.get(name, "1"))
     bracket = "" if unit in ("", "1") else f" [{unit}]"
     inner = [dim for dim in given.dims if dim not in dims]
-    worded = _worded(given)
-    whole = worded if inner else worded.broadcast_like(ds["status"])
+    meanings = _meanings_of(given)
+    whole = meanings if inner else meanings.broadcast_like(ds["status"])
     values = whole.transpose(*dims, *inner).values.reshape(ds["status"].size, -1)
     labels = [""]
     for dim in inner:
@@ -70,8 +70,8 @@ def _columns(ds: xr.Dataset, name: str) -> Iterator[tuple[str, np.ndarray]]:
         yield f"{name}{label}{bracket}", column
 
 
-def _worded(given: xr.DataArray) -> xr.DataArray:
-    """Flags as the words that they stand for."""
+def _meanings_of(given: xr.DataArray) -> xr.DataArray:
+    """Flags as the words that they stand for; other variables as they are."""
     if "flag_meanings" not in given.attrs:
         return given
     words = dict(zip(given.attrs["flag_values"].tolist(), given.attrs["flag_meanings"].split(), strict=True))

@@ -1,4 +1,4 @@
-"""What an unfinished sweep has come to, read from its journal."""
+"""Results of an unfinished sweep, read from its journal."""
 
 from datetime import UTC, datetime
 from pathlib import Path

@@ -29,13 +29,14 @@ from wedgesweep.sweep.run import Sweep
 RTOL, TIGHTER = 1e-9, 1e-10
 # Wall time (s) after which Radau gives up a case.
 TIME_LIMIT = 600.0
-# Largest difference of amplitude ratios, as a share of the ratio or of a tenth, and of stick fractions. Radau
-# verifies nothing where its results at both tolerances differ by more than STEADY of that.
-RATIO_BOUND, SMALL_RATIO, STICK_BOUND, STEADY = 1e-3, 0.1, 1e-2, 0.1
+# Largest difference of amplitude ratios, as a share of the ratio or of SMALL_RATIO, and of stick fractions.
+# Radau cannot verify a case in which its results at both tolerances differ by more than the share UNCERTAIN
+# of these.
+RATIO_BOUND, SMALL_RATIO, STICK_BOUND, UNCERTAIN = 1e-3, 0.1, 1e-2, 0.1
 
 
 class Numbers(NamedTuple):
-    """What is compared of a case."""
+    """Numbers of a case that are compared: amplitude ratio and stick fraction."""
 
     ratio: float
     stick: float
@@ -87,7 +88,7 @@ class Verification:
 class _Task(NamedTuple):
     """One case for Radau: its parameter record, shape (1,), its start and what is stored of it."""
 
-    words: str
+    description: str
     record: np.ndarray
     window: Window
     start: np.ndarray
@@ -146,14 +147,16 @@ def _verified(task: _Task) -> VerifiedCase:
     try:
         numbers = _solved(task, RTOL)
         if task.stored.over_bound(numbers) <= 1.0:
-            return VerifiedCase(task.words, task.stored, numbers)
+            return VerifiedCase(task.description, task.stored, numbers)
         tighter = _solved(task, TIGHTER)
     except CaseError as error:
-        return VerifiedCase(task.words, task.stored, Numbers(nan, nan), f"Radau fails: {error}")
+        return VerifiedCase(task.description, task.stored, Numbers(nan, nan), f"Radau fails: {error}")
     moved = numbers.apart(tighter)
-    unsteady = numbers.over_bound(tighter) > STEADY
-    message = f"Radau moves by {moved.ratio:.1g} itself from rtol {RTOL:g} to {TIGHTER:g}" if unsteady else ""
-    return VerifiedCase(task.words, task.stored, tighter, message)
+    uncertain = numbers.over_bound(tighter) > UNCERTAIN
+    message = (
+        f"Radau moves by {moved.ratio:.1g} itself from rtol {RTOL:g} to {TIGHTER:g}" if uncertain else ""
+    )
+    return VerifiedCase(task.description, task.stored, tighter, message)
 
 
 def _solved(task: _Task, rtol: float) -> Numbers:

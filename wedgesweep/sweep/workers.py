@@ -22,7 +22,8 @@ from wedgesweep.sweep import variables
 from wedgesweep.sweep.backend import SENT_AHEAD, Pool
 from wedgesweep.sweep.cases import Chunk, solve_chunk
 
-# Times that a case is tried alone, and losses after which a run ends if no case is their reason.
+# Times that a case is tried alone, and number of losses after which a run ends if no case is to blame for
+# them.
 TRIES, MOST_LOSSES = 2, 10
 TOLD = "a worker died, killed or out of memory; another one takes its place"
 MESSAGE = f"its worker died in each of {TRIES} tries, killed or out of memory"
@@ -80,7 +81,7 @@ class Workers:
             raise SweepError(message) from error
 
     def _alone(self, rows: np.ndarray) -> Records:
-        """Records of a chunk of which nothing else is solved at the time; halved until a case is to blame."""
+        """Records of a chunk that is solved while nothing else runs, halved until one case is to blame."""
         for _ in range(TRIES):
             try:
                 with closing(self._parallel([rows])) as parts:
@@ -113,7 +114,7 @@ class Workers:
 
 
 def _without(done: list[np.ndarray], parts: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
-    """What is left of parts, without the rows that are done."""
+    """The parts without the rows that are done; parts of which nothing is left are omitted."""
     rows = np.concatenate(done)
     left = (part[~np.isin(part, rows)] for part in parts)
     return (part for part in left if len(part))

@@ -1,4 +1,4 @@
-"""Mechanical systems: what each is, and which kit of parts its records need."""
+"""Mechanical systems, and the smallest kit of parts that a record of each needs."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ def state_count() -> int:
 
 
 def compact(parameters: np.ndarray) -> np.ndarray:
-    """Records, shape (n,), as compiled code gets them: without what they do not need."""
+    """Records, shape (n,), as compiled code gets them: without the parts that none of them needs."""
     for name, system in SYSTEMS.items():
         if name in (parameters.dtype.names or ()):
             return system.compact(parameters)
@@ -53,12 +53,15 @@ def _kits(parameters: np.ndarray) -> np.ndarray:
 
 
 def kits(parameters: np.ndarray) -> np.ndarray:
-    """Which kit of parts each of some records, shape (n,), needs: an integer, 0 for the smallest."""
+    """Number of the kit of parts that each record, shape (n,), needs.
+
+    Twice the number of the system's own kit (0: the smallest), plus 1 if the input is not a sine.
+    """
     return 2 * _kits(parameters) + has_series(parameters)
 
 
 def example(system: str, kit: int) -> np.ndarray:
-    """A case, shape (1,), of a kit, which sticks and slips."""
+    """A case, shape (1,), that needs a kit (see ``kits``), and sticks and slips."""
     if system == "suspension":
         opens = kit // 2 in suspension_parameters.OPENING
         joints = suspension_parameters.UNILATERAL if opens else suspension_parameters.BILATERAL
@@ -92,7 +95,7 @@ def moving_mass(parameters: np.ndarray) -> np.ndarray:
 
 
 def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Records, shape (n,), by the kit that they need: their places, and the compact records."""
+    """Yield the records, shape (n,), that need the same kit: their places, and the compact records."""
     needed = kits(parameters)
     for kit in np.unique(needed):
         rows = np.flatnonzero(needed == kit)

@@ -27,7 +27,7 @@ SERIES: list[tuple] = [("series", excitation.SERIES_FIELDS)]
 
 
 def effect_parts(names: Iterable[str]) -> list[tuple]:
-    """Parts of a record type for effects; those that adjust other parts have none."""
+    """Parts of a record type for effects; effects that adjust other parts have none of their own."""
     parts: list[tuple] = []
     for name in names:
         module = known.REGISTERED[name]
@@ -84,7 +84,7 @@ def set_effects(p: np.void, names: Iterable[str], effects: Numbers) -> None:
 
 
 def acting(p: np.void, names: Iterable[str]) -> list[str]:
-    """Which of some effects need mechanics of their own in a record."""
+    """Those of some effects that act in a record and need mechanics of their own."""
     effects = [known.EFFECTS[name] for name in names]
     return [
         each.name
@@ -100,7 +100,7 @@ def stacked(some: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def converted(rows: np.ndarray, kind: np.dtype) -> np.ndarray:
-    """Records, shape (n,), with the parts of another record type that they have."""
+    """Records, shape (n,), of another type: with those of its parts that the given ones have, and zeros."""
     if kind == rows.dtype:
         return rows
     small = np.zeros(rows.shape, kind)

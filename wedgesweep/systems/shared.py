@@ -1,4 +1,4 @@
-"""What all systems under a periodic input write alike for the interface of hybrid systems."""
+"""Functions of the interface of hybrid systems that are the same for all systems here."""
 
 from wedgesweep import excitation
 from wedgesweep.compiled import inlined
@@ -13,7 +13,7 @@ def repeats(p):
 
 
 def implement_shared(owner: str) -> None:
-    """Write these functions for the records that have a field ``owner``."""
+    """Implement these functions for the records that have a field ``owner``."""
     for declared, written in (
         (interface.scales, states.scales),
         (interface.error_scales, states.error_scales),

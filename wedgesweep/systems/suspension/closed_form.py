@@ -2,13 +2,13 @@
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.interface import closed_form, implement
-from wedgesweep.hybrid.recorder import keep_constant
+from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
-from wedgesweep.systems.suspension.first_event import slide
-from wedgesweep.systems.suspension.linear_slip import oscillator
-from wedgesweep.systems.suspension.linear_slip_sums import keep
+from wedgesweep.systems.suspension.breakaway import breakaway_time
+from wedgesweep.systems.suspension.first_event import slip_to_event
+from wedgesweep.systems.suspension.linear_slip import linear_oscillator
+from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import stuck
-from wedgesweep.systems.suspension.release import release
 from wedgesweep.systems.suspension.stick_slip import stick_slip
 
 
@@ -20,21 +20,21 @@ def _faces_closed(mode):
 @implement(closed_form, "base")
 @inner
 def follow(state, stop, p, keeping, recorder, counts):
-    """Follow a mode, and stick-slip, to its event or ``stop`` if it has a closed form."""
+    """See the interface: stick-slip follows several modes, else this follows one."""
     if p.friction.set_valued and p.geometry.always_well_posed and _faces_closed(state.mode):
         done, state, event = stick_slip(state, stop, p, keeping, recorder, counts)
         if done:
             return True, state, event
     t, y, mode, last_event, step = state
     if stuck(mode, p):
-        end, event = release(state, stop, p)
+        end, event = breakaway_time(state, stop, p)
         if keeping:
-            keep_constant(t, end, y, mode, recorder, p)
+            record_constant(t, end, y, mode, recorder, p)
         return True, State(end, y, mode, last_event, step), event
-    o = oscillator(y, mode, p)
-    if not o.linear:
+    oscillator = linear_oscillator(y, mode, p)
+    if not oscillator.linear:
         return False, state, NO_EVENT
-    end, x, velocity, event = slide(state, stop, o, p)
+    end, x, velocity, event = slip_to_event(state, stop, oscillator, p)
     if keeping:
-        keep(state, end, o, recorder, p)
+        record_slip(state, end, oscillator, recorder, p)
     return True, State(end, (x, velocity), mode, last_event, step), event

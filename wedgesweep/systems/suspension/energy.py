@@ -1,4 +1,4 @@
-"""Power in the frame of the table: what friction and damping take, what the base supplies."""
+"""Power of friction, of damping and of the base, in the frame of the table (of the base motion u)."""
 
 from wedgesweep.compiled import inlined
 from wedgesweep.effects import (
@@ -14,7 +14,7 @@ from wedgesweep.systems.suspension.modes import VELOCITY
 
 @inlined
 def friction_power(t, y, mode, now, p):
-    """Power (W) that friction takes on all faces, from the forces ``now``."""
+    """Power (W) that friction takes on all faces and on the guide, under the forces ``now``."""
     column_mu, bolster_mu = coefficients(t, y, mode, p)
     column = load_dependent_friction.coefficient(column_mu, now.column, p) * abs(now.column)
     bolster = load_dependent_friction.coefficient(bolster_mu, now.bolster, p) * abs(now.bolster)

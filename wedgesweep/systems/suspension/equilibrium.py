@@ -1,4 +1,4 @@
-"""Where the suspension rests without friction, its resonance, and the input that breaks it loose."""
+"""Equilibrium and resonance of the suspension without friction, and the input at which it breaks away."""
 
 from math import inf, nan, sqrt
 
@@ -9,7 +9,7 @@ from wedgesweep.effects import column_compliance, cubic_stiffness
 from wedgesweep.systems.suspension.newton import NO_FRICTION, Coefficients, Loads, reactions
 
 ITERATIONS = 100
-# Newton's method has arrived if a step is this share of what weight and preload deflect the bolster's spring.
+# Newton's method ends at steps of this share of the deflection of the bolster's spring by weight and preload.
 REACHED = 1e-12
 
 
@@ -22,9 +22,9 @@ def determinant(column_mu, bolster_mu, p):
 
 @inner
 def _response(wedge, vertical, lateral, mu, p):
-    """Accelerations z'' and Q'' under forces on wedge (up), bolster and column (outward).
+    """Accelerations z'' and Q'' under forces (N) on wedge and bolster (up) and column (outward).
 
-    At rest the side frame does not accelerate, so that its own support changes nothing.
+    In equilibrium the side frame does not accelerate either, so that a compliant fixture changes nothing.
     """
     g = p.geometry
     load = Loads(wedge * g.cos_column, wedge * g.sin_column, vertical, lateral, 0.0, 0.0)
@@ -34,7 +34,11 @@ def _response(wedge, vertical, lateral, mu, p):
 
 @compiled
 def equilibrium(p):
-    """Newton's method for z and Q (m) of the frictionless equilibrium; NaN where none holds by itself."""
+    """Frictionless equilibrium z and Q (m), by Newton's method; NaN if there is none, or no stable one.
+
+    ``rz``, ``rq``: z'' and Q'' that are left; ``zz``, ``zq``, ``qz``, ``qq``: derivatives of z'' and Q'' by z
+    and Q, such as ``qz`` of Q'' by z.
+    """
     s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
     cubic = cubic_stiffness.coefficient(p)
     yields, stiffness = column_compliance.acts(p), column_compliance.stiffness(p)
@@ -51,9 +55,9 @@ def equilibrium(p):
             dz, dq, stable = -rz / zz, 0.0, zz < 0.0
         else:
             zq, qq = _response(-s.wedge_spring * p.geometry.lift_ratio, 0.0, -stiffness, NO_FRICTION, p)
-            volume = zz * qq - zq * qz
-            dz, dq = -(rz * qq - zq * rq) / volume, -(zz * rq - rz * qz) / volume
-            stable = zz < 0.0 and volume > 0.0
+            jacobian = zz * qq - zq * qz
+            dz, dq = -(rz * qq - zq * rq) / jacobian, -(zz * rq - rz * qz) / jacobian
+            stable = zz < 0.0 and jacobian > 0.0
         z, deflection = z + dz, deflection + dq
         if abs(dz) + abs(dq) <= close:
             return (z, deflection) if stable else (nan, nan)
@@ -61,19 +65,20 @@ def equilibrium(p):
 
 
 @compiled
-def _stiffness_response(p):
+def _acceleration_per_displacement(p):
+    """Derivative of z'' by z (1/s^2), without friction and effects."""
     s, lift = p.suspension, p.geometry.column_ratio * p.geometry.cos_column
     return _response(-s.wedge_spring * lift, -s.bolster_spring, 0.0, NO_FRICTION, p)[0]
 
 
 def resonance(p: np.void) -> float:
     """Angular frequency (rad/s) of the suspension without friction and effects."""
-    return sqrt(-_stiffness_response(p))
+    return sqrt(-_acceleration_per_displacement(p))
 
 
 @compiled
-def _weight_and_inertia(direction, mu_d, p):
-    """Z'' at rest as friction lets go in a direction, and what each m/s^2 of the base adds to it."""
+def _acceleration_on_verge(direction, mu_d, p):
+    """Acceleration z'' at rest on the verge of slip in a direction, and its derivative by the base's u''."""
     s, g = p.suspension, p.geometry
     bolster = direction if g.bolster_ratio > 0.0 else -direction if g.bolster_ratio < 0.0 else 0.0
     mu = Coefficients(direction * mu_d, bolster * mu_d, 0.0, 0.0)
@@ -93,6 +98,6 @@ def breakaway_acceleration(p: np.void) -> float:
     """
     least = inf
     for direction in (1.0, -1.0):
-        at_rest, inertia = _weight_and_inertia(direction, float(p["friction"]["mu_d"]), p)
+        at_rest, inertia = _acceleration_on_verge(direction, float(p["friction"]["mu_d"]), p)
         least = min(least, abs(at_rest / inertia))
     return least

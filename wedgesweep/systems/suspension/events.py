@@ -23,10 +23,10 @@ from wedgesweep.systems.suspension.modes import (
     stuck,
 )
 from wedgesweep.systems.suspension.newton import UNDETERMINED, forces
-from wedgesweep.systems.suspension.set_valued import breakaway
+from wedgesweep.systems.suspension.set_valued import acceleration_on_breakaway
 
-# Places of the event functions beside those of the axes: normal forces, ends of the segment of travel (two),
-# time at rest. Those of the base model end with the normal forces.
+# Places of the event functions other than those of the axes: both normal forces, two ends of the segment of
+# travel, time at rest. The base model has those up to the normal forces.
 COLUMN_NORMAL, BOLSTER_NORMAL, BASE_EVENTS = 6, 7, 8
 TRAVEL, CLOCK = 2 * AXES, 2 * AXES + 2
 EVENTS = CLOCK + 1
@@ -60,7 +60,7 @@ def _slip_events(t, y, mode, p, out):
 
 @allocating
 def _held_events(t, y, mode, p, out):
-    """Write the events of held velocities: on both sides of the jump the slip accelerates towards it."""
+    """Write the events of held velocities: a jump holds one while slip on both sides accelerates to it."""
     sides = np.empty((2, WIDTH))
     for axis in range(AXES):
         if abs(branch(mode, axis)) == HELD:
@@ -82,16 +82,16 @@ def _kinematic_events(t, y, mode, p, out):
 
 @inlined
 def events(now, t, y, mode, p, out):
-    """Write the event functions, shape (EVENTS,), under the forces ``now`` (unused if held or stuck).
+    """Write the event functions, shape (EVENTS,), under the forces ``now`` (not used if held or stuck).
 
-    Units are m/s for slip velocities, m for the travel, N for normal forces, m/s^2 for what is held or
-    stuck; an event that the mode does not have is inf.
+    Units are m/s for slip velocities, m for the travel, N for normal forces, m/s^2 for a velocity that a jump
+    or sticking holds; an event that the mode does not have is inf.
     """
     for i in range(EVENTS):
         out[i] = inf
     if stuck(mode, p):
-        out[2 * COLUMN] = breakaway(t, y, -1, mode.segment, p)
-        out[2 * COLUMN + 1] = -breakaway(t, y, 1, mode.segment, p)
+        out[2 * COLUMN] = acceleration_on_breakaway(t, y, -1, mode.segment, p)
+        out[2 * COLUMN + 1] = -acceleration_on_breakaway(t, y, 1, mode.segment, p)
         return
     _kinematic_events(t, y, mode, p, out)
     if held(mode):
@@ -105,8 +105,8 @@ def events(now, t, y, mode, p, out):
 def _time_to_end(slip, rate, branch, threshold, p):
     """Time (s) in which a slip velocity reaches the end of its branch at a constant rate; inf: never.
 
-    Nor is the end of a sliding branch announced whose coefficient depends on velocity: it grows fast beyond
-    that end, where a step that aims at it would have stages.
+    It is inf as well on a sliding branch whose coefficient depends on velocity: a step that aims at the end
+    of the branch has stages beyond it, where the coefficient would grow fast.
     """
     if branch != 0 and not friction.constant(p):
         return inf
@@ -133,6 +133,7 @@ def expected_event(now, t, y, mode, p):
 
 @inlined
 def _is_kinematic(place, mode, p):
+    """Whether an event function needs no forces."""
     if stuck(mode, p) or place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         return False
     return place >= TRAVEL or abs(branch(mode, place // 2)) != HELD
@@ -140,7 +141,7 @@ def _is_kinematic(place, mode, p):
 
 @inner
 def event(place, t, y, mode, p, out):
-    """One of the event functions, which may be all that is written."""
+    """One of the event functions; ``out`` is not written in full."""
     if _is_kinematic(place, mode, p):
         _kinematic_events(t, y, mode, p, out)
     elif stuck(mode, p) or held(mode):

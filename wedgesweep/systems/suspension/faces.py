@@ -16,31 +16,31 @@ SLOWEST, SLOWEST_RATE = 1e-3, 1e-12
 @inlined
 def column_slip(y, p):
     """Slip velocity of the column face (m/s)."""
-    return p.geometry.column_ratio * y[VELOCITY] + _yielding(p.geometry.column_slip_ratio, y, p)
+    return p.geometry.column_ratio * y[VELOCITY] + _slip_by_column(p.geometry.column_slip_ratio, y, p)
 
 
 @inlined
 def bolster_slip(y, p):
     """Slip velocity of the bolster face (m/s)."""
-    return p.geometry.bolster_ratio * y[VELOCITY] + _yielding(p.geometry.bolster_slip_ratio, y, p)
+    return p.geometry.bolster_ratio * y[VELOCITY] + _slip_by_column(p.geometry.bolster_slip_ratio, y, p)
 
 
 @inlined
-def _yielding(ratio, y, p):
-    """Part of a slip velocity due to the motion of the column."""
+def _slip_by_column(ratio, y, p):
+    """Part of a slip velocity (m/s) due to the motion of a compliant column, Q'."""
     return ratio * column_compliance.velocity(y, p) if column_compliance.acts(p) else 0.0
 
 
 @inner
 def _out_of_plane(slip, t, p):
-    """Coefficient in the plane of a face that slips out of the plane, too."""
+    """Signed coefficient in the plane of a face that also slips out of the plane."""
     speed = max(cross_slip.speed(slip, t, p), SLOWEST * p.friction.v_t)
     return friction.sliding(speed, p) * slip / speed
 
 
 @inlined
 def _coefficient(slip, face, clock, highest, t, p):
-    """Signed coefficient of a face on a branch."""
+    """Signed coefficient of a face on the branch ``face``; ``highest``: its static coefficient."""
     if p.friction.set_valued and clock:
         return face * highest
     if face != 0 and cross_slip.acts(p):
@@ -60,7 +60,7 @@ def coefficients(t, y, mode, p):
 
 @inlined
 def slip_measure(axis, t, y, p):
-    """Measure of slip (m/s) that decides on the branch of an axis."""
+    """Measure of slip (m/s) that decides the branch of an axis."""
     if axis >= GUIDE:
         return y[VELOCITY]
     return cross_slip.speed(column_slip(y, p) if axis == COLUMN else bolster_slip(y, p), t, p)

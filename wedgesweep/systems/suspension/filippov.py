@@ -1,8 +1,8 @@
 """Jumps of friction that hold a velocity: Filippov's convex combination of both sides (1988).
 
 A jump holds the slip of a face at its threshold, or the bolster at rest where friction depends on the sign
-of z'. Several may hold at once: then each vertex of the combination is a mode of its own, and the jumps
-are resolved one after the other, so that all their velocities stay.
+of z'. If several hold at once, each combination of their sides (a vertex) is a mode of its own, and the jumps
+are resolved one after the other, so that all held velocities stay constant.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ WIDTH, POWER = 6, 5
 
 @inner
 def _vertex(mode, bits, order, p):
-    """Mode at a vertex: bit i is the side of the jump of axis ``order[i]``."""
+    """Mode at a vertex: bit i of ``bits`` is the side (1: higher) of the jump of axis ``order[i]``."""
     for i in range(order.size):
         axis = order[i]
         mode = with_branch(mode, axis, side(branch(mode, axis), axis, (bits >> i) & 1), p)
@@ -58,7 +58,7 @@ def both_sides(t, y, mode, first, p, out):
 
 @inner
 def _resolve(axis, t, y, low, high, p):
-    """Combine both sides of a jump, into the first, so that its measure of slip stays constant."""
+    """Combine both sides of a jump so that its measure of slip stays constant; ``low`` is replaced."""
     below = slip_rate(axis, t, y, low[0], low[1], p)
     above = slip_rate(axis, t, y, high[0], high[1], p)
     share = above / (above - below) if above != below else 0.5
@@ -80,8 +80,8 @@ def filippov_forces(t, y, mode, p):
 
 
 @inlined
-def contact_forces(t, y, mode, p):
-    """Forces on any mode but a stuck one."""
+def forces_of_mode(t, y, mode, p):
+    """Forces in any mode but a stuck one."""
     if held(mode):
         return filippov_forces(t, y, mode, p)[0]
     return forces(t, y, mode, p)
@@ -89,7 +89,7 @@ def contact_forces(t, y, mode, p):
 
 @inner
 def resolve_mode(t, y, mode, p):
-    """``contact_forces`` with the signs of the normal forces found: mode, forces, whether they are unique."""
+    """``forces_of_mode`` with the signs of the normal forces found: mode, forces, whether they are unique."""
     if held(mode):
         now, _, unique = filippov_forces(t, y, mode, p)
         return mode, now, unique

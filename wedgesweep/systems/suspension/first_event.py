@@ -1,8 +1,8 @@
 """The first event of linear slip.
 
 A scan with rotation matrices (no trigonometry) finds the interval of the first event, a safeguarded Newton
-iteration the event itself, to rounding error. Normal forces are watched only where the amplitudes of both
-parts of the motion allow them to vanish. The oscillator is in ``linear_slip.py``.
+iteration the event itself, to rounding error. Normal forces are watched only if the amplitudes of the forced
+and the free part of the motion allow them to vanish. The oscillator is in ``linear_slip.py``.
 """
 
 from math import inf, pi, sqrt
@@ -13,16 +13,16 @@ from wedgesweep.hybrid.search import Bracket, minimum, searched, zero_after_star
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.linear_slip import (
-    Oscillator,
+    LinearOscillator,
     Phase,
     acceleration,
-    jolt,
+    advanced_briefly,
+    force_rates,
     motion,
     normal_forces,
     phase_at,
     rotated,
     small_angles,
-    soon,
 )
 
 # Scanned intervals per period of input or free vibration, whichever is shorter.
@@ -34,67 +34,87 @@ ROUNDING, GRAZING = 1e-15, 1e-9
 
 
 class _Sample(NamedTuple):
-    """An event function at a phase, and its time derivative."""
+    """Value of an event function at a phase, and its time derivative."""
 
     value: float
     slope: float
 
 
-class _Piece(NamedTuple):
+class _EventFunction(NamedTuple):
     """One of the event functions from a phase on."""
 
     which: int
     phase: Phase
-    oscillator: Oscillator
+    oscillator: LinearOscillator
     mode: tuple
     p: Any
 
 
 @inlined
-def _slip(phase, o, mode, p):
-    """How far the slip velocity is from the end of the mode."""
+def _slip(phase, oscillator, mode, p):
+    """How far |z'| is above the threshold at which the mode ends (m/s)."""
     return _Sample(
-        mode.column * motion(phase, o, p)[1] - o.threshold, mode.column * acceleration(phase, o, p)
+        mode.column * motion(phase, oscillator, p)[1] - oscillator.threshold,
+        mode.column * acceleration(phase, oscillator, p),
     )
 
 
 @inlined
-def _force(which, phase, o, mode, p):
-    """The normal force on a face, with the sign that it has on the mode."""
-    values, slopes = normal_forces(phase, o, p), jolt(phase, o, p)
+def _force(which, phase, oscillator, mode, p):
+    """The normal force on a face (N), times the sign that it has on the mode."""
+    values, slopes = normal_forces(phase, oscillator, p), force_rates(phase, oscillator, p)
     if which == COLUMN_FORCE:
         return _Sample(mode.column_sign * values[0], mode.column_sign * slopes[0])
     return _Sample(mode.bolster_sign * values[1], mode.bolster_sign * slopes[1])
 
 
 @inlined
-def _sample(piece, phase):
-    """The event function of a piece at another phase."""
-    if piece.which == SLIP:
-        return _slip(phase, piece.oscillator, piece.mode, piece.p)
-    return _force(piece.which, phase, piece.oscillator, piece.mode, piece.p)
+def _sample(function, phase):
+    """An event function at another phase."""
+    if function.which == SLIP:
+        return _slip(phase, function.oscillator, function.mode, function.p)
+    return _force(function.which, phase, function.oscillator, function.mode, function.p)
 
 
-@searched(_Piece)
+@searched(_EventFunction)
 @inlined
-def _value(time, piece):
-    """An event function some time (s) after the phase of a piece, and its slope."""
-    return _sample(piece, soon(piece.phase, time, piece.oscillator, piece.p))
-
-
-@inlined
-def _least(sign, offset, by_x, by_u, amplitude, o, p):
-    """Lower bound of a normal force while the mode lasts; ``amplitude`` (m) of the free part."""
-    driven = by_x * o.forced - by_u * p.input.amplitude * p.input.omega**2
-    return sign * (offset + by_x * o.centre) - abs(driven) - abs(by_x) * amplitude
+def _value(time, function):
+    """An event function some time (s) after its phase, and its slope."""
+    return _sample(function, advanced_briefly(function.phase, time, function.oscillator, function.p))
 
 
 @inlined
-def _forces_may_vanish(phase, o, mode, p):
+def _least_force(sign, offset, by_x, by_u, amplitude, oscillator, p):
+    """Lower bound of a normal force (N) offset + by_x x + by_u u'', times its sign, while the mode lasts.
+
+    ``amplitude`` (m): of the free part of x.
+    """
+    driven = by_x * oscillator.forced - by_u * p.input.amplitude * p.input.omega**2
+    return sign * (offset + by_x * oscillator.centre) - abs(driven) - abs(by_x) * amplitude
+
+
+@inlined
+def _forces_may_vanish(phase, oscillator, mode, p):
     """Whether a normal force may become zero on the mode."""
     amplitude = sqrt(phase.free**2 + phase.quadrature**2)
-    column = _least(mode.column_sign, o.column, o.column_x, o.column_u, amplitude, o, p)
-    bolster = _least(mode.bolster_sign, o.bolster, o.bolster_x, o.bolster_u, amplitude, o, p)
+    column = _least_force(
+        mode.column_sign,
+        oscillator.column,
+        oscillator.column_x,
+        oscillator.column_u,
+        amplitude,
+        oscillator,
+        p,
+    )
+    bolster = _least_force(
+        mode.bolster_sign,
+        oscillator.bolster,
+        oscillator.bolster_x,
+        oscillator.bolster_u,
+        amplitude,
+        oscillator,
+        p,
+    )
     return min(column, bolster) <= 0.0
 
 
@@ -127,59 +147,71 @@ def _crossing(before, after, span):
 
 
 @inner
-def _first_zero(piece, before, after, span, from_zero):
+def _first_zero(function, before, after, span, from_zero):
     """Time at which an event function is first zero in an interval between two samples; inf: nowhere."""
-    omega, high, value = piece.p.input.omega, span, after.value
+    omega, high, value = function.p.input.omega, span, after.value
     if value > 0.0 and not from_zero and _may_graze(before, after, span):
-        high = minimum(piece, 0.0, span, GRAZING * span)
-        value = _value(high, piece)[0]
+        high = minimum(function, 0.0, span, GRAZING * span)
+        value = _value(high, function)[0]
     if value > 0.0:
         return inf
     bracket = Bracket(0.0, before.value, high, value)
     if from_zero or before.value <= 0.0:
-        return zero_after_start(piece, bracket, 1e-12 / omega, ROUNDING / omega)
-    return zero_near(piece, bracket, _crossing(before, after, span), ROUNDING / omega)
+        return zero_after_start(function, bracket, 1e-12 / omega, ROUNDING / omega)
+    return zero_near(function, bracket, _crossing(before, after, span), ROUNDING / omega)
 
 
 @inlined
-def _earlier(found, piece, later, span, at_zero):
-    """The first event so far, (time, number), or that of one more event function if it is earlier."""
-    before, after = _sample(piece, piece.phase), _sample(piece, later)
+def _earlier(found, function, later, span, at_zero):
+    """The first event so far, (time, which), or that of one more event function if it is earlier.
+
+    ``at_zero``: the event function that begins at zero.
+    """
+    before, after = _sample(function, function.phase), _sample(function, later)
     if after.value > 0.0 and not _may_graze(before, after, span):
         return found
-    time = _first_zero(piece, before, after, span, piece.which == at_zero)
-    return (time, piece.which) if time < found[0] else found
+    time = _first_zero(function, before, after, span, function.which == at_zero)
+    return (time, function.which) if time < found[0] else found
 
 
 @inlined
-def _begins_at(state, o):
+def _begins_at(state, oscillator):
     """Event function that is zero where a mode begins; -1 if none is."""
-    # Either event of the face: the lower one ends the mode, and after the other one it slips off a held jump.
-    if state.y[1] == 0.0 or state.last_event // 2 == o.event // 2:
+    # Either event of that face may have led to the mode: the one that ends it, or the end of a held jump.
+    if state.y[1] == 0.0 or state.last_event // 2 == oscillator.event // 2:
         return SLIP
     return state.last_event - COLUMN_NORMAL + COLUMN_FORCE if state.last_event >= COLUMN_NORMAL else -1
 
 
 @inner
-def slide(state, stop, o, p):
+def slip_to_event(state, stop, oscillator, p):
     """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
-    t, mode, at_zero = state.t, state.mode, _begins_at(state, o)
-    step = 2.0 * pi / max(p.input.omega, o.frequency) / SCAN
-    turn = small_angles(step, o, p)
-    phase = phase_at(t, state.y[0], state.y[1], o, p)
-    forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, o, mode, p)
+    t, mode, at_zero = state.t, state.mode, _begins_at(state, oscillator)
+    step = 2.0 * pi / max(p.input.omega, oscillator.frequency) / SCAN
+    turn = small_angles(step, oscillator, p)
+    phase = phase_at(t, state.y[0], state.y[1], oscillator, p)
+    forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, oscillator, mode, p)
     while t < stop:
         span = min(step, stop - t)
-        later = rotated(phase, *turn) if span == step else soon(phase, span, o, p)
-        found = _earlier((inf, -1), _Piece(SLIP, phase, o, mode, p), later, span, at_zero)
+        later = rotated(phase, *turn) if span == step else advanced_briefly(phase, span, oscillator, p)
+        found = _earlier((inf, -1), _EventFunction(SLIP, phase, oscillator, mode, p), later, span, at_zero)
         if forces:
-            found = _earlier(found, _Piece(COLUMN_FORCE, phase, o, mode, p), later, span, at_zero)
-            found = _earlier(found, _Piece(BOLSTER_FORCE, phase, o, mode, p), later, span, at_zero)
+            found = _earlier(
+                found, _EventFunction(COLUMN_FORCE, phase, oscillator, mode, p), later, span, at_zero
+            )
+            found = _earlier(
+                found, _EventFunction(BOLSTER_FORCE, phase, oscillator, mode, p), later, span, at_zero
+            )
         time, which = found
         if which >= 0:
-            x, velocity = motion(soon(phase, time, o, p), o, p)
-            return t + time, x, velocity, o.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which
+            x, velocity = motion(advanced_briefly(phase, time, oscillator, p), oscillator, p)
+            return (
+                t + time,
+                x,
+                velocity,
+                oscillator.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which,
+            )
         t += span
         phase, at_zero = later, -1
-    x, velocity = motion(phase, o, p)
+    x, velocity = motion(phase, oscillator, p)
     return stop, x, velocity, NO_EVENT

@@ -12,7 +12,7 @@ from wedgesweep.systems.shared import implement_shared
 from wedgesweep.systems.suspension import closed_form, events, stiffness, transitions, while_closed  # noqa: F401
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip
-from wedgesweep.systems.suspension.filippov import contact_forces, filippov_forces
+from wedgesweep.systems.suspension.filippov import filippov_forces, forces_of_mode
 from wedgesweep.systems.suspension.modes import VELOCITY, X, held, stuck
 from wedgesweep.systems.suspension.newton import driving_force, forces
 
@@ -73,7 +73,7 @@ def observed(y, p):
 @implement(interface.sticks, SUSPENSION)
 @inlined
 def sticks(y, mode, p):
-    """Whether the column face sticks: bristles end no branch at the threshold velocity."""
+    """Whether the column face sticks, or slips below v_t: bristles end no branch there."""
     if abs(mode.column) == 1 and presliding.acts(p) and not p.friction.set_valued:
         return abs(column_slip(y, p)) <= p.friction.v_t
     return abs(mode.column) != 1
@@ -88,7 +88,7 @@ def force_of_motion(t, acceleration, y, mode, p):
 
 @inlined
 def _forces_and_power(t, y, mode, p):
-    """Normal forces on column and bolster, and the power (W) of friction, on a mode that slips."""
+    """Normal forces on column and bolster (N), and the power of friction (W), in a mode that slips."""
     if held(mode):
         now, power, _ = filippov_forces(t, y, mode, p)
         return now.column, now.bolster, power
@@ -113,5 +113,5 @@ def normal_forces(t, y, mode, p):
     """Normal forces on column and bolster face; they are not determined while set-valued friction holds."""
     if stuck(mode, p):
         return nan, nan
-    now = contact_forces(t, y, mode, p)
+    now = forces_of_mode(t, y, mode, p)
     return now.column, now.bolster

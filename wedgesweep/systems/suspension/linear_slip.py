@@ -3,7 +3,7 @@
     x'' = c0 + cx x + cu u''      N = n0 + nx x + nu u''  on either face
     x(t) = centre + forced sin(omega t) + A cos(Omega s) + B sin(Omega s),   s = t - start
 
-Where the motion is, a ``Phase`` says; it moves on by rotations.
+A ``Phase`` is a point of the motion; rotations advance it.
 """
 
 from math import inf, sqrt
@@ -21,29 +21,29 @@ from wedgesweep.trigonometry import cosine, sine, small_turn
 RESONANT = 1e-4
 
 
-class Oscillator(NamedTuple):
-    """One mode's linear equations, solved: see the module's docstring; the coefficients of friction."""
+class LinearOscillator(NamedTuple):
+    """Linear equations of a mode and their solution, see the module's docstring; and how the mode ends."""
 
-    linear: bool
+    linear: bool  # whether there is a closed form
     frequency: float  # Omega, rad/s
     centre: float  # m
     forced: float  # m
     driven: float  # cu
-    column: float
+    column: float  # n0 (N), nx (N/m), nu (kg) of the column face
     column_x: float
     column_u: float
-    bolster: float
+    bolster: float  # and of the bolster face
     bolster_x: float
     bolster_u: float
     column_mu: float  # signed, for T = mu N: with the sign of the normal force
     bolster_mu: float
-    threshold: float  # of |z'|, below which the mode ends
-    event: int  # which event function that is
+    threshold: float  # |z'| at which the mode ends, m/s
+    event: int  # number of that event function
 
 
 @inlined
 def _threshold(mode, p):
-    """Smallest |z'| of a mode whose faces all slip, and the event that ends it there."""
+    """The |z'| (m/s) at which the first face of a slip mode reaches the end of its branch, and that event."""
     ratio, place, branch = p.geometry.column_ratio, COLUMN, mode.column
     if p.friction.set_valued:
         return 0.0, 2 * COLUMN if branch > 0 else 2 * COLUMN + 1
@@ -57,7 +57,7 @@ def _threshold(mode, p):
 
 @inlined
 def _constant_friction(mode, p):
-    """Whether no coefficient of friction depends on velocity on this mode."""
+    """Whether no coefficient of friction depends on velocity in a mode."""
     if p.friction.set_valued:
         return True
     bolster = abs(mode.bolster) == 1 or p.geometry.bolster_ratio == 0.0
@@ -66,10 +66,10 @@ def _constant_friction(mode, p):
 
 
 @inner
-def oscillator(y, mode, p):
-    """Closed form of a mode with constant friction; ``linear`` is False where there is none."""
+def linear_oscillator(y, mode, p):
+    """Closed form of a mode; ``linear`` is False if friction is not constant, or near resonance."""
     if not (p.geometry.always_well_posed and _constant_friction(mode, p)):
-        return Oscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
+        return LinearOscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
     s, g, omega = p.suspension, p.geometry, p.input.omega
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(mode.column_sign * column_mu, mode.bolster_sign * bolster_mu, 0.0, 0.0)
@@ -84,7 +84,7 @@ def oscillator(y, mode, p):
     if not linear:
         square = inf
     threshold, event = _threshold(mode, p)
-    return Oscillator(
+    return LinearOscillator(
         linear,
         sqrt(square),
         at_rest.acceleration / square,
@@ -104,7 +104,7 @@ def oscillator(y, mode, p):
 
 
 class Phase(NamedTuple):
-    """Where the oscillator is: input (cos, sin) and the free part (m) with its quadrature."""
+    """Point of the motion: cosine and sine of the input's phase; free part of x and its quadrature (m)."""
 
     cosine: float
     sine: float
@@ -113,17 +113,17 @@ class Phase(NamedTuple):
 
 
 @inlined
-def phase_at(t, x, velocity, free_motion, p):
+def phase_at(t, x, velocity, oscillator, p):
     """Phase of a state at time t."""
     c, s = cosine(p.input.omega * t), sine(p.input.omega * t)
-    free = x - free_motion.centre - free_motion.forced * s
-    quadrature = (velocity - free_motion.forced * p.input.omega * c) / free_motion.frequency
+    free = x - oscillator.centre - oscillator.forced * s
+    quadrature = (velocity - oscillator.forced * p.input.omega * c) / oscillator.frequency
     return Phase(c, s, free, quadrature)
 
 
 @inlined
 def rotated(phase, input_cos, input_sin, free_cos, free_sin):
-    """Phase after both parts have turned by the given angles."""
+    """Phase after the input and the free vibration have turned by angles given by their cosines and sines."""
     return Phase(
         phase.cosine * input_cos - phase.sine * input_sin,
         phase.sine * input_cos + phase.cosine * input_sin,
@@ -133,69 +133,83 @@ def rotated(phase, input_cos, input_sin, free_cos, free_sin):
 
 
 @inlined
-def angles(time, o, p):
-    """Cosine and sine of the angles by which input and free vibration turn in some time (s)."""
-    a, b = p.input.omega * time, o.frequency * time
+def angles(time, oscillator, p):
+    """Cosines and sines of the angles by which input and free vibration turn in some time (s)."""
+    a, b = p.input.omega * time, oscillator.frequency * time
     return cosine(a), sine(a), cosine(b), sine(b)
 
 
 @inner
-def advanced(phase, time, o, p):
+def advanced(phase, time, oscillator, p):
     """Phase some time (s) later."""
-    return rotated(phase, *angles(time, o, p))
+    return rotated(phase, *angles(time, oscillator, p))
 
 
 @inlined
-def small_angles(time, o, p):
+def small_angles(time, oscillator, p):
     """As ``angles``, for at most an interval of the scan."""
     input_cos, input_sin = small_turn(p.input.omega * time)
-    free_cos, free_sin = small_turn(o.frequency * time)
+    free_cos, free_sin = small_turn(oscillator.frequency * time)
     return input_cos, input_sin, free_cos, free_sin
 
 
 @inlined
-def soon(phase, time, o, p):
+def advanced_briefly(phase, time, oscillator, p):
     """As ``advanced``, for at most an interval of the scan."""
-    return rotated(phase, *small_angles(time, o, p))
+    return rotated(phase, *small_angles(time, oscillator, p))
 
 
 @inlined
-def motion(phase, o, p):
+def motion(phase, oscillator, p):
     """Displacement (m) and velocity (m/s)."""
-    x = o.centre + o.forced * phase.sine + phase.free
-    return x, o.forced * p.input.omega * phase.cosine + o.frequency * phase.quadrature
+    x = oscillator.centre + oscillator.forced * phase.sine + phase.free
+    return x, oscillator.forced * p.input.omega * phase.cosine + oscillator.frequency * phase.quadrature
 
 
 @inlined
-def acceleration(phase, o, p):
-    """X'' in m/s^2."""
-    return -o.forced * p.input.omega**2 * phase.sine - o.frequency**2 * phase.free
+def acceleration(phase, oscillator, p):
+    """Relative acceleration x'' (m/s^2)."""
+    return -oscillator.forced * p.input.omega**2 * phase.sine - oscillator.frequency**2 * phase.free
 
 
 @inlined
-def normal_forces(phase, o, p):
+def normal_forces(phase, oscillator, p):
     """Normal forces (N) on column and bolster face."""
-    x, u2 = motion(phase, o, p)[0], base_acceleration(phase, p)
-    return o.column + o.column_x * x + o.column_u * u2, o.bolster + o.bolster_x * x + o.bolster_u * u2
+    return _forces_at(motion(phase, oscillator, p)[0], base_acceleration(phase, p), oscillator)
 
 
 @inlined
-def jolt(phase, o, p):
+def _forces_at(x, u2, oscillator):
+    column = oscillator.column + oscillator.column_x * x + oscillator.column_u * u2
+    bolster = oscillator.bolster + oscillator.bolster_x * x + oscillator.bolster_u * u2
+    return column, bolster
+
+
+@inlined
+def force_rates(phase, oscillator, p):
     """Rates of the ``normal_forces`` (N/s)."""
-    velocity = motion(phase, o, p)[1]
+    velocity = motion(phase, oscillator, p)[1]
     u3 = -p.input.amplitude * p.input.omega**3 * phase.cosine
-    return o.column_x * velocity + o.column_u * u3, o.bolster_x * velocity + o.bolster_u * u3
+    return (
+        oscillator.column_x * velocity + oscillator.column_u * u3,
+        oscillator.bolster_x * velocity + oscillator.bolster_u * u3,
+    )
 
 
 @inlined
 def base_acceleration(phase, p):
-    """U'' in m/s^2."""
+    """Base acceleration u'' (m/s^2)."""
     return -p.input.amplitude * p.input.omega**2 * phase.sine
 
 
 @inlined
-def forces_at(x, u2, o):
-    """Acceleration z'' (m/s^2) and the smaller normal force (N) at a displacement and base acceleration."""
-    column = o.column + o.column_x * x + o.column_u * u2
-    bolster = o.bolster + o.bolster_x * x + o.bolster_u * u2
-    return o.driven * u2 - o.frequency**2 * (x - o.centre), min(column, bolster)
+def acceleration_at(x, u2, oscillator):
+    """Acceleration z'' (m/s^2) at a displacement x (m) and a base acceleration u2 (m/s^2)."""
+    return oscillator.driven * u2 - oscillator.frequency**2 * (x - oscillator.centre)
+
+
+@inlined
+def smaller_force_at(x, u2, oscillator):
+    """The smaller one of both normal forces (N), likewise."""
+    column, bolster = _forces_at(x, u2, oscillator)
+    return min(column, bolster)

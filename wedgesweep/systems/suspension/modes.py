@@ -7,8 +7,8 @@ from wedgesweep.effects import directional_friction, presliding
 
 # Displacement x from the frictionless equilibrium (m) and its rate: the first two states.
 X, VELOCITY = 0, 1
-# Friction axes: velocities that a jump of friction can hold. Each has two event functions: the branch ends
-# toward lower, or toward higher slip velocity.
+# Friction axes: velocities that a jump of friction can hold. Each has two event functions, for the lower and
+# the upper end of its branch.
 COLUMN, BOLSTER, GUIDE, DIRECTION = 0, 1, 2, 4  # the event functions of the normal forces stand between
 AXES = 5
 # Branch of an axis whose slip velocity a jump at +-v_t holds (Filippov), with the sign of that velocity.
@@ -111,7 +111,7 @@ def with_clock(mode, clock):
 
 @inner
 def slipping(direction, segment, clock, p):
-    """Mode of a set-valued law while z' has the given sign; ``clock`` = 1: about to slip, still at rest."""
+    """Mode of slip in a direction (sign of z') under a set-valued law; ``clock`` = 1: on its verge."""
     ratio = p.geometry.bolster_ratio
     bolster = direction if ratio > 0.0 else -direction
     if ratio == 0.0:
@@ -122,7 +122,7 @@ def slipping(direction, segment, clock, p):
 
 @inlined
 def side(value, axis, higher):
-    """Branch on the lower (0) or higher (1) side of the jump that holds an axis."""
+    """Branch on the lower (0) or higher (1) side of the jump that holds an axis on the branch ``value``."""
     if axis == DIRECTION:
         return 2 * higher - 1
     return (0 if value > 0 else -1) + higher

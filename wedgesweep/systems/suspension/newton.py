@@ -9,8 +9,8 @@ t_c + Q cos g n_c, and both contacts closed (Q: displacement of a column that yi
     v_c = r z' + Q' cos a/sin(a+g)       v_b = q z' + Q' cos g/sin(a+g)
 
 Unknown are z'', Q'', the side frame's own acceleration A and both normal forces; the accelerations are
-linear in the forces, which leaves two equations. Friction T = mu |N| is written as T = tau + m N: m alone
-where the coefficient does not depend on the load, a tangent where it does.
+linear in the forces, which leaves two equations for these. Friction T = mu |N| is written as T = tau + m N,
+with tau = 0 where the coefficient does not depend on the load, and as a tangent where it does.
 """
 
 from math import nan
@@ -38,7 +38,7 @@ LOAD_ITERATIONS, LAST_CHANGE, LIFT_OFF_CHANGE = 40, 1e-7, 1e-11
 
 
 class Forces(NamedTuple):
-    """What follows from a state on one mode: accelerations (m/s^2) and normal forces (N).
+    """What follows from a state in a mode: accelerations (m/s^2) and normal forces (N).
 
     z'' of the bolster, Q'' of a column, d'' of the side frame against its table, and the normal forces
     on column and bolster face, compression positive.
@@ -117,10 +117,13 @@ def loads(t, y, mode, p):
 
 @inlined
 def reactions(load, mu, p):
-    """Forces, and the determinant of their equations, which is negative without friction.
+    """Forces, and the determinant of the equations for N_c and N_b, which is negative without friction.
 
-    Each stage of an integrator waits for this result: what does not depend on the loads is not multiplied
-    into what does.
+        a11 N_c + a12 N_b = tangential        of the wedge along the column
+        a21 N_c + a22 N_b = normal            of the wedge normal to the column
+
+    after z'', Q'' and A are eliminated. Each stage of an integrator waits for this result: factors that do
+    not depend on the loads are multiplied by each other first.
     """
     s, g = p.suspension, p.geometry
     lift = g.sin_wedge + mu.bolster * g.cos_wedge
@@ -135,6 +138,7 @@ def reactions(load, mu, p):
         vertical += 2.0 * mu.bolster_tau * g.cos_wedge
     tangential -= inertia * vertical
 
+    # Acceleration of a column: Q'' = outward + outward_per_force N_c.
     outward, outward_per_force = 0.0, 0.0
     if column_compliance.acts(p):
         compliance = column_compliance.compliance(p)
@@ -147,6 +151,7 @@ def reactions(load, mu, p):
         tangential -= inertia_along * outward
         normal -= inertia_into * outward
 
+    # Acceleration of the side frame: A = base + base_per_column N_c + base_per_bolster N_b.
     base, base_per_column, base_per_bolster = load.base, 0.0, 0.0
     along_base = s.wedge_mass * (g.cos_column - g.column_ratio)
     into_base = s.wedge_mass * g.sin_column
@@ -171,10 +176,8 @@ def reactions(load, mu, p):
     frame = base
     if fixture_resonance.acts(p):
         frame += base_per_column * column + base_per_bolster * bolster
-    rising = vertical * mobility - frame + (2.0 * lift * mobility) * bolster
-    return Forces(
-        rising, outward + outward_per_force * column, frame - load.base, column, bolster
-    ), determinant
+    z2 = vertical * mobility - frame + (2.0 * lift * mobility) * bolster
+    return Forces(z2, outward + outward_per_force * column, frame - load.base, column, bolster), determinant
 
 
 @inner
@@ -216,7 +219,7 @@ def _reactions_for_signs(load, column_mu, bolster_mu, mode, p):
 
 @inlined
 def forces(t, y, mode, p):
-    """Forces on the given mode."""
+    """Forces in a mode, with its signs of the normal forces."""
     column_mu, bolster_mu = coefficients(t, y, mode, p)
     return _reactions_for_signs(loads(t, y, mode, p), column_mu, bolster_mu, mode, p)[0]
 
@@ -225,8 +228,8 @@ def forces(t, y, mode, p):
 def solve_for_signs(t, y, mode, p):
     """The mode with the signs of its normal forces, these forces, and whether they are unique.
 
-    Friction acts with |N|, so each combination of signs is its own linear problem; one that returns the
-    signs it assumed is a solution. None, or more than one, means that the wedge locks; and a solution
+    Friction acts with |N|, so that each combination of signs is a linear problem of its own; one that returns
+    the signs that it assumed is a solution. The wedge locks if there is none, or more than one; a solution
     whose determinant has another sign than without friction is never the only one.
     """
     column_mu, bolster_mu = coefficients(t, y, mode, p)
@@ -250,7 +253,7 @@ def solve_for_signs(t, y, mode, p):
 
 
 @inner
-def at_rest(t, y, mode, p):
+def stuck_forces(t, y, mode, p):
     """Forces while set-valued friction holds the bolster: the side frame carries the whole suspension."""
     frame = 0.0
     if fixture_resonance.acts(p):
@@ -260,8 +263,8 @@ def at_rest(t, y, mode, p):
 
 
 @inlined
-def _pushed(load, force):
-    """Loads with a further force on the bolster (N)."""
+def _with_force(load, force):
+    """The loads with a further force on the bolster (N)."""
     return Loads(load.tangential, load.normal, load.vertical + force, load.lateral, load.frame, load.base)
 
 
@@ -275,8 +278,8 @@ def driving_force(t, acceleration, y, mode, p):
     load, closed = loads(t, y, mode, p), with_signs(mode, 1, 1)
     force, unit = 0.0, p.suspension.bolster_mass
     for _ in range(LOAD_ITERATIONS):
-        now = _reactions_for_signs(_pushed(load, force), column_mu, bolster_mu, closed, p)[0]
-        beside = _reactions_for_signs(_pushed(load, force + unit), column_mu, bolster_mu, closed, p)[0]
+        now = _reactions_for_signs(_with_force(load, force), column_mu, bolster_mu, closed, p)[0]
+        beside = _reactions_for_signs(_with_force(load, force + unit), column_mu, bolster_mu, closed, p)[0]
         change = unit * (acceleration - now.acceleration) / (beside.acceleration - now.acceleration)
         if abs(change) <= LAST_CHANGE * abs(force):
             break

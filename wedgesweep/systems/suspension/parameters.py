@@ -66,35 +66,39 @@ GEOMETRY = (
 # Whether a contact between wedge and column or bolster can pull, or opens: then it is the effect lift_off.
 BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
 RESTITUTION = lift_off.EFFECT.quantities[0]
-# Mark of records of bilateral joints that also follow unilateral ones while both contacts are closed.
+# Mark of records of bilateral joints: they also follow unilateral ones while both contacts are closed.
 TURNS: list[tuple] = [("while_closed", np.int64)]
 
-# Kits: no effects with their own mechanics; of these only those that ``effects.register`` added; all effects;
-# unilateral joints without effects that have mechanics of their own, and with those that go with them; the
-# latter while both contacts are closed.
+# Kits of parts, by the effects with mechanics of their own that they have room for: none; those that
+# ``effects.register`` added; all; none, and those that go with unilateral joints, for joints that can open;
+# the latter while both contacts are closed.
 BASE, OWN, ALL, JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS, CLOSED_WITH_EFFECTS = range(6)
 OPENING = JOINTS_OPEN, JOINTS_OPEN_WITH_EFFECTS
-# Coulomb friction that is regularised reaches mu_d at this velocity (m/s) on the bench; see natural_units.
+# Velocity (m/s) at which regularised Coulomb friction reaches mu_d, on the bench (see natural_units).
 REGULARISED_VELOCITY = 1e-6
 
 
 @cache
 def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
-    """Record types by kit, with or without the Fourier series of an input.
+    """Record types by kit, with or without the part for an input that is not a sine.
 
     No type is the beginning of another: numba would mistake one for the other.
     """
-    simple = [name for name in names if not known.EFFECTS[name].extends]
     own = [name for name in names if name not in known.NAMES]
-    plain = [name for name in simple if name not in own]
-    some = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
-    held = [name for name in names if name != lift_off.NAME]
+    plain = [name for name in names if not known.EFFECTS[name].extends and name not in own]
+    go_with_opening = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
+    all_but_opening = [name for name in names if name != lift_off.NAME]
     opens = records.effect_parts([lift_off.NAME])
-    # With a series there is no closed form, which ``base`` marks.
+    # Records with ``base`` have a closed form (closed_form.py); those with a series have none.
     part, base = (records.SERIES, []) if series else ([], [("base", np.int64)])
-    bilateral = _dtype(base + TURNS + part, plain), _dtype(part, own + plain), _dtype(part, held)
-    unilateral = _dtype(opens + part, plain), _dtype(opens + part, some)
-    return *bilateral, *unilateral, _dtype(TURNS + part, some)
+    return (
+        _dtype(base + TURNS + part, plain),
+        _dtype(part, own + plain),
+        _dtype(part, all_but_opening),
+        _dtype(opens + part, plain),
+        _dtype(opens + part, go_with_opening),
+        _dtype(TURNS + part, go_with_opening),
+    )
 
 
 def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -161,7 +165,7 @@ def record(
     records.set_effects(p, effect_names(), effects)
     acting = _acting(p)
     p["geometry"]["kit"], p["geometry"]["opens"] = _kit_of(p, acting), has_unilateral_joints(p)
-    if _made_regularised(p, acting):
+    if _needs_regularisation(p, acting):
         _regularise(p, nominal)
     prepare(case, acting)
     return case
@@ -191,7 +195,7 @@ def _kit_of(p: np.void, acting: Sequence[str]) -> int:
 
 
 def natural_units_of(suspension: Mapping[str, float] | np.void, travel: float | None = None) -> NaturalUnits:
-    """Natural units of a suspension (SI numbers by name), whose measured motion has some travel (m)."""
+    """Natural units of a suspension (SI numbers by name); ``travel`` (m): see ``natural_units``."""
     mass, stiffness = float(suspension["bolster_mass"]), float(suspension["bolster_spring"])
     return natural_units(mass, stiffness, float(suspension["gravity"]), travel)
 
@@ -202,11 +206,11 @@ def regularised_velocity(suspension: Mapping[str, float] | np.void) -> float:
 
 
 def is_regularised(p: np.void) -> bool:
-    """Whether effects turn the case's Coulomb law into a steep ramp."""
-    return _made_regularised(p, _acting(p))
+    """Whether effects regularise the case's Coulomb law: it is a steep ramp then."""
+    return _needs_regularisation(p, _acting(p))
 
 
-def _made_regularised(p: np.void, acting: Sequence[str]) -> bool:
+def _needs_regularisation(p: np.void, acting: Sequence[str]) -> bool:
     regularising = any(getattr(known.REGISTERED[name], "REGULARISES", False) for name in acting)
     return regularising and laws.LAWS["coulomb"].SET_VALUED and p["friction"]["law"] == laws.code("coulomb")
 
@@ -273,10 +277,10 @@ def _always_well_posed(p: np.void, acting: Sequence[str], small: np.void) -> boo
 
 
 def _bolster_face_never_locks(most: float, p: np.void) -> bool:
-    """Whether the bolster face alone has exactly one force under any load, whatever its friction.
+    """Whether the bolster face alone has exactly one normal force under any load, for any |mu| <= ``most``.
 
-    With the four determinants of both faces, and as the column face alone always has one, this is what a
-    linear complementarity problem needs to have exactly one solution: positive principal minors.
+    A linear complementarity problem always has exactly one solution if its principal minors are positive:
+    those of both faces (the four determinants), of the bolster face, and of the column face, which always is.
     """
     s, g = p["suspension"], p["geometry"]
     lift = g["sin_wedge"] * (g["sin_wedge"] - most * abs(g["cos_wedge"]))

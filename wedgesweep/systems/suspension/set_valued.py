@@ -17,7 +17,7 @@ def about_to_slip(t, y, direction, segment, p):
 
 
 @inlined
-def breakaway(t, y, direction, segment, p):
+def acceleration_on_breakaway(t, y, direction, segment, p):
     """Acceleration z'' (m/s^2) if the bolster broke away in a direction."""
     return about_to_slip(t, y, direction, segment, p)[1].acceleration
 
@@ -41,8 +41,11 @@ def mode_at_zero_velocity(t, y, segment, p):
 
 @inner
 def breakaway_direction(t, y, direction, segment, p):
-    """Direction of breakaway; with hardly any friction that of the event may be noise."""
+    """Direction of breakaway: that of the event, unless a moment later only the other one accelerates.
+
+    With hardly any friction the direction of the event may be noise.
+    """
     ahead = t + LOOK_AHEAD / p.input.omega
-    onward = direction * breakaway(ahead, y, direction, segment, p)
-    back = -direction * breakaway(ahead, y, -direction, segment, p)
+    onward = direction * acceleration_on_breakaway(ahead, y, direction, segment, p)
+    back = -direction * acceleration_on_breakaway(ahead, y, -direction, segment, p)
     return -direction if onward <= 0.0 < back else direction

@@ -1,8 +1,8 @@
 """Stick-slip of the base model under set-valued friction, as long as both faces stay closed.
 
-The same few oscillators hold for all pieces of a run: slip in either direction, and the verge of it (with
-the static coefficient). With the state and the base acceleration at an event they say what follows. Where
-that is in doubt, or a normal force vanishes, the event is handed on to the general ``transition``.
+The same four oscillators hold throughout a run: slip in either direction, and the verge of it (with the
+static coefficient). With the displacement and the base acceleration at an event they say which mode follows.
+Where that is in doubt, or a normal force vanishes, the event is left to the general ``transition``.
 """
 
 from typing import Any, NamedTuple
@@ -10,35 +10,40 @@ from typing import Any, NamedTuple
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.excitation import acceleration
-from wedgesweep.hybrid.recorder import keep_constant
+from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
-from wedgesweep.systems.suspension.first_event import slide
-from wedgesweep.systems.suspension.linear_slip import Oscillator, forces_at, oscillator
-from wedgesweep.systems.suspension.linear_slip_sums import keep
+from wedgesweep.systems.suspension.breakaway import UP, breakaway_between, breakaway_time
+from wedgesweep.systems.suspension.first_event import slip_to_event
+from wedgesweep.systems.suspension.linear_slip import (
+    LinearOscillator,
+    acceleration_at,
+    linear_oscillator,
+    smaller_force_at,
+)
+from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import COLUMN, ContactMode, slipping, stuck
 from wedgesweep.systems.suspension.newton import ROUNDING
-from wedgesweep.systems.suspension.release import UP, release, release_between
 from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
 
-# Pieces after which the integrator counts the events.
-MOST_PIECES = 1000
+# Modes after which the integrator checks the number of events.
+MOST_MODES = 1000
 
 
 class _Direction(NamedTuple):
-    """A direction of slip: its mode, the oscillator of it, and that on the verge of it."""
+    """A direction of slip: its mode, the oscillator of that mode, and the one on the verge of slip."""
 
     mode: Any
-    slip: Oscillator
-    verge: Oscillator
+    slip: LinearOscillator
+    verge: LinearOscillator
 
 
 @inlined
 def _direction(sign, y, segment, p):
     mode = slipping(sign, segment, 0, p)
-    slip = oscillator(y, mode, p)
+    slip = linear_oscillator(y, mode, p)
     if friction.static(1, y, p) == friction.sliding(0.0, p):
         return _Direction(mode, slip, slip)
-    return _Direction(mode, slip, oscillator(y, slipping(sign, segment, 1, p), p))
+    return _Direction(mode, slip, linear_oscillator(y, slipping(sign, segment, 1, p), p))
 
 
 @inlined
@@ -47,7 +52,7 @@ def _linear(one):
 
 
 @inlined
-def _smallest(p):
+def _rounding(p):
     """Normal force (N) below which its sign is in doubt."""
     return ROUNDING * p.suspension.bolster_mass * p.suspension.gravity
 
@@ -56,80 +61,80 @@ def _smallest(p):
 def _after_slip(t, x, up, down, p):
     """Mode after the velocity has become zero, and whether it is certain."""
     u2 = acceleration(t, p)
-    rising, first = forces_at(x, u2, up.verge)
-    falling, second = forces_at(x, u2, down.verge)
+    rising, falling = acceleration_at(x, u2, up.verge), acceleration_at(x, u2, down.verge)
+    smallest = min(smaller_force_at(x, u2, up.verge), smaller_force_at(x, u2, down.verge))
     nearly_none = ROUNDING * (p.suspension.gravity + abs(u2))
-    certain = min(first, second) > _smallest(p) and not (rising > 0.0 and falling < 0.0)
+    certain = smallest > _rounding(p) and not (rising > 0.0 and falling < 0.0)
     if rising <= nearly_none and falling >= -nearly_none:
         return ContactMode(0, 0, 0, 1, 1, 0, up.mode.segment, 1), certain
     if rising > 0.0:
-        return up.mode, certain and forces_at(x, u2, up.slip)[1] > _smallest(p)
-    return down.mode, certain and forces_at(x, u2, down.slip)[1] > _smallest(p)
+        return up.mode, certain and smaller_force_at(x, u2, up.slip) > _rounding(p)
+    return down.mode, certain and smaller_force_at(x, u2, down.slip) > _rounding(p)
 
 
 @inlined
-def _after_release(t, x, event, up, down, p):
+def _after_breakaway(t, x, event, up, down, p):
     """Mode after the bolster has broken away, and whether it is certain."""
     u2 = acceleration(t + LOOK_AHEAD / p.input.omega, p)
     if event == UP:
-        certain = forces_at(x, u2, up.verge)[0] > 0.0
-        return up.mode, certain and forces_at(x, u2, up.slip)[1] > _smallest(p)
-    certain = forces_at(x, u2, down.verge)[0] < 0.0
-    return down.mode, certain and forces_at(x, u2, down.slip)[1] > _smallest(p)
+        certain = acceleration_at(x, u2, up.verge) > 0.0
+        return up.mode, certain and smaller_force_at(x, u2, up.slip) > _rounding(p)
+    certain = acceleration_at(x, u2, down.verge) < 0.0
+    return down.mode, certain and smaller_force_at(x, u2, down.slip) > _rounding(p)
 
 
 @inlined
-def _limit(x, verge):
+def _breakaway_input(x, verge):
     """Base acceleration (m/s^2) at which a bolster at rest is on the verge of slip."""
     return verge.frequency**2 * (x - verge.centre) / verge.driven
 
 
 @inner
-def _rest(state, stop, up, down, p):
+def _breakaway_time(state, stop, up, down, p):
     """Time at which a bolster at rest breaks away, and the event."""
     x = state.y[0]
-    forward, backward = _limit(x, up.verge), _limit(x, down.verge)
-    least = min(forces_at(x, forward, up.verge)[1], forces_at(x, backward, down.verge)[1])
-    if forward < backward and least > 0.0:
-        return release_between(forward, backward, state.t, stop, p)
-    return release(state, stop, p)
+    forward, backward = _breakaway_input(x, up.verge), _breakaway_input(x, down.verge)
+    smallest = min(smaller_force_at(x, forward, up.verge), smaller_force_at(x, backward, down.verge))
+    if forward < backward and smallest > 0.0:
+        return breakaway_between(forward, backward, state.t, stop, p)
+    return breakaway_time(state, stop, p)
 
 
 @inner
-def _piece(state, stop, directions, p, keeping, recorder):
+def _follow_mode(state, stop, directions, p, keeping, recorder):
     """Follow a mode to its event or ``stop``; the state there, and the event or NO_EVENT."""
     up, down = directions
     if stuck(state.mode, p):
-        end, event = _rest(state, stop, up, down, p)
+        end, event = _breakaway_time(state, stop, up, down, p)
         if keeping:
-            keep_constant(state.t, end, state.y, state.mode, recorder, p)
+            record_constant(state.t, end, state.y, state.mode, recorder, p)
         return State(end, state.y, state.mode, state.last_event, state.step), event
-    o = up.slip if state.mode.column > 0 else down.slip
-    end, x, velocity, event = slide(state, stop, o, p)
+    oscillator = up.slip if state.mode.column > 0 else down.slip
+    end, x, velocity, event = slip_to_event(state, stop, oscillator, p)
     if keeping:
-        keep(state, end, o, recorder, p)
+        record_slip(state, end, oscillator, recorder, p)
     return State(end, (x, velocity), state.mode, state.last_event, state.step), event
 
 
 @inner
 def stick_slip(state, stop, p, keeping, recorder, counts):
-    """Follow stick and slip to an event that is none of theirs, or to ``stop``.
+    """Follow stick and slip to an event that another mode follows, or to ``stop``.
 
-    Returns whether that was possible, the state and the event or NO_EVENT.
+    Returns whether both directions of slip are linear oscillators, the state, and the event or NO_EVENT.
     """
     segment = state.mode.segment
     directions = _direction(1, state.y, segment, p), _direction(-1, state.y, segment, p)
     if not (_linear(directions[0]) and _linear(directions[1])):
         return False, state, NO_EVENT
     up, down = directions
-    for _ in range(MOST_PIECES):
-        rested = stuck(state.mode, p)
-        state, event = _piece(state, stop, directions, p, keeping, recorder)
+    for _ in range(MOST_MODES):
+        was_stuck = stuck(state.mode, p)
+        state, event = _follow_mode(state, stop, directions, p, keeping, recorder)
         if event // 2 != COLUMN:
             return True, state, event
         x = state.y[0]
-        if rested:
-            mode, certain = _after_release(state.t, x, event, up, down, p)
+        if was_stuck:
+            mode, certain = _after_breakaway(state.t, x, event, up, down, p)
         else:
             mode, certain = _after_slip(state.t, x, up, down, p)
         if not certain:

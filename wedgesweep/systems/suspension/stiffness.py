@@ -1,6 +1,6 @@
 """Where the suspension with effects is stiff: on a steep ramp of friction, and with short bristles.
 
-The slip velocity of a face on a steep ramp settles within nanoseconds, which would limit an explicit step.
+The slip velocity of a face on a steep ramp settles within nanoseconds, which limits explicit steps.
 """
 
 from math import sqrt
@@ -12,7 +12,7 @@ from wedgesweep.hybrid.interface import implement
 from wedgesweep.systems.suspension.faces import bolster_slip, column_slip
 from wedgesweep.systems.suspension.modes import VELOCITY
 
-# A record with this effect has them all.
+# A record with this effect has all effects.
 WITH_EFFECTS = "column_compliance"
 # Steps for derivatives by differences: share of a state's size, and of a ramp for central ones by velocities.
 STEP, ON_BOTH_SIDES = 1e-7, 1e-4

@@ -7,7 +7,7 @@ from wedgesweep.excitation import acceleration
 from wedgesweep.hybrid.vectors import replaced, weighted
 from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, CLOCK, COLUMN_NORMAL, TRAVEL
 from wedgesweep.systems.suspension.faces import column_slip, slip_measure, slip_rate
-from wedgesweep.systems.suspension.filippov import contact_forces, resolve_mode
+from wedgesweep.systems.suspension.filippov import forces_of_mode, resolve_mode
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
@@ -25,21 +25,21 @@ from wedgesweep.systems.suspension.modes import (
     with_clock,
     with_segment,
 )
-from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, at_rest, solve_for_signs
+from wedgesweep.systems.suspension.newton import ROUNDING, Accelerations, solve_for_signs, stuck_forces
 from wedgesweep.systems.suspension.set_valued import (
     LOOK_AHEAD,
     breakaway_direction,
     mode_at_zero_velocity,
 )
 
-# Short steps after which the input has moved a bolster at rest, also through the effects' own states.
+# Short steps that the input needs to move a bolster at rest through the effects' own states.
 STEPS_FROM_REST = 4
 
 
 @inlined
 def rate(t, y, mode, p):
     """dy/dt, and the forces."""
-    now = at_rest(t, y, mode, p) if stuck(mode, p) else contact_forces(t, y, mode, p)
+    now = stuck_forces(t, y, mode, p) if stuck(mode, p) else forces_of_mode(t, y, mode, p)
     others = Accelerations(now.column_acceleration, now.frame_acceleration)
     own = hooks.rates(column_slip(y, p), others, mode, y, p)
     return (y[VELOCITY], now.acceleration) + own, now  # noqa: RUF005
@@ -53,10 +53,10 @@ def _without_age(y, mode, p):
 
 @inner
 def _velocity_soon(t, y, mode, p):
-    """Rate of z a moment after rest.
+    """Velocity z' (m/s) a moment later.
 
-    At the start of a run forces balance to within rounding errors, and the input may have to pass through
-    other states before it moves the bolster.
+    At the start of a run forces balance to within rounding errors, and the input may reach the bolster
+    through other states only.
     """
     moment = LOOK_AHEAD / p.input.omega
     for i in range(STEPS_FROM_REST):
@@ -66,7 +66,7 @@ def _velocity_soon(t, y, mode, p):
 
 @inner
 def _with_direction(t, y, mode, p):
-    """The mode with the direction of z', and whether it is unique."""
+    """The mode with its sign of z', where friction depends on it, and whether it is unique."""
     if not directional_friction.acts(p):
         found, _, unique = solve_for_signs(t, y, mode, p)
         return found, unique
@@ -114,7 +114,7 @@ def _after_zero_force(t, y, mode, p):
     """Mode after a normal force has become zero, and whether it is unique.
 
     Both forces may vanish at once, and a force may only touch zero; its sign at zero is noise. So the signs
-    are those a moment later, or further on while a force is still too small to have a sign.
+    are those of a moment later, and of later moments as long as a force is no more than rounding errors.
     """
     ahead = LOOK_AHEAD / p.input.omega
     slope = rate(t, y, mode, p)[0]
@@ -143,7 +143,7 @@ def _continuous(axis, y, p):
 
 @inner
 def cross_discontinuity(t, y, mode, place, p):
-    """Mode on the next branch, or held at the jump where the next branch points back to it."""
+    """Mode on the next branch, or held at the jump if the slip on the next branch accelerates back to it."""
     axis = place // 2
     was_held = abs(branch(mode, axis)) == HELD
     across, now, certain = resolve_mode(t, y, next_branch(mode, place, False, p), p)

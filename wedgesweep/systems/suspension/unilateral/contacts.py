@@ -1,7 +1,7 @@
-"""Contacts of a wedge that carry load, and their forces: a complementarity problem with Coulomb friction.
+"""Which contacts of a wedge carry load, and their reactions: a complementarity problem with Coulomb friction.
 
-One problem serves accelerations and impulses. Known is how the wedge and the bolster would move without
-contact forces; sought are reactions that are compressive, obey Coulomb's law, and let no face penetrate:
+One problem serves accelerations and impulses. Given is how the wedge and the bolster would move without
+reactions; sought are reactions that are compressive, obey Coulomb's law, and let no face penetrate:
 
     A = A0 - (T_c + S N_b + c T_b) / M_w          along the column        S, c = sin, cos(alpha + gamma)
     G = G0 + (N_c - c N_b + S T_b) / M_w          gap at the column
@@ -10,8 +10,9 @@ contact forces; sought are reactions that are compressive, obey Coulomb's law, a
     v_c = A,  v_b = c A - S G - cos(alpha) Z      slip
     G >= 0, N_c >= 0, G N_c = 0;  B >= 0, N_b >= 0, B N_b = 0;  -T in mu N Sgn(v) on either face
 
-A to Z are accelerations and the reactions forces (N), or velocities and impulses (N s). Each face is open,
-slips or sticks; every combination is a linear problem, and one that fulfils the inequalities is a solution.
+A, G, Z and B are accelerations and the reactions forces (N), or velocities and impulses (N s). Each face is
+open, slips or sticks; every combination is a linear problem, and one that fulfils the inequalities is a
+solution.
 Formulation: Pfeiffer and Glocker, Multibody Dynamics with Unilateral Contacts (1996).
 """
 
@@ -28,7 +29,7 @@ ROUNDING = 1e-11
 
 
 class Motion(NamedTuple):
-    """Wedge along the column, gap at the column, bolster: accelerations (m/s^2) or velocities (m/s)."""
+    """A, G and Z: of the wedge along the column, the gap at the column, the bolster (m/s^2 or m/s)."""
 
     along: float
     gap: float
@@ -45,20 +46,24 @@ class Reactions(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Faces that touch, and their friction.
+    """Which faces touch, and their coefficients of friction.
 
-    ``moving``: they slip already, and the coefficients are signed; else these are Coulomb's, not signed.
+    ``slipping``: whether they slip already, with signed coefficients; else whether they slip, and in which
+    direction, is part of the problem, and the coefficients are not signed.
     """
 
     column: bool
     bolster: bool
-    moving: bool
+    slipping: bool
     column_mu: float
     bolster_mu: float
 
 
 class Solution(NamedTuple):
-    """States of both faces, reactions, and by how much the inequalities are fulfilled (N or N s)."""
+    """States of both faces, reactions, and the margin by which all inequalities are fulfilled (N or N s).
+
+    A solution of the problem has a margin of 0 or more.
+    """
 
     column: int
     bolster: int
@@ -70,8 +75,8 @@ NOTHING = Reactions(0.0, 0.0, 0.0, 0.0)
 
 
 @inlined
-def moved(free, now, p):
-    """Motion under reactions, from that without."""
+def motion_under(free, now, p):
+    """Motion under reactions, from the motion without them, ``free``."""
     s, g = p.suspension, p.geometry
     across, along = g.sin_included, g.cos_included
     lift = g.sin_wedge * now.bolster + g.cos_wedge * now.bolster_friction
@@ -86,14 +91,14 @@ def moved(free, now, p):
 
 @inlined
 def bolster_gap(motion, p):
-    """Rate of the gap at the bolster face."""
+    """B: acceleration or velocity of the gap at the bolster face."""
     g = p.geometry
     return g.sin_wedge * motion.rise - g.sin_included * motion.along - g.cos_included * motion.gap
 
 
 @inlined
 def bolster_slip(motion, p):
-    """Slip on the bolster face."""
+    """v_b: slip acceleration or velocity of the bolster face."""
     g = p.geometry
     return g.cos_included * motion.along - g.sin_included * motion.gap - g.cos_wedge * motion.rise
 
@@ -143,8 +148,8 @@ def both_reactions(free, column_mu, bolster_mu, p):
 def sticking_reactions(free, column_mu, bolster_mu, p):
     """Reactions if both faces stick, and how far (N or N s) friction is from its limits.
 
-    Four reactions stand against three equations: they lie on a line, of which Coulomb's law allows an
-    interval. The reactions are those of its middle; its length is negative where there is none.
+    The four reactions fulfil three equations: they lie on a line, of which Coulomb's law allows an interval.
+    Returns the reactions in its middle, and its length; this is negative if there is no such interval.
     """
     lift = -0.5 * p.suspension.bolster_mass * free.rise
     start = _on_line(free, lift, 0.0, p)
@@ -164,7 +169,7 @@ def sticking_reactions(free, column_mu, bolster_mu, p):
 
 @inlined
 def _on_line(free, lift, place, p):
-    """Reactions that hold wedge and bolster, at a place on their line."""
+    """Reactions that hold wedge and bolster, at a place on their line; ``lift`` (N): on half the bolster."""
     s, g = p.suspension, p.geometry
     bolster = lift * g.sin_wedge + place * g.cos_wedge
     friction = lift * g.cos_wedge - place * g.sin_wedge
@@ -178,7 +183,7 @@ def _on_line(free, lift, place, p):
 
 @inlined
 def _limit(number, now, column_mu, bolster_mu):
-    """One of six numbers that Coulomb's law wants positive: mu N - T, mu N + T and N of either face."""
+    """One of six numbers that Coulomb's law wants positive: mu N - T, mu N + T and N of both faces."""
     normal, friction, mu = now.column, now.column_friction, column_mu
     if number >= 3:
         normal, friction, mu = now.bolster, now.bolster_friction, bolster_mu
@@ -192,10 +197,10 @@ def _limit(number, now, column_mu, bolster_mu):
 
 @inlined
 def _possible(column, bolster, faces, p):
-    """Whether the states of both faces can occur together: closed faces slip or stick only together."""
+    """Whether the states of both faces can occur together: two closed faces slip or stick only together."""
     if (column != OPEN and not faces.column) or (bolster != OPEN and not faces.bolster):
         return False
-    if faces.moving:
+    if faces.slipping:
         return column <= FORWARD and bolster <= FORWARD
     if column == OPEN or bolster == OPEN or (column == STICK and bolster == STICK):
         return True
@@ -210,26 +215,30 @@ def _direction(state):
 
 
 @inlined
-def _face_margin(state, touches, moving, mu, reaction, after):
-    """Least of the numbers that a face wants positive; ``after``: its gap and slip times a mass."""
+def _face_margin(state, touches, slipping, mu, reaction, after):
+    """Least of the numbers that must be positive on a face in a state.
+
+    ``reaction``: its normal and friction reaction; ``after``: its gap and slip under the reactions times a
+    mass.
+    """
     (normal, friction), (gap, slip) = reaction, after
     if state == OPEN:
         return gap if touches else inf
     if state == STICK:
         return min(normal, mu * normal - abs(friction))
-    return normal if moving else min(normal, _direction(state) * slip)
+    return normal if slipping else min(normal, _direction(state) * slip)
 
 
 @inner
 def _solution(column, bolster, free, faces, p):
-    """Reactions for the given states, with their margin: -inf where the states cannot occur."""
+    """Reactions for given states of both faces, with their margin: -inf if the states cannot occur."""
     if not _possible(column, bolster, faces, p):
         return Solution(column, bolster, NOTHING, -inf)
     column_mu, bolster_mu = faces.column_mu, faces.bolster_mu
     if column == STICK and bolster == STICK:
         now, width = sticking_reactions(free, column_mu, bolster_mu, p)
         return Solution(column, bolster, now, width)
-    if not faces.moving:
+    if not faces.slipping:
         column_mu, bolster_mu = _direction(column) * column_mu, _direction(bolster) * bolster_mu
     now = NOTHING
     if column != OPEN and bolster != OPEN:
@@ -238,11 +247,11 @@ def _solution(column, bolster, free, faces, p):
         now = column_reactions(free, column == STICK, column_mu, p)
     elif bolster != OPEN:
         now = bolster_reactions(free, bolster == STICK, bolster_mu, p)
-    after, mass = moved(free, now, p), p.suspension.wedge_mass
+    after, mass = motion_under(free, now, p), p.suspension.wedge_mass
     of_column = _face_margin(
         column,
         faces.column,
-        faces.moving,
+        faces.slipping,
         faces.column_mu,
         (now.column, now.column_friction),
         (mass * after.gap, mass * after.along),
@@ -250,7 +259,7 @@ def _solution(column, bolster, free, faces, p):
     of_bolster = _face_margin(
         bolster,
         faces.bolster,
-        faces.moving,
+        faces.slipping,
         faces.bolster_mu,
         (now.bolster, now.bolster_friction),
         (mass * bolster_gap(after, p), mass * bolster_slip(after, p)),
@@ -260,15 +269,15 @@ def _solution(column, bolster, free, faces, p):
 
 @inner
 def solve(free, faces, p):
-    """The best solution, and how many fulfil all inequalities beyond rounding.
+    """The solution with the largest margin, and how many have a margin beyond rounding.
 
-    More than one, or a best one with a negative margin: the problem is ill-posed. Faces that wedge each other
-    could hold loads under which they can also slip; they stick only where no motion is possible, as in the
-    limit of regularised friction, and as with bilateral joints.
+    The problem is ill-posed if there are several, or if the largest margin is negative. Faces that wedge each
+    other could hold loads under which they can also slip; they stick only where no motion is possible, as in
+    the limit of regularised friction, and as with bilateral joints.
     """
     zero = rounding(free, p)
-    best, certain = moving(free, faces, p)
-    if certain == 0 and faces.column and faces.bolster and not faces.moving:
+    best, certain = solve_unless_stuck(free, faces, p)
+    if certain == 0 and faces.column and faces.bolster and not faces.slipping:
         sticks = _solution(STICK, STICK, free, faces, p)
         if best.margin < -zero and sticks.margin > zero:
             return sticks, 1
@@ -278,8 +287,8 @@ def solve(free, faces, p):
 
 
 @inner
-def moving(free, faces, p):
-    """As ``solve``, without the solution in which both faces stick."""
+def solve_unless_stuck(free, faces, p):
+    """As ``solve``, but for the solution in which both faces stick."""
     zero = rounding(free, p)
     best, certain = Solution(OPEN, OPEN, NOTHING, -inf), 0
     for number in range(STATES * STATES - 1):

@@ -26,7 +26,7 @@ from wedgesweep.systems.suspension.modes import (
     with_segment,
 )
 from wedgesweep.systems.suspension.unilateral import contacts, impact
-from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, moved
+from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, motion_under
 from wedgesweep.systems.suspension.unilateral.modes import (
     Touching,
     bolster_touches,
@@ -52,8 +52,8 @@ from wedgesweep.systems.suspension.unilateral.motion import (
 )
 from wedgesweep.systems.suspension.while_closed import stays_closed
 
-# Pairs of event functions are those of the suspension. The gaps stand where it has the sign of z' and the
-# time at rest: in two pairs, as one gap may close at once after the other.
+# Places of the event functions as for bilateral joints, with the gaps in place of the sign of z' and of the
+# time at rest. The gaps are not a pair, as one of them may close right after the other.
 COLUMN_NORMAL, BOLSTER_NORMAL, COLUMN_CLOSES, BOLSTER_CLOSES = 6, 7, 8, 12
 TRAVEL, EVENTS = 10, 13
 
@@ -98,15 +98,16 @@ def free(y, p):
 # Motion
 
 
-class Acting(NamedTuple):
+class UnilateralForces(NamedTuple):
     """Accelerations (m/s^2) of bolster, column and both gaps, and reactions (N) of both faces.
 
-    Friction is not told while both contacts are closed: no event needs it.
+    Events of bilateral joints read the fields that have the names of ``newton.Forces``. Friction is NaN while
+    both contacts are closed: no event needs it.
     """
 
     acceleration: float
     column_acceleration: float
-    gains: tuple
+    gap_accelerations: tuple
     column: float
     column_friction: float
     bolster: float
@@ -114,39 +115,46 @@ class Acting(NamedTuple):
 
 
 @inlined
-def _apart(t, y, mode, p):
+def _motion_and_reactions(t, y, mode, p):
     """Accelerations (m/s^2) and reactions (N) while a contact is open."""
-    at_will, motion = free_accelerations(t, y, mode.segment, p), velocities(y, p)
+    unconstrained, motion = free_accelerations(t, y, mode.segment, p), velocities(y, p)
     now = contacts.NOTHING
     if mode.column_sign == 1:
         rests = p.friction.set_valued != 0 and mode.column == 0
         mu = signed_coefficient(motion.along, mode.column, mode.clock, y, p)
-        now = contacts.column_reactions(at_will, rests, mu, p)
+        now = contacts.column_reactions(unconstrained, rests, mu, p)
     elif mode.bolster_sign == 1:
         rests = p.friction.set_valued != 0 and mode.bolster == 0
         mu = signed_coefficient(bolster_slip(motion, p), mode.bolster, mode.clock, y, p)
-        now = contacts.bolster_reactions(at_will, rests, mu, p)
-    return moved(at_will, now, p), now
+        now = contacts.bolster_reactions(unconstrained, rests, mu, p)
+    return motion_under(unconstrained, now, p), now
 
 
 @implement(interface.rate, UNILATERAL)
 @inner
 def rate(t, y, mode, p):
-    """dy/dt, and what acts."""
+    """dy/dt, and the forces."""
     if closed(mode):
         (velocity, acceleration), both = transitions.rate(t, y, mode, p)
-        none = (0.0, 0.0)
-        acting = Acting(acceleration, both.column_acceleration, none, both.column, nan, both.bolster, nan)
-        return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), acting
-    motion, now = _apart(t, y, mode, p)
-    column_rate, column_gain, bolster_rate, bolster_gain = 0.0, 0.0, 0.0, 0.0
+        of_gaps = (0.0, 0.0)
+        forces = UnilateralForces(
+            acceleration, both.column_acceleration, of_gaps, both.column, nan, both.bolster, nan
+        )
+        return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), forces
+    motion, now = _motion_and_reactions(t, y, mode, p)
+    column_rate, column_acceleration, bolster_rate, bolster_acceleration = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
-        column_rate, column_gain = gap_state(y, COLUMN_RATE), motion.gap
+        column_rate, column_acceleration = gap_state(y, COLUMN_RATE), motion.gap
     if mode.bolster_sign == 0:
-        bolster_rate, bolster_gain = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
-    gains, (column, along_column, bolster, along_bolster) = (column_gain, bolster_gain), now
-    acting = Acting(motion.rise, nan, gains, column, along_column, bolster, along_bolster)
-    return (y[VELOCITY], motion.rise, column_rate, column_gain, bolster_rate, bolster_gain), acting
+        bolster_rate, bolster_acceleration = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
+    of_gaps = column_acceleration, bolster_acceleration
+    forces = UnilateralForces(
+        motion.rise, nan, of_gaps, now.column, now.column_friction, now.bolster, now.bolster_friction
+    )
+    return (
+        (y[VELOCITY], motion.rise, column_rate, column_acceleration, bolster_rate, bolster_acceleration),
+        forces,
+    )
 
 
 # Events
@@ -154,11 +162,11 @@ def rate(t, y, mode, p):
 
 @inner
 def _stuck_events(t, y, mode, p, out):
-    """Write how far (N) a bolster that friction holds is from any motion, and friction from its limits."""
-    at_will, highest = free_accelerations(t, y, mode.segment, p), friction.static(1, y, p)
+    """Write the events of a stuck bolster: margins (N) to slip or opening, and to the limits of friction."""
+    unconstrained, highest = free_accelerations(t, y, mode.segment, p), friction.static(1, y, p)
     faces = contacts.Faces(True, True, False, highest, highest)
-    out[2 * COLUMN] = -contacts.moving(at_will, faces, p)[0].margin
-    out[2 * COLUMN + 1] = contacts.sticking_reactions(at_will, highest, highest, p)[1]
+    out[2 * COLUMN] = -contacts.solve_unless_stuck(unconstrained, faces, p)[0].margin
+    out[2 * COLUMN + 1] = contacts.sticking_reactions(unconstrained, highest, highest, p)[1]
 
 
 @inlined
@@ -175,7 +183,7 @@ def _face_events(slip, branch, reaction, place, y, p, out):
 
 
 @inner
-def _apart_events(now, y, mode, p, out):
+def _open_events(now, y, mode, p, out):
     """Write the event functions while a contact is open."""
     motion = velocities(y, p)
     if mode.column_sign == 0:
@@ -206,24 +214,24 @@ def all_events(now, t, y, mode, p, out):
     elif closed(mode):
         events.events(now, t, y, mode, p, out)
         if held(mode):  # by a jump of friction: the forces are those of its convex combination
-            both = filippov.contact_forces(t, y, mode, p)
+            both = filippov.forces_of_mode(t, y, mode, p)
             out[COLUMN_NORMAL], out[BOLSTER_NORMAL] = both.column, both.bolster
     else:
-        _apart_events(now, y, mode, p, out)
+        _open_events(now, y, mode, p, out)
 
 
 @inlined
-def _time_to_close(gap, rate, gain):
+def _time_to_close(gap, rate, acceleration):
     """Time (s) in which a gap closes at a constant acceleration; inf: never.
 
-    One that opens now has no acceleration yet but rounding errors.
+    The acceleration of a gap that opens just now is no more than rounding errors.
     """
-    square = rate * rate - 2.0 * gap * gain
-    if square < 0.0 or (rate >= 0.0 and gain >= 0.0) or gap == rate == 0.0:
+    square = rate * rate - 2.0 * gap * acceleration
+    if square < 0.0 or (rate >= 0.0 and acceleration >= 0.0) or gap == rate == 0.0:
         return inf
     if rate < 0.0:
         return 2.0 * gap / (sqrt(square) - rate)
-    return (rate + sqrt(square)) / -gain
+    return (rate + sqrt(square)) / -acceleration
 
 
 @implement(interface.expected_event, UNILATERAL)
@@ -234,9 +242,9 @@ def expected_event(now, t, y, mode, p):
         return events.expected_event(now, t, y, mode, p)
     column, bolster = inf, inf
     if mode.column_sign == 0:
-        column = _time_to_close(y[COLUMN_GAP], y[COLUMN_RATE], now.gains[0])
+        column = _time_to_close(y[COLUMN_GAP], y[COLUMN_RATE], now.gap_accelerations[0])
     if mode.bolster_sign == 0:
-        bolster = _time_to_close(y[BOLSTER_GAP], y[BOLSTER_RATE], now.gains[1])
+        bolster = _time_to_close(y[BOLSTER_GAP], y[BOLSTER_RATE], now.gap_accelerations[1])
     return min(column, bolster)
 
 
@@ -357,7 +365,7 @@ def _forces_and_power(t, y, mode, p):
             return now.column, now.bolster, power
         now = newton.forces(t, y, mode, p)
         return now.column, now.bolster, energy.friction_power(t, y, mode, now, p)
-    _, reactions = _apart(t, y, mode, p)
+    _, reactions = _motion_and_reactions(t, y, mode, p)
     motion = velocities(y, p)
     power = reactions.column_friction * motion.along + reactions.bolster_friction * bolster_slip(motion, p)
     return reactions.column, reactions.bolster, 2.0 * power
@@ -386,16 +394,16 @@ def normal_forces(t, y, mode, p):
 @implement(interface.leaves, UNILATERAL)
 @inlined
 def leaves(y, mode, p):
-    """Whether bilateral joints can go on."""
+    """Whether bilateral joints can follow the mode."""
     return stays_closed(y, mode, p)
 
 
 @implement(interface.taken_over, UNILATERAL)
 @inner
 def taken_over(t, y, mode, p):
-    """Mode where bilateral joints no longer know that both contacts are closed, and whether it is unique.
+    """Mode where bilateral joints cannot tell whether both contacts stay closed, and whether it is unique.
 
-    A mode that a jump of friction holds is the same for both, as after an event of this system.
+    A mode in which a jump of friction holds a velocity is the same in both systems.
     """
     now = mode_of(mode)
     if p.friction.set_valued:

@@ -22,7 +22,7 @@ from wedgesweep.systems.suspension.unilateral.contacts import (
     Motion,
     Reactions,
     bolster_gap,
-    moved,
+    motion_under,
     rounding,
     solve,
 )
@@ -41,7 +41,7 @@ SLOWEST_BOUNCE = 1e-6
 
 
 class Impact(NamedTuple):
-    """State after an impact, impulses (N s) on one wedge, and whether they are unique."""
+    """State after an impact, impulses (N s) on one wedge, and whether these are unique."""
 
     y: Any
     impulses: Reactions
@@ -60,7 +60,10 @@ def _scaled(now, factor):
 
 @inlined
 def _gap_rate(state, before, after, restitution, nothing):
-    """Rate of a gap after an impact: exact where the contact closes."""
+    """Rate of the gap of a contact after an impact: where an impulse acts exactly that of Newton's law.
+
+    ``nothing`` (m/s): a rate that counts as none.
+    """
     if state != OPEN:
         after = -restitution * before
     return 0.0 if abs(after) <= nothing else after
@@ -75,11 +78,11 @@ def restitution_at(approach, p):
 
 @inner
 def struck(y, column, bolster, restitution, p):
-    """The impact of a state in which the given contacts touch; friction has the dynamic coefficient."""
+    """The impact of a state in which the contacts ``column`` and ``bolster`` (or one) touch, under mu_d."""
     before, mu = velocities(y, p), p.friction.mu_d
     found, certain = solve(before, Faces(column, bolster, False, mu, mu), p)
     unique = certain == 1 or (certain == 0 and found.margin >= -rounding(before, p))
-    plastic, part = moved(before, found.reactions, p), 1.0 + restitution
+    plastic, part = motion_under(before, found.reactions, p), 1.0 + restitution
     after = Motion(
         before.along + part * (plastic.along - before.along),
         before.gap + part * (plastic.gap - before.gap),
@@ -91,13 +94,12 @@ def struck(y, column, bolster, restitution, p):
     velocity = after.rise
     if column_rate == 0.0 and bolster_rate == 0.0 and column and bolster and abs(velocity) <= nothing:
         velocity = 0.0
-    column_gap, bolster_gap_now = y[COLUMN_GAP], y[BOLSTER_GAP]
     later = (
         y[X],
         velocity,
-        0.0 if column else column_gap,
+        0.0 if column else y[COLUMN_GAP],
         column_rate if column else after.gap,
-        0.0 if bolster else bolster_gap_now,
+        0.0 if bolster else y[BOLSTER_GAP],
         bolster_rate if bolster else bolster_gap(after, p),
     )
     return Impact(later, _scaled(found.reactions, part), unique)
@@ -105,7 +107,7 @@ def struck(y, column, bolster, restitution, p):
 
 @inner
 def closing(y, mode, place, column_closes, bolster_closes, p):
-    """The impact in which the gap of an event closes; places of both such events."""
+    """The impact at the event in which a gap closes; ``column_closes``, ``bolster_closes``: its places."""
     column = mode.column_sign == 1 or place == column_closes
     bolster = mode.bolster_sign == 1 or place == bolster_closes
     approach = -y[COLUMN_RATE if place == column_closes else BOLSTER_RATE]

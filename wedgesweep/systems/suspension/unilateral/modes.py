@@ -1,4 +1,4 @@
-"""Contacts that stay closed and faces that slip or stick at an instant: modes of a wedge that may lift off.
+"""Modes of a wedge that may lift off: which contacts are closed, and which faces slip or stick.
 
 A mode is a ``ContactMode`` whose signs of the normal forces are 1 for a closed contact and 0 for an open
 one. The branch of an open face is 0.
@@ -18,7 +18,7 @@ from wedgesweep.systems.suspension.unilateral.contacts import (
     STICK,
     Faces,
     bolster_slip,
-    moved,
+    motion_under,
     rounding,
     solve,
 )
@@ -31,9 +31,9 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     velocities,
 )
 
-# Slip below this share of the input velocity is none, where set-valued friction asks.
+# Slip below this share of the input velocity counts as none under a set-valued law.
 STILL = 1e-11
-# Moments further and further ahead, in case the instant itself leaves several modes possible.
+# If no mode is certain at an instant, so many later ones are tried, each this many times farther ahead.
 MOMENTS, FARTHER = 4, 30.0
 
 
@@ -103,10 +103,10 @@ def signed_coefficient(slip, branch, clock, y, p):
 @inner
 def _faces(y, contact, p):
     """The contact problem's faces at a state."""
-    moving = not p.friction.set_valued
-    if not moving:
-        moving = (contact.column_branch if contact.column else contact.bolster_branch) != 0
-    if not moving:
+    slipping = not p.friction.set_valued
+    if not slipping:
+        slipping = (contact.column_branch if contact.column else contact.bolster_branch) != 0
+    if not slipping:
         highest = friction.static(1, y, p)
         return Faces(contact.column, contact.bolster, False, highest, highest)
     motion, clock = velocities(y, p), 1 if contact.column_branch == 0 else 0
@@ -117,12 +117,11 @@ def _faces(y, contact, p):
 
 @inner
 def _later(y, motion, moment):
-    """State after a moment (s) at constant accelerations."""
-    half, gap = 0.5 * moment * moment, y[COLUMN_GAP] + moment * y[COLUMN_RATE]
+    """State after a moment (s) at a constant acceleration of the bolster, and constant rates of the gaps."""
     return (
-        y[X] + moment * y[VELOCITY] + half * motion.rise,
+        y[X] + moment * y[VELOCITY] + 0.5 * moment * moment * motion.rise,
         y[VELOCITY] + moment * motion.rise,
-        gap,
+        y[COLUMN_GAP] + moment * y[COLUMN_RATE],
         y[COLUMN_RATE],
         y[BOLSTER_GAP] + moment * y[BOLSTER_RATE],
         y[BOLSTER_RATE],
@@ -130,19 +129,19 @@ def _later(y, motion, moment):
 
 
 @inlined
-def _branch(state, branch, moving):
+def _branch(state, branch, slipping):
     """Slip branch of a face in a solution."""
     if state == OPEN:
         return 0
-    if moving:
+    if slipping:
         return branch
     return 0 if state == STICK else (1 if state == FORWARD else -1)
 
 
 @inner
 def _mode(found, contact, faces, segment, p):
-    column = _branch(found.column, contact.column_branch, faces.moving)
-    bolster = _branch(found.bolster, contact.bolster_branch, faces.moving)
+    column = _branch(found.column, contact.column_branch, faces.slipping)
+    bolster = _branch(found.bolster, contact.bolster_branch, faces.slipping)
     column_sign, bolster_sign = 1 if found.column != OPEN else 0, 1 if found.bolster != OPEN else 0
     clock = 1 if column == 0 else 0
     if p.friction.set_valued:
@@ -152,14 +151,14 @@ def _mode(found, contact, faces, segment, p):
 
 @inner
 def resolve(t, y, contact, segment, p):
-    """The mode that contacts which touch now are in from here on, and whether it is the only one."""
+    """The mode that follows for contacts which touch now, and whether it is unique."""
     free, faces = free_accelerations(t, y, segment, p), _faces(y, contact, p)
     found, certain = solve(free, faces, p)
     moment = LOOK_AHEAD / p.input.omega
     for _ in range(MOMENTS):
         if certain > 0:
             break
-        later = _later(y, moved(free, found.reactions, p), moment)
+        later = _later(y, motion_under(free, found.reactions, p), moment)
         there, faces = free_accelerations(t + moment, later, segment, p), _faces(later, contact, p)
         found, certain = solve(there, faces, p)
         moment *= FARTHER
@@ -169,30 +168,30 @@ def resolve(t, y, contact, segment, p):
 
 @inner
 def without_jump(t, y, contact, segment, p):
-    """Contacts of which none is held at the jump of a law: the branch that the slip moves into."""
+    """The same contacts, with faces that a jump held on the branch that their slip moves into."""
     column, bolster = contact.column_branch, contact.bolster_branch
     if abs(column) != HELD and abs(bolster) != HELD:
         return contact
-    outer = Touching(contact.column, contact.bolster, _outside(column), _outside(bolster))
+    outer = Touching(contact.column, contact.bolster, _beyond_jump(column), _beyond_jump(bolster))
     free = free_accelerations(t, y, segment, p)
-    motion = moved(free, solve(free, _faces(y, outer, p), p)[0].reactions, p)
+    motion = motion_under(free, solve(free, _faces(y, outer, p), p)[0].reactions, p)
     return Touching(
         contact.column,
         contact.bolster,
-        _beside(column, motion.along),
-        _beside(bolster, bolster_slip(motion, p)),
+        _entered(column, motion.along),
+        _entered(bolster, bolster_slip(motion, p)),
     )
 
 
 @inlined
-def _outside(branch):
+def _beyond_jump(branch):
     """The branch beyond the jump that holds a face."""
     return branch // HELD if abs(branch) == HELD else branch
 
 
 @inlined
-def _beside(branch, acceleration):
-    """The branch into which a face moves from a jump."""
+def _entered(branch, acceleration):
+    """The branch that a face enters from the jump that held it, at a slip acceleration."""
     if abs(branch) != HELD:
         return branch
     return branch // HELD if branch * acceleration >= 0.0 else 0

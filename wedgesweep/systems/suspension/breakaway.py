@@ -1,8 +1,8 @@
-"""Time of breakaway of the base model from rest under set-valued friction, without integration.
+"""Time at which a bolster that set-valued friction holds breaks away, without integration (base model).
 
-While the bolster sticks only the base moves, so that the event functions are known functions of time. The
-time of breakaway has a closed form while both normal forces stay positive. Elsewhere the event functions
-are sampled, and their minimum is sought between samples where it may be negative.
+While it sticks only the base moves, so that the event functions are known functions of time. As long as both
+normal forces stay positive the time of breakaway has a closed form. Elsewhere the event functions are
+sampled, and a minimum is sought between samples where it may be negative.
 """
 
 from math import asin, ceil, inf, nan, pi
@@ -26,7 +26,7 @@ CLOSE = 1e-13
 DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
 
 
-class _Held(NamedTuple):
+class _StuckBolster(NamedTuple):
     """A bolster at rest, with room for event functions."""
 
     y: tuple
@@ -45,12 +45,12 @@ def _smallest(values):
     return place
 
 
-@searched(_Held)
+@searched(_StuckBolster)
 @inner
-def _lowest(t, held):
+def _lowest(t, stuck):
     """Smallest event function at time t."""
-    events(UNDETERMINED, t, held.y, held.mode, held.p, held.out)
-    return held.out[_smallest(held.out)], nan
+    events(UNDETERMINED, t, stuck.y, stuck.mode, stuck.p, stuck.out)
+    return stuck.out[_smallest(stuck.out)], nan
 
 
 @inner
@@ -71,14 +71,14 @@ def breakaway_input(y, direction, segment, p):
 
 
 @inlined
-def is_known(y, segment, p):
-    """Whether both faces keep their load until a stuck bolster breaks away, in either direction."""
+def carries_load_until_breakaway(y, segment, p):
+    """Whether both faces carry load until a stuck bolster breaks away, whatever its direction."""
     forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
     return p.geometry.always_well_posed != 0 and forward < backward
 
 
 @inner
-def release(state, stop, p):
+def breakaway_time(state, stop, p):
     """Time at which a stuck bolster breaks away, and the event.
 
     The event is NO_EVENT if nothing happens before ``stop``, LOCKED where breakaway is not unique, and
@@ -91,13 +91,16 @@ def release(state, stop, p):
     if not (p.geometry.always_well_posed and forward < backward):
         if p.geometry.opens:
             return state.t, HANDED_OVER
-        return scanned_release(state, stop, p)
-    return release_between(forward, backward, state.t, stop, p)
+        return scanned_breakaway(state, stop, p)
+    return breakaway_between(forward, backward, state.t, stop, p)
 
 
 @inner
-def release_between(forward, backward, t, stop, p):
-    """As ``release``, at known base accelerations: below the first it slips up, above the second down."""
+def breakaway_between(forward, backward, t, stop, p):
+    """As ``breakaway_time``, from the base accelerations below and above which the bolster slips (m/s^2).
+
+    It slips up below ``forward``, and down above ``backward``.
+    """
     omega = p.input.omega
     most = p.input.amplitude * omega**2
     upper, lower = -forward / most, -backward / most  # of sin(omega t)
@@ -121,29 +124,29 @@ def release_between(forward, backward, t, stop, p):
 
 
 @allocating
-def scanned_release(state, stop, p):
-    """As ``release``, from samples: for any base motion and for normal forces of either sign."""
+def scanned_breakaway(state, stop, p):
+    """As ``breakaway_time``, from samples: for any base motion and for normal forces of either sign."""
     out = np.empty(EVENTS)
-    context = _Held(state.y, state.mode, p, out)
+    context = _StuckBolster(state.y, state.mode, p, out)
     step = 2.0 * np.pi / p.input.omega / SAMPLES_PER_PERIOD
-    earlier, held = state.t, state.t
-    before, now = inf, _lowest(held, context)[0]
-    while held < stop:
-        if not well_posed(held, state.y, state.mode, p):
-            return held, LOCKED
-        following = min(held + step, stop)
+    earlier, current = state.t, state.t
+    before, now = inf, _lowest(current, context)[0]
+    while current < stop:
+        if not well_posed(current, state.y, state.mode, p):
+            return current, LOCKED
+        following = min(current + step, stop)
         after = _lowest(following, context)[0]
         if after > 0.0 and before > now and now < after:
             lowest = minimum(context, earlier, following, CLOSE * step)
             value = _lowest(lowest, context)[0]
             if value < 0.0:
-                held, now, following, after = earlier, before, lowest, value
+                current, now, following, after = earlier, before, lowest, value
         if after < 0.0:
-            moment = held
+            moment = current
             if now > 0.0:
-                moment = zero(context, Bracket(held, now, following, after), CLOSE * step)
+                moment = zero(context, Bracket(current, now, following, after), CLOSE * step)
             _lowest(moment, context)
             return moment, _smallest(out)
-        earlier, before = held, now
-        held, now = following, after
+        earlier, before = current, now
+        current, now = following, after
     return stop, NO_EVENT
