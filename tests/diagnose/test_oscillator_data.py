@@ -128,6 +128,7 @@ amplitude_N = 2.5
         ("directional_damping", {"coefficient_N_s_per_m": 6.0, "asymmetry": -0.7}, True),
         ("quadratic_drag", {"coefficient_N_s2_per_m2": 200.0}, False),
         ("backlash", {"clearance_mm": 0.2}, True),
+        ("damper_play", {"clearance_mm": 0.05}, False),
     ],
 )
 def test_what_is_hidden_under_a_force_is_found(tmp_path, monkeypatch, effect, hidden, recorded):
@@ -142,7 +143,7 @@ def test_what_is_hidden_under_a_force_is_found(tmp_path, monkeypatch, effect, hi
     assert ("recorded" if recorded else "1.5 +- 0.1 %") in invoke("check", "made/measured.toml")
     candidates = (
         *("friction_level", "viscous_damping", "directional_damping", "quadratic_drag"),
-        *("cubic_stiffness", "backlash"),
+        *("cubic_stiffness", "backlash", "presliding", "damper_play"),
     )
     found = diagnose(measured.read(tmp_path / "made" / "measured.toml"), candidates)
     assert (found.finding.verdict, found.finding.best.effects) == ("named", (effect,))
