@@ -120,7 +120,7 @@ def diagnose(
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
         # What it simulates is not part of the search's budget.
-        result = work.apart(
+        result = work.uncounted(
             lambda: calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
         ).result
         thresholds = verdict.thresholds_for(search.data, result.thresholds)

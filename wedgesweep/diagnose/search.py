@@ -68,11 +68,12 @@ def quiet(step: str) -> None:
 
 @dataclass(frozen=True)
 class Search:
-    """What all stages share: data, candidate effects, number of threads, and who is told of progress.
+    """What all stages of a search share.
 
-    ``undetected``: candidates of which the records show nothing, so that there is nothing to fit. ``budget``:
-    what the search may simulate; base model and single effects are fitted whatever that takes. ``wider``:
-    effects whose best numbers lie outside of the range that is searched, see beyond_range.py.
+    ``effects``: candidates; ``undetected``: those of which the records show nothing, so that there is nothing
+    to fit. ``progress`` is called with each step. ``budget``: what may be simulated; base model and single
+    effects are fitted whatever that takes. ``wider``: effects whose best numbers lie outside of the range
+    that is searched, see beyond_range.py.
     """
 
     data: FitData
@@ -122,9 +123,10 @@ class Search:
         what: str,
         effects: Callable[[Any], tuple[str, ...]],
     ) -> list[Any]:
-        """Results for the first items, the most promising, until the budget is spent.
+        """Results for the items, the most promising first, until the budget is spent.
 
-        ``what``: what is reported to have been left out otherwise; ``effects``: of an item.
+        ``what``: name of the stage, under which items that were left out are reported; ``effects``: gives
+        the effects of an item.
         """
         found = self._each(function, items, self.budget.left, what)
         self.budget.ended(what, len(found), [effects(item) for item in items])
@@ -133,36 +135,33 @@ class Search:
     def _each(
         self, function: Callable[[Any], Any], items: Sequence[Any], limit: float, what: str = ""
     ) -> list[Any]:
-        """Results for the items before which less work than the limit was done for the others.
+        """Results for the first items, up to the one at which their work reaches a limit.
 
-        ``what``: the name of this stage to those who are told of progress; "" is not told.
-
-        Threads may finish more of them than that; these are dropped, or results would depend on timing.
+        Threads may finish further items; their results are dropped, or they would depend on timing.
+        ``what``: name of the stage whose progress is reported; "" reports nothing.
         """
         spent, finished = np.zeros(len(items)), count(1)
 
-        def one(place: int) -> work.Piece | None:
-            piece = None
+        def one(place: int) -> work.Uncounted | None:
+            outcome = None
             if spent[:place].sum() < limit:
-                piece = work.apart(lambda: function(items[place]))
-                spent[place] = piece.work
+                outcome = work.uncounted(lambda: function(items[place]))
+                spent[place] = outcome.work
             if what:
                 self.progress(Step(what, next(finished), len(items)))
-            return piece
+            return outcome
 
         if what:
             self.progress(Step(what, 0, len(items)))
         if self.threads == 1:
-            pieces = [one(place) for place in range(len(items))]
+            outcomes = [one(place) for place in range(len(items))]
         else:
             with ThreadPoolExecutor(self.threads) as pool:
-                pieces = list(pool.map(one, range(len(items))))
+                outcomes = list(pool.map(one, range(len(items))))
         before = np.cumsum(np.r_[0.0, spent])[:-1]
-        kept = [
-            piece for piece, sum_before in zip(pieces, before, strict=True) if piece and sum_before < limit
-        ]
-        work.add(sum(piece.work for piece in kept))
-        return [piece.result for piece in kept]
+        kept = [each for each, earlier in zip(outcomes, before, strict=True) if each and earlier < limit]
+        work.add(sum(each.work for each in kept))
+        return [each.result for each in kept]
 
     def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
         """Results of a function for every candidate effect, in their order; the slowest begin first."""
