@@ -10,7 +10,7 @@ from wedgesweep.diagnose.noise_bins import of_record
 from wedgesweep.diagnose.noise_spectrum import (
     FROM_REPEATS,
     FROM_SPECTRUM,
-    MOST,
+    MOST_NOISE,
     Choice,
     NoiseBins,
     fit,
@@ -48,7 +48,7 @@ def test_noise_between_what_is_known_of_it_is_not_taken_for_too_small():
     """Bins at the lowest and the highest frequencies leave open how the noise falls from one to the other."""
     pole, between = 0.9, np.linspace(0.05, 2.0, 100)
     true = (1.0 - pole**2) / (1.0 + pole**2 - 2.0 * pole * np.cos(between))
-    least: dict[Choice, list[float]] = {Choice(MOST.loss): [], MOST: []}
+    least: dict[Choice, list[float]] = {Choice(MOST_NOISE.loss): [], MOST_NOISE: []}
     for seed in range(40):
         frequency, power = periodogram(coloured(np.random.default_rng(seed), 600, pole))
         kept = (np.arange(frequency.size) < 8) | (frequency > 2.0)

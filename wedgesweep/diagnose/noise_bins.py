@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.noise_spectrum import (
-    BEST,
-    LIKELY,
+    BEST_FIT,
+    CONSERVATIVE,
     Choice,
     NoiseBins,
     NoiseSpectrum,
@@ -60,7 +60,7 @@ class OwnNoise(NamedTuple):
 def of_record(samples: np.ndarray) -> NoiseSpectrum:
     """The noise in samples (n,) of a motion, by themselves."""
     own = noise_bins(samples)
-    return replace(fit([[own.bins]], LIKELY)[0], highest=own.highest)
+    return replace(fit([[own.bins]], CONSERVATIVE)[0], highest=own.highest)
 
 
 def noise_bins(samples: np.ndarray) -> OwnNoise:
@@ -80,7 +80,7 @@ def noise_bins(samples: np.ndarray) -> OwnNoise:
         if np.minimum(excess, STANDS_OUT).mean() < 1.0 + SKIRT / sqrt(following - first):
             break
         first, kept = following, above
-    found = _fitted(frequency, power, kept, LIKELY)
+    found = _fitted(frequency, power, kept, CONSERVATIVE)
     strong = frequency[power > LINE * found(frequency)].max(initial=frequency[first])
     bins, main = NoiseBins.of(frequency[kept], power[kept]), frequency[int(np.argmax(power))]
     return OwnNoise(bins, float(frequency[first]), float(strong), float(main))
@@ -134,7 +134,7 @@ def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.n
     """Bins from the first on in which no line stands out."""
     kept = above = np.arange(power.size) >= first
     for _ in range(ROUNDS):
-        ratio = power / _fitted(frequency, power, kept, BEST)(frequency)
+        ratio = power / _fitted(frequency, power, kept, BEST_FIT)(frequency)
         before, kept = kept, above & ~_spread(ratio > STANDS_OUT)
         if kept.sum() < max(LEAST_KEPT * above.sum(), FEWEST):
             return before

@@ -108,7 +108,7 @@ def of_noise(
     both = [periodogram(each) for each in records]
     frequency, power = (np.concatenate(each) for each in zip(*both, strict=True))
     floor = None if known is None else known(frequency)
-    return replace(fit([[NoiseBins.of(frequency, power, floor)]], LIKELY)[0], source=source)
+    return replace(fit([[NoiseBins.of(frequency, power, floor)]], CONSERVATIVE)[0], source=source)
 
 
 def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -122,11 +122,12 @@ def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Choice(NamedTuple):
-    """Which of the noises that fit about as well is taken.
+    """Which of the spectra that fit about as well is taken.
 
-    Of all poles within a ``loss`` of log-likelihood it is the one with most noise, with levels raised by what
-    they are uncertain, or with the ``least``. It is white noise, unless colour gains more than ``coloured``.
-    ``everywhere``: the others count at frequencies where they have more noise.
+    White noise is, unless colour gains more than ``coloured`` in log-likelihood. Else, of all poles whose
+    log-likelihood is at most ``loss`` below the best one, that with most noise is taken, or that with the
+    ``least``. ``everywhere``: the other poles count as well, at frequencies where they have more noise.
+    Levels are raised to the upper end of their 95 % interval, unless ``loss`` is 0 or ``least`` is set.
     """
 
     loss: float
@@ -135,12 +136,13 @@ class Choice(NamedTuple):
     everywhere: bool = False
 
 
-# The best fit, one that errs to the safe side, and both ends of a 95 % interval of the pole.
-BEST, LIKELY = Choice(0.0), Choice(0.5)
-LEAST, MOST = Choice(2.0, least=True), Choice(2.0, everywhere=True)
+# The maximum-likelihood spectrum, one that errs to the safe side, and both ends of a 95 % interval of the
+# pole.
+BEST_FIT, CONSERVATIVE = Choice(0.0), Choice(0.5)
+LEAST_NOISE, MOST_NOISE = Choice(2.0, least=True), Choice(2.0, everywhere=True)
 
 
-def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[NoiseSpectrum]:
+def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST_NOISE) -> list[NoiseSpectrum]:
     """Noise of one shape in several tests, each of a level of its own, from the bins of each."""
     own = [_bands(each) for each in tests]
     bands = _Bands(*(np.concatenate(each) for each in zip(*own, strict=True)))
@@ -158,14 +160,14 @@ def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[Noi
 
 
 def _chosen(found: "_Fitted", choice: Choice) -> list[int]:
-    """Places of poles, the one that is taken first; that of white noise unless colour is seen."""
+    """Indices of the poles that are taken, the leading one first; [0], white noise, unless colour is seen."""
     loss = found.loss - found.loss.min()
     if loss[0] <= choice.coloured:
         return [0]
-    elsewhere = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
-    elsewhere = elsewhere * found.level[:, 0]
+    mean_power = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
+    mean_power = mean_power * found.level[:, 0]
     good = np.flatnonzero(loss <= choice.loss)
-    good = good[np.argsort(elsewhere[good] if choice.least else -elsewhere[good])]
+    good = good[np.argsort(mean_power[good] if choice.least else -mean_power[good])]
     return [int(place) for place in (good if choice.everywhere else good[:1])]
 
 

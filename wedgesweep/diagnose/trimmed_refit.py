@@ -24,7 +24,7 @@ WORSE = 2.0
 # Nuisance parameters tried for tests that are taken back in, in standard deviations from stated.
 WITHIN = np.arange(-3.0, 4.0)
 # Share of all tests that may be left out.
-MOST = 1.0 / 3.0
+MOST_LEFT_OUT = 1.0 / 3.0
 
 
 def refit_without_influential_tests(fit: Fit) -> Fit:
@@ -33,7 +33,7 @@ def refit_without_influential_tests(fit: Fit) -> Fit:
     if not (model.data.repeats(fit.effects) and fit.evaluation.found):
         return fit
     left_out = _other_response_from_rest(fit) | _influential(fit) | model.data.insensitive(fit.evaluation)
-    if not 0 < left_out.sum() <= MOST * left_out.size:
+    if not 0 < left_out.sum() <= MOST_LEFT_OUT * left_out.size:
         return fit
     rows = np.flatnonzero(~left_out)
     kept = subset_fit(fit, rows)

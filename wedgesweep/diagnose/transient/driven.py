@@ -23,7 +23,7 @@ HIGHEST, SAMPLED = 0.4, 8.0
 SETTLING = 2.0
 # Largest rms of the input's noise over that of the input: where all that moves the base looks like noise,
 # most of it is not.
-MOST_NOISE = 0.05
+LARGEST_NOISE = 0.05
 # Bins over which spectra of input and response are averaged, as a share of all.
 AVERAGED = 0.01
 QUANTITIES_OF_MOTION = ("displacement", "velocity", "acceleration")
@@ -94,7 +94,7 @@ class Driven:
         """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
         given = _power(self.samples)
         noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
-        return noise * min(MOST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
+        return noise * min(LARGEST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
 
     def input_noise(self, shares: tuple[float, ...]) -> InputNoise:
         """The noise as it acts; ``shares`` (C,): of the base's displacement in each channel."""
@@ -108,7 +108,7 @@ class Driven:
         input does not stand out of its noise, that ratio says nothing.
         """
         given, seen = (_power(each) for each in (self.samples, response))
-        noise = np.minimum(self.noise_power, MOST_NOISE**2 * given)
+        noise = np.minimum(self.noise_power, LARGEST_NOISE**2 * given)
         return seen * noise / np.maximum(given, 1e-300)
 
 

@@ -17,8 +17,8 @@ from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, from_samples
 
-# Coefficients of a window whose noise is taken to be correlated, at most: those of the lowest frequencies.
-MOST = 400
+# Number of coefficients of a channel, from the lowest frequency up, whose correlation is accounted for.
+MOST_CORRELATED = 400
 # Knots of the input beyond a window to either side.
 BEYOND = 3
 
@@ -103,7 +103,7 @@ def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, .
     changes : ndarray, shape (k, C, n)
         What each cosine of the input does to a channel.
     """
-    size = min(own.shape[1], MOST)
+    size = min(own.shape[1], MOST_CORRELATED)
     found = []
     for variance, change in zip(own, np.moveaxis(changes, 1, 0), strict=True):
         by_input = dct(change, norm="ortho")[:, :size]

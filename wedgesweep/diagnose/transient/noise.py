@@ -16,10 +16,10 @@ import numpy as np
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
 from wedgesweep.diagnose.noise_spectrum import (
-    BEST,
+    BEST_FIT,
     FROM_REPEATS,
-    LEAST,
-    MOST,
+    LEAST_NOISE,
+    MOST_NOISE,
     Choice,
     NoiseBins,
     NoiseSpectrum,
@@ -130,14 +130,14 @@ class NoiseEvidence:
         best: Spectra = {}
         for order in self.of:
             own.append(self.without_skirts(order, best))
-            best |= self.fitted(own[-1], best, BEST)
+            best |= self.fitted(own[-1], best, BEST_FIT)
         for _ in range(ROUNDS):
             for each in own:
-                best |= self.fitted(each, best, BEST)
+                best |= self.fitted(each, best, BEST_FIT)
         most = best
         for _ in range(ROUNDS):
-            least = {key: one for each in own for key, one in self.fitted(each, most, LEAST).items()}
-            most = {key: one for each in own for key, one in self.fitted(each, least, MOST).items()}
+            least = {key: one for each in own for key, one in self.fitted(each, most, LEAST_NOISE).items()}
+            most = {key: one for each in own for key, one in self.fitted(each, least, MOST_NOISE).items()}
         return Told(most, least, own)
 
     @cached_property
@@ -160,7 +160,9 @@ class NoiseEvidence:
         for own in self.far_above:
             bins = self._bins(own, self.told.least)
             more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
-            spectra = _by_key(own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST))
+            spectra = _by_key(
+                own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST_NOISE)
+            )
             for key, its in own.items():
                 most, at = self.told.most[key], np.array(its.main)
                 found[key] = spectra[key] if spectra[key](at) < most(at) else most
