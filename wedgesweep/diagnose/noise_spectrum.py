@@ -30,7 +30,7 @@ CORRELATED = 1.5
 HIGH = 0.25
 # Frequencies (rad a sample) over which noise is compared.
 GRID = np.arange(1, 257) * pi / 256
-# Where the level comes from, as it is told.
+# What an estimate was taken from, as reported.
 FROM_REPEATS, FROM_SPECTRUM = "repeats", "frequencies without motion"
 
 
@@ -76,9 +76,9 @@ class NoiseSpectrum:
 
 
 class NoiseBins(NamedTuple):
-    """Bins in which noise is all there is: frequency (rad a sample), power, and known power, (b,) each.
+    """Bins of a spectrum that hold nothing but noise: frequency (rad a sample) and power, (b,) each.
 
-    ``known``: power that comes on top of the noise to be told.
+    ``known`` (b,): the part of the power that is not of the noise to be estimated.
     """
 
     frequency: np.ndarray

@@ -100,13 +100,17 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         input_phase=inputs.phase,
         inputs=inputs,
         model_error=measurement.model_error,
-        untold=_untold(as_measured, any(share for _, share in motions)),
+        hidden=_hidden_effects(as_measured, any(share for _, share in motions)),
     )
     return data.with_covariance(stated(data))
 
 
-def _untold(as_measured: set[str], converted: bool) -> tuple[str, ...]:
-    """Effects that the channels cannot show: those compared as measured, and whether others are converted."""
+def _hidden_effects(as_measured: set[str], converted: bool) -> tuple[str, ...]:
+    """Effects that the channels cannot show.
+
+    ``as_measured``: channels that are compared without conversion; ``converted``: whether the input
+    was added to any channel.
+    """
     found = [effect for effect, channel in OF_SENSORS.items() if channel not in as_measured]
     return (*found, "fixture_resonance") if converted else tuple(found)
 

@@ -86,11 +86,11 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
 class RecordedInputData(CorrelatedHarmonics):
     """Harmonics of steady tests whose input was recorded.
 
-    ``inputs``: the recorded inputs. ``untold``: effects that these channels cannot show.
+    ``inputs``: the recorded inputs. ``hidden``: effects that these channels cannot show.
     """
 
     inputs: InputHarmonics | None = None
-    untold: tuple[str, ...] = ()
+    hidden: tuple[str, ...] = ()
 
     eliminated = 0
 
@@ -108,21 +108,21 @@ class RecordedInputData(CorrelatedHarmonics):
         return replace(super().subset(rows), inputs=self.recorded.of(rows))
 
     def with_undetected(self, effect: str) -> Self:
-        return self if effect in self.untold else super().with_undetected(effect)
+        return self if effect in self.hidden else super().with_undetected(effect)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         return (AMPLITUDE,)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        return tuple(name for name in super().candidates(effects) if name not in self.untold)
+        return tuple(name for name in super().candidates(effects) if name not in self.hidden)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        left_out = (*self.untold, INPUT_GAIN)
-        told = {name: each for name, each in scenario.values.items() if name not in left_out}
-        rows = super().records(scenario._replace(values=told))
+        left_out = (*self.hidden, INPUT_GAIN)
+        shown = {name: each for name, each in scenario.values.items() if name not in left_out}
+        rows = super().records(scenario._replace(values=shown))
         rows["input"]["amplitude"] = self.inputs_of(scenario)
         for sensor, number, neutral in SENSORS:
-            if sensor in self.untold:
+            if sensor in self.hidden:
                 rows[sensor][number] = neutral
         excitation.set_series(rows, self.recorded.shape)
         return rows

@@ -70,7 +70,7 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
 def _noise(
     measurement: Measurement, channels: list[np.ndarray]
 ) -> tuple[tuple[NoiseEvidence, ...], list[list[NoiseSpectrum]]]:
-    """What tells the noise, and the noise of each channel of each test."""
+    """Evidence of the noise, and the noise of each channel of each test."""
     tests, orders = measurement.tests, range(len(QUANTITIES_OF_MOTION))
     declared = [measurement.columns.get(name, {}) for name in QUANTITIES_OF_MOTION]
     of = {order: declared[order].get("of", "relative") for order in orders}
@@ -79,7 +79,7 @@ def _noise(
         for test, own in zip(tests, channels, strict=True)
     ]
     evidence = evidence_of_noise(by_order, of, [test.sampling_rate for test in tests])
-    found = {key: each for one in evidence for key, each in one.told.most.items()}
+    found = {key: each for one in evidence for key, each in one.bounds.most.items()}
     repeated = from_repeats(tests, by_order)
     found |= {key: each.up_to(found[key].highest) for key, each in repeated.items()}
     spectra = [[found[t, order] for order in sorted(its)] for t, its in enumerate(by_order)]

@@ -159,11 +159,11 @@ class Release:
         bins = {order: NoiseBins(self._frequency[LEFT:], power, known) for order, power, known in both}
         return {(self.number, order): each for order, each in bins.items()}
 
-    def with_noise(self, told: Mapping[Key, NoiseSpectrum]) -> "Release":
-        """The window with noise that is told anew, but not where repeats had told it."""
+    def with_noise(self, estimates: Mapping[Key, NoiseSpectrum]) -> "Release":
+        """The window with new estimates of its noise, but not where repeats of the test showed it."""
         own = zip(self.spectra, self.orders, strict=False)
         spectra = tuple(
-            told.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
+            estimates.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
             for each, order in own
         )
         return replace(self, spectra=spectra)

@@ -49,7 +49,7 @@ class TransientData(SampledData):
     """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other.
 
     ``decorrelations``: combinations with independent noise of the first coefficients of each channel of each
-    test; without them coefficients count as independent. ``evidence``: what tells the noise of the channels.
+    test; without them coefficients count as independent. ``evidence``: what the records show of their noise.
     ``gain_std``: relative standard deviation of the gain of recorded inputs, 0 for exact ones or none.
     """
 
@@ -119,10 +119,10 @@ class TransientData(SampledData):
         return found
 
     def renewed(self, scenario: Scenario) -> Self:
-        """The data with the noise that a scenario leaves room for.
+        """The data with their noise as a scenario has it.
 
-        Noise of the input is passed on as its response does. Noise of a channel that is told far above its
-        motion only is no more than what it leaves.
+        Its response passes on the noise of the input. Noise of a channel that shows only far above the motion
+        is at most what the scenario leaves of that channel.
         """
         data = self._with_bounded_noise(scenario)
         if not any(own.driven for own in data.releases):
@@ -143,8 +143,8 @@ class TransientData(SampledData):
             shape = own.compared.shape
             for key, each in own.noise_in(row[: own.compared.size].reshape(shape)).items():
                 bins.setdefault(key, []).append(each)
-        told = {key: each for one in self.evidence for key, each in one.bounded(bins).items()}
-        return replace(self, releases=tuple(own.with_noise(told) for own in self.releases))
+        bounded = {key: each for one in self.evidence for key, each in one.bounded(bins).items()}
+        return replace(self, releases=tuple(own.with_noise(bounded) for own in self.releases))
 
     @cached_property
     def size(self) -> np.ndarray:
