@@ -190,7 +190,7 @@ def test_no_simulation_begins_where_the_filter_of_the_input_has_not_settled(tmp_
     measurement = read(path)
     (test,) = measurement.tests
     settling = Driven(test.input, measurement.recorded_input, test.sampling_rate).settling
-    windows = transient_data(measurement).releases
+    windows = transient_data(measurement).windows
     assert settling > 0
     assert all(round(each.starts_at / each.step) >= settling for each in windows)
     assert all(each.grid.lead > 0 for each in windows)
@@ -200,7 +200,7 @@ def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp
     # A filter of the input has not settled at either end of a record, which is not compared there.
     path = write(tmp_path, [4e-3 * chirp(2.0)], {"presliding": {"length": 1e-3}}, noise=(2e-6, 1e-6))
     search = Search.of(transient_data(read(path)), ["presliding"])
-    assert 0.0 < search.data.releases[0].starts_at < search.data.releases[0].begins
+    assert 0.0 < search.data.windows[0].starts_at < search.data.windows[0].begins
     fit = single_fit(search, "presliding", base_fit(search).base.fit).explanation.fit
     assert (fit.evaluation.chi2_by_test < 1.3 * search.data.dof).all()
 
@@ -215,7 +215,7 @@ def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulati
     at_rest = np.where(np.arange(data.tests)[:, None] < 2, 0.0, start.nuisance)
     here = model.evaluate(replace(start, nuisance=at_rest))
     assert (here.chi2_by_test < data.dof).all()
-    first, second, third = (own.starts_at for own in data.releases)
+    first, second, third = (own.starts_at for own in data.windows)
     assert first == pytest.approx(second)
     assert third > second + 5.0
 
@@ -223,7 +223,7 @@ def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulati
 def test_a_window_in_which_a_mass_stays_at_rest_is_not_simulated_from_where_it_last_slipped(tmp_path):
     """A record that begins with a long rest would be simulated from its start once for each window."""
     slow = np.where(0.7 * TIMES[-1] > TIMES, 0.01, 1.0) * 1e-3 * chirp()
-    releases = transient_data(read(write(tmp_path, [slow], noise=(2e-6, 1e-4)))).releases
-    first, resting, slipping = releases
+    data = transient_data(read(write(tmp_path, [slow], noise=(2e-6, 1e-4))))
+    first, resting, slipping = data.windows
     assert resting.begins - resting.starts_at == pytest.approx(first.grid.lead * first.step, rel=0.5)
     assert slipping.starts_at < resting.begins

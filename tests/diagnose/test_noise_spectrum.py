@@ -81,7 +81,7 @@ def test_coloured_noise_is_no_cause(tmp_path, seed):
 def test_repeats_tell_the_noise_and_do_not_hide_the_cause(tmp_path):
     path = write(tmp_path, effects={"viscous_damping": HIDDEN["viscous_damping"]}, pole=0.9, repeats=2)
     data = transient_data(read(path))
-    assert {each.spectra[0].source for each in data.releases} == {FROM_REPEATS}
+    assert {each.spectra[0].source for each in data.windows} == {FROM_REPEATS}
     found = diagnosed(path, ["viscous_damping", "friction_level"])
     assert [each["effect"] for each in found.causes] == ["viscous_damping"]
     assert found.document["misfit"]["tests"][0]["noise_from"] == FROM_REPEATS

@@ -74,10 +74,10 @@ def sensors(data: FitData) -> Sensors:
 
 @sensors.register
 def _(data: TransientData) -> Sensors:
-    own = _median(data.releases, lambda each: each.spectra[0].std / max(float(each.rms[0]), 1e-300))
-    travel = max(each.length for each in data.releases)
+    own = _median(data.windows, lambda each: each.spectra[0].std / max(float(each.rms[0]), 1e-300))
+    travel = max(each.length for each in data.windows)
     drive = 0.0
-    for each in data.releases:
+    for each in data.windows:
         if each.driven:
             times = np.arange(each.grid.samples) * each.step
             drive = max(drive, 0.5 * float(np.ptp(each.input(times))))

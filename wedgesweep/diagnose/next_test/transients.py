@@ -9,11 +9,11 @@ from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
+from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
 from wedgesweep.diagnose.transient.driven import nothing
 from wedgesweep.diagnose.transient.input_noise import InputNoise
-from wedgesweep.diagnose.transient.release import Grid, Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.windows import FEWEST_COMPARED, HARMONICS
+from wedgesweep.diagnose.transient.window import Grid, Window
 from wedgesweep.measured.declarations import TRANSIENT
 from wedgesweep.sampled_input import from_samples
 
@@ -62,11 +62,11 @@ def sweeps(best: Fit, known: Sensors) -> Design:
     return Design(TRANSIENT, SWEEP, _data(best, known, tuple(tests)), numbers, (SIZES.size, 1))
 
 
-def _window(known: Sensors, start: float, duration: float) -> Release:
+def _window(known: Sensors, start: float, duration: float) -> Window:
     """A release that was not recorded."""
     count = round(known.rate * duration)
     highest = HARMONICS * known.omega / known.rate
-    return Release(
+    return Window(
         name="",
         model=known.model,
         law=known.law,
@@ -86,7 +86,7 @@ def _window(known: Sensors, start: float, duration: float) -> Release:
     )
 
 
-def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientData:
+def _data(best: Fit, known: Sensors, tests: tuple[Window, ...]) -> TransientData:
     """The tests as if the best explanation were measured, with the noise that sensors would have."""
     own = best.model.data
     gain_std = getattr(own, "gain_std", 0.0) if any(each.driven for each in tests) else 0.0
@@ -95,11 +95,11 @@ def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientDat
     found = best.model.on(data).evaluate(Point(best.x, nuisance, warm))
     return replace(
         data,
-        releases=tuple(_filled(known, each, row) for each, row in zip(tests, found.response, strict=True)),
+        windows=tuple(_filled(known, each, row) for each, row in zip(tests, found.response, strict=True)),
     )
 
 
-def _filled(known: Sensors, own: Release, response: np.ndarray) -> Release:
+def _filled(known: Sensors, own: Window, response: np.ndarray) -> Window:
     shape = len(own.channels), own.coefficients
     channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
     rms = channels.std(axis=1)

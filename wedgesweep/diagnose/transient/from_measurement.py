@@ -3,11 +3,11 @@
 import numpy as np
 
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
 from wedgesweep.diagnose.transient.driven import QUANTITIES_OF_MOTION, Driven, factors
 from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
-from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.windows import FEWEST, Recorded, windows
+from wedgesweep.diagnose.transient.window import Window
 from wedgesweep.measured import Measurement, TestRecord
 
 
@@ -17,7 +17,7 @@ def transient_data(measurement: Measurement) -> TransientData:
     channels = [_channels(measurement, test) for test in tests]
     evidence, spectra = _noise(measurement, channels)
     fewest = FEWEST if len(tests) == 1 else 1
-    found: list[Release] = []
+    found: list[Window] = []
     for number, test in enumerate(tests):
         model, driven = measurement.model_of(test), _driven(measurement, test)
         orders = tuple(QUANTITIES_OF_MOTION.index(name) for name in _names(measurement, test))

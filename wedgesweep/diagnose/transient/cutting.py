@@ -10,7 +10,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.driven import Driven, at, nothing
-from wedgesweep.diagnose.transient.release import Grid, Release
+from wedgesweep.diagnose.transient.window import Grid, Window
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
@@ -93,7 +93,7 @@ def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -
     return cut._replace(lead=cut.first - start)
 
 
-def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Release]:
+def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Window]:
     """Prepare the windows of a record, of which there should be so many at least."""
     rate, driven = record.rate, record.driven
     period, top = _period(record, model), highest_compared(record, model)
@@ -110,7 +110,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
         start, end = first - lead, first + inside
         own = record.channels[:, first:end]
         found.append(
-            Release(
+            Window(
                 name=record.name if len(parts) == 1 else f"{record.name} {place}",
                 model=model,
                 law=law,
