@@ -9,8 +9,8 @@ from tests.diagnose.test_transients import MEASURED, OSCILLATOR
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
-from wedgesweep.diagnose.transient.driven import Driven
 from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.diagnose.transient.recorded_input import RecordedInput
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
@@ -125,7 +125,7 @@ def test_noise_of_the_input_counts_as_the_resonance_passes_it_on(tmp_path):
 def test_all_noise_counts_that_acts_with_the_input():
     """Above a sweep's highest frequency the input is nothing but noise, and acts up to the cut-off."""
     noise = 5e-6 * np.random.default_rng(0).standard_normal(SAMPLES)
-    driven = Driven(4e-3 * chirp(1.0, 4.0)[::FINE] + noise, "displacement", RATE)
+    driven = RecordedInput(4e-3 * chirp(1.0, 4.0)[::FINE] + noise, "displacement", RATE)
     frequency = np.linspace(0.0, 0.5 * RATE, driven.noise_power.size)
     for low, high in ((1.0, 4.0), (5.0, 8.0), (10.0, 100.0)):
         told = driven.noise_power[(low < frequency) & (frequency < high)].mean()
@@ -134,7 +134,7 @@ def test_all_noise_counts_that_acts_with_the_input():
 
 def test_motion_that_looks_like_noise_is_motion_for_the_most_part():
     white = np.random.default_rng(0).standard_normal(SAMPLES)
-    assert Driven(white, "displacement", RATE).noise_power.mean() < 0.003
+    assert RecordedInput(white, "displacement", RATE).noise_power.mean() < 0.003
 
 
 def test_motion_against_the_ground_is_the_motion_against_the_base_and_its_own(tmp_path):
@@ -189,7 +189,7 @@ def test_no_simulation_begins_where_the_filter_of_the_input_has_not_settled(tmp_
     path.write_text(path.read_text() + f"to_s = {to_s}\n")
     measurement = read(path)
     (test,) = measurement.tests
-    settling = Driven(test.input, measurement.recorded_input, test.sampling_rate).settling
+    settling = RecordedInput(test.input, measurement.recorded_input, test.sampling_rate).settling
     windows = transient_data(measurement).windows
     assert settling > 0
     assert all(round(each.starts_at / each.step) >= settling for each in windows)

@@ -10,8 +10,8 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
 from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
-from wedgesweep.diagnose.transient.driven import nothing
 from wedgesweep.diagnose.transient.input_noise import InputNoise
+from wedgesweep.diagnose.transient.recorded_input import no_input
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.window import Grid, Window
 from wedgesweep.measured.declarations import TRANSIENT
@@ -78,7 +78,7 @@ def _window(known: Sensors, start: float, duration: float) -> Window:
         passed_on=np.zeros((len(known.spectra), 2)),
         coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
         grid=Grid(0, count, known.omega),
-        input=nothing(count / known.rate),
+        input=no_input(count / known.rate),
         input_noise=None,
         length=start,
         guess=(start, 0.0),

@@ -4,8 +4,8 @@ import numpy as np
 
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
-from wedgesweep.diagnose.transient.driven import QUANTITIES_OF_MOTION, Driven, factors
 from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
+from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput, factors
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.window import Window
 from wedgesweep.measured import Measurement, TestRecord
@@ -19,10 +19,10 @@ def transient_data(measurement: Measurement) -> TransientData:
     fewest = FEWEST if len(tests) == 1 else 1
     found: list[Window] = []
     for number, test in enumerate(tests):
-        model, driven = measurement.model_of(test), _driven(measurement, test)
+        model, given = measurement.model_of(test), _recorded_input(measurement, test)
         orders = tuple(QUANTITIES_OF_MOTION.index(name) for name in _names(measurement, test))
         record = Recorded(
-            test.name, channels[number], test.sampling_rate, spectra[number], driven, number, orders
+            test.name, channels[number], test.sampling_rate, spectra[number], given, number, orders
         )
         record = _as_simulated(record, measurement)
         found += windows(record, model, measurement.law, fewest)
@@ -46,10 +46,10 @@ def _channels(measurement: Measurement, test: TestRecord) -> np.ndarray:
     return np.array([getattr(test, name) for name in _names(measurement, test)])
 
 
-def _driven(measurement: Measurement, test: TestRecord) -> Driven | None:
+def _recorded_input(measurement: Measurement, test: TestRecord) -> RecordedInput | None:
     if test.input is None or measurement.recorded_input is None:
         return None
-    return Driven(test.input, measurement.recorded_input, test.sampling_rate)
+    return RecordedInput(test.input, measurement.recorded_input, test.sampling_rate)
 
 
 def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
@@ -60,10 +60,10 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
     both = [factors(model, of) for of in named]
     channels = record.channels * np.array([factor for factor, _ in both])[:, None]
     shares = tuple(share for _, share in both)
-    if record.driven is not None:
+    if record.input is not None:
         for own, order, share in zip(channels, record.orders, shares, strict=True):
             if share:
-                own += share * record.driven.derivative(order)
+                own += share * record.input.derivative(order)
     return record._replace(channels=channels, shares=shares)
 
 

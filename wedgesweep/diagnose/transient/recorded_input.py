@@ -15,9 +15,10 @@ from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
 # Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
-# acceleration would shake a mass loose that sticks. Order of the filter, which leaves the rest alone.
+# acceleration would shake a mass loose that sticks. Order of the low-pass filter.
 KEPT, ORDER = 1.4, 8
-# Highest cut-off in cycles a sample, and samples over a period of it.
+# Cut-off (cycles a sample) from which on the input is not filtered, and samples that are kept in a period of
+# the cut-off.
 HIGHEST, SAMPLED = 0.4, 8.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.0
@@ -30,7 +31,7 @@ QUANTITIES_OF_MOTION = ("displacement", "velocity", "acceleration")
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class RecordedInput:
     """A recorded input: ``samples`` (n,) of a ``quantity`` (SI) at a ``rate`` (Hz), and their noise."""
 
     samples: np.ndarray
@@ -58,7 +59,7 @@ class Driven:
 
     @cached_property
     def acting(self) -> SampledInput:
-        """The input as it acts, from the first sample on."""
+        """The input as it acts in simulations, low-passed; its time counts from the first sample."""
         cutoff, smooth, stride = self._cutoff, self.samples, 1
         if cutoff < HIGHEST:
             sections = signal.butter(ORDER, cutoff, fs=1.0, output="sos")
@@ -82,7 +83,7 @@ class Driven:
         return self.acting(np.arange(self.samples.size) / self.rate)
 
     def derivative(self, order: int) -> np.ndarray:
-        """Displacement (m) of the base at the samples, or a derivative of it."""
+        """Displacement (m) of the base at the samples, or its derivative of an order up to 2 (SI)."""
         if order == 0:
             return self.displacement
         if order == 1:
@@ -112,13 +113,13 @@ class Driven:
         return seen * noise / np.maximum(given, 1e-300)
 
 
-def at(given: SampledInput, start: float) -> SampledInput:
+def starting_at(given: SampledInput, start: float) -> SampledInput:
     """The input for a simulation that starts at a time (s) of it."""
     return replace(given, begin=given.begin - start)
 
 
-def nothing(span: float) -> SampledInput:
-    """No input for some time (s)."""
+def no_input(span: float) -> SampledInput:
+    """An input that is zero for some time (s)."""
     return from_samples(np.zeros(2), span)
 
 
@@ -136,7 +137,7 @@ def factors(model: Config, of: str) -> tuple[float, float]:
 
 
 def _power(samples: np.ndarray) -> np.ndarray:
-    """Periodogram (m,) of samples (n,), averaged over neighbours."""
+    """Periodogram (n // 2 + 1,) of samples (n,) under a Hann window, averaged over neighbours."""
     window = np.hanning(samples.size)
     power = np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 / (window**2).sum()
     width = max(int(AVERAGED * power.size), 3)
