@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.config import Config
+from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.steady import tone
 from wedgesweep.diagnose.steady.correlated import stated
@@ -74,7 +74,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
     quantity = measurement.recorded_input
     assert quantity is not None
     named = _compared(measurement)
-    motions = [_motion_of_channel(measurement.model, of) for *_, of in named]
+    motions = [channel_factors(measurement.model, of) for *_, of in named]
     read = [_read_test(test, named, motions, quantity) for test in measurement.tests]
     spectra = tuple(each[0] for each in read)
     orders = max(each[1].displacement.shape[1] for each in read)
@@ -132,23 +132,10 @@ def _compared(measurement: Measurement) -> list[Channel]:
     return [(name, slots[i], measurement.columns[name].get("of", "relative")) for i, name in enumerate(named)]
 
 
-def _motion_of_channel(model: Config, of: str) -> tuple[float, float]:
-    """Factors of a channel and of the input in what the solvers record as displacement.
-
-    That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
-    where its contact or a force does not move with the base.
-    """
-    if model.system == "suspension":
-        return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
-    if of in model.simulated_motion:
-        return 1.0, 0.0
-    return 1.0, 1.0 if of == "relative" else -1.0
-
-
 def _read_test(
     test: TestRecord, named: list[Channel], motions: list[tuple[float, float]], quantity: str
 ) -> tuple[Spectrum, InputHarmonics]:
-    """Spectrum of the responses of a test and harmonics of its input; ``motions``: see _motion_of_channel."""
+    """Spectrum of the responses of a test and harmonics of its input; ``motions``: see channel_factors."""
     frequency = test.refined_frequency
     signals = np.array(
         [sign * getattr(test, name) for (name, *_), (sign, _) in zip(named, motions, strict=True)]

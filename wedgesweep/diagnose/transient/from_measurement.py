@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
 from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
-from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput, factors
+from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.window import Window
 from wedgesweep.measured import Measurement, TestRecord
@@ -57,7 +58,7 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
     test = measurement.tests[record.number]
     model = measurement.model_of(test)
     named = [measurement.columns[name].get("of", "relative") for name in _names(measurement, test)]
-    both = [factors(model, of) for of in named]
+    both = [channel_factors(model, of) for of in named]
     channels = record.channels * np.array([factor for factor, _ in both])[:, None]
     shares = tuple(share for _, share in both)
     if record.input is not None:

@@ -7,7 +7,6 @@ from math import ceil, pi
 import numpy as np
 from scipy import signal
 
-from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_bins import of_record
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import derivative
@@ -121,19 +120,6 @@ def starting_at(given: SampledInput, start: float) -> SampledInput:
 def no_input(span: float) -> SampledInput:
     """An input that is zero for some time (s)."""
     return from_samples(np.zeros(2), span)
-
-
-def factors(model: Config, of: str) -> tuple[float, float]:
-    """Factors of a channel and of the base's displacement in the motion that is simulated.
-
-    That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
-    where it does not rub on the base.
-    """
-    if model.system == "suspension":
-        return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
-    if of in model.simulated_motion:
-        return 1.0, 0.0
-    return 1.0, 1.0 if of == "relative" else -1.0
 
 
 def _power(samples: np.ndarray) -> np.ndarray:
