@@ -233,10 +233,10 @@ def supported(trained: Fit) -> Fit:
 
 
 def undetermined(fit: Fit) -> tuple[str, ...]:
-    """Effects with a parameter whose standard deviation is most of its range."""
+    """Effects with a parameter whose standard deviation exceeds VAGUE of its scales."""
     std = np.sqrt(np.diag(fit.covariance))[: fit.model.size]
     loose = std > VAGUE * fit.model.scale[: fit.model.size]
-    names = [each.name.split(".")[0] for each in fit.model.hypothesis.parameters]
+    names = [each.effect for each in fit.model.hypothesis.parameters]
     return tuple(dict.fromkeys(name for name, is_loose in zip(names, loose, strict=True) if is_loose))
 
 

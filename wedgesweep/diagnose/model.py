@@ -71,7 +71,7 @@ class Model:
 
     @cached_property
     def scale(self) -> np.ndarray:
-        """Changes of x that matter, (k + u,)."""
+        """Typical changes of x, (k + u,)."""
         return np.r_[self.hypothesis.scale, self.uncertain.scale]
 
     @cached_property

@@ -144,7 +144,7 @@ def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
     own = search.model(effect).hypothesis
     points = [model.hypothesis.at({**pair.values, **own.in_key_units(x)}) for x in own.starts()]
     evaluations = rough.evaluate_all([rough.start(pair, x) for x in points])
-    first = [each.name.split(".")[0] for each in model.hypothesis.parameters].index(effect)
+    first = [each.effect for each in model.hypothesis.parameters].index(effect)
     return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
 
 

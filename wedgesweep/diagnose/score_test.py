@@ -94,7 +94,7 @@ def _score_undetected(search: Search, base: Fit, effect: str) -> Score:
     """What would have shown of an effect of which the records show nothing."""
     data = search.data.with_undetected(effect)
     if data is search.data:  # nothing: such records do not depend on it
-        key = search.model(effect).hypothesis.parameters[0].name.split(".")[1]
+        key = search.model(effect).hypothesis.parameters[0].key
         return Score(effect, None, 0.0, key, None)
     silent = Search(data, (effect,))
     model = silent.model()
@@ -113,7 +113,7 @@ def _score(baseline: _Baseline, effect: str, known: Sequence[Evaluation]) -> Sco
     t2 = None
     if retention >= RETAINED and size[weak] > 0.0:
         t2 = float((scan.projected[weak] @ baseline.project.misfit) ** 2 / size[weak] ** 2)
-    key = model.hypothesis.parameters[scan.parameter].name.split(".")[1]
+    key = model.hypothesis.parameters[scan.parameter].key
     return Score(effect, t2, retention, key, _detectable(model.hypothesis, scan, key))
 
 
