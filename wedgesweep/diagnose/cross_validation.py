@@ -9,7 +9,7 @@ from scipy.special import ndtr, stdtrit
 
 from wedgesweep.diagnose import accuracy
 from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.explanation import PENALTY
+from wedgesweep.diagnose.explanation import parameter_penalty
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
@@ -226,8 +226,8 @@ def supported(trained: Fit) -> Fit:
         model = replace(trained.model, hypothesis=replace(trained.model.hypothesis, effects=rest), held=None)
         x = model.hypothesis.at(trained.values)
         less = minimise(model, model.evaluate(model.start(trained, x)), ADAPT)
-        penalty = np.log(model.data.observations.sum()) + PENALTY
-        if less.chi2 < trained.chi2 + penalty * (trained.model.size - model.size):
+        saved = parameter_penalty(model.data) * (trained.model.size - model.size)
+        if less.chi2 < trained.chi2 + saved:
             trained = less
     return trained
 

@@ -8,14 +8,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count
-from math import inf, log
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, parameter_penalty, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
@@ -98,10 +98,6 @@ class Search:
         budget = work.Budget(WORK_PER_TEST * max(data.measured_tests, FEWEST_COUNTED))
         return cls(data, detected, undetected, threads, progress, budget)
 
-    @property
-    def parameter_penalty(self) -> float:
-        return log(self.data.observations.sum()) + PENALTY
-
     def model(self, *effects: str, tolerance: float = TOLERANCE) -> Model:
         """The model with some effects; no effects: the base model."""
         known = self.data.known
@@ -110,7 +106,7 @@ class Search:
         return Model(self.data, Hypothesis(effects, fixed, self.data.units, wider), tolerance)
 
     def explanation(self, fit: Fit) -> Explanation:
-        return Explanation(fit, self.parameter_penalty)
+        return Explanation(fit, parameter_penalty(self.data))
 
     def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         """Results of a function for all items, in their order."""
