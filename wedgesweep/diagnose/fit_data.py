@@ -194,16 +194,16 @@ class FitData(Protocol):
         return None
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
-        """The data, with what an evaluation tells of the records' start."""
+        """The data, with what an evaluation tells of the records' start (the phase of the input there)."""
         return self
 
     def renewed(self, scenario: Scenario) -> Self:
         """The data with the covariance that their residuals have in a scenario, if it differs there."""
         return self
 
-    def repeats(self, effects: Iterable[str]) -> bool:
-        """Whether responses repeat, so that a test may be left out of a fit and taken back in."""
-        return True
+    def needs_alignment(self, effects: Iterable[str]) -> bool:
+        """Whether responses under these effects depend on what ``aligned_to`` tells of the records' start."""
+        return False
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
         """Whether (T,) a response does not react to small steps, though the measured one is not so."""

@@ -167,14 +167,14 @@ class Search:
 
 
 class BaseFit(NamedTuple):
-    """The fitted base model, and the search with what the fit tells of the records' start."""
+    """The fitted base model, and the search on data that are aligned to it (``FitData.aligned_to``)."""
 
     search: Search
     base: Explanation
 
 
 class SingleFit(NamedTuple):
-    """Best fit of one effect, the evaluations among which it began, and the data that it leaves."""
+    """Best fit of one effect, the scan over its range, and the data, aligned where the effect asks for it."""
 
     explanation: Explanation
     scan: list[Evaluation]
@@ -231,10 +231,10 @@ def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) 
 
 
 def _aligned(fit: Fit) -> Fit:
-    """The fit on data that know what it tells of the records' start, continued where that matters."""
+    """The fit on data aligned to it, continued from there if its responses depend on the alignment."""
     model = fit.model.on(fit.model.data.aligned_to(fit.evaluation))
     fit = replace(fit, model=model)
-    if not model.data.repeats(fit.effects):
+    if model.data.needs_alignment(fit.effects):
         fit = minimise(model, model.evaluate(fit.point))
     return from_other_nuisances(fit)
 

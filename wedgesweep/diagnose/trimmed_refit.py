@@ -30,7 +30,7 @@ MOST_LEFT_OUT = 1.0 / 3.0
 def refit_without_influential_tests(fit: Fit) -> Fit:
     """The fit, or a better one that was found without the tests that held it up."""
     model, point = fit.model, fit.point
-    if not (model.data.repeats(fit.effects) and fit.evaluation.found):
+    if model.data.needs_alignment(fit.effects) or not fit.evaluation.found:
         return fit
     left_out = _other_response_from_rest(fit) | _influential(fit) | model.data.insensitive(fit.evaluation)
     if not 0 < left_out.sum() <= MOST_LEFT_OUT * left_out.size:

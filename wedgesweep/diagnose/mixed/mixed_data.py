@@ -302,9 +302,9 @@ class MixedData(FitData):
         own = [each[0] for each in self._scenarios([scenario])]
         return self._with(self._each(lambda part, its: part.renewed(its), own))
 
-    def repeats(self, effects: Iterable[str]) -> bool:
+    def needs_alignment(self, effects: Iterable[str]) -> bool:
         effects = tuple(effects)
-        return all(part.repeats(effects) for part in self.present)
+        return any(part.needs_alignment(effects) for part in self.present)
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
         own = self._each(lambda part, its: part.insensitive(its), self.evaluations(evaluation))

@@ -254,8 +254,9 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return replace(self, input_phase=evaluation.response.phase)
 
-    def repeats(self, effects: Iterable[str]) -> bool:
-        return not self.has_tone(effects)
+    def needs_alignment(self, effects: Iterable[str]) -> bool:
+        """Responses under a tone do not repeat: they depend on the input's phase where a record starts."""
+        return self.has_tone(effects)
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
         """Whether (T,) a test was measured to move, and sticks in the simulation."""
