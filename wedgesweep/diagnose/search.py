@@ -26,17 +26,17 @@ from wedgesweep.effects import EFFECTS
 
 
 class Round(NamedTuple):
-    """A round of successive halving: how many of the best fits enter (None: all), and their iterations."""
+    """A round of successive halving: number of best fits that enter (None: all), and iterations of each."""
 
     entering: int | None
     iterations: int
 
 
-# Rounds from the starting points of an effect; the best fit of the last round is followed to its minimum.
+# Rounds from the starting points of an effect; the best fit of the last round is continued to its minimum.
 SCHEDULE = (Round(4, 3), Round(2, 4))
-# The same where fits beside a base model as stated have already brought some of these points closer.
+# The same where some starting points are already fits, made beside a base model as stated (STATED_SCHEDULE).
 NEARER_SCHEDULE = (Round(3, 3), Round(1, 5))
-# Where the base model is adequate a cause can only be weak, and any start will do.
+# The same where the base model is not impossible: a cause can only be weak then, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)
 # Rounds from the starting points of the base model.
 BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
@@ -205,7 +205,7 @@ def base_fit(search: Search) -> BaseFit:
 
 
 def _from_several(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
-    """The best fit from several evaluations, fewer of which are followed from round to round."""
+    """The best fit of the base model from several evaluations, by successive halving."""
     for entering, iterations in BASE_SCHEDULE:
         follow = partial(minimise, model, iterations=iterations)
         fits = search.each(follow, _leading(evaluations, entering))
@@ -258,7 +258,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point) or bool(base.implausible)
     if implausible or data.brings_nuisances(effect) or model.hypothesis.switches:
-        # Without the effect the base model's own parameters are, or may be, far from the truth.
+        # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
         evaluations = evaluations + fresh
         if implausible:
@@ -271,7 +271,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
 
 
 def from_special_cases(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Single effects; one that fits worse than a special case of it is fitted from where that ended."""
+    """Explanations by single effects, each refitted from its special cases that fit better, if any do."""
     fits = {each.effects: each.fit for each in found}
 
     def refitted(each: Explanation) -> Explanation:
@@ -295,7 +295,7 @@ def _from_special_case(fit: Fit, special: Fit) -> Fit:
 
 
 def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Explanations, the best first; the best that are impossible refitted without influential tests."""
+    """Explanations, best first; impossible ones among the best are refitted without influential tests."""
     best = [each for each in sorted(found, key=penalised)[:REFITTED] if each.fit.p < POSSIBLE]
 
     def refitted(each: Explanation) -> Explanation:
@@ -326,18 +326,18 @@ def best_of(
     schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
 ) -> Fit:
-    """Fit from several evaluations by successive halving; the best one is followed to its minimum.
+    """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
     Parameters
     ----------
     model : Model
         The model to fit.
     evaluations : sequence of Evaluation
-        Where fits begin; they may be of a rougher tolerance.
+        Where fits begin; their simulations may have a rougher tolerance than the model's.
     schedule : sequence of Round
-        Rounds, in each of which fewer fits are followed further.
+        Rounds, into each of which fewer fits enter.
     limit : float
-        Chi-squared that the best fit of a round must not exceed for the next round to take place.
+        The search ends after a round whose best fit has a larger chi-squared than this.
     """
     points = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
     evaluations = model.evaluate_all(points)
@@ -355,14 +355,17 @@ def _chi2(each: Fit | Evaluation) -> float:
 
 
 def _nuisances_held(model: Model, evaluation: Evaluation) -> Evaluation:
-    """Where an evaluation leads while nuisance parameters stay as stated."""
+    """End of a fit from an evaluation while nuisance parameters stay as stated, evaluated by the model."""
     strict = model.on(model.data.held_as_stated())
     found = minimise(strict, strict.evaluate(evaluation.point), HELD_ITERATIONS)
     return model.evaluate(found.point)
 
 
 def beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """Where the best evaluations lead while nuisance and uncertain parameters stay as stated."""
+    """Ends of fits from the best evaluations while nuisance and uncertain parameters stay as stated.
+
+    Evaluated by the model, in which all of these are free.
+    """
     strict = replace(model, data=model.data.held_as_stated(), as_stated=True)
     leading = [each.point for each in _leading(evaluations, STATED_SCHEDULE[0].entering)]
     found = strict.evaluate_all([replace(point, x=point.x[: model.size]) for point in leading])
@@ -377,7 +380,7 @@ def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Ev
 
 
 def best_per_value(evaluations: Sequence[Evaluation], parameter: int = 0) -> list[Evaluation]:
-    """The best evaluation at each value of a parameter, so that not all starts are neighbours."""
+    """The best evaluation at each value of a parameter, best first, so that not all starts are neighbours."""
     best: dict[float, Evaluation] = {}
     for evaluation in sorted(evaluations, key=_chi2):
         best.setdefault(float(evaluation.point.x[parameter]), evaluation)
