@@ -6,7 +6,7 @@ from scipy.fft import dct
 from scipy.signal import lfilter
 
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
-from wedgesweep.diagnose.noise_bins import of_record, quiet_bins
+from wedgesweep.diagnose.noise_bins import noise_of_record, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import NoiseBins, periodogram
 from wedgesweep.diagnose.transient.channel_differences import differences
 from wedgesweep.diagnose.transient.noise import evidence_of_noise
@@ -162,7 +162,9 @@ def test_noise_shows_where_the_motion_is_over():
 def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     # The reason for which tests are looked at together: kinks of the velocity fall with frequency like noise.
     rng, (_, v) = np.random.default_rng(0), decay(0.04)
-    alone = [of_record(noisy(v, 0.0, rng))(AT[1]) / power(LEVEL * v.std(), 0.0, AT[1]) for _ in range(12)]
+    alone = [
+        noise_of_record(noisy(v, 0.0, rng))(AT[1]) / power(LEVEL * v.std(), 0.0, AT[1]) for _ in range(12)
+    ]
     assert max(alone) > 10.0
     assert ratios(0.0, 0, (0, 1))[..., 1].max() < 6.0
 

@@ -6,14 +6,14 @@ import pytest
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
-from wedgesweep.diagnose.noise_bins import of_record
+from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import (
     FROM_REPEATS,
     FROM_SPECTRUM,
     MOST_NOISE,
     Choice,
     NoiseBins,
-    fit,
+    fit_spectra,
     of_noise,
     periodogram,
 )
@@ -38,7 +38,7 @@ def test_noise_below_a_decay_is_told_from_what_lies_above(pole):
     ratios = []
     for seed in range(6):
         record = DECAY + STD * coloured(np.random.default_rng(seed), SIZE, pole)
-        ratios.append(of_record(record)(AT) / true_power(pole))
+        ratios.append(noise_of_record(record)(AT) / true_power(pole))
     # Too low an estimate would look like a misfit, so that it errs to the other side.
     assert np.min(ratios) > 0.4
     assert np.median(ratios) < 3.0
@@ -53,7 +53,7 @@ def test_noise_between_what_is_known_of_it_is_not_taken_for_too_small():
         frequency, power = periodogram(coloured(np.random.default_rng(seed), 600, pole))
         kept = (np.arange(frequency.size) < 8) | (frequency > 2.0)
         for choice, found in least.items():
-            (told,) = fit([[NoiseBins.of(frequency[kept], power[kept])]], choice)
+            (told,) = fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], choice)
             found.append((told(between) / true).min())
     of_one_pole, of_all = (np.median(each) for each in least.values())
     assert of_one_pole < 0.5
@@ -104,7 +104,7 @@ def test_jumps_of_dry_friction_are_no_noise_of_an_accelerometer():
     rng, time = np.random.default_rng(7), np.arange(3000) / 1000.0
     motion = np.exp(-time) * np.cos(15.0 * time) + 0.2 * np.sign(np.sin(15.0 * time))
     noise = 0.01 * rng.standard_normal(time.size)
-    assert of_record(motion + noise).std > 1.5 * 0.01
-    assert of_record(continuous(motion + noise)).std == pytest.approx(0.01, rel=0.3)
+    assert noise_of_record(motion + noise).std > 1.5 * 0.01
+    assert noise_of_record(continuous(motion + noise)).std == pytest.approx(0.01, rel=0.3)
     smooth = np.cos(15.0 * time) + noise
-    assert of_record(continuous(smooth)).std == pytest.approx(0.01, rel=0.1)
+    assert noise_of_record(continuous(smooth)).std == pytest.approx(0.01, rel=0.1)

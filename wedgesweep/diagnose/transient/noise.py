@@ -23,7 +23,7 @@ from wedgesweep.diagnose.noise_spectrum import (
     Choice,
     NoiseBins,
     NoiseSpectrum,
-    fit,
+    fit_spectra,
     of_noise,
 )
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
@@ -121,7 +121,7 @@ class NoiseEvidence:
         bins = self._bins(own, known)
         if not _near_the_motion(bins, own.values()):
             choice = choice._replace(coloured=0.0)
-        return _by_key(own, fit(bins, choice))
+        return _by_key(own, fit_spectra(bins, choice))
 
     @cached_property
     def bounds(self) -> "NoiseBounds":
@@ -161,7 +161,7 @@ class NoiseEvidence:
             bins = self._bins(own, self.bounds.least)
             more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
             spectra = _by_key(
-                own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST_NOISE)
+                own, fit_spectra([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST_NOISE)
             )
             for key, its in own.items():
                 most, at = self.bounds.most[key], np.array(its.main)

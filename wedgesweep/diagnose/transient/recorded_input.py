@@ -7,7 +7,7 @@ from math import ceil, pi
 import numpy as np
 from scipy import signal
 
-from wedgesweep.diagnose.noise_bins import of_record
+from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
@@ -39,7 +39,7 @@ class RecordedInput:
 
     @cached_property
     def noise(self) -> NoiseSpectrum:
-        return of_record(self.samples)
+        return noise_of_record(self.samples)
 
     @cached_property
     def size(self) -> float:
