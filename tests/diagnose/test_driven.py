@@ -125,11 +125,11 @@ def test_noise_of_the_input_counts_as_the_resonance_passes_it_on(tmp_path):
 def test_all_noise_counts_that_acts_with_the_input():
     """Above a sweep's highest frequency the input is nothing but noise, and acts up to the cut-off."""
     noise = 5e-6 * np.random.default_rng(0).standard_normal(SAMPLES)
-    driven = RecordedInput(4e-3 * chirp(1.0, 4.0)[::FINE] + noise, "displacement", RATE)
-    frequency = np.linspace(0.0, 0.5 * RATE, driven.noise_power.size)
+    given = RecordedInput(4e-3 * chirp(1.0, 4.0)[::FINE] + noise, "displacement", RATE)
+    frequency = np.linspace(0.0, 0.5 * RATE, given.noise_power.size)
     for low, high in ((1.0, 4.0), (5.0, 8.0), (10.0, 100.0)):
-        told = driven.noise_power[(low < frequency) & (frequency < high)].mean()
-        assert told == pytest.approx(25e-12, rel=0.2), (low, high)
+        power = given.noise_power[(low < frequency) & (frequency < high)].mean()
+        assert power == pytest.approx(25e-12, rel=0.2), (low, high)
 
 
 def test_motion_that_looks_like_noise_is_motion_for_the_most_part():

@@ -53,8 +53,8 @@ def test_noise_between_what_is_known_of_it_is_not_taken_for_too_small():
         frequency, power = periodogram(coloured(np.random.default_rng(seed), 600, pole))
         kept = (np.arange(frequency.size) < 8) | (frequency > 2.0)
         for choice, found in least.items():
-            (told,) = fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], choice)
-            found.append((told(between) / true).min())
+            (estimate,) = fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], choice)
+            found.append((estimate(between) / true).min())
     of_one_pole, of_all = (np.median(each) for each in least.values())
     assert of_one_pole < 0.5
     assert 0.8 < of_all < 1.3
