@@ -13,7 +13,7 @@ from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.diagnose.transient.recorded_input import no_input
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.window import Grid, Window
+from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 from wedgesweep.measured.declarations import TRANSIENT
 from wedgesweep.sampled_input import from_samples
 
@@ -62,11 +62,11 @@ def sweeps(best: Fit, known: Sensors) -> Design:
     return Design(TRANSIENT, SWEEP, _data(best, known, tuple(tests)), numbers, (SIZES.size, 1))
 
 
-def _window(known: Sensors, start: float, duration: float) -> Window:
+def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
     """A release that was not recorded."""
     count = round(known.rate * duration)
     highest = HARMONICS * known.omega / known.rate
-    return Window(
+    return RecordWindow(
         name="",
         model=known.model,
         law=known.law,
@@ -86,7 +86,7 @@ def _window(known: Sensors, start: float, duration: float) -> Window:
     )
 
 
-def _data(best: Fit, known: Sensors, tests: tuple[Window, ...]) -> TransientData:
+def _data(best: Fit, known: Sensors, tests: tuple[RecordWindow, ...]) -> TransientData:
     """The tests as if the best explanation were measured, with the noise that sensors would have."""
     own = best.model.data
     gain_std = getattr(own, "gain_std", 0.0) if any(each.driven for each in tests) else 0.0
@@ -99,7 +99,7 @@ def _data(best: Fit, known: Sensors, tests: tuple[Window, ...]) -> TransientData
     )
 
 
-def _filled(known: Sensors, own: Window, response: np.ndarray) -> Window:
+def _filled(known: Sensors, own: RecordWindow, response: np.ndarray) -> RecordWindow:
     shape = len(own.channels), own.coefficients
     channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
     rms = channels.std(axis=1)

@@ -12,7 +12,7 @@ from wedgesweep.diagnose.result import stored
 from wedgesweep.diagnose.result.estimates import finite
 from wedgesweep.diagnose.result.stored import Variables
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.window import Window
+from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.sweep import labels
 
 BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
@@ -75,7 +75,7 @@ def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
     ]
 
 
-def _noise(own: Window) -> dict[str, Any]:
+def _noise(own: RecordWindow) -> dict[str, Any]:
     """Noise of a sample of each channel; null where it was not recorded."""
     keys = ("noise_displacement_mm", "noise_velocity_mm_per_s", "noise_acceleration_m_per_s2")
     std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=False)}

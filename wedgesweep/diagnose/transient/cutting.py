@@ -10,7 +10,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
-from wedgesweep.diagnose.transient.window import Grid, Window
+from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
@@ -103,7 +103,7 @@ def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -
     return cut._replace(lead=cut.first - start)
 
 
-def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Window]:
+def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[RecordWindow]:
     """Windows of a record; ``fewest``: see ``cuts``."""
     rate, given = record.rate, record.input
     period, top = _period(record, model), highest_compared(record, model)
@@ -120,7 +120,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
         start, end = first - lead, first + inside
         own = record.channels[:, first:end]
         found.append(
-            Window(
+            RecordWindow(
                 name=record.name if len(parts) == 1 else f"{record.name} {place}",
                 model=model,
                 law=law,

@@ -8,7 +8,7 @@ from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
 from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
 from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.window import Window
+from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.measured import Measurement, TestRecord
 
 
@@ -18,7 +18,7 @@ def transient_data(measurement: Measurement) -> TransientData:
     channels = [_channels(measurement, test) for test in tests]
     evidence, spectra = _noise(measurement, channels)
     fewest = FEWEST if len(tests) == 1 else 1
-    found: list[Window] = []
+    found: list[RecordWindow] = []
     for number, test in enumerate(tests):
         model, given = measurement.model_of(test), _recorded_input(measurement, test)
         orders = tuple(QUANTITIES_OF_MOTION.index(name) for name in _names(measurement, test))

@@ -27,7 +27,7 @@ from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
-from wedgesweep.diagnose.transient.window import Window
+from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.natural_units import NaturalUnits
 
 # Effects of a sine as an input, of what a recorded input holds already, or of mechanics for sines only.
@@ -53,7 +53,7 @@ class TransientData(SampledData):
     ``gain_std``: relative standard deviation of the gain of recorded inputs, 0 for exact ones or none.
     """
 
-    windows: tuple[Window, ...]
+    windows: tuple[RecordWindow, ...]
     uncertain: dict[str, float]
     model_error: float = 0.0
     gain_std: float = 0.0

@@ -57,7 +57,7 @@ class Grid(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Window:
+class RecordWindow:
     """One window of the record of a test, with C channels of n samples.
 
     Attributes
@@ -186,7 +186,7 @@ class Window:
         bins = {order: NoiseBins(self._frequency[ABSORBED:], power, known) for order, power, known in both}
         return {(self.number, order): each for order, each in bins.items()}
 
-    def with_noise(self, estimates: Mapping[Key, NoiseSpectrum]) -> "Window":
+    def with_noise(self, estimates: Mapping[Key, NoiseSpectrum]) -> "RecordWindow":
         """The window with new estimates of its noise, but not where repeats of the test showed it."""
         own = zip(self.spectra, self.orders, strict=False)
         spectra = tuple(
