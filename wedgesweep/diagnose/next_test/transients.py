@@ -8,7 +8,7 @@ import numpy as np
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
-from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
+from wedgesweep.diagnose.next_test.sensors import Sensors, beside_signal
 from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.diagnose.transient.recorded_input import no_input
@@ -103,7 +103,7 @@ def _filled(known: Sensors, own: RecordWindow, response: np.ndarray) -> RecordWi
     shape = len(own.channels), own.coefficients
     channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
     rms = channels.std(axis=1)
-    spectra = tuple(scaled(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
+    spectra = tuple(beside_signal(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
     # A recorded input has noise as well: as large a share as the response has.
     passed_on = np.array([each.std**2 for each in spectra])[:, None] * np.full((1, 2), float(own.driven))
     return replace(own, channels=channels, spectra=spectra, passed_on=passed_on)

@@ -78,7 +78,7 @@ def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
 def _noise(own: RecordWindow) -> dict[str, Any]:
     """Noise of a sample of each channel; null where it was not recorded."""
     keys = ("noise_displacement_mm", "noise_velocity_mm_per_s", "noise_acceleration_m_per_s2")
-    std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=False)}
+    std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=True)}
     sizes = (1e3, 1e3, 1.0)
     return {
         key: finite(size * std[order]) if order in std else None
@@ -119,7 +119,7 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
 
 def _orders(data: TransientData) -> tuple[int, ...]:
     """Derivatives of the displacement that any test recorded."""
-    return max((own.orders[: len(own.channels)] for own in data.windows), key=len)
+    return max((own.orders for own in data.windows), key=len)
 
 
 def _transients(data: TransientData, simulated: np.ndarray) -> Variables:

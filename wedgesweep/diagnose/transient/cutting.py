@@ -41,9 +41,9 @@ class Recorded(NamedTuple):
     channels: np.ndarray
     rate: float
     spectra: Sequence[NoiseSpectrum]
-    input: RecordedInput | None = None
-    number: int = 0
-    orders: tuple[int, ...] = (0, 1)
+    input: RecordedInput | None
+    number: int
+    orders: tuple[int, ...]
     shares: tuple[float, ...] = ()
 
 
@@ -136,7 +136,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 input_noise=input_noise,
                 length=max(float(np.abs(displacement[start:end] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),
-                orders=record.orders[: len(own)],
+                orders=record.orders,
             )
         )
     return found
@@ -149,8 +149,8 @@ def _displacement(record: Recorded, omega: float) -> np.ndarray:
     """
     if record.orders[0] == 0:
         return record.channels[0]
-    last = record.channels[-1] / record.rate ** record.orders[len(record.channels) - 1]
-    acceleration = last if record.orders[len(record.channels) - 1] > 1 else np.gradient(last)
+    last = record.channels[-1] / record.rate ** record.orders[-1]
+    acceleration = last if record.orders[-1] > 1 else np.gradient(last)
     return -acceleration / omega**2
 
 

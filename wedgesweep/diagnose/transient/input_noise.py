@@ -89,7 +89,7 @@ def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], le
     """
     wrong = parts.at(parts.step * np.arange(parts.samples))
     motion = wrong, *(derivative(wrong, 1.0 / parts.step, order) for order in (1, 2))
-    pairs = zip(shares, orders, strict=False)
+    pairs = zip(shares, orders, strict=True)
     return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]
 
 

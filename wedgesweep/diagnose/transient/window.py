@@ -104,7 +104,7 @@ class RecordWindow:
     input_noise: InputNoise | None
     length: float
     guess: tuple[float, float]
-    orders: tuple[int, ...] = (0, 1)
+    orders: tuple[int, ...]
 
     @cached_property
     def compared(self) -> np.ndarray:
@@ -131,11 +131,6 @@ class RecordWindow:
         return self.input_noise is not None
 
     @property
-    def _orders(self) -> tuple[int, ...]:
-        """The derivative of the displacement that each channel is."""
-        return self.orders[: len(self.channels)]
-
-    @property
     def _shares(self) -> tuple[float, ...]:
         """Share of the base's recorded motion that was added to each channel to have it as simulated."""
         return (0.0,) * len(self.channels) if self.input_noise is None else self.input_noise.shares
@@ -143,14 +138,14 @@ class RecordWindow:
     @property
     def shown_as_measured(self) -> tuple[int, ...]:
         """The derivatives of the displacement that sensors show without conversion."""
-        both = zip(self._orders, self._shares, strict=True)
+        both = zip(self.orders, self._shares, strict=True)
         return tuple(order for order, share in both if share == 0.0)
 
     @cached_property
     def _converted(self) -> np.ndarray:
         """Motion of the base that was added to the channels, (C, n); it has the error of the input's gain."""
         times = self.step * np.arange(self.grid.lead, self.grid.samples)
-        both = zip(self._orders, self._shares, strict=True)
+        both = zip(self.orders, self._shares, strict=True)
         return np.array([share * self.input(times, order) if share else 0.0 * times for order, share in both])
 
     @cached_property
@@ -166,7 +161,7 @@ class RecordWindow:
         found = np.array([each(self._frequency) + low**2 for each, low in own])
         # The zero of the first channel is fitted; that of an accelerometer beside others is unknown.
         zero = (UNKNOWN_ZERO * self.rms) ** 2 * self.channels.shape[1]
-        found[1:, 0] += zero[1:] * (np.array(self._orders[1:]) == ACCELERATION)
+        found[1:, 0] += zero[1:] * (np.array(self.orders[1:]) == ACCELERATION)
         return found
 
     @cached_property
@@ -182,13 +177,13 @@ class RecordWindow:
 
     def noise_in(self, left: np.ndarray) -> dict[Key, NoiseBins]:
         """The residual of the coefficients (C, K) as bins of noise, by test and order of the channel."""
-        both = zip(self._orders, left[:, ABSORBED:] ** 2, self.by_input[:, ABSORBED:], strict=True)
+        both = zip(self.orders, left[:, ABSORBED:] ** 2, self.by_input[:, ABSORBED:], strict=True)
         bins = {order: NoiseBins(self._frequency[ABSORBED:], power, known) for order, power, known in both}
         return {(self.number, order): each for order, each in bins.items()}
 
     def with_noise(self, estimates: Mapping[Key, NoiseSpectrum]) -> "RecordWindow":
         """The window with new estimates of its noise, but not where repeats of the test showed it."""
-        own = zip(self.spectra, self.orders, strict=False)
+        own = zip(self.spectra, self.orders, strict=True)
         spectra = tuple(
             estimates.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
             for each, order in own
@@ -212,7 +207,7 @@ class RecordWindow:
         for place, each in enumerate(inputs):
             self._drive(rows[place : place + 1], each, gain)
         above, below = np.split(self._motions(rows, np.tile(start, (len(rows), 1)), tolerance), 2)
-        changes = converted(parts, self.input_noise.shares, self._orders, grid.lead) - 0.5 * (above - below)
+        changes = converted(parts, self.input_noise.shares, self.orders, grid.lead) - 0.5 * (above - below)
         return decorrelated(self._own_variance, np.nan_to_num(changes))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
@@ -267,10 +262,10 @@ class RecordWindow:
         states = np.zeros((len(rows), state_count()))
         # Solvers record minus what channels are: the state of a suspension, minus the state of an oscillator.
         states[:, :2] = starts if self.model.system == "oscillator" else -starts
-        orders, samples = self._orders, self.grid.samples
-        run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(orders) == ACCELERATION)
+        samples = self.grid.samples
+        run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(self.orders) == ACCELERATION)
         motion = run.x, run.velocity, run.acceleration
-        return -np.stack([motion[order] for order in orders], axis=1)[..., self.grid.lead :]
+        return -np.stack([motion[order] for order in self.orders], axis=1)[..., self.grid.lead :]
 
     @property
     def _scale(self) -> float:
