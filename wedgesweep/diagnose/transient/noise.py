@@ -30,7 +30,7 @@ from wedgesweep.diagnose.transient.channel_differences import Difference, differ
 from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import TestRecord
 
-# Order of an acceleration, whose jumps are no noise.
+# Order of an acceleration, whose jumps are no noise: derivative of the displacement.
 ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
 SAME_RATE = 1e-3

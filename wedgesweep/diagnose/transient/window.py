@@ -24,14 +24,12 @@ from wedgesweep.diagnose.transient.input_noise import (
     decorrelated,
     disturbed,
 )
-from wedgesweep.diagnose.transient.noise import Key
+from wedgesweep.diagnose.transient.noise import ACCELERATION, Key
 from wedgesweep.effects import merge
 from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
-# Derivative of the displacement that an accelerometer shows.
-ACCELERATION = 2
 # Standard deviation of an accelerometer's zero over the rms of its signal: as good as unknown.
 UNKNOWN_ZERO = 1e3
 # Number of coefficients, the lowest ones, that do not show noise: zero and start are fitted to them.
