@@ -36,8 +36,8 @@ from wedgesweep.uncertain import DISTORTION, harmonic_of, with_harmonic
 ORDERS = {"second": 2, "third": 3}
 # Columns k and q of their real and imaginary parts.
 COLUMNS = 4 * len(ORDERS)
-# Least finite-difference step of a harmonic, times its order, so that the error of simulations does not hide
-# it; else the standard deviation of its real part.
+# The finite-difference step of a harmonic is the standard deviation of its real part, but at least this over
+# its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
 # Newton steps from the best start phase without a covariance, and in rad their largest length and a
 # negligible one.
