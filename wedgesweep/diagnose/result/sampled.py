@@ -24,7 +24,7 @@ def _fits(found: Diagnosis) -> dict[str, Fit]:
 
 
 def tests(found: Diagnosis, data: LoopData | TransientData) -> list[dict[str, Any]]:
-    """Rows of the tests for diagnosis.json; errors are rms over the rms of the response."""
+    """Rows of the tests for diagnosis.json; errors are the rms of the residual over that of the response."""
     fits = _fits(found)
     errors = {name: data.error(fit.evaluation) for name, fit in fits.items()}
     own = _of_loops(data) if isinstance(data, LoopData) else _of_transients(data, found.extended)
@@ -56,7 +56,7 @@ def _of_loops(data: LoopData) -> list[dict[str, Any]]:
 
 
 def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
-    """With the start as the extended model has it."""
+    """What is special to transients in the rows; starts are those of the extended model."""
     starts = 1e3 * data.starts(fit.point)
     return [
         {
