@@ -1,4 +1,4 @@
-"""Releases from a displacement, and sine-sweeps of the input, to choose from."""
+"""Releases from a displacement, and sine-sweeps of the input, to choose a next test from."""
 
 from dataclasses import replace
 from math import ceil, pi
@@ -29,7 +29,7 @@ FINE = 32
 
 
 def releases(best: Fit, known: Sensors) -> Design:
-    """Releases without velocity; the best explanation tells how much noise there is beside the motion."""
+    """Releases at rest from displacements of several sizes."""
     starts, duration = SIZES * known.travel, RELEASED * 2.0 * pi / known.omega
     tests = tuple(_window(known, start, duration) for start in starts)
     numbers = [{"start_mm": 1e3 * start, "duration_s": duration} for start in starts]
@@ -63,7 +63,7 @@ def sweeps(best: Fit, known: Sensors) -> Design:
 
 
 def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
-    """A release that was not recorded."""
+    """A release from a displacement (m), of some duration (s), that was not recorded."""
     count = round(known.rate * duration)
     highest = HARMONICS * known.omega / known.rate
     return RecordWindow(
@@ -100,6 +100,7 @@ def _data(best: Fit, known: Sensors, tests: tuple[RecordWindow, ...]) -> Transie
 
 
 def _filled(known: Sensors, own: RecordWindow, response: np.ndarray) -> RecordWindow:
+    """The window with a response in place of a record, and with the noise that sensors have beside it."""
     shape = len(own.channels), own.coefficients
     channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
     rms = channels.std(axis=1)
