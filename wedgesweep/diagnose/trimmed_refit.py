@@ -15,7 +15,7 @@ from wedgesweep.diagnose.least_squares import lm_step, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
 
-# Two responses differ if their squared misfits differ by more than this share and this amount.
+# Two responses differ if their squared misfits differ by more than this share plus this amount.
 DIFFERENT = 0.05, 1.0
 # Damping that keeps a step finite where the tests leave a parameter undetermined.
 LEAST_DAMPING = 1e-6
@@ -28,7 +28,7 @@ MOST_LEFT_OUT = 1.0 / 3.0
 
 
 def refit_without_influential_tests(fit: Fit) -> Fit:
-    """The fit, or a better one that was found without the tests that held it up."""
+    """The fit, or a better one of all tests that starts where a fit without influential tests ends."""
     model, point = fit.model, fit.point
     if model.data.needs_alignment(fit.effects) or not fit.evaluation.found:
         return fit
