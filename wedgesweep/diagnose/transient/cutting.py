@@ -111,14 +111,11 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     rest, length = _extent(displacement)
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
-    parts = cuts(record.channels.shape[1], period, given.settling if given else 0, fewest)
-    if given:
-        parts = [_from_last_slip(each, smooth, period, given.settling) for each in parts]
+    parts = _cuts(record, smooth, period, fewest)
     passed_on, input_noise = _passed_on(record), given.input_noise(record.shares) if given else None
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
         start, end = first - lead, first + inside
-        own = record.channels[:, first:end]
         found.append(
             RecordWindow(
                 name=record.name if len(parts) == 1 else f"{record.name} {place}",
@@ -127,7 +124,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 step=1.0 / rate,
                 begins=first / rate,
                 number=record.number,
-                channels=own,
+                channels=record.channels[:, first:end],
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
                 coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
@@ -140,6 +137,15 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
             )
         )
     return found
+
+
+def _cuts(record: Recorded, motion: np.ndarray, period: float, fewest: int) -> list[Cut]:
+    """Windows of a record; under an input they are simulated from where the motion (n,) last slipped."""
+    samples = record.channels.shape[1]
+    if record.input is None:
+        return cuts(samples, period, 0, fewest)
+    skipped = record.input.settling
+    return [_from_last_slip(each, motion, period, skipped) for each in cuts(samples, period, skipped, fewest)]
 
 
 def _displacement(record: Recorded, omega: float) -> np.ndarray:

@@ -30,15 +30,16 @@ from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.natural_units import NaturalUnits
 
-# Effects of a sine as an input, of what a recorded input holds already, or of mechanics for sines only.
+# Effects that are no candidates: of a sine as the input, of what a recorded input contains already, or of
+# mechanics for sines only.
 OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip", "lift_off")
-# Effects of sensors, each of one derivative of the displacement.
+# Effects of sensors, and the derivative of the displacement whose sensor has each.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Blocks of a record that are left out in turn, at most.
 MOST_BLOCKS = 12
-# Displacement and velocity of the start, over the largest displacement and that a natural time later.
+# Displacement and velocity of the start, over the largest displacement (times omega_n for the velocity).
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
-# Displacements that are tried beside the measured one, over the largest, where so few points are tried.
+# Offsets of the start, over the largest displacement, that are tried if there are at most FEW points.
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
@@ -100,7 +101,7 @@ class TransientData(SampledData):
         return noise
 
     def _combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
-        """Test, place and combination of all coefficients that are correlated."""
+        """Test, coefficients and their decorrelation, for all channels with correlated noise."""
         for t, both in enumerate(self.decorrelations or ()):
             for channel, each in enumerate(both):
                 first = channel * self.windows[t].coefficients
@@ -134,7 +135,7 @@ class TransientData(SampledData):
         return replace(data, decorrelations=found)
 
     def _with_bounded_noise(self, scenario: Scenario) -> Self:
-        """The data with less noise where a scenario shows that there is less."""
+        """The data with less noise where the residual of a scenario shows that there is less."""
         if not any(each.far_above for each in self.evidence):
             return self
         left = self.without_zero(self.measured - np.nan_to_num(self.simulated([scenario])[0]))
@@ -148,7 +149,7 @@ class TransientData(SampledData):
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Rms (T, m) that the coefficients of each channel have where they hold all its power."""
+        """Rms (T, m) that the coefficients of each channel have if they hold all its power."""
         rms = [np.sqrt(own.spread) * own.rms for own in self.windows]
         shapes = [(each.size, own.coefficients) for each, own in zip(rms, self.windows, strict=True)]
         pairs = zip(rms, shapes, strict=True)
@@ -156,7 +157,7 @@ class TransientData(SampledData):
 
     @cached_property
     def shifted(self) -> np.ndarray:
-        """The first coefficient of the first channel is its mean."""
+        """A unit of the zero adds this to the first coefficient of the first channel, that of its mean."""
         found = np.zeros_like(self.recorded)
         found[:, 0] = [np.sqrt(own.channels.shape[1]) for own in self.windows]
         return found
@@ -180,7 +181,7 @@ class TransientData(SampledData):
 
     @cached_property
     def _scale(self) -> np.ndarray:
-        """Displacement (m) and velocity (m/s) of the largest displacement of each test, (T, 2)."""
+        """Units (T, 2) of the starts: the largest displacement (m), and that times omega_n (m/s)."""
         length = np.array([own.length for own in self.windows])
         return np.column_stack([length, length * np.array([own.grid.omega for own in self.windows])])
 
@@ -226,7 +227,10 @@ class TransientData(SampledData):
         )
 
     def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
-        """Evaluations from several starts: where a mass rests before it moves, friction hides its place."""
+        """Evaluations of points, each test from the best of several starts.
+
+        A mass that rests before it moves may do so at any place where friction holds it.
+        """
         stated, at_rest = self.start()
         offsets = OFFSETS if len(points) <= FEW else (0.0,)
         tried = [points]
@@ -250,7 +254,7 @@ class TransientData(SampledData):
         return None if np.array_equal(found, evaluation.point.nuisance) else found
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        """Each record, or where there is only one blocks of windows that follow one another."""
+        """Each record; of a single record blocks of successive windows."""
         numbers = np.array([own.number for own in self.windows])
         if np.ptp(numbers) > 0:
             return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
