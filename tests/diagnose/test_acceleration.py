@@ -76,7 +76,7 @@ def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path)
     assert known.orders == (2,)
     assert known.displacement_noise < 0.03 * 1e-3 * travel
     offered = releases(base, known).data
-    assert all(own.orders == (2,) for own in offered.releases)
+    assert all(own.orders == (2,) for own in offered.windows)
     # Beside the motion noise is about as small as it was.
     assert (offered.power > 30.0 * offered.observations).all()
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.diagnose.synthetic import drawn
 from wedgesweep.diagnose import verdict
-from wedgesweep.diagnose.beyond_range import ending, followed_beyond
+from wedgesweep.diagnose.beyond_range import effects_at_range_end, followed_beyond
 from wedgesweep.diagnose.diagnosis import explain
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
@@ -68,7 +68,7 @@ def test_a_number_at_an_end_of_what_is_possible_is_not_followed():
     search = Search.of(friction_of(1.0), ("guide_friction",))
     model = search.model("guide_friction")
     fit = minimise(model, model.evaluate(model.start(None, np.array([0.0]))), 0)
-    assert ending(fit) == ()
+    assert effects_at_range_end(fit) == ()
     same, explanations = followed_beyond(search, search.explanation(fit), [search.explanation(fit)])
     assert same.wider == ()
     assert [each.fit for each in explanations] == [fit]
@@ -80,7 +80,7 @@ def test_an_effect_that_explains_next_to_nothing_is_not_followed():
     _, base = base_fit(search)
     model = search.model("friction_level")
     fit = minimise(model, model.evaluate(model.start(base.fit, np.array([2.0]))))
-    assert ending(fit) == ("friction_level",)
+    assert effects_at_range_end(fit) == ("friction_level",)
     assert fit.chi2 < 0.9 * base.fit.chi2
     explanation = search.explanation(fit)
     assert followed_beyond(search, base, [explanation])[0].wider == ("friction_level",)
@@ -94,4 +94,4 @@ def test_a_logarithm_ends_at_either_end_of_its_range():
     for value, ends in ((low, True), (high, True), (0.5 * high, False)):
         x = np.array([log(value), *(0.5 * (model.low + model.high))[1:]])
         fit = minimise(model, model.evaluate(model.start(None, x)), 0)
-        assert (ending(fit) == ("column_compliance",)) is ends
+        assert (effects_at_range_end(fit) == ("column_compliance",)) is ends

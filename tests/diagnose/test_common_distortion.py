@@ -118,14 +118,14 @@ def test_a_cause_beside_a_common_distortion_is_named_alone():
 def test_the_result_tells_the_fitted_harmonics():
     measurement = frictionless(3, std=0.0, common=(SECOND, THIRD))
     found = diagnose(replace(measurement, uncertain={DISTORTION: STD}), ("viscous_damping",))
-    told = uncertain(found.base.fit)[DISTORTION]
+    fitted = uncertain(found.base.fit)[DISTORTION]
     for name, truth in (("second", SECOND), ("third", THIRD)):
-        assert abs(told[name] - abs(truth)) < 4.0 * told[f"{name}_std"] < 0.2 * STD
-        turned = np.exp(1j * np.radians(told[f"{name}_phase_deg"]))
-        assert abs(told[name] * turned - truth) < 6.0 * told[f"{name}_std"]
+        assert abs(fitted[name] - abs(truth)) < 4.0 * fitted[f"{name}_std"] < 0.2 * STD
+        turned = np.exp(1j * np.radians(fitted[f"{name}_phase_deg"]))
+        assert abs(fitted[name] * turned - truth) < 6.0 * fitted[f"{name}_std"]
     own = config.parse(extended(found)).effects[DISTORTION]
-    assert own["third"] == pytest.approx(told["third"])
-    assert own["third_phase"] == pytest.approx(np.radians(told["third_phase_deg"]))
+    assert own["third"] == pytest.approx(fitted["third"])
+    assert own["third_phase"] == pytest.approx(np.radians(fitted["third_phase_deg"]))
 
 
 def test_no_power_is_lost():

@@ -109,7 +109,7 @@ def test_an_effect_that_one_test_denies_is_uncertain():
 def test_a_fine_sweep_is_no_single_group():
     """Each frequency lies within 2 % of the next, not of all."""
     frequencies = np.arange(30.0, 38.1, 0.5)
-    found = harmonic_data.groups(frequencies[::-1].copy())
+    found = harmonic_data.groups_of_equal(frequencies[::-1].copy())
     assert sorted(np.concatenate(found).tolist()) == list(range(frequencies.size))
     assert max(np.ptp(np.log(frequencies[::-1][group])) for group in found) <= harmonic_data.SAME_GROUP
     assert len(found) > 5

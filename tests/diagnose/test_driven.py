@@ -9,8 +9,8 @@ from tests.diagnose.test_transients import MEASURED, OSCILLATOR
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
-from wedgesweep.diagnose.transient.driven import Driven
 from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.diagnose.transient.recorded_input import RecordedInput
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
@@ -125,16 +125,16 @@ def test_noise_of_the_input_counts_as_the_resonance_passes_it_on(tmp_path):
 def test_all_noise_counts_that_acts_with_the_input():
     """Above a sweep's highest frequency the input is nothing but noise, and acts up to the cut-off."""
     noise = 5e-6 * np.random.default_rng(0).standard_normal(SAMPLES)
-    driven = Driven(4e-3 * chirp(1.0, 4.0)[::FINE] + noise, "displacement", RATE)
-    frequency = np.linspace(0.0, 0.5 * RATE, driven.noise_power.size)
+    given = RecordedInput(4e-3 * chirp(1.0, 4.0)[::FINE] + noise, "displacement", RATE)
+    frequency = np.linspace(0.0, 0.5 * RATE, given.noise_power.size)
     for low, high in ((1.0, 4.0), (5.0, 8.0), (10.0, 100.0)):
-        told = driven.noise_power[(low < frequency) & (frequency < high)].mean()
-        assert told == pytest.approx(25e-12, rel=0.2), (low, high)
+        power = given.noise_power[(low < frequency) & (frequency < high)].mean()
+        assert power == pytest.approx(25e-12, rel=0.2), (low, high)
 
 
 def test_motion_that_looks_like_noise_is_motion_for_the_most_part():
     white = np.random.default_rng(0).standard_normal(SAMPLES)
-    assert Driven(white, "displacement", RATE).noise_power.mean() < 0.003
+    assert RecordedInput(white, "displacement", RATE).noise_power.mean() < 0.003
 
 
 def test_motion_against_the_ground_is_the_motion_against_the_base_and_its_own(tmp_path):
@@ -189,8 +189,8 @@ def test_no_simulation_begins_where_the_filter_of_the_input_has_not_settled(tmp_
     path.write_text(path.read_text() + f"to_s = {to_s}\n")
     measurement = read(path)
     (test,) = measurement.tests
-    settling = Driven(test.input, measurement.recorded_input, test.sampling_rate).settling
-    windows = transient_data(measurement).releases
+    settling = RecordedInput(test.input, measurement.recorded_input, test.sampling_rate).settling
+    windows = transient_data(measurement).windows
     assert settling > 0
     assert all(round(each.starts_at / each.step) >= settling for each in windows)
     assert all(each.grid.lead > 0 for each in windows)
@@ -200,7 +200,7 @@ def test_bristles_that_were_at_work_before_a_window_are_simulated_from_there(tmp
     # A filter of the input has not settled at either end of a record, which is not compared there.
     path = write(tmp_path, [4e-3 * chirp(2.0)], {"presliding": {"length": 1e-3}}, noise=(2e-6, 1e-6))
     search = Search.of(transient_data(read(path)), ["presliding"])
-    assert 0.0 < search.data.releases[0].starts_at < search.data.releases[0].begins
+    assert 0.0 < search.data.windows[0].starts_at < search.data.windows[0].begins
     fit = single_fit(search, "presliding", base_fit(search).base.fit).explanation.fit
     assert (fit.evaluation.chi2_by_test < 1.3 * search.data.dof).all()
 
@@ -215,7 +215,7 @@ def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulati
     at_rest = np.where(np.arange(data.tests)[:, None] < 2, 0.0, start.nuisance)
     here = model.evaluate(replace(start, nuisance=at_rest))
     assert (here.chi2_by_test < data.dof).all()
-    first, second, third = (own.starts_at for own in data.releases)
+    first, second, third = (own.starts_at for own in data.windows)
     assert first == pytest.approx(second)
     assert third > second + 5.0
 
@@ -223,7 +223,7 @@ def test_a_mass_that_stuck_before_a_window_has_stuck_for_as_long_in_its_simulati
 def test_a_window_in_which_a_mass_stays_at_rest_is_not_simulated_from_where_it_last_slipped(tmp_path):
     """A record that begins with a long rest would be simulated from its start once for each window."""
     slow = np.where(0.7 * TIMES[-1] > TIMES, 0.01, 1.0) * 1e-3 * chirp()
-    releases = transient_data(read(write(tmp_path, [slow], noise=(2e-6, 1e-4)))).releases
-    first, resting, slipping = releases
+    data = transient_data(read(write(tmp_path, [slow], noise=(2e-6, 1e-4))))
+    first, resting, slipping = data.windows
     assert resting.begins - resting.starts_at == pytest.approx(first.grid.lead * first.step, rel=0.5)
     assert slipping.starts_at < resting.begins

@@ -6,7 +6,7 @@ from scipy.fft import dct
 from scipy.signal import lfilter
 
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
-from wedgesweep.diagnose.noise_bins import of_record, quiet_bins
+from wedgesweep.diagnose.noise_bins import noise_of_record, quiet_bins
 from wedgesweep.diagnose.noise_spectrum import NoiseBins, periodogram
 from wedgesweep.diagnose.transient.channel_differences import differences
 from wedgesweep.diagnose.transient.noise import evidence_of_noise
@@ -57,7 +57,7 @@ def noise_of_channels(tests, of, rates):
     """Noise of each channel of tests, by its order."""
     found = [{} for _ in tests]
     for each in evidence_of_noise(tests, of, rates):
-        for (t, order), noise in each.told.most.items():
+        for (t, order), noise in each.bounds.most.items():
             found[t][order] = noise
     return found
 
@@ -162,7 +162,9 @@ def test_noise_shows_where_the_motion_is_over():
 def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     # The reason for which tests are looked at together: kinks of the velocity fall with frequency like noise.
     rng, (_, v) = np.random.default_rng(0), decay(0.04)
-    alone = [of_record(noisy(v, 0.0, rng))(AT[1]) / power(LEVEL * v.std(), 0.0, AT[1]) for _ in range(12)]
+    alone = [
+        noise_of_record(noisy(v, 0.0, rng))(AT[1]) / power(LEVEL * v.std(), 0.0, AT[1]) for _ in range(12)
+    ]
     assert max(alone) > 10.0
     assert ratios(0.0, 0, (0, 1))[..., 1].max() < 6.0
 
@@ -188,7 +190,7 @@ def short_accelerations(pole, seed):
 def test_white_noise_far_above_the_motion_may_be_red_at_it(seed):
     evidence, _, clean = short_accelerations(0.9, seed)
     for t, each in enumerate(clean):
-        assert evidence.told.most[t, 2](AT[1]) > 0.2 * power(LEVEL * each.std(), 0.9, AT[1])
+        assert evidence.bounds.most[t, 2](AT[1]) > 0.2 * power(LEVEL * each.std(), 0.9, AT[1])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -204,7 +206,7 @@ def test_what_an_explanation_leaves_shows_that_there_is_less_noise(seed):
 
     right, wrong = beside(0.0), beside(30.0 * np.cos(2.0 * np.pi * np.arange(240) / RATE))
     for t, each in enumerate(clean):
-        true, most = (LEVEL * each.std()) ** 2, evidence.told.most[t, 2](AT[1])
+        true, most = (LEVEL * each.std()) ** 2, evidence.bounds.most[t, 2](AT[1])
         assert most > 5.0 * true
         assert right[t, 2](AT[1]) < 2.5 * true
         # What does not look like noise never makes more of it.

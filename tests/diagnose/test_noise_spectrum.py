@@ -6,14 +6,14 @@ import pytest
 from tests.diagnose.test_transients import HIDDEN, coloured, diagnosed, write
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.force_noise import FROM_MOTION
-from wedgesweep.diagnose.noise_bins import of_record
+from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import (
     FROM_REPEATS,
     FROM_SPECTRUM,
-    MOST,
+    MOST_NOISE,
     Choice,
     NoiseBins,
-    fit,
+    fit_spectra,
     of_noise,
     periodogram,
 )
@@ -38,7 +38,7 @@ def test_noise_below_a_decay_is_told_from_what_lies_above(pole):
     ratios = []
     for seed in range(6):
         record = DECAY + STD * coloured(np.random.default_rng(seed), SIZE, pole)
-        ratios.append(of_record(record)(AT) / true_power(pole))
+        ratios.append(noise_of_record(record)(AT) / true_power(pole))
     # Too low an estimate would look like a misfit, so that it errs to the other side.
     assert np.min(ratios) > 0.4
     assert np.median(ratios) < 3.0
@@ -48,13 +48,13 @@ def test_noise_between_what_is_known_of_it_is_not_taken_for_too_small():
     """Bins at the lowest and the highest frequencies leave open how the noise falls from one to the other."""
     pole, between = 0.9, np.linspace(0.05, 2.0, 100)
     true = (1.0 - pole**2) / (1.0 + pole**2 - 2.0 * pole * np.cos(between))
-    least: dict[Choice, list[float]] = {Choice(MOST.loss): [], MOST: []}
+    least: dict[Choice, list[float]] = {Choice(MOST_NOISE.loss): [], MOST_NOISE: []}
     for seed in range(40):
         frequency, power = periodogram(coloured(np.random.default_rng(seed), 600, pole))
         kept = (np.arange(frequency.size) < 8) | (frequency > 2.0)
         for choice, found in least.items():
-            (told,) = fit([[NoiseBins.of(frequency[kept], power[kept])]], choice)
-            found.append((told(between) / true).min())
+            (estimate,) = fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], choice)
+            found.append((estimate(between) / true).min())
     of_one_pole, of_all = (np.median(each) for each in least.values())
     assert of_one_pole < 0.5
     assert 0.8 < of_all < 1.3
@@ -81,7 +81,7 @@ def test_coloured_noise_is_no_cause(tmp_path, seed):
 def test_repeats_tell_the_noise_and_do_not_hide_the_cause(tmp_path):
     path = write(tmp_path, effects={"viscous_damping": HIDDEN["viscous_damping"]}, pole=0.9, repeats=2)
     data = transient_data(read(path))
-    assert {each.spectra[0].source for each in data.releases} == {FROM_REPEATS}
+    assert {each.spectra[0].source for each in data.windows} == {FROM_REPEATS}
     found = diagnosed(path, ["viscous_damping", "friction_level"])
     assert [each["effect"] for each in found.causes] == ["viscous_damping"]
     assert found.document["misfit"]["tests"][0]["noise_from"] == FROM_REPEATS
@@ -104,7 +104,7 @@ def test_jumps_of_dry_friction_are_no_noise_of_an_accelerometer():
     rng, time = np.random.default_rng(7), np.arange(3000) / 1000.0
     motion = np.exp(-time) * np.cos(15.0 * time) + 0.2 * np.sign(np.sin(15.0 * time))
     noise = 0.01 * rng.standard_normal(time.size)
-    assert of_record(motion + noise).std > 1.5 * 0.01
-    assert of_record(continuous(motion + noise)).std == pytest.approx(0.01, rel=0.3)
+    assert noise_of_record(motion + noise).std > 1.5 * 0.01
+    assert noise_of_record(continuous(motion + noise)).std == pytest.approx(0.01, rel=0.3)
     smooth = np.cos(15.0 * time) + noise
-    assert of_record(continuous(smooth)).std == pytest.approx(0.01, rel=0.1)
+    assert noise_of_record(continuous(smooth)).std == pytest.approx(0.01, rel=0.1)

@@ -60,7 +60,7 @@ def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     stribeck = minimise(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
     first = pairs.single_scan(base.fit, stribeck, stribecks.scan)
     second = pairs.single_scan(base.fit, damper.explanation.fit, damper.scan)
-    (begun,) = pairs.begin(search, pairs.Combination(first, second), False)
+    (begun,) = pairs.starting_fits(search, pairs.Combination(first, second), False)
     assert begun.chi2 < pairs.BEHIND * first.subset.chi2
 
 

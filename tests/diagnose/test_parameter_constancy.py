@@ -7,7 +7,7 @@ import pytest
 
 from tests.diagnose.synthetic import AMPLITUDES, FREQUENCIES, drawn, searched
 from wedgesweep.diagnose import diagnosis, verdict
-from wedgesweep.diagnose.parameter_constancy import _constant, parameter_constancy
+from wedgesweep.diagnose.parameter_constancy import _p_constant, parameter_constancy
 from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Search
 
@@ -71,6 +71,6 @@ def test_what_a_fit_leaves_is_out_of_the_reach_of_all_that_was_fitted():
 def test_of_two_numbers_either_may_seem_not_to_be_constant_by_chance():
     _, _, (single,) = searched(drawn({"cross_slip": RIGHT["cross_slip"]}, seed=4), "cross_slip")
     project = Projector(single.fit)
-    alone = [_constant(project, tangent) for tangent in np.moveaxis(project.by_parameter, -1, 0)]
+    alone = [_p_constant(project, tangent) for tangent in np.moveaxis(project.by_parameter, -1, 0)]
     assert min(alone) < 0.5
     assert single.constancy.p == pytest.approx(2.0 * min(alone))

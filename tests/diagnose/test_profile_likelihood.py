@@ -89,11 +89,11 @@ def test_no_number_is_tried_beyond_its_bound(monkeypatch):
     assert fit.x[0] < 1.9 * std(fit)[0]
     tried, holding = [], Model.holding
 
-    def told(model, number, value):
+    def noted(model, number, value):
         tried.append(value)
         return holding(model, number, value)
 
-    monkeypatch.setattr(Model, "holding", told)
+    monkeypatch.setattr(Model, "holding", noted)
     found = profile_likelihood(fit, serial)
     assert min(tried) == 0.0 < max(tried)
     assert np.isfinite(std(found)).all()

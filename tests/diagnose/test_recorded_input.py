@@ -220,9 +220,9 @@ def test_one_gain_of_the_input_serves_all_tests(of):
     columns = {"displacement": {"column": "d", "unit": "m", "of": of}}
     true = measurement(3, CAUSE, columns, noise=0.005)
     tests = tuple(replace(each, input=each.input / 1.03) for each in true.tests)
-    wrong, told = (replace(true, tests=tests, input_gain_std=std) for std in (0.0, 0.05))
+    wrong, uncertain = (replace(true, tests=tests, input_gain_std=std) for std in (0.0, 0.05))
     known = config.parse(MODEL + "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n")
-    blamed, fit = (base_of(harmonic_data(replace(each, model=known))) for each in (wrong, told))
+    blamed, fit = (base_of(harmonic_data(replace(each, model=known))) for each in (wrong, uncertain))
     assert blamed.p < 1e-6
     assert fit.p > 0.01
     gain, std = fit.x[0], np.sqrt(fit.covariance[0, 0])

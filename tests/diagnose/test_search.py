@@ -30,11 +30,11 @@ CANDIDATES = ("displacement_gain", "velocity_lag")
 def test_all_starts_are_followed_only_if_nothing_is_adequate(truth, looked, monkeypatch):
     again = []
 
-    def told(search, scans):
+    def recorded(search, scans):
         again.extend(multistart(search, scans))
         return again
 
-    monkeypatch.setattr(diagnosis, "multistart", told)
+    monkeypatch.setattr(diagnosis, "multistart", recorded)
     found = diagnosis.explain(Search.of(drawn(truth), CANDIDATES)).explanations
     assert [each.effects for each in again] == [(name,) for name in CANDIDATES if looked]
     single = {each.effects: each.fit.chi2 for each in found if len(each.effects) == 1}

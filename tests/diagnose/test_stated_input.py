@@ -113,13 +113,13 @@ def chi2_over_dof(data, scenario):
 
 def test_the_misfit_of_the_truth_has_the_size_of_its_covariance():
     """Over draws: the mean of chi-squared over its degrees of freedom has a standard error of 1 %."""
-    told, untold = [], []
+    with_covariance, without = [], []
     for seed in range(40):
         data = harmonic_data(frictionless(seed, distorted=True))
-        told.append(chi2_over_dof(data, stated(data)))
-        untold.append(chi2_over_dof(data.bare(), stated(data)))
-    assert np.mean(told) == pytest.approx(1.0, abs=0.04)
-    assert np.mean(untold) > 50.0
+        with_covariance.append(chi2_over_dof(data, stated(data)))
+        without.append(chi2_over_dof(data.bare(), stated(data)))
+    assert np.mean(with_covariance) == pytest.approx(1.0, abs=0.04)
+    assert np.mean(without) > 50.0
 
 
 def distorted(size, seed=0, effects=None, level=0.02):
@@ -132,15 +132,15 @@ def distorted(size, seed=0, effects=None, level=0.02):
 @pytest.mark.parametrize(("std", "level"), [(0.25 * STD, 0.02), (STD, 0.04)])
 def test_the_misfit_of_a_bench_with_friction_has_the_size_of_its_covariance(std, level):
     """Small harmonics are passed on in proportion; larger ones are not where they meet the resonance."""
-    told, untold = [], []
+    with_covariance, without = [], []
     for seed in range(20):
         bare = distorted(std, seed, level=level)
         data = with_uncertain_harmonics(bare, std)
         data = data.renewed(stated(data))
-        told.append(chi2_over_dof(data, stated(data)))
-        untold.append(chi2_over_dof(bare, stated(data)))
-    assert np.mean(told) == pytest.approx(1.0, abs=0.1)
-    assert np.mean(untold) > 5.0
+        with_covariance.append(chi2_over_dof(data, stated(data)))
+        without.append(chi2_over_dof(bare, stated(data)))
+    assert np.mean(with_covariance) == pytest.approx(1.0, abs=0.1)
+    assert np.mean(without) > 5.0
 
 
 def test_the_start_phase_is_the_best_one_under_the_covariance():

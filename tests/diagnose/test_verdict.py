@@ -19,7 +19,7 @@ def explained(
     *effects,
     tests=12,
     uncertain=None,
-    told=None,
+    values=None,
     numbers=1,
     by_test=None,
     constant=1.0,
@@ -29,7 +29,7 @@ def explained(
 ):
     """An explanation.
 
-    ``told``: numbers of its effects; ``far``: uncertain ones that are far from stated; ``relaxed``: its
+    ``values``: numbers of its effects; ``far``: uncertain ones that are far from stated; ``relaxed``: its
     misfit if model errors are larger than allowed.
     """
     data = SimpleNamespace(
@@ -43,7 +43,7 @@ def explained(
             compared_again=lambda evaluation: SimpleNamespace(chi2=relaxed if size > MODEL_ERROR else q)
         ),
     )
-    model = SimpleNamespace(data=data, size=numbers * len(effects), values=lambda x: told)
+    model = SimpleNamespace(data=data, size=numbers * len(effects), values=lambda x: values)
     fit = SimpleNamespace(
         chi2=q,
         dof=DOF,
@@ -342,7 +342,9 @@ def test_a_cause_is_named_only_if_no_other_leaves_noise_only():
     ],
 )
 def test_an_uncertain_number_is_a_cause_beyond_three_deviations(name, numbers, named):
-    found = verdict_of(explained(5000.0), explained(705.0, name, uncertain={name: 0.1}, told={name: numbers}))
+    found = verdict_of(
+        explained(5000.0), explained(705.0, name, uncertain={name: 0.1}, values={name: numbers})
+    )
     assert (found.verdict == "named") is named
 
 

@@ -65,10 +65,10 @@ def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each free motion."""
     from wedgesweep.diagnose.transient.from_measurement import transient_data
 
-    releases = transient_data(measurement).releases
+    windows = transient_data(measurement).windows
     rows: list[tuple[str, ...]] = []
     for number, test in enumerate(measurement.tests):
-        own = [each for each in releases if each.number == number]
+        own = [each for each in windows if each.number == number]
         noise, length = own[0].spectra[0], max(each.length for each in own)
         rows.append(
             (

@@ -1,9 +1,8 @@
 """How accurate a model is: the smallest relative model error at which it is adequate.
 
-No model is right to within the noise of a good sensor. If the variance of each compared number grows by what
-an error of tau times the response gives it, chi-squared falls as tau grows, and a model is adequate from some
-tau on: that is its accuracy. Where the noise is small it is the rms of what the model leaves over that of the
-response.
+No model is right to within the noise of a good sensor. So the variance of each compared number is raised by
+that of an error of tau times the response. Chi-squared falls as tau grows, and a model is adequate from some
+tau on: that is its accuracy. Where noise is small, it is the rms of the residual over that of the response.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +22,7 @@ from wedgesweep.diagnose.model import Fit
 
 # Range in which an accuracy is searched, and how closely.
 SMALLEST, LARGEST, PRECISION = 1e-6, 100.0, 1e-3
-# A fit is repeated at its accuracy until this share of it is all that is gained, at most this many times.
+# A fit is repeated at its accuracy until that improves by less than this share, at most this many times.
 GAINED, ROUNDS = 0.01, 3
 # Iterations of such a fit.
 ITERATIONS = 12
@@ -37,7 +36,7 @@ class Accuracy(NamedTuple):
 
 
 def smallest_adequate(chi2: Callable[[float], float], dof: float) -> float:
-    """Smallest model error at which a chi-squared that falls with it is adequate; inf if at none."""
+    """Smallest model error at which chi-squared, a falling function of it, is adequate; inf if at none."""
     limit = float(chdtri(dof, ADEQUATE))
     if chi2(0.0) <= limit:
         return 0.0
@@ -79,10 +78,10 @@ def of_fit(fit: Fit) -> float:
 
 
 def refined(fit: Fit) -> Accuracy:
-    """Accuracy of a model, fitted again where noise and model error have their shares of the weight.
+    """Accuracy of a model, fitted again with weights that contain its own model error.
 
-    A fit at the weights of noise alone is not the best one at a large model error: tests with little noise
-    dominate it, and nuisance parameters go far from stated to please them.
+    A fit with the weights of noise alone is not the best one at a large model error: tests with little noise
+    dominate it, and take nuisance parameters far from stated.
     """
     best = Accuracy(of_fit(fit), fit)
     size = min(best.size, of_response(fit.model.data, fit.evaluation, fit.dof))
@@ -102,7 +101,7 @@ def refined(fit: Fit) -> Accuracy:
 
 
 def _minimised(fit: Fit, size: float) -> Fit:
-    """The fit under a model error, from where it is or with nuisance parameters as stated."""
+    """A fit under a model error, from where it is or with nuisance and uncertain parameters as stated."""
     data = fit.model.data.with_model_error(size)
     model = fit.model.on(data)
     here = data.compared_again(fit.evaluation)

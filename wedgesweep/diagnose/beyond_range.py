@@ -1,4 +1,4 @@
-"""Numbers that end where their searched range ends, followed beyond it.
+"""Fits beyond the searched range of a number, for numbers that ended at an end of it.
 
 The ranges suit dampers like the bench's, in natural units of the model on trial. On another rig a number may
 lie outside: bristles that are shorter, a drag that is larger. A fit then ends at the end of the range, and
@@ -13,25 +13,26 @@ from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import SLIGHT, Search
 
-# So many of the best explanations are followed.
+# Number of best explanations that are followed beyond the range.
 FOLLOWED = 6
-# Share of the base model's chi-squared that they may leave at most.
+# An explanation is followed only if it leaves less than this share of the base model's chi-squared.
 EXPLAINS = 0.9
-# A number ends with its range if it is as close as this share of the range's width.
+# A number is at an end of its range if it is closer to it than this share of the range's width.
 CLOSE = 1e-3
 
 
 def followed_beyond(
     search: Search, base: Explanation, found: Sequence[Explanation]
 ) -> tuple[Search, list[Explanation]]:
-    """The search, and its explanations best first, where the best may leave the range that was searched.
+    """The best explanations at an end of their range fitted again beyond it.
 
-    An effect that explains next to nothing ends where it is absent, as an ever stiffer column, and stays.
+    Returns the search, which knows the ranges that were left, and all explanations, best first. An effect
+    that explains next to nothing ends where it is absent, as an ever stiffer column does; it stays there.
     """
     leading = [
         each
         for each in sorted(found, key=penalised)[:FOLLOWED]
-        if each.fit.chi2 < EXPLAINS * base.fit.chi2 and ending(each.fit)
+        if each.fit.chi2 < EXPLAINS * base.fit.chi2 and effects_at_range_end(each.fit)
     ]
     better = [
         search.explanation(fit)
@@ -43,7 +44,7 @@ def followed_beyond(
     return search, best_of_each([*better, *found], penalised)
 
 
-def ending(fit: Fit) -> tuple[str, ...]:
+def effects_at_range_end(fit: Fit) -> tuple[str, ...]:
     """Effects with a number at an end of its searched range beyond which it may go."""
     hypothesis = fit.model.hypothesis
     ends = []
@@ -57,6 +58,8 @@ def ending(fit: Fit) -> tuple[str, ...]:
 
 
 def _followed(fit: Fit) -> Fit:
+    """A fit continued with wider bounds of the effects at an end of their range."""
     hypothesis = fit.model.hypothesis
-    model = replace(fit.model, hypothesis=replace(hypothesis, wider=(*hypothesis.wider, *ending(fit))))
+    wider = (*hypothesis.wider, *effects_at_range_end(fit))
+    model = replace(fit.model, hypothesis=replace(hypothesis, wider=wider))
     return minimise(model, model.evaluate(fit.point))

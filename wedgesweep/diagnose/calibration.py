@@ -15,7 +15,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
 
 SAMPLES = 20
-# Share of samples in which the search must find the truth again for its name to be given.
+# Share of samples in which the search must find the truth again for a cause to be named.
 SAFE = 0.95
 
 # Runs a whole search; returns the base model and all explanations.
@@ -48,6 +48,7 @@ class Calibration:
         return verdict.Thresholds(strong=0.0 if safe else np.inf, least_gain=self.least_gain)
 
     def as_dict(self) -> dict[str, float | None]:
+        """What is reported of the calibration in diagnosis.json."""
         return {"draws": SAMPLES, "least_gain": self.least_gain, "found_again": self.found}
 
 
@@ -64,15 +65,15 @@ def calibrate(
     Parameters
     ----------
     search : Search
-        The search on the measured data: its number of threads, and who is told of progress.
+        The search on the measured data, whose threads and reports of progress are used.
     base, best : Explanation
-        What samples are drawn from.
+        The fits that samples are drawn from.
     explain : callable
         The whole search.
     candidates : sequence of str
         Effects to try on each sample.
     seed : int
-        Of the random numbers.
+        Seed of the random numbers.
     """
     rng = np.random.default_rng(seed)
 

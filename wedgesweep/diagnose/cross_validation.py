@@ -9,31 +9,32 @@ from scipy.special import ndtr, stdtrit
 
 from wedgesweep.diagnose import accuracy
 from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.explanation import PENALTY
+from wedgesweep.diagnose.explanation import parameter_penalty
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
 
-# Iterations that adapt a fit to the remaining tests, and nuisance parameters to a held-out one.
+# Iterations of a fit to the remaining tests, and steps of the nuisance parameters of held-out ones.
 ADAPT, LOCAL = 6, 4
 # Largest step of a nuisance parameter of a held-out test.
 LOCAL_STEP = 0.3
 # Bootstrap samples, and the least number of tests for which an interval means anything.
 RESAMPLED, FEWEST = 2000, 8
-# Bootstrap samples with less than this share of the excess contain nothing that could be removed.
+# Bootstrap samples with less than this share of the excess do not count: there is nothing to be removed.
 SHOWS = 0.1
-# A parameter whose standard deviation is so many scales is undetermined.
+# A parameter is undetermined if its standard deviation is more than so many of its scales.
 VAGUE = 3.0
 
-# Maps a function over a list.
+# Maps a function over a list, perhaps in threads.
 Each = Callable[[Callable, list], list]
 
 
 class Prediction(NamedTuple):
     """Tests that were left out together, simulated by a model that was fitted to the others.
 
-    ``tests``: indices of the tests in the data of the fit; ``effects``: those that the other tests support.
+    ``scheme``: what they have in common ("frequency", "record"); ``tests``: their indices in all data;
+    ``data``: these tests alone; ``effects``: those that the other tests support.
     """
 
     scheme: str
@@ -44,7 +45,7 @@ class Prediction(NamedTuple):
 
     @property
     def misfit(self) -> np.ndarray:
-        """Squared misfit of each test, that of no motion at all where the model has no response."""
+        """Squared misfit of each test; that of no motion at all where the model has no response."""
         misfit = (self.evaluation.residual**2).sum(-1)
         return np.where(self.evaluation.found_tests, misfit, self.data.power)
 
@@ -109,10 +110,10 @@ class Gain:
     def interval(self) -> list[float] | None:
         """95 % bootstrap interval of ``excess_removed``; None for fewer than FEWEST tests.
 
-        Tests are resampled with all their schemes. Where few tests show the effect, many samples contain
-        none of them: their little excess is noise, and the share of it that is removed means nothing. They
-        do not count. The quantiles are widened because few tests scatter less when resampled than they did
-        when they were made (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
+        Tests are resampled with all their schemes. Where few tests show the effect, many samples contain none
+        of these tests: their excess is noise, and the share that is removed means nothing. Such samples do
+        not count. The quantiles are widened, as resampling underestimates the scatter of few tests
+        (Hesterberg, 2015, "What teachers should know about the bootstrap", sec. 5.3).
         """
         tests = sorted({each.test for each in self.held_out})
         if len(tests) < FEWEST:
@@ -183,7 +184,7 @@ def held_out_groups(data: FitData) -> list[tuple[str, np.ndarray]]:
 
 
 def local_numbers(fit: Fit) -> np.ndarray:
-    """Number (T,) of its nuisance parameters that each test determines, beyond what priors say."""
+    """Number (T,) of nuisance parameters that each test determines; one with a prior counts in part."""
     model = fit.model
     equations = normal_equations(model.holding(slice(None), fit.x), fit.evaluation)
     first, last = equations.eliminated, equations.eliminated + model.nuisance_weight.shape[1]
@@ -198,9 +199,10 @@ def local_numbers(fit: Fit) -> np.ndarray:
 
 
 def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
-    """Simulation of the tests ``rows`` after a fit to the rest of them.
+    """Simulation of the tests ``rows`` after a fit to the other tests.
 
-    Each held-out test keeps nuisance parameters of its own, as its kind of record allows.
+    Nuisance parameters of held-out tests are fitted as far as their kind of record allows
+    (``FitData.predicted_nuisances``).
     """
     trained = subset_fit(fit, np.setdiff1d(np.arange(fit.model.data.tests), rows))
     if len(fit.x):
@@ -216,27 +218,27 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
 
 
 def supported(trained: Fit) -> Fit:
-    """The fit without effects of which the remaining tests know too little.
+    """The fit, without effects that the remaining tests do not support.
 
-    A parameter that they leave undetermined stays where the fit to all tests had left it: it knows the tests
-    that were left out. Where the effect gains less than its parameters cost, the model predicts without it.
+    A parameter that they leave undetermined stays where the fit to all tests had left it, so that it knows of
+    the tests that were left out. If its effect gains less than its parameters cost, it is removed.
     """
     for effect in undetermined(trained):
         rest = tuple(name for name in trained.effects if name != effect)
         model = replace(trained.model, hypothesis=replace(trained.model.hypothesis, effects=rest), held=None)
         x = model.hypothesis.at(trained.values)
         less = minimise(model, model.evaluate(model.start(trained, x)), ADAPT)
-        penalty = np.log(model.data.observations.sum()) + PENALTY
-        if less.chi2 < trained.chi2 + penalty * (trained.model.size - model.size):
+        saved = parameter_penalty(model.data) * (trained.model.size - model.size)
+        if less.chi2 < trained.chi2 + saved:
             trained = less
     return trained
 
 
 def undetermined(fit: Fit) -> tuple[str, ...]:
-    """Effects with a parameter whose standard deviation is most of its range."""
+    """Effects with a parameter whose standard deviation exceeds VAGUE of its scales."""
     std = np.sqrt(np.diag(fit.covariance))[: fit.model.size]
     loose = std > VAGUE * fit.model.scale[: fit.model.size]
-    names = [each.name.split(".")[0] for each in fit.model.hypothesis.parameters]
+    names = [each.effect for each in fit.model.hypothesis.parameters]
     return tuple(dict.fromkeys(name for name, is_loose in zip(names, loose, strict=True) if is_loose))
 
 

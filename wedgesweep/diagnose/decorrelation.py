@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Samples in a row whose correlation is known; farther ones count as independent.
-MOST = 400
+# Largest number of samples that are decorrelated together; samples of different blocks count as independent.
+LARGEST_BLOCK = 400
 
 
 class Decorrelation(NamedTuple):
@@ -19,13 +19,22 @@ class Decorrelation(NamedTuple):
 def decorrelation(
     known: np.ndarray, covariance: Callable[[np.ndarray], np.ndarray], least: float
 ) -> Decorrelation:
-    """As many combinations of the known samples (k,), in their places; those of the others are zero.
+    """Combinations with independent noise of the samples that are ``known`` (k,), in their places.
 
-    ``covariance`` gives that of some rows (r,) with one another; no variance is less than ``least``.
+    Rows of the matrix and standard deviations are zero where a sample is not known.
+
+    Parameters
+    ----------
+    known : ndarray of bool, shape (k,)
+        Which samples are compared.
+    covariance : callable
+        Covariance matrix (r, r) of the samples in some rows (r,).
+    least : float
+        Least variance of a combination.
     """
     matrix, std = np.zeros((known.size, known.size)), np.zeros(known.size)
     rows = np.flatnonzero(known)
-    for part in np.array_split(rows, max(-(-rows.size // MOST), 1)):
+    for part in np.array_split(rows, max(-(-rows.size // LARGEST_BLOCK), 1)):
         variance, vectors = np.linalg.eigh(covariance(part))
         std[part] = np.sqrt(np.maximum(variance, least))
         matrix[np.ix_(part, part)] = vectors.T

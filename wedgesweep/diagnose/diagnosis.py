@@ -1,4 +1,4 @@
-"""The whole way from measured tests to a verdict."""
+"""The workflow of a diagnosis: from measured tests to a verdict."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -44,12 +44,12 @@ from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
-# Explanations are close that are behind the best by less than so many times the gap of a tie.
+# Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
 CLOSE = 5.0
-# Single effects are fitted again if the refitted base model leaves less than this share of its first misfit.
-MUCH = 0.9
+# Single effects are fitted again if a refit of the base model leaves less than this share of its chi-squared.
+REFIT_BELOW = 0.9
 Data = HarmonicData | LoopData | TransientData | MixedData
-# What a fit sees of the tests of each kind.
+# How the tests of each kind become data of a fit.
 DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]] = {
     STEADY: harmonic_data,
     LOOP: loop_data,
@@ -61,8 +61,10 @@ DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]
 class Diagnosis:
     """Everything that was found; ``explanations`` are sorted, the best first.
 
-    ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects of which nothing
-    at all was fitted for that reason.
+    ``scores``: of every candidate effect. ``gain``: on held-out tests, None without an explanation.
+    ``ladder``: accuracy by number of effects. ``calibration``: None unless thresholds were calibrated.
+    ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects that were not
+    fitted at all.
     """
 
     measurement: Measurement
@@ -104,7 +106,7 @@ def diagnose(
     threads : int
         Fits that run at the same time.
     progress : callable
-        Is told of each step.
+        Called with each step.
     calibrated : bool
         Take the thresholds of the verdict from simulations of these very tests.
 
@@ -120,7 +122,7 @@ def diagnose(
     finding = verdict.decide(base, explanations, thresholds)
     if calibrated:
         # What it simulates is not part of the search's budget.
-        result = work.apart(
+        result = work.uncounted(
             lambda: calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
         ).result
         thresholds = verdict.thresholds_for(search.data, result.thresholds)
@@ -152,7 +154,7 @@ def diagnose(
 
 
 def data_of(measurement: Measurement) -> Data:
-    """What a fit sees of the tests."""
+    """The measured tests as data of a fit."""
     parts = [DATA[kind](measurement.of_kind(kind)) for kind in measurement.kinds]
     if len(parts) == 1:
         return parts[0]
@@ -162,7 +164,7 @@ def data_of(measurement: Measurement) -> Data:
 
 
 def of_each_kind(found: Diagnosis) -> dict[str, Diagnosis]:
-    """A diagnosis as that of the tests of each kind: their data, and both fits on them."""
+    """The diagnosis restricted to the tests of each kind: their data, and both fits on them."""
     if not isinstance(found.data, MixedData):
         return {found.data.kind: found}
     base, extended = found.data.fits(found.base.fit), found.data.fits(found.extended)
@@ -184,11 +186,11 @@ def _candidates(
     """Effects that the base model may lack."""
     possible = measurement.model.possible_effects
     effects = [name for name in effects if name in possible]
-    own = acting(measurement.model.effects)
-    there = [name for name in effects if name in own and name not in SCALES]
-    if there:
-        progress(f"already part of the base model, so no candidates: {', '.join(there)}")
-    return tuple(name for name in effects if name not in there)
+    in_base = acting(measurement.model.effects)
+    contained = [name for name in effects if name in in_base and name not in SCALES]
+    if contained:
+        progress(f"already part of the base model, so no candidates: {', '.join(contained)}")
+    return tuple(name for name in effects if name not in contained)
 
 
 def refit_cause(
@@ -196,8 +198,8 @@ def refit_cause(
 ) -> tuple[Finding, list[Explanation]]:
     """The finding with its best explanation fitted tightly, and all explanations, best first.
 
-    An explanation that was best only by the error of its simulations gives way to the next. Rivals whose fits
-    had not ended are followed further first, as the gap to them decides.
+    Rivals whose fits had not converged are followed further first, as the gap to them decides. If another
+    explanation becomes the best one after the tight fit, it is fitted tightly as well.
     """
     if finding.best is not None:
         found = best_of_each([*_continued(search, found, thresholds), *found], penalised)
@@ -217,7 +219,7 @@ def refit_cause(
 
 
 def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresholds) -> list[Explanation]:
-    """Explanations close to the best one, and that itself, whose fits had not converged, followed further."""
+    """The best explanation and those close to it, followed further where their fits had not converged."""
     limit = min(map(penalised, found)) + CLOSE * thresholds.gap
     waiting = [each for each in found if penalised(each) < limit and not each.fit.converged]
     return search.each(
@@ -226,7 +228,7 @@ def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresho
 
 
 def on_held_out_tests(search: Search, base: Explanation, finding: Finding) -> tuple[Finding, Gain | None]:
-    """The finding as tests that were left out of the fit leave it, and the gain on them."""
+    """The finding after cross-validation, and the gain on held-out tests; None without an explanation."""
     if finding.best is None or search.data.tests < 2:
         return finding, None
     search.progress("held-out tests")
@@ -236,12 +238,15 @@ def on_held_out_tests(search: Search, base: Explanation, finding: Finding) -> tu
 
 
 def explain(search: Search) -> Explained:
-    """Fit the base model, every candidate, and pairs of candidates where no single one is adequate."""
+    """Fit the base model, every candidate, and pairs of candidates where no single one is adequate.
+
+    Each stage may renew the search: its data (records aligned, covariance renewed) and its ranges.
+    """
     search.progress("base model")
     search, base = base_fit(search)
     search, found, scans = single_fits(search, base.fit)
     search, better = refit_base(search, base, found)
-    if better.fit.chi2 < MUCH * base.fit.chi2:
+    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
     found = from_special_cases(search, found)
@@ -264,10 +269,10 @@ def explain(search: Search) -> Explained:
 
 
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
-    """Fits that a next test should separate: those that are reported as rivals.
+    """Fits that a next test should separate, at most COMPARED of them without a cause.
 
-    These are a cause and its rivals, or without a cause all that would do; where fewer than two would, those
-    that come closest.
+    These are a cause and its rivals. Without a cause they are the adequate explanations or, if fewer than two
+    are adequate, the best ones.
     """
     if finding.cause is not None:
         return [finding.cause.fit, *(each.fit for each in finding.rivals)]

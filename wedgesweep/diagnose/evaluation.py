@@ -1,4 +1,4 @@
-"""Points of the parameter space, and what a simulation of one comes to beside the measured tests."""
+"""Points of the parameter space, and their simulations compared with the measured tests."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,6 +26,7 @@ class Point:
 
     ``x`` (k + u,): parameters of the hypothesis, then uncertain parameters of the base model as scales.
     ``nuisance`` (T, N): nuisance parameters of each test, those with a prior first; NaN where not fitted.
+    ``warm``: a WarmStart.
     """
 
     x: np.ndarray
@@ -74,8 +75,9 @@ class NuisanceParameter(NamedTuple):
 class Evaluation:
     """A point with its simulation and its residuals.
 
-    ``prior``: standardised pulls on the priors, those of the nuisance parameters (T * P) before those of the
-    uncertain parameters (u).
+    ``residual`` (T, m) and ``found_tests`` (T,): see Comparison. ``prior`` (T P + u,): pulls on the priors
+    (distance from stated in standard deviations) of nuisance parameters, then of uncertain parameters.
+    ``priors_per_test``: P.
     """
 
     point: Point

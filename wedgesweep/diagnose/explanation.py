@@ -3,15 +3,23 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from math import log
 from typing import TypeVar
 
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.parameter_constancy import Constancy, parameter_constancy
 
-# Each parameter costs ln n + PENALTY in chi-squared: with 21 candidates clean data keep the base model.
+# Each parameter costs ln n + PENALTY in chi-squared, n being the number of observations. PENALTY is such that
+# clean data keep the base model though the best of some twenty candidates is compared with it.
 PENALTY = 6.0
 # Least p-value of an adequate model, and of one that is possible at all.
 ADEQUATE, POSSIBLE = 0.01, 1e-3
+
+
+def parameter_penalty(data: FitData) -> float:
+    """Chi-squared that one more parameter of a hypothesis costs."""
+    return log(data.observations.sum()) + PENALTY
 
 
 @dataclass(frozen=True)
@@ -34,7 +42,7 @@ class Explanation:
     def p_value(self) -> float:
         """The smaller of two p-values: that of the misfit, and that of the test for constant parameters.
 
-        Constancy takes simulations, and is not looked at where the misfit alone rules the explanation out.
+        The latter takes simulations, and is left out where the misfit alone rules the explanation out.
         """
         return min(self.fit.p, self.constancy.p) if self.fit.p >= POSSIBLE else self.fit.p
 
@@ -45,7 +53,7 @@ class Explanation:
 
 
 def penalised(each: Explanation) -> float:
-    """Explanations are ranked by this."""
+    """Key by which explanations are ranked: ``Explanation.penalised``."""
     return each.penalised
 
 

@@ -1,10 +1,12 @@
-"""What a fit needs to know of the measured tests: the interface that every kind of record implements.
+"""``FitData``, the interface through which a fit sees measured tests; every kind of record implements it.
 
 A kind of record (steady harmonics, transient, loop) defines how its tests are simulated, how a simulation is
-compared with the measurement, and which nuisance parameters each test has. Everything
-else in this package (least squares, profile likelihood, score tests, search, verdict, cross-validation) sees
-the tests through ``FitData`` only. To add a kind, subclass ``FitData``; the methods with a body are
-optional.
+compared with the measurement, and which nuisance parameters each test has. Everything else in this package
+(least squares, profile likelihood, score tests, search, verdict, cross-validation) sees the tests through
+``FitData`` only. To add a kind, subclass ``FitData``; the methods with a body are optional.
+
+Shapes: T tests, m numbers compared in each, N nuisance parameters of each, of which the first P have a prior
+and the first L are fitted by simulation.
 """
 
 from abc import abstractmethod
@@ -52,7 +54,7 @@ class FitData(Protocol):
 
     ``model``: the base model with its friction ``law``; ``model_error``: relative error that it may have.
     ``eliminated``: number of nuisance parameters of each test whose best value has a closed form (start
-    phase). ``known``: numbers that the records tell directly, "effect.key" to value and standard deviation
+    phase). ``known``: numbers that the records show directly, "effect.key" to value and standard deviation
     in key units. ``uncertain``: effects that scale parameters of the base model, and INPUT_GAIN, with their
     relative standard deviations.
     """
@@ -143,7 +145,7 @@ class FitData(Protocol):
 
     @abstractmethod
     def compared_again(self, here: Evaluation) -> Evaluation:
-        """What was simulated for the same tests under another model error, compared with these data."""
+        """An evaluation of the same tests under another covariance, with the residuals of these data."""
 
     @abstractmethod
     def changes(
@@ -171,7 +173,7 @@ class FitData(Protocol):
         """Groups of tests to leave out in cross-validation: name of the scheme, and rows."""
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        """The effects that the records can tell of at all."""
+        """Of some effects, those that the records can show at all."""
         return tuple(effects)
 
     def with_undetected(self, effect: str) -> Self:
@@ -187,26 +189,26 @@ class FitData(Protocol):
         return False
 
     def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
-        """Nuisance parameters (T, N) that a fit does not reach from an evaluation, for it to go on from.
+        """Better nuisance parameters (T, N), if a fit cannot reach them from an evaluation by small steps.
 
         None if there are none to try.
         """
         return None
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
-        """The data, with what an evaluation tells of the records' start."""
+        """The data, with what an evaluation tells of the records' start (the phase of the input there)."""
         return self
 
     def renewed(self, scenario: Scenario) -> Self:
         """The data with the covariance that their residuals have in a scenario, if it differs there."""
         return self
 
-    def repeats(self, effects: Iterable[str]) -> bool:
-        """Whether responses repeat, so that a test may be left out of a fit and taken back in."""
-        return True
+    def needs_alignment(self, effects: Iterable[str]) -> bool:
+        """Whether responses under these effects depend on what ``aligned_to`` tells of the records' start."""
+        return False
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
-        """Whether (T,) a response does not react to small steps, though the measured one is not so."""
+        """Whether (T,) the simulated mass sticks, unlike the measured one: small steps change nothing."""
         return np.zeros(self.tests, bool)
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
@@ -218,7 +220,7 @@ class FitData(Protocol):
         return model.evaluate_all(points)
 
     def held_as_stated(self) -> Self:
-        """The data with narrow priors of the nuisance parameters that have any."""
+        """The data with narrow priors: nuisance parameters that have any stay as stated."""
         return self
 
     def implausible(self, point: Point) -> bool:

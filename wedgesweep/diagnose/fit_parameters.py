@@ -25,7 +25,7 @@ FIRST, FURTHER = 12, 4
 CLOSEST, FARTHEST = 4e-3, 0.8
 # With more parameters (amplitudes with phases) the response is linear enough to start at zero.
 MOST_GRIDDED = 3
-# Scale of a logarithm, and of other parameters as a share of their range.
+# Scale of a logarithm, and scale of other parameters as a share of their range.
 LOG_SCALE, RANGE_SCALE = 0.5, 0.1
 # Effects by name, and their numbers by name (SI) or by key (in its unit).
 Values = dict[str, dict[str, float]]
@@ -35,7 +35,8 @@ Values = dict[str, dict[str, float]]
 class FitParameter:
     """One fitted number, with bounds (angles have none) and the value at which it does nothing.
 
-    ``low`` and ``high`` bound the searched range, ``wider`` what lies around it.
+    ``name``: "effect.key", with ".cos" or ".sin" for a part of an amplitude. ``low`` and ``high`` bound
+    the searched range; ``wider``: bounds where a fit may leave that range.
     """
 
     name: str
@@ -50,12 +51,17 @@ class FitParameter:
         return self.name.partition(".")[0]
 
     @property
+    def key(self) -> str:
+        """Key of the number, or of the amplitude that this is the cosine or sine part of."""
+        return self.name.split(".")[1]
+
+    @property
     def angle(self) -> bool:
         return self.name.endswith("_deg")
 
     @property
     def scale(self) -> float:
-        """A change that matters."""
+        """Size of a typical change, by which steps of fits and of differences are measured."""
         return LOG_SCALE if self.logarithmic else RANGE_SCALE * (self.high - self.low)
 
     @property
@@ -144,7 +150,7 @@ class Hypothesis:
 
     @cached_property
     def scale(self) -> np.ndarray:
-        """Changes that matter (k,)."""
+        """Typical changes of x, (k,); see ``FitParameter.scale``."""
         return np.array([each.scale for each in self.parameters])
 
     def in_key_units(self, x: np.ndarray) -> Values:

@@ -8,12 +8,12 @@ import numpy as np
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.model import Model
 
-# Step as a share of a parameter's scale. Shorter steps pick up the error of the simulation, which looks like
-# information: intervals become too narrow where amplitude and effect are hard to tell apart.
+# Step as a share of a parameter's scale. Over shorter steps the error of the simulation would look like
+# information, and intervals become too narrow where amplitude and effect are hard to distinguish.
 STEP = 2e-3
-# Steps change no test by more than its noise (root mean square of whitened residuals). Beyond, responses
-# bend, and a parameter that a nuisance parameter imitates looks as if the tests could tell them apart. Where
-# noise is small, a change may be this many times the error of the simulation.
+# Steps change no test by more than its noise (root mean square of whitened residuals). Over longer ones
+# responses are not linear, and a parameter that a nuisance parameter can imitate looks distinguishable from
+# it. Where noise is small, a change may be this many times the error of the simulation.
 LARGEST_CHANGE, RESOLVED = 1.0, 1e3
 
 
@@ -28,7 +28,7 @@ class Jacobian(NamedTuple):
 
 
 class Derivatives(NamedTuple):
-    """Derivatives (T, ..., n) of responses by n numbers, and whether (n, T) they exist (0 if not)."""
+    """Derivatives (T, ..., n) of responses by n numbers, 0 where ``found`` (n, T) says that there is none."""
 
     values: np.ndarray
     found: np.ndarray
@@ -37,7 +37,7 @@ class Derivatives(NamedTuple):
 def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.ndarray:
     """Steps of differences for all parameters and fitted nuisance parameters, shape (k + u + L,).
 
-    ``near``: derivatives at a point nearby, by which large changes are avoided.
+    ``near``: derivatives at a point nearby; steps are shortened where these predict too large a change.
     """
     sizes = np.r_[STEP * model.scale, [each.step for each in model.data.nuisances(model.effects, point)]]
     if near is None:
@@ -54,7 +54,7 @@ def step_sizes(model: Model, point: Point, near: Jacobian | None = None) -> np.n
 def jacobian(
     model: Model, evaluation: Evaluation, side: float = 1.0, near: Jacobian | None = None
 ) -> Jacobian:
-    """Derivatives at an evaluation, one simulation for each parameter; 0 by those that are held or exact.
+    """Derivatives at an evaluation by one-sided differences; 0 by parameters that are held or exact.
 
     Parameters
     ----------
@@ -92,14 +92,14 @@ def jacobian(
 
 
 def accurate_jacobian(model: Model, evaluation: Evaluation, side: float = 1.0) -> Jacobian:
-    """Derivatives at an evaluation, taken again by shorter steps where a response has changed a lot."""
-    point, near = evaluation.point, jacobian(model, evaluation, side)
-    enough = np.array_equal(step_sizes(model, point, near), step_sizes(model, point))
-    return near if enough else jacobian(model, evaluation, side, near)
+    """Derivatives at an evaluation, taken again by shorter steps if a response has changed too much."""
+    point, first = evaluation.point, jacobian(model, evaluation, side)
+    short_enough = np.array_equal(step_sizes(model, point, first), step_sizes(model, point))
+    return first if short_enough else jacobian(model, evaluation, side, first)
 
 
 def conservative_jacobian(model: Model, evaluation: Evaluation) -> Jacobian:
-    """Of forward and backward differences the smaller, for each test and parameter.
+    """The smaller of forward and backward difference, for each test and parameter.
 
     A difference across a jump of the response is large, and would make a parameter look far too certain.
     """
@@ -125,9 +125,9 @@ def derivatives(
     # Beyond the limit at which the wedge locks there is no response; then the other side is used.
     lost = np.flatnonzero(~found.all(axis=1) & back)
     if lost.size:
-        near, near_found = changes(np.diag(-steps)[lost])
-        change[lost] = np.where(_expanded(found[lost], near), change[lost], -near)
-        found[lost] |= near_found
+        other, other_found = changes(np.diag(-steps)[lost])
+        change[lost] = np.where(_expanded(found[lost], other), change[lost], -other)
+        found[lost] |= other_found
     return Derivatives(np.moveaxis(np.where(_expanded(found, change), change, 0.0), 0, -1) / steps, found)
 
 

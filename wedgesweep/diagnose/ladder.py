@@ -9,19 +9,19 @@ from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
 
-# The most accurate explanations of each size are fitted again at their accuracy: so many at most, and only
-# those within this factor of the best.
+# The most accurate explanations of each size are refined, that is fitted again at their accuracy: at most so
+# many at a time, and at first only those within this factor of the best.
 REFINED, FACTOR = 6, 3.0
-# Explanations of a size whose accuracies are compared.
+# Number of best explanations of a size that must be refined, as their accuracies are compared.
 COMPARED = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Rated:
-    """An explanation with its accuracy; ``inf`` where it is adequate at none.
+    """An explanation with its accuracy, ``inf`` if it is adequate at no model error.
 
-    ``fit``: at that accuracy. ``held_out``: accuracy of its predictions of tests that were left out of the
-    fit, None where there are none or it was not asked for.
+    ``fit``: at that accuracy, if it was refined. ``held_out``: accuracy of its predictions of tests that were
+    left out of the fit; None if that was not evaluated.
     """
 
     explanation: Explanation
@@ -60,42 +60,45 @@ class Level:
 
 
 def ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
-    """Rate the base model and every explanation; a level for each number of effects that was tried.
+    """Rate the base model and every eligible explanation: a level for each number of effects.
 
-    The best of each size also predict tests that are left out of their fit.
+    The best one of each level also predicts tests that are left out of its fit.
     """
     allowed = [base, *filter(verdict.eligible, explanations)]
-    rough = search.each(_rough, allowed)
+    rough = search.each(_rated_where_it_ended, allowed)
     sizes = sorted({len(each.effects) for each in rough})
     return tuple(_level(search, [each for each in rough if len(each.effects) == size]) for size in sizes)
 
 
-def _rough(each: Explanation) -> Rated:
+def _rated_where_it_ended(each: Explanation) -> Rated:
     fit = each.fit
     return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
 
 
 def _level(search: Search, rough: Sequence[Rated]) -> Level:
-    """The explanations of one size; the leading ones, and all that would lead, are refined."""
-    waiting, done = sorted(rough, key=_order), list[Rated]()
+    """The explanations of one size, best first.
+
+    The leading ones are refined; so is any other that would rank among the COMPARED best without it.
+    """
+    waiting, done = sorted(rough, key=_by_accuracy), list[Rated]()
     chosen = [each for each in waiting[:REFINED] if each.accuracy <= FACTOR * waiting[0].accuracy]
     while chosen:
-        done = sorted([*done, *search.each(_refined, chosen)], key=_order)
+        done = sorted([*done, *search.each(_refined, chosen)], key=_by_accuracy)
         waiting = waiting[len(chosen) :]
-        chosen = _leading(waiting, done)
-    order = sorted([*done, *waiting], key=_order)
-    return Level((_tested(search, order[0]), *order[1:]))
+        chosen = _still_to_refine(waiting, done)
+    order = sorted([*done, *waiting], key=_by_accuracy)
+    return Level((_with_held_out_accuracy(search, order[0]), *order[1:]))
 
 
-def _leading(waiting: list[Rated], done: list[Rated]) -> list[Rated]:
-    """Of explanations that wait to be refined, best first, those that would be among the leading ones."""
+def _still_to_refine(waiting: list[Rated], done: list[Rated]) -> list[Rated]:
+    """Of explanations that are not refined, best first, those that would rank among the COMPARED best."""
     if len(done) < COMPARED:
         return waiting[: COMPARED - len(done)]
-    last = _order(done[COMPARED - 1])
-    return [each for each in waiting[:REFINED] if _order(each) < last]
+    last = _by_accuracy(done[COMPARED - 1])
+    return [each for each in waiting[:REFINED] if _by_accuracy(each) < last]
 
 
-def _tested(search: Search, best: Rated) -> Rated:
+def _with_held_out_accuracy(search: Search, best: Rated) -> Rated:
     if best.accuracy == inf:
         return best
     return replace(best, held_out=cross_validation.held_out_accuracy(best.fit, search.each))
@@ -106,5 +109,5 @@ def _refined(each: Rated) -> Rated:
     return replace(each, accuracy=found.size, fit=found.fit)
 
 
-def _order(each: Rated) -> tuple[float, float]:
+def _by_accuracy(each: Rated) -> tuple[float, float]:
     return each.accuracy, each.explanation.penalised

@@ -14,18 +14,19 @@ ITERATIONS = 25
 # A fit has converged when the next step is predicted to reduce chi-squared by less than this, or by less than
 # this share of its excess: far from the data the last digit is of no use.
 CONVERGED, CONVERGED_SHARE = 0.02, 1e-3
-# Damping of the first step, the least one, that at which a step has failed, and the factors of its change.
+# Damping of the first step, the least damping, that at which a fit gives up, and the factors by which damping
+# rises after a step that failed and falls after one that did not.
 DAMPING, LEAST_DAMPING, MOST_DAMPING, UP, DOWN = 1e-3, 1e-9, 1e8, 8.0, 8.0
 # Eigenvalue of the scaled normal equations below which a combination of parameters is undetermined.
 UNDETERMINED = 1e-12
 # Largest step of one iteration, in scales of the parameters.
 MAX_STEP = 3.0
-# Change of chi-squared by such a step of one parameter that no fit need care about.
+# A parameter hardly shows if its largest step changes chi-squared by less than this.
 UNNOTICED = 1.0
 
 
 class Step(NamedTuple):
-    """A proposed point, by how much it should reduce chi-squared, and whether a limit cut the step short."""
+    """A proposed point, the predicted reduction of chi-squared, and whether a limit cut the step short."""
 
     point: Point
     predicted: float
@@ -33,7 +34,7 @@ class Step(NamedTuple):
 
 
 def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> Fit:
-    """Follow an evaluation to the nearest minimum of chi-squared within the bounds."""
+    """Fit from an evaluation: descend to a nearby minimum of chi-squared within the bounds."""
     evaluation, damping, converged = start, DAMPING, False
     matrix, derivatives = np.zeros((len(model.low), len(model.low))), None
     for _ in range(iterations):
@@ -43,18 +44,18 @@ def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> F
         equations = normal_equations(model, evaluation, derivatives)
         matrix = equations.schur_complement().matrix
         better, predicted = None, np.inf
-        little = max(CONVERGED, CONVERGED_SHARE * (evaluation.chi2 - model.dof))
+        negligible = max(CONVERGED, CONVERGED_SHARE * (evaluation.chi2 - model.dof))
         while better is None and damping < MOST_DAMPING:
             step = lm_step(model, evaluation.point, equations, damping)
             predicted = step.predicted
             # A step that a limit cut short may gain nothing where a more damped one still does.
-            if predicted < little and not step.limited:
+            if predicted < negligible and not step.limited:
                 break
-            better = _better(model, evaluation, step.point) if predicted >= little else None
+            better = _better(model, evaluation, step.point) if predicted >= negligible else None
             if better is None:
                 damping *= UP
         if better is None:
-            converged = predicted < little
+            converged = predicted < negligible
             break
         gained = evaluation.chi2 - better.chi2
         damping = max(damping / (DOWN if gained > 0.5 * predicted else 1.0), LEAST_DAMPING)
@@ -68,18 +69,9 @@ def _better(model: Model, evaluation: Evaluation, point: Point) -> Evaluation | 
 
 
 def lm_step(model: Model, point: Point, equations: NormalEquations, damping: float) -> Step:
-    """The damped Gauss-Newton step from a point, within bounds and limits."""
+    """The damped Gauss-Newton step from a point, within the bounds of parameters and the limits of steps."""
     x = point.x
-    matrix, gradient = equations.schur_complement(damping)
-    free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
-    longest = MAX_STEP * model.scale
-    step = _damped_solution(matrix, gradient, damping, free)
-    wild = free & (np.diag(matrix) * longest**2 < UNNOTICED) & (np.abs(step) > longest)
-    if wild.any():
-        # A parameter that hardly shows must not shorten the step of the others.
-        fixed = np.where(wild, np.clip(step, -longest, longest), 0.0)
-        step = fixed + _damped_solution(matrix, gradient + matrix @ fixed, damping, free & ~wild)
-    step /= max(np.max(np.abs(step) / longest, initial=0.0), 1.0)
+    step = _parameter_step(model, x, equations, damping)
     aim = np.clip(x + step, model.low, model.high)
     limited = bool((aim != x + step).any())
     step = aim - x
@@ -90,6 +82,24 @@ def lm_step(model: Model, point: Point, equations: NormalEquations, damping: flo
     local = np.clip(local, -longest_local, longest_local)
     predicted = equations.predicted_reduction(step, local)
     return Step(point.moved(step, local[:, equations.eliminated :]), predicted, limited)
+
+
+def _parameter_step(model: Model, x: np.ndarray, equations: NormalEquations, damping: float) -> np.ndarray:
+    """Step (k + u,) of the parameters from x, no longer than MAX_STEP; it may lead over a bound.
+
+    A parameter at a bound beyond which chi-squared falls stays there.
+    """
+    matrix, gradient = equations.schur_complement(damping)
+    free = ~(((x <= model.low) & (gradient > 0.0)) | ((x >= model.high) & (gradient < 0.0)))
+    longest = MAX_STEP * model.scale
+    step = _damped_solution(matrix, gradient, damping, free)
+    too_weak = free & (np.diag(matrix) * longest**2 < UNNOTICED) & (np.abs(step) > longest)
+    if too_weak.any():
+        # A parameter that hardly shows must not shorten the step of the others.
+        fixed = np.where(too_weak, np.clip(step, -longest, longest), 0.0)
+        step = fixed + _damped_solution(matrix, gradient + matrix @ fixed, damping, free & ~too_weak)
+    step /= max(np.max(np.abs(step) / longest, initial=0.0), 1.0)
+    return step
 
 
 def _damped_solution(
@@ -122,7 +132,10 @@ def subset_fit(fit: Fit, rows: np.ndarray) -> Fit:
 
 
 def from_other_nuisances(fit: Fit) -> Fit:
-    """The fit continued from nuisance parameters that it had not reached, if that is better."""
+    """The fit, or a better one from nuisance parameters that it could not reach by itself.
+
+    See ``FitData.other_nuisances``.
+    """
     model, here = fit.model, fit.evaluation
     found = model.data.other_nuisances(model, here) if here.found else None
     if found is None:

@@ -1,4 +1,4 @@
-"""A hypothesis on measured tests: evaluates points, and knows what is free and within which bounds."""
+"""A hypothesis on measured tests: evaluates points, and knows free parameters, bounds and priors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,12 +12,12 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
 from wedgesweep.uncertain import UncertainNumbers, uncertain_numbers
 
-# Relative errors of simulations: negligible beside the noise of 4 % data, negligible in derivatives as well,
-# and good enough to choose the points from which a fit starts.
+# Relative errors of simulations: negligible beside noise of 4 %, negligible in derivatives as well, and small
+# enough to choose the points from which a fit starts.
 TOLERANCE, TIGHT, ROUGH = 1e-6, 1e-8, 1e-5
-# The base model is also fitted from this many standard deviations of an uncertain parameter to either side.
-OFF = 1.5
-# Uncertain parameters that a fit moves farther (standard deviations) are not those of the rig.
+# The base model is also fitted from starts with an uncertain parameter this many standard deviations off.
+START_OFFSET = 1.5
+# Uncertain parameters that a fit moves by more standard deviations than this are not those of the rig.
 IMPLAUSIBLE = 4.0
 # A nuisance parameter that is stated as exact has this standard deviation.
 EXACT = 1e-6
@@ -27,8 +27,9 @@ EXACT = 1e-6
 class Model:
     """A hypothesis on the tests of some data, simulated to a tolerance.
 
-    ``held``: index and value of a parameter, or of several, that are not fitted but known. ``as_stated``:
-    whether the uncertain parameters of the base model are what is stated, and not fitted.
+    Its parameters x (k + u,) are the k of the hypothesis, then the u uncertain ones of the base model.
+    ``held``: index (or slice) and value of parameters that are not fitted. ``as_stated``: whether
+    uncertain parameters are held at what is stated, and so no part of x.
     """
 
     data: FitData
@@ -63,15 +64,15 @@ class Model:
         """Upper bounds of x, (k + u,)."""
         return self._bound(self.hypothesis.high, self.uncertain.high)
 
-    def _bound(self, own: np.ndarray, uncertain: np.ndarray) -> np.ndarray:
-        bound = np.r_[own, uncertain]
+    def _bound(self, hypothesis: np.ndarray, uncertain: np.ndarray) -> np.ndarray:
+        bound = np.r_[hypothesis, uncertain]
         if self.held is not None:
             bound[self.held[0]] = self.held[1]
         return bound
 
     @cached_property
     def scale(self) -> np.ndarray:
-        """Changes of x that matter, (k + u,)."""
+        """Typical changes of x, (k + u,)."""
         return np.r_[self.hypothesis.scale, self.uncertain.scale]
 
     @cached_property
@@ -93,9 +94,9 @@ class Model:
         return replace(self, data=data)
 
     def uncertain_starts(self) -> np.ndarray:
-        """Uncertain parameters (n, u) as stated, and each factor well off to either side."""
+        """Starts (n, u) of the uncertain parameters: as stated, and with each factor off to either side."""
         factors = [each.factor for each in self.uncertain.numbers]
-        off = OFF * np.diag(self.uncertain.std)[factors]
+        off = START_OFFSET * np.diag(self.uncertain.std)[factors]
         stated = self.uncertain.mean[None]
         return np.maximum(np.concatenate([stated, stated + off, stated - off]), self.uncertain.low)
 
@@ -104,6 +105,7 @@ class Model:
         return {**self.uncertain.values(x[self.size :]), **self.hypothesis.values(x[: self.size])}
 
     def scenario(self, point: Point) -> Scenario:
+        """What to simulate at a point."""
         return Scenario(self.values(point.x), point)
 
     def evaluate(self, point: Point) -> Evaluation:
@@ -136,7 +138,10 @@ class Model:
         return np.r_[nuisance.ravel(), (point.x[self.size :] - self.uncertain.mean) / self.uncertain.std]
 
     def start(self, base: "Fit | None", x: np.ndarray) -> Point:
-        """The point with parameters x (k,) of the hypothesis and everything else as a base fit has it."""
+        """The point with parameters x (k,) of the hypothesis, and everything else as in a base fit.
+
+        Without one, everything else is as stated.
+        """
         if base is None:
             return Point(np.r_[x, self.uncertain.mean], *self.data.start())
         known = base.model.uncertain.values(base.x[base.model.size :])
@@ -184,7 +189,7 @@ class Fit:
 
     @property
     def implausible(self) -> tuple[str, ...]:
-        """Effects whose uncertain parameters the fit has moved much too far from what is stated."""
+        """Effects whose uncertain parameters the fit has moved too far from stated, see IMPLAUSIBLE."""
         far = np.abs(self.evaluation.uncertain_prior) > IMPLAUSIBLE
         numbers = self.model.uncertain.numbers
         return tuple(dict.fromkeys(each.effect for each, is_far in zip(numbers, far, strict=True) if is_far))

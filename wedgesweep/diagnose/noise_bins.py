@@ -1,4 +1,4 @@
-"""Bins of the spectrum of a record in which noise is all there is.
+"""Bins of the spectrum of a record that hold nothing but noise.
 
 Those of the motion stand out, or fall with frequency as steeply as a motion does and noise does not.
 """
@@ -11,44 +11,45 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.noise_spectrum import (
-    BEST,
-    LIKELY,
+    BEST_FIT,
+    CONSERVATIVE,
     Choice,
     NoiseBins,
     NoiseSpectrum,
-    fit,
+    fit_spectra,
     periodogram,
 )
 
-# A frequency stands out if its power is this many times the noise, and so do its neighbours; found in rounds.
+# A bin with this many times the power of the noise is part of a line, as are this many neighbours on either
+# side. Noise and lines are estimated in turn, in this many rounds.
 STANDS_OUT, NEIGHBOURS, ROUNDS = 8.0, 2, 4
-# Power over the noise of a line above the motion that is told of.
+# A line above the motion counts as part of it if its power is this many times the noise.
 LINE = 30.0
 # Standard deviations by which the mean of some bins exceeds the noise if they are skirts of the motion.
 SKIRT = 2.0
-# The noise of which there may be as much, where skirts of the motion are looked for.
-UNSURE = Choice(2.0)
-# Where no choice is made for white noise.
-ANY = Choice(2.0, coloured=0.0)
-# The lowest frequency (rad a sample) from which bins are looked at downwards, in so many bands.
+# The noise with which bins are compared that may be skirts: as much as there may be ...
+AMPLE = Choice(2.0)
+# ... and the same without a preference for white noise.
+AMPLE_COLOURED = Choice(2.0, coloured=0.0)
+# Skirts are looked for from this frequency (rad a sample) downwards, in this many bands.
 HIGHEST, STEPS = 0.75 * pi, 16
-# Bands by which the first one that counts as noise is moved up at most.
+# Number of bands by which the lower end of the noise is moved up at most.
 UPWARDS = 4
-# Bands in an octave, over one of which power that falls by more than this is of the motion.
+# Bands per octave, and ratio of the power of two bands an octave apart beyond which the lower one is motion.
 BANDS, STEEP = 2, 12.0
 # Least share of the bins above the motion, and least number of bins, that must count as noise.
 LEAST_KEPT, FEWEST = 0.25, 8
-# A record is looked at in so many parts. Its quiet end or beginning is those whose rms is at most so many
-# times the least one. There must be so many of them, the rms of all over that of the record must be at most
-# this, and there must be so many samples.
-PARTS, ALIKE, ENOUGH, QUIET, SHORTEST = 8, 2.0, 2, 0.1, 64
+# A record is divided into PARTS. Those at its end, or beginning, whose rms is at most ALIKE times the least
+# one are quiet if there are at least so many of them, with at most this share of the record's rms, and with
+# at least so many samples.
+PARTS, ALIKE, QUIET_PARTS, QUIET_SHARE, QUIET_SAMPLES = 8, 2.0, 2, 0.1, 64
 
 
 class OwnNoise(NamedTuple):
-    """What a record shows of its noise by itself.
+    """What a record shows of its noise by itself; frequencies in rad a sample.
 
-    ``bins`` of noise; ``first``: the lowest frequency (rad a sample) that was looked at for them;
-    ``highest``: the highest one at which the motion stands out; ``main``: that at which it is largest.
+    ``bins`` of noise, from the frequency ``first`` on; ``highest``: the highest frequency at which the motion
+    stands out; ``main``: the one at which it is largest.
     """
 
     bins: NoiseBins
@@ -57,30 +58,30 @@ class OwnNoise(NamedTuple):
     main: float
 
 
-def of_record(samples: np.ndarray) -> NoiseSpectrum:
-    """The noise in samples (n,) of a motion, by themselves."""
+def noise_of_record(samples: np.ndarray) -> NoiseSpectrum:
+    """The noise in samples (n,) of a motion, from these samples alone."""
     own = noise_bins(samples)
-    return replace(fit([[own.bins]], LIKELY)[0], highest=own.highest)
+    return replace(fit_spectra([[own.bins]], CONSERVATIVE)[0], highest=own.highest)
 
 
 def noise_bins(samples: np.ndarray) -> OwnNoise:
-    """The bins of samples (n,) of a motion in which noise is all there is."""
+    """The bins of samples (n,) of a motion that hold nothing but noise."""
     frequency, power = periodogram(samples)
     enough = max(FEWEST, power.size // 4)
-    first = min(_faded(frequency, power), power.size - enough)
+    first = min(_end_of_steep_fall(frequency, power), power.size - enough)
     kept = _without_lines(frequency, power, first)
     for _ in range(UPWARDS):
         following = int(np.searchsorted(frequency, frequency[first] * 2.0 ** (1.0 / BANDS)))
         if following > power.size - enough:
             break
         above = _without_lines(frequency, power, following)
-        noise = _fitted(frequency, power, above, UNSURE)(frequency[first:following])
+        noise = _fitted(frequency, power, above, AMPLE)(frequency[first:following])
         excess = power[first:following] / noise
-        # Skirts of the motion exceed what the noise above them leads one to expect.
+        # Skirts of the motion exceed the noise that the bins above them lead one to expect.
         if np.minimum(excess, STANDS_OUT).mean() < 1.0 + SKIRT / sqrt(following - first):
             break
         first, kept = following, above
-    found = _fitted(frequency, power, kept, LIKELY)
+    found = _fitted(frequency, power, kept, CONSERVATIVE)
     strong = frequency[power > LINE * found(frequency)].max(initial=frequency[first])
     bins, main = NoiseBins.of(frequency[kept], power[kept]), frequency[int(np.argmax(power))]
     return OwnNoise(bins, float(frequency[first]), float(strong), float(main))
@@ -95,26 +96,27 @@ def quiet_bins(samples: np.ndarray) -> NoiseBins | None:
     rms = np.array([each.std() for each in parts])
     loud = rms > ALIKE * max(rms.min(), 1e-300)
     before, after = int(np.argmax(loud)), int(np.argmax(loud[::-1]))
-    if not loud.any() or max(before, after) < ENOUGH:
+    if not loud.any() or max(before, after) < QUIET_PARTS:
         return None
     quiet = np.concatenate(parts[:before] if before > after else parts[PARTS - after :])
-    if quiet.size < SHORTEST or quiet.std() > QUIET * samples.std():
+    if quiet.size < QUIET_SAMPLES or quiet.std() > QUIET_SHARE * samples.std():
         return None
     return noise_bins(quiet).bins
 
 
 def without_skirts(own: Sequence[OwnNoise], others: Sequence[Sequence[NoiseBins]]) -> list[OwnNoise]:
-    """Bins of several tests, from the highest ones downwards as far as noise of one shape explains them.
+    """The same without bins in which the motion has skirts; noise has one shape in all tests.
 
-    ``others``: what else tells the noise of each. Kinks of a motion, where dry friction changes its sign,
-    have skirts that fall with frequency not much faster than noise. They rise downwards by more than it may.
+    Kinks of a motion, where dry friction changes its sign, have skirts that fall with frequency not much
+    faster than noise. Bins are kept from the highest ones downwards, until they exceed the noise that those
+    above them lead one to expect. ``others``: bins of the noise of each test from other sources.
     """
     edges = HIGHEST * 2.0 ** (-np.arange(STEPS) / BANDS)
     first = [max(each.first, min(edges[0], each.bins.frequency[-FEWEST:][0])) for each in own]
     stopped = [False] * len(own)
     for low, high in zip(edges[1:], edges[:-1], strict=True):
         known = zip(own, first, others, strict=True)
-        noise = fit([[each.bins.above(begin), *more] for each, begin, more in known], ANY)
+        noise = fit_spectra([[each.bins.above(begin), *more] for each, begin, more in known], AMPLE_COLOURED)
         for t, (each, expected) in enumerate(zip(own, noise, strict=True)):
             frequency, power, _ = each.bins.above(max(low, each.first)).up_to(high)
             excess = power / expected(frequency)
@@ -127,15 +129,15 @@ def without_skirts(own: Sequence[OwnNoise], others: Sequence[Sequence[NoiseBins]
 
 
 def _fitted(frequency: np.ndarray, power: np.ndarray, kept: np.ndarray, choice: Choice) -> NoiseSpectrum:
-    return fit([[NoiseBins.of(frequency[kept], power[kept])]], choice)[0]
+    return fit_spectra([[NoiseBins.of(frequency[kept], power[kept])]], choice)[0]
 
 
 def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.ndarray:
-    """Bins from the first on in which no line stands out."""
+    """Mask of the bins from the first on in which no line stands out."""
     kept = above = np.arange(power.size) >= first
     for _ in range(ROUNDS):
-        ratio = power / _fitted(frequency, power, kept, BEST)(frequency)
-        before, kept = kept, above & ~_spread(ratio > STANDS_OUT)
+        ratio = power / _fitted(frequency, power, kept, BEST_FIT)(frequency)
+        before, kept = kept, above & ~_with_neighbours(ratio > STANDS_OUT)
         if kept.sum() < max(LEAST_KEPT * above.sum(), FEWEST):
             return before
         if np.array_equal(before, kept):
@@ -143,11 +145,11 @@ def _without_lines(frequency: np.ndarray, power: np.ndarray, first: int) -> np.n
     return kept
 
 
-def _faded(frequency: np.ndarray, power: np.ndarray) -> int:
-    """The first bin above which the power no longer falls as steeply as that of a motion does."""
+def _end_of_steep_fall(frequency: np.ndarray, power: np.ndarray) -> int:
+    """Index of the first bin from which on the power does not fall as steeply as that of a motion."""
     bands = np.floor(BANDS * np.log2(frequency / frequency[0])).astype(int)
     names, sizes = np.unique(bands, return_counts=True)
-    if sizes[-1] < sizes[-2]:  # the last one is not complete
+    if sizes[-1] < sizes[-2]:  # the last band is cut off by half the sampling rate
         bands[bands == names[-1]], names = names[-2], names[:-1]
     median = np.array([np.median(power[bands == name]) for name in names])
     steep = np.zeros(names.size, bool)
@@ -157,6 +159,6 @@ def _faded(frequency: np.ndarray, power: np.ndarray) -> int:
     return int(np.searchsorted(bands, names[last], side="right"))
 
 
-def _spread(marked: np.ndarray) -> np.ndarray:
+def _with_neighbours(marked: np.ndarray) -> np.ndarray:
     """Marked bins with their neighbours."""
     return np.convolve(marked, np.ones(2 * NEIGHBOURS + 1), mode="same") > 0.5

@@ -1,10 +1,11 @@
-"""The spectrum of the noise in records, where the records themselves, or repeats of them, must tell.
+"""Spectrum of the noise in records, estimated from the records themselves or from repeats of a test.
 
-Noise is taken to be red and white: S(w) = a/(1 + r^2 - 2 r cos w) + b, with w in rad a sample. Its three
-numbers fit the periodogram by Whittle's likelihood (Whittle, 1953, Arkiv foer Matematik 2, 423) at bins in
-which noise is all there is (``noise_bins.py``). A sensor has noise of one shape, so that r and b/a are those
-of all tests together; its level may differ from test to test, as ranges of amplifiers do. Of several r that
-fit about as well the one with most noise counts, as an estimate that is too low would look like a misfit.
+Noise is taken to be red (a first-order autoregression) and white: S(w) = a/(1 + r^2 - 2 r cos w) + b, with w
+in rad a sample. The three numbers are fitted to the periodogram by Whittle's likelihood (Whittle, 1953,
+Arkiv foer Matematik 2, 423), at bins that hold nothing but noise (``noise_bins.py``). A sensor has noise of
+one shape: r and b/a are common to all tests. Its level may differ from test to test, as ranges of amplifiers
+do. Of several r that fit about as well the one with most noise counts, as too low an estimate would look like
+a misfit.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,13 +25,13 @@ WIDTH = 0.02
 COLOURED = 3.0
 # Standard deviations by which the level is raised: one end of a 95 % interval.
 ONE_END = 1.96
-# Variance of a bin that a Hann window leaves over that of independent ones.
+# Variance of the mean of some bins under a Hann window over that of as many independent ones.
 CORRELATED = 1.5
 # Share of the frequencies, the highest ones, whose power tells the level of a record at first.
 HIGH = 0.25
 # Frequencies (rad a sample) over which noise is compared.
 GRID = np.arange(1, 257) * pi / 256
-# Where the level comes from, as it is told.
+# What an estimate was taken from, as reported.
 FROM_REPEATS, FROM_SPECTRUM = "repeats", "frequencies without motion"
 
 
@@ -39,7 +40,8 @@ class NoiseSpectrum:
     """Power of the noise by frequency: ``red`` a, ``pole`` r, ``white`` b, in squared units of a sample.
 
     ``highest``: the highest frequency (rad a sample) at which the motion stands out. ``source``: what the
-    estimate is taken from. ``likewise``: noises that fit about as well; at each frequency the largest counts.
+    estimate was taken from. ``likewise``: other spectra that fit about as well; at each frequency the largest
+    of all counts.
     """
 
     red: float
@@ -76,9 +78,9 @@ class NoiseSpectrum:
 
 
 class NoiseBins(NamedTuple):
-    """Bins in which noise is all there is: frequency (rad a sample), power, and known power, (b,) each.
+    """Bins of a spectrum that hold nothing but noise: frequency (rad a sample) and power, (b,) each.
 
-    ``known``: power that comes on top of the noise to be told.
+    ``known`` (b,): the part of the power that is not of the noise to be estimated.
     """
 
     frequency: np.ndarray
@@ -101,18 +103,19 @@ class NoiseBins(NamedTuple):
 def of_noise(
     records: Sequence[np.ndarray], source: str, known: Callable[[np.ndarray], np.ndarray] | None = None
 ) -> NoiseSpectrum:
-    """The noise whose samples are known, up to the lowest frequencies, in records (n,) each.
+    """Spectrum of noise from records (n,) of nothing else.
 
-    ``known``: power that part of it has by frequency (rad a sample), which is not part of the result.
+    ``source``: what the records are, for reports; ``known``: gives power by frequency (rad a sample) that the
+    records have beside the noise to be estimated.
     """
     both = [periodogram(each) for each in records]
     frequency, power = (np.concatenate(each) for each in zip(*both, strict=True))
     floor = None if known is None else known(frequency)
-    return replace(fit([[NoiseBins.of(frequency, power, floor)]], LIKELY)[0], source=source)
+    return replace(fit_spectra([[NoiseBins.of(frequency, power, floor)]], CONSERVATIVE)[0], source=source)
 
 
 def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (rad a sample) but the lowest ones, and power at them, under a Hann window."""
+    """Frequencies (rad a sample), and power at them, under a Hann window; without 0 and the first bin."""
     place = np.arange(samples.size) - 0.5 * (samples.size - 1)
     level = samples - samples.mean() - place * (place @ samples) / (place @ place)
     window = np.hanning(samples.size)
@@ -122,11 +125,12 @@ def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Choice(NamedTuple):
-    """Which of the noises that fit about as well is taken.
+    """Which of the spectra that fit about as well is taken.
 
-    Of all poles within a ``loss`` of log-likelihood it is the one with most noise, with levels raised by what
-    they are uncertain, or with the ``least``. It is white noise, unless colour gains more than ``coloured``.
-    ``everywhere``: the others count at frequencies where they have more noise.
+    White noise is, unless colour gains more than ``coloured`` in log-likelihood. Else, of all poles whose
+    log-likelihood is at most ``loss`` below the best one, that with most noise is taken, or that with the
+    ``least``. ``everywhere``: the other poles count as well, at frequencies where they have more noise.
+    Levels are raised to the upper end of their 95 % interval, unless ``loss`` is 0 or ``least`` is set.
     """
 
     loss: float
@@ -135,13 +139,17 @@ class Choice(NamedTuple):
     everywhere: bool = False
 
 
-# The best fit, one that errs to the safe side, and both ends of a 95 % interval of the pole.
-BEST, LIKELY = Choice(0.0), Choice(0.5)
-LEAST, MOST = Choice(2.0, least=True), Choice(2.0, everywhere=True)
+# The maximum-likelihood spectrum, one that errs to the safe side, and both ends of a 95 % interval of the
+# pole.
+BEST_FIT, CONSERVATIVE = Choice(0.0), Choice(0.5)
+LEAST_NOISE, MOST_NOISE = Choice(2.0, least=True), Choice(2.0, everywhere=True)
 
 
-def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[NoiseSpectrum]:
-    """Noise of one shape in several tests, each of a level of its own, from the bins of each."""
+def fit_spectra(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST_NOISE) -> list[NoiseSpectrum]:
+    """Spectra of the noise of T tests, of one shape but each of its own level.
+
+    ``tests``: bins of each test, from one source or several.
+    """
     own = [_bands(each) for each in tests]
     bands = _Bands(*(np.concatenate(each) for each in zip(*own, strict=True)))
     member = np.repeat(np.eye(len(own)), [each.bins.size for each in own], axis=0)
@@ -158,14 +166,14 @@ def fit(tests: Sequence[Sequence[NoiseBins]], choice: Choice = MOST) -> list[Noi
 
 
 def _chosen(found: "_Fitted", choice: Choice) -> list[int]:
-    """Places of poles, the one that is taken first; that of white noise unless colour is seen."""
+    """Indices of the poles that are taken, the leading one first; [0], white noise, unless colour is seen."""
     loss = found.loss - found.loss.min()
     if loss[0] <= choice.coloured:
         return [0]
-    elsewhere = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
-    elsewhere = elsewhere * found.level[:, 0]
+    mean_power = (found.red[:, None] * _shape(POLES[:, None], GRID) + found.white[:, None]).mean(axis=1)
+    mean_power = mean_power * found.level[:, 0]
     good = np.flatnonzero(loss <= choice.loss)
-    good = good[np.argsort(elsewhere[good] if choice.least else -elsewhere[good])]
+    good = good[np.argsort(mean_power[good] if choice.least else -mean_power[good])]
     return [int(place) for place in (good if choice.everywhere else good[:1])]
 
 
@@ -183,7 +191,7 @@ class _Bands(NamedTuple):
 
 
 def _bands(given: Sequence[NoiseBins]) -> _Bands:
-    """Bins of one test in bands, over which no spectrum changes much; each kind of them by itself."""
+    """Means of the bins of one test over bands in which no spectrum changes much; each source by itself."""
     found = []
     for each in given:
         if not each.frequency.size:
@@ -197,7 +205,7 @@ def _bands(given: Sequence[NoiseBins]) -> _Bands:
 
 
 def _at_first(bands: _Bands) -> float:
-    """Level of a test from its highest frequencies."""
+    """First estimate of the level of a test: its mean power at the highest frequencies."""
     high = bands.frequency >= (1.0 - HIGH) * bands.frequency.max()
     return max(float((bands.bins * bands.power)[high].sum() / bands.bins[high].sum()), 1e-300)
 
@@ -219,14 +227,20 @@ class _Fitted(NamedTuple):
 
 
 def _fitted(bands: _Bands, member: np.ndarray, level: np.ndarray) -> _Fitted:
-    """Maximum likelihood for each pole; ``member`` (b, T): 1 for bands of a test, ``level`` (T,) at first."""
+    """Maximum likelihood for each pole.
+
+    ``member`` (b, T): 1 where a band is of a test, else 0; ``level`` (T,): first estimate.
+    """
     bins, shape = bands.bins, _shape(POLES[:, None], bands.frequency)
     high = _shape(POLES, np.array(pi))[:, None]
     red, white = 0.5 / high, np.full((POLES.size, 1), 0.5)
     levels = np.tile(level, (POLES.size, 1))
 
     def factor(part: np.ndarray, to: np.ndarray) -> np.ndarray:
-        """By how much a part (r, b) of the power should grow, with the bands summed ``to`` (b, k) places."""
+        """Multiplicative updates (r, k) of k numbers that scale a part (r, b) of the power.
+
+        ``to`` (b, k): 1 where a number scales the part in a band, else 0.
+        """
         total = levels @ member.T * (red * shape + white) + bands.known
         rises, falls = bins * bands.power * part / total**2, bins * part / total
         return np.asarray((rises @ to) / np.maximum(falls @ to, 1e-300))

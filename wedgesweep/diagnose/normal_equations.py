@@ -33,7 +33,7 @@ class NormalEquations:
     eliminated: int
 
     def _eliminate(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
-        """Local block inverted and applied to the local gradient (T, L) and to the coupling (T, L, k)."""
+        """Inverse of the damped local block times local gradient (T, L), and times coupling (T, L, k)."""
         block = self.local_block.copy()
         for i in range(self.eliminated, block.shape[-1]):
             block[:, i, i] *= 1.0 + damping
@@ -43,14 +43,16 @@ class NormalEquations:
 
     def schur_complement(self, damping: float = 0.0) -> Reduced:
         """Normal equations of the parameters, nuisance parameters eliminated."""
-        own, coupled = self._eliminate(damping)
-        matrix = self.global_block - np.einsum("tik,til->kl", self.coupling_block, coupled)
-        return Reduced(matrix, self.global_gradient - np.einsum("tik,ti->k", self.coupling_block, own))
+        by_gradient, by_coupling = self._eliminate(damping)
+        matrix = self.global_block - np.einsum("tik,til->kl", self.coupling_block, by_coupling)
+        return Reduced(
+            matrix, self.global_gradient - np.einsum("tik,ti->k", self.coupling_block, by_gradient)
+        )
 
     def local_step(self, step: np.ndarray, damping: float) -> np.ndarray:
         """Best step of the nuisance parameters (T, L) beside a step of the parameters (k,)."""
-        own, coupled = self._eliminate(damping)
-        return -own - coupled @ step
+        by_gradient, by_coupling = self._eliminate(damping)
+        return -by_gradient - by_coupling @ step
 
     def predicted_reduction(self, step: np.ndarray, local: np.ndarray) -> float:
         """Reduction of chi-squared by a step if the responses are linear."""

@@ -31,12 +31,12 @@ from wedgesweep.effects import go_together
 
 # Best single fits with which every other effect is tried, and starting points of the other effect.
 PARTNERS, STARTS = 8, 2
-# Iterations of each round. At most ENTERING pairs enter the last round, or the second one if some pair is
-# nearly adequate by then (chi-squared below NEARLY times the degrees of freedom). COMPLETED pairs are then
-# fitted to all tests.
+# Iterations of each round on the subset of tests. At most ENTERING pairs enter the last round, and the second
+# one as well if some pair is nearly adequate by then (chi-squared below NEARLY times the degrees of freedom).
+# The best COMPLETED pairs are then fitted to all tests.
 ROUNDS, ENTERING, NEARLY, COMPLETED = (1, 2, 5), 40, 2.0, 8
 # Once a pair is adequate, pairs with this many times its misfit are dropped, but the best SEVERAL never are.
-# A start is as poor if it is that many times worse than the single fit with which it is combined.
+# A start of a pair is poor if its misfit is this many times that of the first effect by itself.
 BEHIND, SEVERAL = 5.0, 4
 # Tests on which pairs are fitted first.
 SUBSET = 6
@@ -48,9 +48,9 @@ RESTARTED = 3
 SWAPPED = 2
 # Pairs whose chi-squared is this close to the best have their components fitted by themselves.
 NEAR_BEST = 50.0
-# Least squared change of a whitened response that is more than numerical noise.
+# Squared change of the whitened responses above which it is more than numerical noise.
 SEEN = 4.0
-# An effect may be this much weaker or stronger than where it was evaluated.
+# Range of the factor by which changes of the second effect may be scaled where its best start is looked for.
 SCALES = (0.1, 2.0)
 # What a spent budget leaves out, as reported.
 PAIRS = "pairs with one of the best single effects"
@@ -61,9 +61,11 @@ DIVERSE = "best pairs from diverse starting points"
 
 
 class SingleScan(NamedTuple):
-    """What is known of one effect: its fit to all tests, and the same on the few that it fits worst.
+    """What is known of one effect.
 
-    ``x`` (n, k): its parameters over their range; ``changes`` (n, m): changes of the base model's responses.
+    ``fit``: to all tests; ``subset``: the same fit on the few tests that it fits worst. ``x`` (n, k): its
+    parameters where it was evaluated and changed the responses; ``changes`` (n, m): how it changed those of
+    the base model, whitened, all tests in a row.
     """
 
     fit: Fit
@@ -73,7 +75,7 @@ class SingleScan(NamedTuple):
 
 
 class Combination(NamedTuple):
-    """An effect as it was fitted, and a second one whose start depends on the first."""
+    """Two effects to be fitted together: the first starts as it was fitted, the second where it fits best."""
 
     first: SingleScan
     second: SingleScan
@@ -116,7 +118,7 @@ def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: 
 def _with_all_others(
     known: Mapping[str, SingleScan], first: Sequence[str] | Mapping[str, None], except_for: Sequence[str]
 ) -> list[Combination]:
-    """Some effects, each with every other effect but for some."""
+    """Combinations of each effect of ``first`` that is not in ``except_for`` with every other effect."""
     return [
         Combination(known[one], known[other])
         for one in first
@@ -144,7 +146,7 @@ def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
     own = search.model(effect).hypothesis
     points = [model.hypothesis.at({**pair.values, **own.in_key_units(x)}) for x in own.starts()]
     evaluations = rough.evaluate_all([rough.start(pair, x) for x in points])
-    first = [each.name.split(".")[0] for each in model.hypothesis.parameters].index(effect)
+    first = [each.effect for each in model.hypothesis.parameters].index(effect)
     return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
 
 
@@ -167,7 +169,7 @@ def _fit_combinations(
     """Fits of combinations, the best first; ``diverse``: from several starts of each."""
     search = job.search
     useful = [each for each in combinations if len(each.second.x) and go_together(each.effects)]
-    begun = search.each_affordable(lambda each: begin(search, each, diverse), useful, what, _effects)
+    begun = search.each_affordable(lambda each: starting_fits(search, each, diverse), useful, what, _effects)
     fits = [fit for some in begun for fit in some if np.isfinite(fit.chi2)]
     further = f"{what}, followed further"
     fits = _continued(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0], further)
@@ -181,7 +183,7 @@ def _fit_combinations(
 
 
 def _continued(search: Search, fits: Sequence[Fit], iterations: int, what: str) -> list[Fit]:
-    """Fits followed for some iterations, the best first; as they are where the budget is spent."""
+    """Fits continued for some iterations, the best first; as they are once the budget is spent."""
     order = sorted(fits, key=lambda fit: fit.chi2)
     found = search.each_affordable(lambda fit: _followed(fit, iterations), order, what, _effects)
     return [*found, *order[len(found) :]]
@@ -223,25 +225,25 @@ def component_fits(search: Search, pairs: Sequence[Explanation]) -> list[Explana
 
 
 def _component(search: Search, pair: Fit, effect: str) -> Fit:
-    """One effect of a pair by itself, with its parameters there."""
+    """One effect of a pair by itself, with its parameters in the pair; not fitted yet."""
     model = search.model(effect)
     return unfitted(model, model.evaluate(model.start(pair, model.hypothesis.at(pair.values))))
 
 
 def _as_in_pair(search: Search, pair: Fit, effect: str) -> SingleScan:
-    """One effect of a pair with its parameters there, to be the first of a combination."""
+    """One effect of a pair with its parameters in the pair, to be the first of a combination."""
     fit = _component(search, pair, effect)
     nothing = np.zeros((0, fit.model.size))
     return SingleScan(fit, _worst_tests(fit), nothing, nothing)
 
 
 def _worst_tests(fit: Fit) -> Fit:
-    """The same point on the tests with the largest misfit."""
+    """The same point on the SUBSET of tests with the largest misfit."""
     return subset_fit(fit, np.sort(np.argsort(-fit.evaluation.chi2_by_test)[:SUBSET]))
 
 
 def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
-    """A single fit with everything that was evaluated of its effect."""
+    """A single fit with all evaluations of its effect that have responses and change them."""
     evaluations = [each for each in (*scan, fit.evaluation) if each.found]
     changes = np.array([(base.evaluation.residual - each.residual).ravel() for each in evaluations])
     x = np.array([each.point.x[: fit.model.size] for each in evaluations])
@@ -250,9 +252,9 @@ def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
 
 
 def _starts(first: Fit, second: SingleScan, diverse: bool) -> np.ndarray:
-    """Points (n, k) of the second effect that fit best beside the first, if responses add.
+    """Points (n, k) of the second effect that fit best beside the first if responses add, best first.
 
-    ``diverse``: the best one for each value of its last parameter.
+    ``diverse``: only the best one at each value of its last parameter.
     """
     residual = first.evaluation.residual.ravel()
     size, along = (second.changes**2).sum(1), second.changes @ residual
@@ -264,8 +266,11 @@ def _starts(first: Fit, second: SingleScan, diverse: bool) -> np.ndarray:
     return points[: DIVERSE_STARTS if diverse else STARTS]
 
 
-def begin(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
-    """Starts of a combination on a subset of the tests: the best one, or all of them if ``diverse``."""
+def starting_fits(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
+    """Fits of a combination that have not begun, on a subset of the tests.
+
+    That from the best start, or if ``diverse`` from all starts.
+    """
     fit, subset, second = combination.first.fit, combination.first.subset, combination.second
     model = search.model(*fit.effects, *second.fit.effects, tolerance=ROUGH)
     model = model.on(subset.model.data)
@@ -276,7 +281,7 @@ def begin(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
 
     evaluations = evaluated(_starts(fit, second, diverse))
     if not diverse and min(each.chi2 for each in evaluations) > BEHIND * subset.chi2:
-        # Responses do not add where a test sticks that had slid; the weakest effect leaves them as they are.
+        # Responses do not add where a test sticks that had slid; a weak effect leaves them as they are.
         weakest = second.x[np.argmin((second.changes**2).sum(1))]
         evaluations += evaluated(second.fit.model.hypothesis.near_neutral(weakest)[None])
     chosen = evaluations if diverse else [min(evaluations, key=lambda each: each.chi2)]
@@ -284,10 +289,10 @@ def begin(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
 
 
 def _complete(job: PairSearch, subset: Fit) -> Explanation:
-    """A fit to all tests from one to some of them.
+    """A fit to all tests, from the end of a fit to a subset of them.
 
-    What is free in each test begins where the base model or one of the effects by itself has it: whichever
-    fits this test best.
+    Nuisance parameters of each test start as in the base fit or in the fit of one of the effects by itself,
+    whichever fits this test best.
     """
     model = job.search.model(*subset.effects)
     known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]

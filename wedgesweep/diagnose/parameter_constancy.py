@@ -1,9 +1,9 @@
 """Whether the parameters of an explanation are the same in all tests.
 
-A wrong cause may imitate the right one in every single test, but hardly with one value in all of them. What
-the fit leaves then points in the direction in which the value would have to differ from test to test, long
-before the misfit as a whole exceeds the noise. This is the Lagrange multiplier test (Breusch and Pagan, 1980)
-of constant parameters (Nyblom, 1989).
+A wrong cause may imitate the right one in every single test, but hardly with one value in all of them. The
+residual then points in the direction in which the value would have to differ from test to test, long before
+chi-squared as a whole shows it. This is the Lagrange multiplier test (Breusch and Pagan, 1980) of constant
+parameters (Nyblom, 1989).
 """
 
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from scipy.special import chdtrc
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.projector import Projector
 
-# Directions with less than this share of the effect in the test that shows a parameter best are left out.
+# Directions in which a parameter shows less than this share of what it does in its best test are left out.
 FAINT = 1e-3
 
 
@@ -33,13 +33,16 @@ def parameter_constancy(fit: Fit) -> Constancy:
     project = Projector(fit)
     # A model error has one shape in each test, which may be that of a change of the parameter.
     variance = 1.0 + float(fit.model.data.model_misfit.mean())
-    p = [_constant(project, project.by_parameter[..., i], variance) for i in range(size)]
+    p = [_p_constant(project, project.by_parameter[..., i], variance) for i in range(size)]
     least = int(np.argmin(p))
     return Constancy(min(1.0, size * p[least]), fit.model.hypothesis.parameters[least].name)
 
 
-def _constant(project: Projector, derivative: np.ndarray, variance: float = 1.0) -> float:
-    """P-value of the misfit along changes of one parameter in single tests; ``derivative`` (T, m)."""
+def _p_constant(project: Projector, derivative: np.ndarray, variance: float = 1.0) -> float:
+    """P-value of the misfit along changes of one parameter in single tests.
+
+    ``derivative`` (T, m): of the residual by the parameter; ``variance``: of the misfit in any direction.
+    """
     alone = derivative[None] * np.eye(len(derivative))[..., None]
     directions = np.array([project(each) for each in alone])
     _, size, basis = np.linalg.svd(directions, full_matrices=False)

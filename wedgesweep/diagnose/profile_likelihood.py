@@ -18,20 +18,20 @@ from wedgesweep.diagnose.model import Fit
 # Half a 95 % interval of one parameter in standard deviations, and the rise of chi-squared at its ends.
 TWO_SIDED = 1.959964
 RISE = TWO_SIDED**2
-# An end is found if chi-squared has risen by this share of RISE, or after this many tries.
+# An end is found where chi-squared has risen by at least this share of RISE, or after this many tries.
 RISE_SHARE, TRIES = 0.8, 5
 # The next try is at most this many times further out.
 FURTHER = 3.0
 # Iterations of a fit with a parameter held.
 ITERATIONS = 10
-# Values at which the parameter of a switch is held, from where its interval should end out to its bound.
+# Number of values at which the parameter of a switch is held, from the end by the curvature to the bound.
 VALUES = 6
-# A fit that is better by this much becomes the new centre, at most this many times.
+# A fit whose chi-squared is lower by this much becomes the new centre, at most this many times.
 LOWER, RESTARTS = 0.5, 6
 
 
 class ProfileEnd(NamedTuple):
-    """End of an interval in standard deviations by the curvature, and the best fit on the way there."""
+    """End of an interval, in standard deviations by the curvature, and the best fit on the way there."""
 
     end: float
     best: Fit
@@ -65,7 +65,10 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
 
 
 def _profile_end(fit: Fit, parameter: int, side: float) -> ProfileEnd:
-    """Move one parameter out until chi-squared has risen enough, or is lower than where it began."""
+    """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit.
+
+    ``side``: 1 for the upper end, -1 for the lower one.
+    """
     std = np.sqrt(fit.covariance[parameter, parameter])
     bounds = fit.model.low[parameter], fit.model.high[parameter]
     bound = bounds[1] if side > 0.0 else bounds[0]
@@ -89,7 +92,10 @@ def _profile_end(fit: Fit, parameter: int, side: float) -> ProfileEnd:
 
 
 def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
-    """Where chi-squared has risen enough between the fit and a bound, both of which may be the same."""
+    """The end for a parameter at a bound, by bisection between the fit and the bound on one side.
+
+    ``furthest``: distance to that bound in standard deviations; 0 if the parameter is at it.
+    """
     std, low, high = np.sqrt(fit.covariance[parameter, parameter]), 0.0, furthest
     middle = high
     for _ in range(TRIES if furthest else 0):
@@ -105,9 +111,9 @@ def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) ->
 
 
 def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
-    """The first value beyond all that fit nearly as well.
+    """The end for the parameter of a switch: the first tried value beyond all that fit nearly as well.
 
-    Behind a switch chi-squared is rugged: impacts come and go, and a response has rivals that are as steady.
+    There chi-squared is rugged: impacts come and go, and several responses are equally steady.
     """
     if furthest <= TWO_SIDED:
         return ProfileEnd(TWO_SIDED, fit)
@@ -124,7 +130,10 @@ def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float) -
 
 
 def _held(fit: Fit, start: Fit, parameter: int, value: float) -> Fit:
-    """Fit with one parameter held, the others starting where the covariance predicts them."""
+    """Fit with one parameter held; the others start where the covariance of ``fit`` predicts them.
+
+    ``start``: the fit from which they are extrapolated.
+    """
     model = fit.model.holding(parameter, value)
     slope = fit.covariance[:, parameter] / fit.covariance[parameter, parameter]
     x = np.clip(start.x + slope * (value - start.x[parameter]), model.low, model.high)

@@ -1,8 +1,8 @@
-"""Steps of a diagnosis, as those see them who are told of its progress."""
+"""Steps of a diagnosis, as its progress is reported."""
 
 
 class Step(str):
-    """A step in words, which also says how many of how many parts of a stage are finished."""
+    """A step in words that also holds the stage, and how many of its parts are done."""
 
     __slots__ = ("done", "stage", "total")
 

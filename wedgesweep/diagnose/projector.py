@@ -12,8 +12,8 @@ DEPENDENT = 1e-9
 class Projector:
     """Removes from a change of the residual everything that the parameters of a fit can take up.
 
-    ``by_parameter`` (T, m, k + u): derivatives of the residual. ``misfit``: what the fit leaves of the data
-    and of its priors, projected, as one vector.
+    ``by_parameter`` (T, m, k + u): derivatives of the residual. ``misfit``: residuals and pulls on priors of
+    the fit, projected, as one vector.
     """
 
     def __init__(self, fit: Fit) -> None:
@@ -37,7 +37,10 @@ class Projector:
         self.misfit = self._project(evaluation.residual, pulls)
 
     def _over_all(self, nuisance: np.ndarray, uncertain: np.ndarray) -> np.ndarray:
-        """A value for each fitted number: of nuisances (T, P) and uncertain parameters (u,), 0 for others."""
+        """One vector with a value for each column of derivatives.
+
+        That of nuisance parameters with a prior (T, P) and of uncertain parameters (u,), 0 for all others.
+        """
         eliminated = self._model.data.eliminated
         by_test = np.zeros((len(nuisance), self._nuisances))
         by_test[:, eliminated : eliminated + nuisance.shape[1]] = nuisance

@@ -1,7 +1,7 @@
-"""Residuals whose covariance depends on the model: it is taken where the best explanation ended.
+"""Residuals whose covariance depends on the model: renew it at the best explanation.
 
 The noise of a recorded input reaches the comparison through the response. Near a resonance the base model may
-pass on much more or much less of it than the model that is right.
+pass on much more, or much less, of it than the right model does.
 """
 
 from dataclasses import replace
@@ -11,12 +11,12 @@ from wedgesweep.diagnose.explanation import Explanation, penalised
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import Scans, Search
 
-# So many of the best explanations are fitted again, in so many iterations.
+# Number of best explanations that are fitted again, and iterations of these fits.
 REFITTED, ITERATIONS = 8, 8
 
 
 class Explained(NamedTuple):
-    """Result of a search: the base model and all explanations, best first, with what was scanned."""
+    """Result of a search: the base model, all explanations, best first, and the scans of single effects."""
 
     search: Search
     base: Explanation
@@ -25,7 +25,7 @@ class Explained(NamedTuple):
 
 
 def with_renewed_covariance(explained: Explained) -> Explained:
-    """Everything compared again with the covariance of the best explanation, the leading ones refitted.
+    """All fits compared again under the covariance of the best explanation; the leading ones are refitted.
 
     All explanations share one covariance, as only then are their misfits on one scale.
     """

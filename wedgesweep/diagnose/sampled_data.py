@@ -1,4 +1,4 @@
-"""Tests that are compared in time or along a motion, by numbers with independent noise."""
+"""Tests that are compared in time or along an imposed motion."""
 
 from abc import abstractmethod
 from collections.abc import Iterable, Sequence
@@ -13,7 +13,7 @@ from wedgesweep.diagnose.fit_data import INPUT_GAIN, FitData
 
 
 class NoStart(NamedTuple):
-    """The start of simulations that do not depend on any that were made before."""
+    """The warm start of simulations that do not depend on earlier ones."""
 
     def of(self, rows: Any) -> "NoStart":
         return self
@@ -40,17 +40,17 @@ class SampledData(FitData):
     @property
     @abstractmethod
     def noise(self) -> np.ndarray:
-        """Standard deviation (T, m) of their independent combinations; 0 where nothing is compared."""
+        """Standard deviation (T, m) of decorrelated values; 0 where nothing is compared."""
 
     @property
     @abstractmethod
     def size(self) -> np.ndarray:
-        """Rms of the response in the channel of each of them, (T, m)."""
+        """Rms (T, m) of the response, in the channel that each value belongs to."""
 
     @property
     @abstractmethod
     def shifted(self) -> np.ndarray:
-        """What a unit of the zero of the sensor adds to each of them, (T, m)."""
+        """What a unit of the zero of the sensor adds to each value, (T, m)."""
 
     @abstractmethod
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
@@ -58,7 +58,7 @@ class SampledData(FitData):
 
     @cached_property
     def measured(self) -> np.ndarray:
-        """What a fit takes for measured, (T, m)."""
+        """Values (T, m) to which a model is fitted: recorded, or of a bootstrap sample."""
         return self.recorded if self.resampled is None else self.resampled
 
     @cached_property
@@ -105,7 +105,7 @@ class SampledData(FitData):
         return values
 
     def zero(self, values: np.ndarray) -> np.ndarray:
-        """Best zero of the sensor (..., T, 1) for values (..., T, m) that are left."""
+        """Zero of the sensor (..., T, 1) that fits values (..., T, m) best, measured less simulated ones."""
         left, unit = self._whitened(values), self._whitened(self.shifted)
         return (left * unit).sum(-1, keepdims=True) / (unit**2).sum(-1, keepdims=True)
 
@@ -118,7 +118,7 @@ class SampledData(FitData):
         return here.response + self.zero(self.measured - here.response) * self.shifted
 
     def error(self, here: Evaluation) -> np.ndarray:
-        """Rms of what an evaluation leaves over that of the response, (T,)."""
+        """Rms of the residual of an evaluation over that of the response, (T,)."""
         left = self.without_zero(self.measured - here.response) / np.where(self.size > 0.0, self.size, 1.0)
         return np.sqrt((self.weight * left**2).sum(-1) / self.weight.sum(-1))
 
@@ -169,11 +169,11 @@ class SampledData(FitData):
         return replace(self, resampled=truth.response + self.correlated(noise))  # type: ignore[type-var]
 
     def with_undetected(self, effect: str) -> Self:
-        """What is no candidate changes nothing that is simulated."""
+        """The same data: what is simulated does not depend on effects that are no candidates."""
         return self
 
     def known_values(self, scenarios: Sequence[Scenario], left_out: Iterable[str]) -> list[dict[str, Any]]:
-        """Values of scenarios without some effects, which this kind of record cannot show."""
+        """Values of effects in each scenario, without those that this kind of record cannot show."""
         left_out = (*left_out, INPUT_GAIN)
         return [
             {name: numbers for name, numbers in each.values.items() if name not in left_out}

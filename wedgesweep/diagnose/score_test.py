@@ -1,4 +1,4 @@
-"""What the tests could show of each effect, before anything is fitted.
+"""Score tests: whether the tests show an effect, and the weakest value that they would have shown.
 
 A score test asks whether the misfit of the base model points in the direction in which an effect would change
 the response, after everything that nuisance and uncertain parameters can take up is projected out of both.
@@ -17,9 +17,9 @@ from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.projector import Projector
 from wedgesweep.diagnose.search import Scans, Search
 
-# Share of a signal that must survive the projection for an effect to be testable.
+# Share of a change of the response that must survive the projection for an effect to be testable.
 RETAINED = 0.05
-# Squared distance from the base model that the tests would have shown.
+# An effect is detectable if it moves the response this far (squared distance) from that of the base model.
 DETECTABLE = 12.6
 # Points between the weakest and the strongest value of an effect's leading parameter, and how many times
 # weaker than the weakest a detectable value may be extrapolated.
@@ -33,8 +33,8 @@ class Score:
     """Score of one effect.
 
     ``t2``: chi-squared with one degree of freedom if the effect is absent, None if not testable.
-    ``retention``: share of its signal that survives the projection. ``detectable``: the weakest value (key
-    unit) of ``key`` that the tests would have shown, None if there is none.
+    ``retention``: share of the change by a weak effect that survives the projection. ``detectable``: the
+    weakest value of ``key``, in its unit, that the tests would have shown; None if they would not show any.
     """
 
     effect: str
@@ -91,10 +91,10 @@ def scores(search: Search, base: Fit, scans: Scans) -> list[Score]:
 
 
 def _score_undetected(search: Search, base: Fit, effect: str) -> Score:
-    """What would have shown of an effect of which the records show nothing."""
+    """Score of an effect of which the records show nothing; only its detectable value is of interest."""
     data = search.data.with_undetected(effect)
-    if data is search.data:  # nothing: such records do not depend on it
-        key = search.model(effect).hypothesis.parameters[0].name.split(".")[1]
+    if data is search.data:  # such records do not depend on the effect
+        key = search.model(effect).hypothesis.parameters[0].key
         return Score(effect, None, 0.0, key, None)
     silent = Search(data, (effect,))
     model = silent.model()
@@ -113,14 +113,15 @@ def _score(baseline: _Baseline, effect: str, known: Sequence[Evaluation]) -> Sco
     t2 = None
     if retention >= RETAINED and size[weak] > 0.0:
         t2 = float((scan.projected[weak] @ baseline.project.misfit) ** 2 / size[weak] ** 2)
-    key = model.hypothesis.parameters[scan.parameter].name.split(".")[1]
+    key = model.hypothesis.parameters[scan.parameter].key
     return Score(effect, t2, retention, key, _detectable(model.hypothesis, scan, key))
 
 
 def _scans(baseline: _Baseline, model: Model, known: Sequence[Evaluation]) -> Iterator[_Scan]:
-    """Scans along the leading parameter of an effect, then along others if it does not fade with the first.
+    """Scans along the leading parameter of an effect, then along its logarithmic ones.
 
-    Stribeck friction without a peak is not the base model: it fades with its velocity.
+    The latter are for effects that do not fade with the leading one: Stribeck friction is not the base model
+    without its peak, but only with a small velocity as well.
     """
     base, hypothesis = baseline.fit, model.hypothesis
 
@@ -152,7 +153,7 @@ def _path(hypothesis: Hypothesis, parameter: int) -> np.ndarray:
         at[0] = first.neutral
     path = np.repeat(at[None], POINTS, axis=0)
     if varied.fades:
-        path[:, parameter] = first.neutral + (varied.high - first.neutral) * np.geomspace(1e-4, 1.0, POINTS)
+        path[:, parameter] = varied.neutral + (varied.high - varied.neutral) * np.geomspace(1e-4, 1.0, POINTS)
     else:
         path[:, parameter] = np.linspace(varied.low, varied.high, POINTS)
     return path
@@ -170,9 +171,9 @@ def _detectable(hypothesis: Hypothesis, scan: _Scan, key: str) -> float | None:
     shown = [i for i in np.argsort(distance) if distance[i] >= DETECTABLE]
     if not shown:
         return None
-    leading = hypothesis.parameters[scan.parameter]
-    if leading.switches:  # it shows, or does not
-        return float(hypothesis.in_key_units(points[min(shown)])[hypothesis.effects[0]].get(key, inf))
+    number, varied = scan.parameter, hypothesis.parameters[scan.parameter]
+    if varied.switches:  # the effect shows at all values, or at none
+        return _value(hypothesis, points[min(shown)], key)
     i = int(shown[0])
     below = [j for j in (i - 1, i + 1) if 0 <= j < len(points) and distance[j] < DETECTABLE]
     point = points[i].copy()
@@ -180,14 +181,16 @@ def _detectable(hypothesis: Hypothesis, scan: _Scan, key: str) -> float | None:
         j = below[0]
         low, high = np.sqrt(distance[j]), np.sqrt(distance[i])
         point += (points[j] - points[i]) * (high - np.sqrt(DETECTABLE)) / (high - low)
-    elif hypothesis.parameters[scan.parameter].logarithmic and i in (0, len(points) - 1):
-        point[scan.parameter] += _extrapolation(points[:, scan.parameter], distance, i)
-    elif i == 0 and hypothesis.parameters[0].fades:  # near its neutral value an effect acts in proportion
-        neutral = hypothesis.parameters[0].neutral
-        point[scan.parameter] = neutral + (point[scan.parameter] - neutral) * np.sqrt(
-            DETECTABLE / distance[i]
-        )
-    return float(hypothesis.in_key_units(point)[hypothesis.effects[0]].get(key, inf))
+    elif varied.logarithmic and i in (0, len(points) - 1):
+        point[number] += _extrapolation(points[:, number], distance, i)
+    elif i == 0 and varied.fades:  # near its neutral value an effect acts in proportion
+        point[number] = varied.neutral + (point[number] - varied.neutral) * np.sqrt(DETECTABLE / distance[i])
+    return _value(hypothesis, point, key)
+
+
+def _value(hypothesis: Hypothesis, x: np.ndarray, key: str) -> float:
+    """A number of the only effect of a hypothesis, in its key unit."""
+    return float(hypothesis.in_key_units(x)[hypothesis.effects[0]].get(key, inf))
 
 
 def _extrapolation(x: np.ndarray, distance: np.ndarray, end: int) -> float:

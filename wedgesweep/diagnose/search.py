@@ -8,14 +8,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count
-from math import inf, log
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.evaluation import Evaluation
-from wedgesweep.diagnose.explanation import PENALTY, POSSIBLE, Explanation, best_of_each, penalised
+from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, parameter_penalty, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
@@ -26,17 +26,17 @@ from wedgesweep.effects import EFFECTS
 
 
 class Round(NamedTuple):
-    """A round of successive halving: how many of the best fits enter (None: all), and their iterations."""
+    """A round of successive halving: number of best fits that enter (None: all), and iterations of each."""
 
     entering: int | None
     iterations: int
 
 
-# Rounds from the starting points of an effect; the best fit of the last round is followed to its minimum.
+# Rounds from the starting points of an effect; the best fit of the last round is continued to its minimum.
 SCHEDULE = (Round(4, 3), Round(2, 4))
-# The same where fits beside a base model as stated have already brought some of these points closer.
+# The same where some starting points are already fits, made beside a base model as stated (STATED_SCHEDULE).
 NEARER_SCHEDULE = (Round(3, 3), Round(1, 5))
-# Where the base model is adequate a cause can only be weak, and any start will do.
+# The same where the base model is not impossible: a cause can only be weak then, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)
 # Rounds from the starting points of the base model.
 BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
@@ -68,11 +68,12 @@ def quiet(step: str) -> None:
 
 @dataclass(frozen=True)
 class Search:
-    """What all stages share: data, candidate effects, number of threads, and who is told of progress.
+    """What all stages of a search share.
 
-    ``undetected``: candidates of which the records show nothing, so that there is nothing to fit. ``budget``:
-    what the search may simulate; base model and single effects are fitted whatever that takes. ``wider``:
-    effects whose best numbers lie outside of the range that is searched, see beyond_range.py.
+    ``effects``: candidates; ``undetected``: those of which the records show nothing, so that there is nothing
+    to fit. ``progress`` is called with each step. ``budget``: what may be simulated; base model and single
+    effects are fitted whatever that takes. ``wider``: effects whose best numbers lie outside of the range
+    that is searched, see beyond_range.py.
     """
 
     data: FitData
@@ -97,10 +98,6 @@ class Search:
         budget = work.Budget(WORK_PER_TEST * max(data.measured_tests, FEWEST_COUNTED))
         return cls(data, detected, undetected, threads, progress, budget)
 
-    @property
-    def parameter_penalty(self) -> float:
-        return log(self.data.observations.sum()) + PENALTY
-
     def model(self, *effects: str, tolerance: float = TOLERANCE) -> Model:
         """The model with some effects; no effects: the base model."""
         known = self.data.known
@@ -109,7 +106,7 @@ class Search:
         return Model(self.data, Hypothesis(effects, fixed, self.data.units, wider), tolerance)
 
     def explanation(self, fit: Fit) -> Explanation:
-        return Explanation(fit, self.parameter_penalty)
+        return Explanation(fit, parameter_penalty(self.data))
 
     def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         """Results of a function for all items, in their order."""
@@ -122,9 +119,10 @@ class Search:
         what: str,
         effects: Callable[[Any], tuple[str, ...]],
     ) -> list[Any]:
-        """Results for the first items, the most promising, until the budget is spent.
+        """Results for the items, the most promising first, until the budget is spent.
 
-        ``what``: what is reported to have been left out otherwise; ``effects``: of an item.
+        ``what``: name of the stage, under which items that were left out are reported; ``effects``: gives
+        the effects of an item.
         """
         found = self._each(function, items, self.budget.left, what)
         self.budget.ended(what, len(found), [effects(item) for item in items])
@@ -133,36 +131,33 @@ class Search:
     def _each(
         self, function: Callable[[Any], Any], items: Sequence[Any], limit: float, what: str = ""
     ) -> list[Any]:
-        """Results for the items before which less work than the limit was done for the others.
+        """Results for the first items, up to the one at which their work reaches a limit.
 
-        ``what``: the name of this stage to those who are told of progress; "" is not told.
-
-        Threads may finish more of them than that; these are dropped, or results would depend on timing.
+        Threads may finish further items; their results are dropped, or they would depend on timing.
+        ``what``: name of the stage whose progress is reported; "" reports nothing.
         """
         spent, finished = np.zeros(len(items)), count(1)
 
-        def one(place: int) -> work.Piece | None:
-            piece = None
+        def one(place: int) -> work.Uncounted | None:
+            outcome = None
             if spent[:place].sum() < limit:
-                piece = work.apart(lambda: function(items[place]))
-                spent[place] = piece.work
+                outcome = work.uncounted(lambda: function(items[place]))
+                spent[place] = outcome.work
             if what:
                 self.progress(Step(what, next(finished), len(items)))
-            return piece
+            return outcome
 
         if what:
             self.progress(Step(what, 0, len(items)))
         if self.threads == 1:
-            pieces = [one(place) for place in range(len(items))]
+            outcomes = [one(place) for place in range(len(items))]
         else:
             with ThreadPoolExecutor(self.threads) as pool:
-                pieces = list(pool.map(one, range(len(items))))
+                outcomes = list(pool.map(one, range(len(items))))
         before = np.cumsum(np.r_[0.0, spent])[:-1]
-        kept = [
-            piece for piece, sum_before in zip(pieces, before, strict=True) if piece and sum_before < limit
-        ]
-        work.add(sum(piece.work for piece in kept))
-        return [piece.result for piece in kept]
+        kept = [each for each, earlier in zip(outcomes, before, strict=True) if each and earlier < limit]
+        work.add(sum(each.work for each in kept))
+        return [each.result for each in kept]
 
     def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
         """Results of a function for every candidate effect, in their order; the slowest begin first."""
@@ -172,14 +167,14 @@ class Search:
 
 
 class BaseFit(NamedTuple):
-    """The fitted base model, and the search with what the fit tells of the records' start."""
+    """The fitted base model, and the search on data that are aligned to it (``FitData.aligned_to``)."""
 
     search: Search
     base: Explanation
 
 
 class SingleFit(NamedTuple):
-    """Best fit of one effect, the evaluations among which it began, and the data that it leaves."""
+    """Best fit of one effect, the scan over its range, and the data, aligned where the effect asks for it."""
 
     explanation: Explanation
     scan: list[Evaluation]
@@ -210,7 +205,7 @@ def base_fit(search: Search) -> BaseFit:
 
 
 def _from_several(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
-    """The best fit from several evaluations, fewer of which are followed from round to round."""
+    """The best fit of the base model from several evaluations, by successive halving."""
     for entering, iterations in BASE_SCHEDULE:
         follow = partial(minimise, model, iterations=iterations)
         fits = search.each(follow, _leading(evaluations, entering))
@@ -236,10 +231,10 @@ def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) 
 
 
 def _aligned(fit: Fit) -> Fit:
-    """The fit on data that know what it tells of the records' start, continued where that matters."""
+    """The fit on data aligned to it, continued from there if its responses depend on the alignment."""
     model = fit.model.on(fit.model.data.aligned_to(fit.evaluation))
     fit = replace(fit, model=model)
-    if not model.data.repeats(fit.effects):
+    if model.data.needs_alignment(fit.effects):
         fit = minimise(model, model.evaluate(fit.point))
     return from_other_nuisances(fit)
 
@@ -263,7 +258,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point) or bool(base.implausible)
     if implausible or data.brings_nuisances(effect) or model.hypothesis.switches:
-        # Without the effect the base model's own parameters are, or may be, far from the truth.
+        # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
         evaluations = evaluations + fresh
         if implausible:
@@ -276,7 +271,7 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
 
 
 def from_special_cases(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Single effects; one that fits worse than a special case of it is fitted from where that ended."""
+    """Explanations by single effects, each refitted from its special cases that fit better, if any do."""
     fits = {each.effects: each.fit for each in found}
 
     def refitted(each: Explanation) -> Explanation:
@@ -300,7 +295,7 @@ def _from_special_case(fit: Fit, special: Fit) -> Fit:
 
 
 def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Explanations, the best first; the best that are impossible refitted without influential tests."""
+    """Explanations, best first; impossible ones among the best are refitted without influential tests."""
     best = [each for each in sorted(found, key=penalised)[:REFITTED] if each.fit.p < POSSIBLE]
 
     def refitted(each: Explanation) -> Explanation:
@@ -331,18 +326,18 @@ def best_of(
     schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
 ) -> Fit:
-    """Fit from several evaluations by successive halving; the best one is followed to its minimum.
+    """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
     Parameters
     ----------
     model : Model
         The model to fit.
     evaluations : sequence of Evaluation
-        Where fits begin; they may be of a rougher tolerance.
+        Where fits begin; their simulations may have a rougher tolerance than the model's.
     schedule : sequence of Round
-        Rounds, in each of which fewer fits are followed further.
+        Rounds, into each of which fewer fits enter.
     limit : float
-        Chi-squared that the best fit of a round must not exceed for the next round to take place.
+        The search ends after a round whose best fit has a larger chi-squared than this.
     """
     points = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
     evaluations = model.evaluate_all(points)
@@ -360,14 +355,17 @@ def _chi2(each: Fit | Evaluation) -> float:
 
 
 def _nuisances_held(model: Model, evaluation: Evaluation) -> Evaluation:
-    """Where an evaluation leads while nuisance parameters stay as stated."""
+    """End of a fit from an evaluation while nuisance parameters stay as stated, evaluated by the model."""
     strict = model.on(model.data.held_as_stated())
     found = minimise(strict, strict.evaluate(evaluation.point), HELD_ITERATIONS)
     return model.evaluate(found.point)
 
 
 def beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """Where the best evaluations lead while nuisance and uncertain parameters stay as stated."""
+    """Ends of fits from the best evaluations while nuisance and uncertain parameters stay as stated.
+
+    Evaluated by the model, in which all of these are free.
+    """
     strict = replace(model, data=model.data.held_as_stated(), as_stated=True)
     leading = [each.point for each in _leading(evaluations, STATED_SCHEDULE[0].entering)]
     found = strict.evaluate_all([replace(point, x=point.x[: model.size]) for point in leading])
@@ -382,7 +380,7 @@ def _leading(evaluations: Sequence[Evaluation], entering: int | None) -> list[Ev
 
 
 def best_per_value(evaluations: Sequence[Evaluation], parameter: int = 0) -> list[Evaluation]:
-    """The best evaluation at each value of a parameter, so that not all starts are neighbours."""
+    """The best evaluation at each value of a parameter, best first, so that not all starts are neighbours."""
     best: dict[float, Evaluation] = {}
     for evaluation in sorted(evaluations, key=_chi2):
         best.setdefault(float(evaluation.point.x[parameter]), evaluation)

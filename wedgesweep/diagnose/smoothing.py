@@ -1,8 +1,8 @@
 """Velocity and acceleration from a recorded displacement, and the noise that this leaves.
 
-Displacement and force pass the same zero-phase filter (Butterworth, forward and backward), as do simulated
-forces, so that the filter shifts nothing against anything. The acceleration's noise rises with the fifth
-power of the cut-off frequency, which decides how high it may be.
+Displacement, measured force and simulated force pass the same zero-phase filter (Butterworth, forward and
+backward), so that no signal is delayed against another. The variance of the acceleration's noise rises with
+the fifth power of the cut-off frequency, which therefore has an upper limit (``highest_cutoff``).
 """
 
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ from scipy.optimize import brentq
 from wedgesweep.measured.kinds import HIGHEST
 
 ORDER = 4
-# The cut-off is the highest one at which noise of the displacement makes up this share of the force, and at
-# most and at least these shares of the sampling rate.
+# Noise of the displacement, by the force of inertia, makes up at most this share of the force; the cut-off is
+# the highest one at which that holds, between LOWEST and HIGHEST of the sampling rate.
 NOISE_SHARE, LOWEST = 0.005, 1e-3
-# The motion passes a filter of its own first, with a cut-off this much higher, so that its derivatives are
+# Cut-off of the filter that the motion passes first, over that in which forces are compared: derivatives are
 # right wherever forces are compared.
 WIDER = 2.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
@@ -33,7 +33,7 @@ OUTLIER, CLIPPINGS = 4.0, 4
 LEAST_KEPT = 0.25
 # Ends of a 95 % interval in standard deviations.
 TWO_SIDED = 1.96
-# Frequencies at which a filter's gain is known.
+# Number of frequencies at which a filter's gain is evaluated.
 GRID = 4096
 
 
@@ -59,16 +59,19 @@ class LowPass:
 
     @property
     def stride(self) -> int:
-        """Every so many samples are independent of each other after the filter."""
+        """Distance in samples from which on filtered samples of white noise are nearly independent."""
         return max(int(0.5 * self.rate / self.cutoff), 1)
 
     def noise(self, std: float, order: int = 0) -> float:
-        """Standard deviation of white noise after the filter, or of its derivative of an order."""
+        """Standard deviation of filtered white noise, or of its derivative of an ``order``.
+
+        ``std``: of the noise before the filter.
+        """
         frequency, gain = self._response
         return std * float(np.sqrt(np.mean(((2.0 * pi * frequency) ** order * gain) ** 2)))
 
     def noise_above(self, std: float) -> float:
-        """Standard deviation of what the filter takes of white noise."""
+        """Standard deviation of what the filter removes of white noise with this ``std``."""
         return std * float(np.sqrt(np.mean((1.0 - self._response[1]) ** 2)))
 
     @cached_property
@@ -78,7 +81,7 @@ class LowPass:
         return frequency, np.abs(once) ** 2
 
     def gain(self, size: int) -> np.ndarray:
-        """Gain (size // 2 + 1,) at the frequencies of a real Fourier transform of so many samples."""
+        """Gain (size // 2 + 1,) at the frequencies of a real Fourier transform of ``size`` samples."""
         return np.abs(signal.sosfreqz(self._sections, 2.0 * pi * np.fft.rfftfreq(size))[1]) ** 2
 
 
@@ -95,9 +98,10 @@ def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
 def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:
     """Standard deviation of the white noise in samples (n,), from what lies above the motion's frequencies.
 
-    It is the upper end of its 95 % interval: in a short record an estimate that is too low would look like a
-    misfit. Outliers do not count as noise. Where they are ``jumps`` of dry friction, nor does what the filter
-    makes of them nearby; noise that comes and goes must not be taken for them.
+    The result is the upper end of the 95 % interval: in a short record an estimate that is too low would look
+    like a misfit. Outliers do not count as noise. ``jumps``: they are jumps of dry friction, and samples
+    nearby do not count either, as the filter spreads a jump; unless that would leave less than LEAST_KEPT of
+    the record, as where noise comes and goes.
     """
     low_pass = LowPass(HIGHEST * rate, rate)
     above = np.abs(values - low_pass(values))
@@ -114,7 +118,9 @@ def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:
 
 
 def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
-    """Cut-off (Hz) at which the noise of the inertia is NOISE_SHARE of the force, or HIGHEST of the rate.
+    """Cut-off (Hz) at which noise of the force of inertia is NOISE_SHARE of the force.
+
+    At least LOWEST, at most HIGHEST of the sampling rate.
 
     Parameters
     ----------
@@ -134,11 +140,9 @@ def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
 
     if excess(limit) <= 0.0:
         return limit
-    return (
-        float(brentq(excess, LOWEST * rate, limit, rtol=1e-4))
-        if excess(LOWEST * rate) < 0.0
-        else LOWEST * rate
-    )
+    if excess(LOWEST * rate) >= 0.0:
+        return LOWEST * rate
+    return float(brentq(excess, LOWEST * rate, limit, rtol=1e-4))
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from wedgesweep.diagnose.least_squares import lm_step, minimise, subset_fit
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.normal_equations import normal_equations
 
-# Two responses differ if their squared misfits differ by more than this share and this amount.
+# Two responses differ if their squared misfits differ by more than this share plus this amount.
 DIFFERENT = 0.05, 1.0
 # Damping that keeps a step finite where the tests leave a parameter undetermined.
 LEAST_DAMPING = 1e-6
@@ -24,16 +24,16 @@ WORSE = 2.0
 # Nuisance parameters tried for tests that are taken back in, in standard deviations from stated.
 WITHIN = np.arange(-3.0, 4.0)
 # Share of all tests that may be left out.
-MOST = 1.0 / 3.0
+MOST_LEFT_OUT = 1.0 / 3.0
 
 
 def refit_without_influential_tests(fit: Fit) -> Fit:
-    """The fit, or a better one that was found without the tests that held it up."""
+    """The fit, or a better one of all tests that starts where a fit without influential tests ends."""
     model, point = fit.model, fit.point
-    if not (model.data.repeats(fit.effects) and fit.evaluation.found):
+    if model.data.needs_alignment(fit.effects) or not fit.evaluation.found:
         return fit
     left_out = _other_response_from_rest(fit) | _influential(fit) | model.data.insensitive(fit.evaluation)
-    if not 0 < left_out.sum() <= MOST * left_out.size:
+    if not 0 < left_out.sum() <= MOST_LEFT_OUT * left_out.size:
         return fit
     rows = np.flatnonzero(~left_out)
     kept = subset_fit(fit, rows)

@@ -14,7 +14,7 @@ from wedgesweep.effects import confounded, parts
 from wedgesweep.uncertain import uncertain_numbers
 
 NOTHING, NAMED, CONSISTENT, TIED, INSUFFICIENT, NONE = VERDICTS
-# Explanations whose penalised misfits are closer than this cannot be told apart.
+# Explanations whose penalised misfits differ by less than this cannot be distinguished.
 GAP = 10.0
 # Least p-value of a base model from which nothing need be missing.
 TOLERABLE = 1e-4
@@ -26,7 +26,8 @@ STRONG = 800.0
 FEWEST_TESTS = 3
 # With this many rivals the tests show that something is wrong, but not what.
 MOST_TIED = 4
-# How many times larger model errors may be than a measurement says.
+# Factor by which model errors may be larger than is allowed for, where one component of a pair may be a model
+# error.
 LARGER = 2.0
 # A parameter that is uncertain anyway is a cause only if it is off by this many standard deviations.
 UNCERTAIN = 3.0
@@ -36,7 +37,7 @@ UNCERTAIN = 3.0
 class Thresholds:
     """What a verdict depends on beside the fits; --calibrate replaces them by its own.
 
-    ``gap``: see GAP. ``strong``: see STRONG. ``least_gain``: least penalised misfit that a cause must remove.
+    ``gap``: see GAP. ``strong``: see STRONG. ``least_gain``: what a cause must take off the penalised misfit.
     """
 
     gap: float = GAP
@@ -48,10 +49,10 @@ DEFAULT = Thresholds()
 
 
 def thresholds_for(data: FitData, given: Thresholds = DEFAULT) -> Thresholds:
-    """Thresholds under the model error that is allowed.
+    """The given thresholds, with a least gain that fits the model error that is allowed.
 
-    Model errors are no noise: one of the allowed size may have the shape of any effect. A cause must remove
-    more than all of them together could leave.
+    A model error of the allowed size may have the shape of any effect, unlike noise. A cause must remove more
+    than all of them together could leave.
     """
     return replace(given, least_gain=max(given.least_gain, float(data.model_misfit.sum())))
 
@@ -79,12 +80,17 @@ class Finding:
 
 
 def eligible(each: Explanation) -> bool:
-    """Whether a fit may be called a cause: an uncertain parameter must have left its prior."""
+    """Whether a fit may be called a cause.
+
+    An effect that is an uncertain parameter of the base model counts as one only if it is off by more than
+    UNCERTAIN standard deviations.
+    """
     fit, data = each.fit, each.fit.model.data
     declared = {name: std for name, std in data.uncertain.items() if name in fit.effects}
     stated = uncertain_numbers(declared, data.model.effects)
     moved = np.abs(stated.at(fit.model.values(fit.x)) - stated.mean) > UNCERTAIN * stated.std
-    return {one.effect for one, far in zip(stated.numbers, moved, strict=True) if far} == set(declared)
+    off = {number.effect for number, is_off in zip(stated.numbers, moved, strict=True) if is_off}
+    return off == set(declared)
 
 
 def tolerable(base: Fit) -> bool:
@@ -99,7 +105,7 @@ def none_adequate(found: Sequence[Explanation]) -> bool:
 
 
 def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explanation]:
-    """Explanations best first, without those that hardly beat a part of them."""
+    """Eligible explanations, best first, without those that beat a part of them by less than the gap."""
     allowed = sorted(filter(eligible, explanations), key=penalised)
     return [
         each
@@ -109,12 +115,12 @@ def ranked(explanations: Sequence[Explanation], gap: float = GAP) -> list[Explan
 
 
 def _is_part(one: Explanation, other: Explanation) -> bool:
-    """Whether an explanation is another one without some of its effects, or with a special case of one."""
+    """Whether one explanation is the other without some effects, or with a special case of one of them."""
     return set(one.effects) < set(other.effects) or parts(one.effects) < parts(other.effects)
 
 
 def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: Thresholds) -> Finding:
-    """Weigh the base model against everything that was fitted.
+    """Decide between the base model and everything that was fitted.
 
     Parameters
     ----------
@@ -123,20 +129,32 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
     explanations : sequence of Explanation
         Fits of single effects and of pairs, in any order.
     thresholds : Thresholds
-        General ones, or those of a calibration.
+        The default ones, or those of a calibration.
     """
     order = ranked(explanations, thresholds.gap)
     better = [each for each in order if each.penalised < base.penalised - thresholds.least_gain]
     if not better:
-        if tolerable(base.fit):
-            return Finding(NOTHING, None, ())
-        if base.fit.p >= TOLERABLE:
-            return _with_numbers_as_stated(base, order)
-        adequate = bool(order) and order[0].p_value >= ADEQUATE
-        return Finding(INSUFFICIENT if adequate else _unexplained(base), order[0] if order else None, ())
+        return _nothing_better(base, order)
     best = next((each for each in better if each.p_value >= POSSIBLE), None)
     if best is None:
         return Finding(_unexplained(base), order[0], ())
+    return _weigh(base, best, order, thresholds)
+
+
+def _nothing_better(base: Explanation, order: Sequence[Explanation]) -> Finding:
+    """The finding where no explanation removes as much misfit as a cause must."""
+    if tolerable(base.fit):
+        return Finding(NOTHING, None, ())
+    if base.fit.p >= TOLERABLE:
+        return _with_numbers_as_stated(base, order)
+    adequate = bool(order) and order[0].p_value >= ADEQUATE
+    return Finding(INSUFFICIENT if adequate else _unexplained(base), order[0] if order else None, ())
+
+
+def _weigh(
+    base: Explanation, best: Explanation, order: Sequence[Explanation], thresholds: Thresholds
+) -> Finding:
+    """The finding on the best possible explanation, by its fit, its rivals and the evidence for it."""
     p = _least_p(base, best)
     # With a weak excess, noise decides in part which tests hold most of it: then p says less.
     if p < POSSIBLE and base.fit.excess >= STRONG:
@@ -161,7 +179,10 @@ def decide(base: Explanation, explanations: Sequence[Explanation], thresholds: T
 
 
 def _with_numbers_as_stated(base: Explanation, order: Sequence[Explanation]) -> Finding:
-    """What would do with uncertain parameters about as stated, where the base model needs others."""
+    """The finding where the base model fits, but only with uncertain parameters far from stated.
+
+    Explanations are adequate here that leave these parameters about as stated.
+    """
     found = [each for each in order if each.fit.p >= ADEQUATE and not each.fit.implausible][:MOST_TIED]
     if not found:
         return Finding(_unexplained(base), order[0] if order else None, ())
@@ -195,26 +216,26 @@ def _p_under_larger_errors(fit: Fit) -> float:
 
 
 def _adequate_alternatives(order: Sequence[Explanation], best: Explanation) -> tuple[Explanation, ...]:
-    """Other explanations with an adequate misfit; parts of the best one and what it is part of do not count.
+    """Other explanations with an adequate misfit.
 
-    What others can imitate may be none of them.
+    Parts of the best one, and those that it is a part of, do not count.
     """
     others = [each for each in order if not (each is best or _is_part(each, best) or _is_part(best, each))]
     return tuple(each for each in others if each.fit.p >= ADEQUATE)
 
 
 def _least_p(base: Explanation, best: Explanation) -> float:
-    """The p-value over all tests, or over those that show the effect, whichever is less."""
+    """The smaller of two p-values: over all tests, and over those that hold most of the excess."""
     return min(best.p_value, p_where_it_shows(base.fit, best.fit))
 
 
 def p_where_it_shows(base: Fit, fit: Fit) -> float:
     """The p-value of a fit over the tests that hold most of the base model's excess.
 
-    Quiet tests cannot make up for a misfit there with less noise than they should have. A model error has
-    one shape in each test, and so one degree of freedom where it counts for M: chi-squared has the variance
-    of noise in the rest, and 2 M^2. It is compared with the scaled chi-squared of this mean and variance
-    (Satterthwaite, 1946).
+    Other tests, with less noise than expected, cannot make up for a misfit there. Where model errors are
+    allowed for, let M be the misfit that they leave in a test on average. As an error has one shape in each
+    test, that part of chi-squared has one degree of freedom and the variance 2 M^2; the rest has the variance
+    of noise. The sum is compared with the scaled chi-squared of its mean and variance (Satterthwaite, 1946).
     """
     dof = fit.model.data.dof
     excess = np.maximum(base.evaluation.chi2_by_test - dof, 0.0)

@@ -29,20 +29,20 @@ def add(work: float) -> None:
     _clock.reading += work
 
 
-class Piece(NamedTuple, Generic[Result]):
-    """What a function returned, and the work that it took."""
+class Uncounted(NamedTuple, Generic[Result]):
+    """What a function returned, and the work that it took, which no thread has counted yet."""
 
     result: Result
     work: float
 
 
-def apart(function: Callable[[], Result]) -> Piece[Result]:
-    """Call a function whose work is returned, and counted for no thread yet."""
+def uncounted(function: Callable[[], Result]) -> Uncounted[Result]:
+    """Call a function without counting its work for this thread; ``add`` counts it later."""
     begun = done()
     result = function()
-    piece = Piece(result, done() - begun)
+    outcome = Uncounted(result, done() - begun)
     _clock.reading = begun
-    return piece
+    return outcome
 
 
 class Untried(NamedTuple):
@@ -56,9 +56,10 @@ class Untried(NamedTuple):
 
 @dataclass
 class Budget:
-    """Work that may be spent from now on by this thread and by those that work for it.
+    """Work that this thread, and those that work for it, may spend from now on.
 
-    ``untried``: what there was no work left for; ``tried``: combinations of effects that were fitted.
+    ``total``: in the unit of the clock; ``begun``: reading of the clock at which the budget began;
+    ``untried``: what the budget was too small for; ``tried``: combinations of effects that were fitted.
     """
 
     total: float = float("inf")
@@ -74,11 +75,11 @@ class Budget:
         """Raise the budget, if necessary, so that this much work is left."""
         self.total = max(self.total, done() - self.begun + work)
 
-    def ended(self, what: str, done: int, effects: Sequence[tuple[str, ...]]) -> None:
-        """Remember which of some combinations of effects were tried, the first ones, and which were not."""
-        self.tried.update(map(frozenset, effects[:done]))
-        if done < len(effects):
-            self.untried.append(Untried(what, len(effects) - done, len(effects), tuple(effects[done:])))
+    def ended(self, what: str, count: int, effects: Sequence[tuple[str, ...]]) -> None:
+        """Record that the first ``count`` of some combinations of effects were tried, the others not."""
+        self.tried.update(map(frozenset, effects[:count]))
+        if count < len(effects):
+            self.untried.append(Untried(what, len(effects) - count, len(effects), tuple(effects[count:])))
 
     @property
     def never_tried(self) -> tuple[tuple[str, ...], ...]:

@@ -1,7 +1,7 @@
-"""Where the tests and the nuisance parameters of each kind stand among those of all kinds.
+"""Rows of the tests, and columns of the nuisance parameters, of each kind among those of all kinds.
 
 Tests of one kind follow those of another. Nuisance parameters of each kind have columns of their own, as a
-step of one must not move another: first those with a prior of every kind, then the others of every kind.
+step of one must not move another: first come those with a prior, kind by kind, then all others.
 """
 
 from collections.abc import Sequence
@@ -94,7 +94,10 @@ class Layout:
     def joined_columns(
         self, parts: Sequence[np.ndarray | None], elsewhere: float, priors: bool = False
     ) -> np.ndarray:
-        """Values (t, N) of each part as (T, all N), or (t, P) as (T, all P); others are ``elsewhere``."""
+        """Values (t, N) of each part as (T, sum of N), or if ``priors`` (t, P) as (T, sum of P).
+
+        Columns of other parts are ``elsewhere``.
+        """
         width = sum(self.priors) if priors else sum(self.nuisances)
         found = np.full((sum(self.tests), width), elsewhere)
         for rows, columns, own, size in zip(self.rows, self.columns, parts, self.priors, strict=True):

@@ -1,6 +1,7 @@
-"""Tests of several kinds as data of a fit: each kind compares its own, all share the parameters.
+"""Tests of several kinds as data of a fit: each kind compares its own tests, all share the parameters.
 
-Tests of one kind follow those of another; a kind of which a subset has no tests keeps its columns.
+Tests of one kind follow those of another. A kind without tests in a subset keeps its columns of nuisance
+parameters.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -106,7 +107,7 @@ class MixedData(FitData):
 
     @property
     def nuisance_std(self) -> np.ndarray:
-        """Nuisance parameters of other kinds have a prior, so that a test tells nothing of them."""
+        """Those of a test's own kind; nuisance parameters of other kinds have the prior 1, and stay at 0."""
         return self.layout.joined_columns(self._each(lambda part: part.nuisance_std), 1.0, priors=True)
 
     @property
@@ -125,7 +126,7 @@ class MixedData(FitData):
 
     @cached_property
     def units(self) -> NaturalUnits:
-        """Those of the largest travel."""
+        """Natural units of the kind whose tests have the largest travel."""
         return max((part.units for part in self.present), key=lambda units: units.length)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
@@ -160,7 +161,7 @@ class MixedData(FitData):
         return Point(x, nuisance, MixedStart(tuple(each and each.warm for each in points), self.layout))
 
     def evaluations(self, here: Evaluation) -> list[Any]:
-        """An evaluation as that of each kind, None without tests."""
+        """The part of an evaluation of each kind, None without tests."""
         found: list[Evaluation | None] = []
         for i, (point, rows) in enumerate(zip(self.points(here.point), self.layout.rows, strict=True)):
             if point is None:
@@ -260,7 +261,7 @@ class MixedData(FitData):
         return self._with(self._each(lambda part, its: part.bootstrap_sample(its, rng), own))
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        """Those of each kind, in one scheme: a model must predict tests of any kind."""
+        """The groups of each kind in turn: a model must predict tests of every kind."""
         found: list[tuple[str, np.ndarray]] = []
         for part, rows in zip(self.parts, self.layout.rows, strict=True):
             if part is not None:
@@ -268,7 +269,7 @@ class MixedData(FitData):
         return found
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        """What any kind can tell of."""
+        """Effects that any of the kinds can show."""
         shown = {name for part in self.present for name in part.candidates(effects)}
         return tuple(name for name in effects if name in shown)
 
@@ -302,9 +303,9 @@ class MixedData(FitData):
         own = [each[0] for each in self._scenarios([scenario])]
         return self._with(self._each(lambda part, its: part.renewed(its), own))
 
-    def repeats(self, effects: Iterable[str]) -> bool:
+    def needs_alignment(self, effects: Iterable[str]) -> bool:
         effects = tuple(effects)
-        return all(part.repeats(effects) for part in self.present)
+        return any(part.needs_alignment(effects) for part in self.present)
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
         own = self._each(lambda part, its: part.insensitive(its), self.evaluations(evaluation))
@@ -346,7 +347,7 @@ class MixedData(FitData):
 def _changes(
     part: FitData, here: Evaluation | None, scenarios: Sequence[Scenario], tolerance: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Changes of one kind; a step of what concerns other kinds only takes no simulation."""
+    """``FitData.changes`` of one kind; scenarios that differ in other kinds only are not simulated."""
     assert here is not None
     moved = [i for i, each in enumerate(scenarios) if not _same(here.point, each.point)]
     change = np.zeros((len(scenarios), *here.residual.shape))

@@ -1,4 +1,4 @@
-"""Distances of predictions of tests that nobody made, as data of a fit in which nothing was measured."""
+"""Distances between predictions of tests that were not made: data of a fit in which nothing was measured."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +13,7 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance
 from wedgesweep.diagnose.sampled_data import SampledData
 
-# A mass whose motion has less than this power over that of its noise sticks: there is nothing to fit.
+# A mass sticks if the power of its motion is less than this many times that of its noise.
 MOVES = 10.0
 # Gauss-Newton steps of a test that is looked at closely.
 STEPS = 4
@@ -22,7 +22,7 @@ FREE = 1e4
 
 
 class Design(NamedTuple):
-    """Tests to choose from: ``data`` with A B tests, and the ``numbers`` of each."""
+    """Tests to choose from: ``data`` of A B tests, and the ``numbers`` of each; ``shape``: (A, B)."""
 
     kind: str
     motion: str | None
@@ -32,7 +32,7 @@ class Design(NamedTuple):
 
 
 class _Moved(NamedTuple):
-    """Parameters (k + u,) in standard deviations off the fit, and nuisance parameters (N,) off the start."""
+    """Changes of parameters (k + u,), in standard deviations, and of nuisance parameters (N,), from a fit."""
 
     parameters: np.ndarray
     nuisances: np.ndarray
@@ -53,7 +53,7 @@ class _Prediction(NamedTuple):
 
 
 def offered(design: Design, fits: Sequence[Fit]) -> Offer:
-    """What the tests of a design separate."""
+    """The tests of a design, with the distances of the explanations that predict them."""
     predicted = [(fit, _predicted(fit, design.data)) for fit in fits]
     predicted = [each for each in predicted if each[1].evaluation.found_tests.mean() >= PREDICTED]
     pairs = combinations([each for _, each in predicted], 2)
@@ -88,7 +88,7 @@ def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Pre
 def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
     """Squared distance of two predictions of a single test, by Gauss-Newton steps.
 
-    Derivatives alone say too much where predictions are far from linear in what is uncertain.
+    Derivatives alone overestimate it where predictions are far from linear in what is uncertain.
     """
     fixed = np.zeros(data.start()[0].shape[1])
     first, second = (_Moved(np.zeros(fit.x.size), fixed) for fit in (one, other))

@@ -1,4 +1,4 @@
-"""Imposed sines to choose from: the force is measured."""
+"""Hysteresis loops under imposed sines, to choose a next test from."""
 
 from dataclasses import replace
 from math import pi
@@ -16,22 +16,23 @@ from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, noise_of_motion
 from wedgesweep.measured.declarations import LOOP
 
-# Amplitudes over the largest one measured; frequencies over those measured, or over the natural frequency.
+# Amplitudes over the largest displacement measured; frequencies over the measured one or, where no loop was
+# measured, over the natural one.
 SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0])
 FREQUENCIES, OF_NATURAL = np.array([0.25, 0.5, 1.0, 2.0, 4.0]), np.array([0.1, 0.2, 0.4, 0.8])
 # Highest frequency over the cut-off.
 HIGHEST = 0.1
-# Highest number of samples of a cycle, beyond which a frequency is too low to be of use.
+# Largest number of samples in a cycle; lower frequencies are not offered.
 LONGEST = 40_000
-# Cycles, and numbers that stand for all forces that are compared of them.
+# Cycles of a loop, and the number of its forces that are simulated and compared.
 CYCLES, COMPARED = 3.0, 240
 
 
-class _Machine(NamedTuple):
-    """How forces are compared.
+class _ForceSensor(NamedTuple):
+    """The filter in which forces are compared, and their noise.
 
-    ``variance`` (N^2) of a compared force beside others of some ``rms`` (N); without a measured loop, where
-    noise is a share of any force, beside others of unit rms, and ``rms`` is None.
+    ``variance`` (N^2): of a compared force in a test whose force has an ``rms`` (N). Without a measured loop
+    noise is a share of the force: ``variance`` is that for an rms of 1 N, and ``rms`` is None.
     """
 
     low_pass: LowPass
@@ -39,19 +40,19 @@ class _Machine(NamedTuple):
     rms: float | None
 
     def noise(self, rms: float) -> float:
-        """Variance of a compared force beside others of some rms."""
+        """Variance (N^2) of a compared force in a test whose force has an rms (N)."""
         return self.variance * (rms**2 if self.rms is None else max(1.0, rms / self.rms) ** 2)
 
 
 def loops(best: Fit, known: Sensors, measured: LoopData | None) -> Design:
-    """Sines on a grid of frequencies and amplitudes, under the noise of measured loops if there are any."""
-    machine = _unmeasured(best, known) if measured is None else _measured(measured)
-    frequencies = _frequencies(known, measured, machine.low_pass)
+    """Loops on a grid of amplitudes and frequencies, with the noise of measured loops if there are any."""
+    sensor = _assumed_sensor(best, known) if measured is None else _sensor_of(measured)
+    frequencies = _frequencies(known, measured, sensor.low_pass)
     amplitude, frequency = (
         each.ravel() for each in np.meshgrid(SIZES * known.travel, frequencies, indexing="ij")
     )
     values = best.model.values(best.x)
-    tests = [_recording(known, machine, values, *each) for each in zip(amplitude, frequency, strict=True)]
+    tests = [_recording(known, sensor, values, *each) for each in zip(amplitude, frequency, strict=True)]
     own = best.model.data
     chosen = tuple((i, 0) for i in range(len(tests)))
     data = LoopData(tuple(tests), chosen, dict(own.uncertain), own.model_error)
@@ -64,35 +65,34 @@ def loops(best: Fit, known: Sensors, measured: LoopData | None) -> Design:
 
 def _frequencies(known: Sensors, measured: LoopData | None, low_pass: LowPass) -> np.ndarray:
     """Frequencies (Hz) whose loops the low-pass leaves as they are."""
-    asked = OF_NATURAL * known.omega / (2.0 * pi)
+    wanted = OF_NATURAL * known.omega / (2.0 * pi)
     if measured is not None:
-        fastest = [own.motion for own in measured.recordings]
-        speed = max(float(np.abs(each.velocity).max()) for each in fastest)
-        asked = FREQUENCIES * speed / (2.0 * pi * known.travel)
-    possible = asked[(asked <= HIGHEST * low_pass.cutoff) & (asked >= known.rate / LONGEST)]
-    return possible if possible.size else asked[:1]
+        speed = max(float(np.abs(own.motion.velocity).max()) for own in measured.recordings)
+        wanted = FREQUENCIES * speed / (2.0 * pi * known.travel)
+    possible = wanted[(wanted <= HIGHEST * low_pass.cutoff) & (wanted >= known.rate / LONGEST)]
+    return possible if possible.size else wanted[:1]
 
 
-def _measured(data: LoopData) -> _Machine:
-    """Forces as those of the tests at hand, of which the one with the most noise counts."""
+def _sensor_of(data: LoopData) -> _ForceSensor:
+    """The force sensor of the measured loops, as noisy as in the test with the most noise."""
     own = max(data.recordings, key=lambda each: each.noise)
-    return _Machine(own.low_pass, float(own.spectrum(np.zeros(1))[0]), float(own.force.std()))
+    return _ForceSensor(own.low_pass, float(own.spectrum(np.zeros(1))[0]), float(own.force.std()))
 
 
-def _unmeasured(best: Fit, known: Sensors) -> _Machine:
-    """Forces that are recorded with as large a share of noise as displacements are."""
+def _assumed_sensor(best: Fit, known: Sensors) -> _ForceSensor:
+    """A force sensor with as large a share of noise as that of the displacement."""
     own = best.model.data
     mass, std = moving_mass(own.model, own.law), known.displacement_noise
     force = mass * known.omega**2 * known.displacement_rms
     low_pass = LowPass(highest_cutoff(std, force, mass, known.rate), known.rate)
-    return _Machine(low_pass, low_pass.noise(known.share) ** 2, None)
+    return _ForceSensor(low_pass, low_pass.noise(known.share) ** 2, None)
 
 
 def _recording(
-    known: Sensors, machine: _Machine, values: Values, amplitude: float, frequency: float
+    known: Sensors, sensor: _ForceSensor, values: Values, amplitude: float, frequency: float
 ) -> Recording:
     """A loop that was not recorded; its force is the one under the values of the best explanation."""
-    low_pass, std = machine.low_pass, known.displacement_noise
+    low_pass, std = sensor.low_pass, known.displacement_noise
     ends, omega = low_pass.settling, 2.0 * pi * frequency
     time = np.arange(round(CYCLES / frequency * known.rate) + 2 * ends) / known.rate
     motion = Motion(
@@ -118,6 +118,6 @@ def _recording(
     force = np.nan_to_num(empty.simulated([dict(values)], np.zeros((1, 1)))[0])
     rms = float(force[empty.known].std()) if empty.known.any() else 0.0
     # Each compared number stands for all those between it and the next.
-    variance = machine.noise(rms) * low_pass.stride / step
+    variance = sensor.noise(rms) * low_pass.stride / step
     noisy = empty.with_noise_of_motion(dict(values), np.zeros(1))
     return replace(noisy, force=force, spectrum=NoiseSpectrum(0.0, 0.0, variance))

@@ -1,6 +1,6 @@
-"""The cheapest of the tests of one kind that separates explanations.
+"""Choice of a next test: the cheapest of the tests of one kind that separates explanations.
 
-That is T-optimality (Atkinson and Fedorov, 1975, Biometrika 62, 57).
+The criterion is T-optimality (Atkinson and Fedorov, 1975, Biometrika 62, 57).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -13,7 +13,7 @@ from scipy.ndimage import minimum_filter1d
 
 from wedgesweep.diagnose.model import Fit
 
-# Squared distance at which two explanations are separated, and below which nobody could see a difference.
+# Squared distance at which two explanations are separated, and below which they do not differ visibly.
 SEPARATED, UNSEEN = 30.0, 1.0
 # Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
@@ -49,9 +49,9 @@ class NextTest:
 class Offer(NamedTuple):
     """Tests of one kind to choose from: A sizes, the cheapest first, by B other choices.
 
-    ``fits``: the explanations that predict them; ``distances`` (pairs, A, B) of every two; ``numbers``: of
-    each test, A B of them. ``adapted``: distances (pairs,) of a test (its index) when explanations adapt to
-    it as they are, and not just as their derivatives say; None if that is not known.
+    ``fits``: the explanations that predict them; ``distances`` (pairs, A, B): of every two, by derivatives;
+    ``numbers``: of each of the A B tests. ``adapted``: gives the distances (pairs,) in a test, by its index,
+    with explanations fitted to one another; None where that is not available.
     """
 
     kind: str
@@ -82,7 +82,10 @@ def recommended(offer: Offer, best: Fit) -> NextTest | None:
 
 
 def _confirmed(offer: Offer) -> tuple[int, np.ndarray]:
-    """The chosen test and its distances (pairs,); another one if explanations adapt to the first choice."""
+    """Index of the chosen test, and its distances (pairs,).
+
+    If explanations turn out to adapt to the first choice, another test is chosen, up to TRIED times.
+    """
     distances = offer.distances.copy()
     by_test = distances.reshape(len(distances), -1)
     for _ in range(TRIED):
@@ -126,10 +129,10 @@ def covariance_root(fit: Fit) -> np.ndarray:
 
 
 def least_distance(gap: np.ndarray, columns: np.ndarray) -> float:
-    """What no change of the parameters can take from a whitened difference (m,) of two predictions.
+    """Squared distance of two predictions when their parameters change so that it is least.
 
-    ``columns`` (m, j): changes of either prediction by one standard deviation of each parameter. A change
-    itself counts in standard deviations.
+    The squared changes of parameters, in standard deviations, are part of it. ``gap`` (m,): whitened
+    difference of the predictions; ``columns`` (m, j): its changes by a standard deviation of each parameter.
     """
     matrix = np.concatenate([columns, np.eye(columns.shape[1])])
     aim = np.concatenate([gap, np.zeros(columns.shape[1])])

@@ -46,7 +46,7 @@ def _parts(data: FitData) -> list[FitData]:
 def _made(part: FitData) -> list[str]:
     """Kinds of test that were made."""
     if isinstance(part, TransientData):
-        driven = {each.driven for each in part.releases}
+        driven = {each.driven for each in part.windows}
         return [name for name, one in ((RELEASE, False), (SWEEP, True)) if one in driven]
     return [part.kind]
 

@@ -1,4 +1,4 @@
-"""What the tests at hand tell of the tests to come: noise of the sensors, sampling, size of the motion."""
+"""What the tests at hand show of tests to come: noise of the sensors, sampling, size of the motion."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,11 +18,11 @@ Each = TypeVar("Each")
 
 
 class Sensors(NamedTuple):
-    """A typical test.
+    """The C channels of a typical test, and the size of motions and inputs in all tests.
 
     ``rate`` (Hz) of sampling; ``spectra``: noise of the channels; ``rms`` (C,) of these (m, m/s, m/s^2);
-    ``travel`` (m): the largest displacement of all tests; ``drive``: the largest recorded input as a
-    displacement (m), 0 for none; ``orders`` (C,): the derivative of the displacement that each channel is.
+    ``travel`` (m): the largest displacement of all tests; ``orders`` (C,): the derivative of the displacement
+    that each channel is; ``drive`` (m): the largest recorded input as a displacement, 0 for none.
     """
 
     model: Config
@@ -31,8 +31,8 @@ class Sensors(NamedTuple):
     spectra: tuple[NoiseSpectrum, ...]
     rms: np.ndarray
     travel: float
+    orders: tuple[int, ...]
     drive: float = 0.0
-    orders: tuple[int, ...] = (0, 1)
 
     @property
     def share(self) -> float:
@@ -55,35 +55,37 @@ class Sensors(NamedTuple):
         return 1.0 / self.model.natural_units(self.travel).time
 
 
-def louder(noise: NoiseSpectrum, factor: float) -> NoiseSpectrum:
-    """A noise whose samples are larger by a factor."""
-    likewise = tuple(louder(each, factor) for each in noise.likewise)
+def amplified(noise: NoiseSpectrum, factor: float) -> NoiseSpectrum:
+    """Spectrum of noise whose samples are larger by a factor."""
+    likewise = tuple(amplified(each, factor) for each in noise.likewise)
     return replace(noise, red=factor**2 * noise.red, white=factor**2 * noise.white, likewise=likewise)
 
 
-def scaled(noise: NoiseSpectrum, rms: float, measured: float) -> NoiseSpectrum:
-    """The noise beside a signal of some rms: larger signals take sensors of a larger range."""
-    return louder(noise, max(1.0, rms / max(measured, 1e-300)))
+def beside_signal(noise: NoiseSpectrum, rms: float, measured: float) -> NoiseSpectrum:
+    """The noise beside a signal of some ``rms``, if it was measured beside one of rms ``measured``.
+
+    Larger signals take sensors of a larger range, whose noise is larger in proportion.
+    """
+    return amplified(noise, max(1.0, rms / max(measured, 1e-300)))
 
 
 @singledispatch
 def sensors(data: FitData) -> Sensors:
-    """The typical test of some data."""
+    """The sensors of the test whose share of noise is the median of all tests."""
     raise NotImplementedError(type(data).__name__)
 
 
 @sensors.register
 def _(data: TransientData) -> Sensors:
-    own = _median(data.releases, lambda each: each.spectra[0].std / max(float(each.rms[0]), 1e-300))
-    travel = max(each.length for each in data.releases)
+    own = _median(data.windows, lambda each: each.spectra[0].std / max(float(each.rms[0]), 1e-300))
+    travel = max(each.length for each in data.windows)
     drive = 0.0
-    for each in data.releases:
+    for each in data.windows:
         if each.driven:
             times = np.arange(each.grid.samples) * each.step
             drive = max(drive, 0.5 * float(np.ptp(each.input(times))))
     drive /= data.units.mass / data.units.time**2 if data.model.forced else 1.0
-    rate, orders = 1.0 / own.step, own.orders[: len(own.channels)]
-    return Sensors(data.model, data.law, rate, own.spectra, own.rms, travel, drive, orders)
+    return Sensors(data.model, data.law, 1.0 / own.step, own.spectra, own.rms, travel, own.orders, drive)
 
 
 @sensors.register
@@ -94,7 +96,7 @@ def _(data: LoopData) -> Sensors:
     rms = np.array([own.motion.displacement.std()])
     travel = max(0.5 * float(np.ptp(each.motion.displacement)) for each in data.recordings)
     noise = NoiseSpectrum(0.0, 0.0, max(own.noise_of_displacement, 1e-9 * travel) ** 2)
-    return Sensors(data.model, data.law, own.low_pass.rate, (noise,), rms, travel)
+    return Sensors(data.model, data.law, own.low_pass.rate, (noise,), rms, travel, (0,))
 
 
 @sensors.register
@@ -105,7 +107,8 @@ def _(data: HarmonicData) -> Sensors:
     own = data.spectra[place]
     spectra = tuple(NoiseSpectrum(0.0, 0.0, float(std) ** 2) for std in own.sample_noise[:2])
     travel = max(float(np.abs(each.mean[0]).sum()) for each in data.spectra)
-    return Sensors(data.model, data.law, 1.0 / own.interval, spectra, rms[place][:2], travel)
+    orders = tuple(range(len(spectra)))
+    return Sensors(data.model, data.law, 1.0 / own.interval, spectra, rms[place][:2], travel, orders)
 
 
 def _median(tests: tuple[Each, ...], share: Callable[[Each], float]) -> Each:

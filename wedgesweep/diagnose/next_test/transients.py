@@ -1,4 +1,4 @@
-"""Releases from a displacement, and sine-sweeps of the input, to choose from."""
+"""Releases from a displacement, and sine-sweeps of the input, to choose a next test from."""
 
 from dataclasses import replace
 from math import ceil, pi
@@ -8,12 +8,12 @@ import numpy as np
 from wedgesweep.diagnose.evaluation import Point
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
-from wedgesweep.diagnose.next_test.sensors import Sensors, scaled
-from wedgesweep.diagnose.transient.driven import nothing
+from wedgesweep.diagnose.next_test.sensors import Sensors, beside_signal
+from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
 from wedgesweep.diagnose.transient.input_noise import InputNoise
-from wedgesweep.diagnose.transient.release import Grid, Release
+from wedgesweep.diagnose.transient.recorded_input import no_input
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.windows import FEWEST_COMPARED, HARMONICS
+from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 from wedgesweep.measured.declarations import TRANSIENT
 from wedgesweep.sampled_input import from_samples
 
@@ -29,7 +29,7 @@ FINE = 32
 
 
 def releases(best: Fit, known: Sensors) -> Design:
-    """Releases without velocity; the best explanation tells how much noise there is beside the motion."""
+    """Releases at rest from displacements of several sizes."""
     starts, duration = SIZES * known.travel, RELEASED * 2.0 * pi / known.omega
     tests = tuple(_window(known, start, duration) for start in starts)
     numbers = [{"start_mm": 1e3 * start, "duration_s": duration} for start in starts]
@@ -62,11 +62,11 @@ def sweeps(best: Fit, known: Sensors) -> Design:
     return Design(TRANSIENT, SWEEP, _data(best, known, tuple(tests)), numbers, (SIZES.size, 1))
 
 
-def _window(known: Sensors, start: float, duration: float) -> Release:
-    """A release that was not recorded."""
+def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
+    """A release from a displacement (m), of some duration (s), that was not recorded."""
     count = round(known.rate * duration)
     highest = HARMONICS * known.omega / known.rate
-    return Release(
+    return RecordWindow(
         name="",
         model=known.model,
         law=known.law,
@@ -78,7 +78,7 @@ def _window(known: Sensors, start: float, duration: float) -> Release:
         passed_on=np.zeros((len(known.spectra), 2)),
         coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
         grid=Grid(0, count, known.omega),
-        input=nothing(count / known.rate),
+        input=no_input(count / known.rate),
         input_noise=None,
         length=start,
         guess=(start, 0.0),
@@ -86,7 +86,7 @@ def _window(known: Sensors, start: float, duration: float) -> Release:
     )
 
 
-def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientData:
+def _data(best: Fit, known: Sensors, tests: tuple[RecordWindow, ...]) -> TransientData:
     """The tests as if the best explanation were measured, with the noise that sensors would have."""
     own = best.model.data
     gain_std = getattr(own, "gain_std", 0.0) if any(each.driven for each in tests) else 0.0
@@ -95,15 +95,16 @@ def _data(best: Fit, known: Sensors, tests: tuple[Release, ...]) -> TransientDat
     found = best.model.on(data).evaluate(Point(best.x, nuisance, warm))
     return replace(
         data,
-        releases=tuple(_filled(known, each, row) for each, row in zip(tests, found.response, strict=True)),
+        windows=tuple(_filled(known, each, row) for each, row in zip(tests, found.response, strict=True)),
     )
 
 
-def _filled(known: Sensors, own: Release, response: np.ndarray) -> Release:
+def _filled(known: Sensors, own: RecordWindow, response: np.ndarray) -> RecordWindow:
+    """The window with a response in place of a record, and with the noise that sensors have beside it."""
     shape = len(own.channels), own.coefficients
     channels = own.in_time(response[: shape[0] * shape[1]].reshape(shape))
     rms = channels.std(axis=1)
-    spectra = tuple(scaled(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
+    spectra = tuple(beside_signal(*each) for each in zip(own.spectra, rms, known.rms, strict=True))
     # A recorded input has noise as well: as large a share as the response has.
     passed_on = np.array([each.std**2 for each in spectra])[:, None] * np.full((1, 2), float(own.driven))
     return replace(own, channels=channels, spectra=spectra, passed_on=passed_on)

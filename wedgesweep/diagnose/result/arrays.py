@@ -22,19 +22,19 @@ PARTS = ("harmonic", "part")
 class Arrays(NamedTuple):
     """What a diagnosis compares; harmonics are complex, from phase 0 of the input.
 
-    ``fits``: base and extended model; ``measured`` (T, C, H), ``simulated`` (2, T, C, H), ``sampled`` (T, C)
-    noise of a sample, NaN where a test does not have the channel.
+    ``fits``: base and extended model; ``measured`` (T, C, H) and ``simulated`` (2, T, C, H) harmonics;
+    ``sample_noise`` (T, C): noise of a sample, NaN where a test does not have the channel.
     """
 
     data: HarmonicData
     fits: tuple[Fit, Fit]
     measured: np.ndarray
     simulated: np.ndarray
-    sampled: np.ndarray
+    sample_noise: np.ndarray
 
 
 def dataset(found: Diagnosis) -> xr.Dataset:
-    """Everything that a figure or a notebook draws of a diagnosis."""
+    """Arrays of a diagnosis for figures and notebooks; of a mixed measurement, those common to all kinds."""
     data = found.data
     if isinstance(data, SampledData):
         return sampled.dataset(found, data)
@@ -73,16 +73,16 @@ def _overview(found: Diagnosis, data: MixedData) -> xr.Dataset:
 
 def _arrays(found: Diagnosis, data: HarmonicData) -> Arrays:
     fits = (found.base.fit, found.extended)
-    sampled = np.full((data.tests, data.shape[0]), np.nan)
-    for row, spectrum in zip(sampled, data.spectra, strict=True):
+    sample_noise = np.full((data.tests, data.shape[0]), np.nan)
+    for row, spectrum in zip(sample_noise, data.spectra, strict=True):
         row[: spectrum.sample_noise.size] = spectrum.sample_noise
     simulated = np.array([fit.evaluation.response.harmonics for fit in fits])[..., : data.shape[1]]
-    return Arrays(data, fits, waveforms.measured_from_phase_zero(data, fits[1]), simulated, sampled)
+    return Arrays(data, fits, waveforms.measured_from_phase_zero(data, fits[1]), simulated, sample_noise)
 
 
 def _where_measured(arrays: Arrays, values: np.ndarray) -> np.ndarray:
     """Values (T, C, ...) with NaN for channels that a test does not have."""
-    return np.where(np.isnan(arrays.sampled)[..., None], np.nan, values)
+    return np.where(np.isnan(arrays.sample_noise)[..., None], np.nan, values)
 
 
 def _spectra(arrays: Arrays) -> Variables:
@@ -109,7 +109,7 @@ def _waveforms(arrays: Arrays) -> Variables:
     return {
         "measured_waveform": (("test", *one_period), measured, "m or m/s", "measured over one period"),
         "simulated_waveform": ((*BY_MODEL, *one_period), simulated, "m or m/s", "simulated over one period"),
-        "waveform_noise": (("test", "channel"), arrays.sampled, "m or m/s", "noise of one sample"),
+        "waveform_noise": (("test", "channel"), arrays.sample_noise, "m or m/s", "noise of one sample"),
         "measured_peak_to_peak": (
             BY_TEST,
             waveforms.peak_to_peak(measured[:, 0]),

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from math import isfinite, log
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from wedgesweep import __version__
 from wedgesweep.config import Config
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
-from wedgesweep.diagnose.explanation import ADEQUATE, PENALTY, POSSIBLE, Explanation
+from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
@@ -222,7 +222,7 @@ def _rated(each: Rated) -> dict[str, Any]:
 
 def _method(found: Diagnosis) -> dict[str, Any]:
     return {
-        "penalty_per_parameter": PENALTY + log(found.data.observations.sum()),
+        "penalty_per_parameter": parameter_penalty(found.data),
         "gap": found.thresholds.gap,
         "enough_distance": SEPARATED,
         "strong_excess": finite(found.thresholds.strong),

@@ -14,8 +14,8 @@ from wedgesweep.quantity import Quantity
 def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
     """Fitted parameters of every effect with their 95 % intervals, in key units.
 
-    Intervals are symmetric in the fit parameter, which may be a logarithm, and end where the range of the fit
-    ends. A number outside of the range that was searched comes with that range.
+    Intervals are symmetric in the fit parameter, which may be a logarithm, and end at the bounds of the fit.
+    A number outside of the range that was searched first comes with that range ("searched").
     """
     hypothesis, size, known = fit.model.hypothesis, fit.model.size, fit.model.data.known
     x, covariance = fit.x[:size], fit.covariance[:size, :size]
@@ -44,7 +44,7 @@ def parameters(fit: Fit) -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def change(quantity: Quantity, value: float, moved: float) -> float:
-    """Change of a number in the form in which it is fitted, logarithm or not."""
+    """Change of a number in the form in which it is fitted: a logarithm, or the number itself."""
     if quantity.logarithmic:
         return log(moved / value)
     return quantity.nearest(moved, value) - value

@@ -11,8 +11,8 @@ from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result import stored
 from wedgesweep.diagnose.result.estimates import finite
 from wedgesweep.diagnose.result.stored import Variables
-from wedgesweep.diagnose.transient.release import Release
 from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.sweep import labels
 
 BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
@@ -24,7 +24,7 @@ def _fits(found: Diagnosis) -> dict[str, Fit]:
 
 
 def tests(found: Diagnosis, data: LoopData | TransientData) -> list[dict[str, Any]]:
-    """Rows of the tests for diagnosis.json; errors are rms over the rms of the response."""
+    """Rows of the tests for diagnosis.json; errors are the rms of the residual over that of the response."""
     fits = _fits(found)
     errors = {name: data.error(fit.evaluation) for name, fit in fits.items()}
     own = _of_loops(data) if isinstance(data, LoopData) else _of_transients(data, found.extended)
@@ -56,7 +56,7 @@ def _of_loops(data: LoopData) -> list[dict[str, Any]]:
 
 
 def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
-    """With the start as the extended model has it."""
+    """What is special to transients in the rows; starts are those of the extended model."""
     starts = 1e3 * data.starts(fit.point)
     return [
         {
@@ -71,14 +71,14 @@ def _of_transients(data: TransientData, fit: Fit) -> list[dict[str, Any]]:
             "start_mm_per_s": finite(start[1]),
             **_noise(own),
         }
-        for own, start in zip(data.releases, starts, strict=True)
+        for own, start in zip(data.windows, starts, strict=True)
     ]
 
 
-def _noise(own: Release) -> dict[str, Any]:
+def _noise(own: RecordWindow) -> dict[str, Any]:
     """Noise of a sample of each channel; null where it was not recorded."""
     keys = ("noise_displacement_mm", "noise_velocity_mm_per_s", "noise_acceleration_m_per_s2")
-    std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=False)}
+    std = {order: each.std for order, each in zip(own.orders, own.spectra, strict=True)}
     sizes = (1e3, 1e3, 1.0)
     return {
         key: finite(size * std[order]) if order in std else None
@@ -119,21 +119,21 @@ def _loops(data: LoopData, simulated: np.ndarray) -> Variables:
 
 def _orders(data: TransientData) -> tuple[int, ...]:
     """Derivatives of the displacement that any test recorded."""
-    return max((own.orders[: len(own.channels)] for own in data.releases), key=len)
+    return max((own.orders for own in data.windows), key=len)
 
 
 def _transients(data: TransientData, simulated: np.ndarray) -> Variables:
     """Motions in time; simulated ones have the frequencies that are compared."""
-    channels = max(len(own.channels) for own in data.releases)
-    longest = max(own.channels.shape[1] for own in data.releases)
+    channels = max(len(own.channels) for own in data.windows)
+    longest = max(own.channels.shape[1] for own in data.windows)
     measured = np.full((data.tests, channels, longest), np.nan)
     in_time = np.full((len(simulated), *measured.shape), np.nan)
-    for t, own in enumerate(data.releases):
+    for t, own in enumerate(data.windows):
         size, count = len(own.channels), own.channels.shape[1]
         measured[t, :size, :count] = own.channels
         part = simulated[:, t, : size * own.coefficients]
         in_time[:, t, :size, :count] = own.in_time(part.reshape(-1, size, own.coefficients))
-    time = np.array([own.begins + own.step * np.arange(longest) for own in data.releases])
+    time = np.array([own.begins + own.step * np.arange(longest) for own in data.windows])
     return {
         "time": (BY_SAMPLE, time, "s", "time from the first sample of the record"),
         "measured": (BY_CHANNEL, measured, CHANNEL_UNIT, "measured motion"),
@@ -145,7 +145,7 @@ def _transients(data: TransientData, simulated: np.ndarray) -> Variables:
         ),
         "sample_noise": (
             ("test", "channel"),
-            np.array([[each.std for each in own.spectra] for own in data.releases]),
+            np.array([[each.std for each in own.spectra] for own in data.windows]),
             CHANNEL_UNIT,
             "noise of a sample",
         ),

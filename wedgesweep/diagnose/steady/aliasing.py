@@ -1,9 +1,9 @@
 """Aliases: what a record shows of harmonics above half its sampling rate.
 
-A bolster that sticks and slips has kinks in its motion, and harmonics without end. Sampling shows those
-above half its rate at other frequencies; if the rate is nearly a multiple of the input's frequency, these
-are so close to lower harmonics that no record can separate them. (Slip pulses at 31.3 Hz, sampled 63.05
-times a period at 4 % noise: 62 in chi-squared.) A low-pass filter ahead of the sampling removes them.
+The motion of a bolster that sticks and slips has kinks, and so harmonics at all orders. Sampling shows those
+above half its rate at other frequencies. If the rate is nearly a multiple of the input's frequency, these are
+so close to lower harmonics that no record can separate them. (Slip pulses at 31.3 Hz, sampled 63.05 times a
+period at 4 % noise: 62 in chi-squared.) A low-pass filter ahead of the sampling removes them.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,10 @@ import numpy as np
 
 
 class AliasMap(NamedTuple):
-    """Complex factors (columns, K) of harmonics D_k, and of their conjugates, in what is read."""
+    """What K harmonics D_k add to the amplitudes that a fit reads.
+
+    ``direct`` and ``mirrored`` (columns, K): complex factors of D_k, and of their conjugates.
+    """
 
     direct: np.ndarray
     mirrored: np.ndarray

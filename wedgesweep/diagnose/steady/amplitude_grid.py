@@ -11,8 +11,8 @@ from wedgesweep.diagnose.fit_data import Evaluator
 
 # Lowest level, over the fundamental of the displacement, and the factor from one level to the next.
 LOWEST, FACTOR = 0.12, 1.3
-# Number of levels, and the largest number as long as the bolster sticks in some test.
-USUAL, MOST = 17, 28
+# Number of levels, and the largest number where the bolster still sticks in some test.
+LEVELS, MOST_LEVELS = 17, 28
 # Steps between the level at which the bolster sticks and the next one.
 FINE = 8
 
@@ -22,8 +22,8 @@ def best_amplitudes(model: Evaluator, points: Sequence[Point]) -> list[Evaluatio
     if not np.isinf(model.data.nuisance_std).any():
         return model.evaluate_all(points)
     search = _GridSearch(model, points)
-    for level in range(MOST):
-        if level >= USUAL and not search.sticking.any():
+    for level in range(MOST_LEVELS):
+        if level >= LEVELS and not search.sticking.any():
             break
         search.evaluate(np.full(search.least.shape, log(LOWEST) + level * log(FACTOR)))
     if search.best_sticks.any():

@@ -1,8 +1,8 @@
-"""Steady harmonics of tests whose input is not exactly known: what is unknown of it reaches every harmonic.
+"""Steady harmonics of tests whose input is not exactly known, which makes their residuals correlated.
 
-In units of the responses' own noise, and of the model error that is allowed, the residual of a test then has
-a covariance of its own in place of the unit matrix. It depends on how the model passes the input on, and all
-explanations are compared under one of them.
+In units of the responses' own noise and of the model error that is allowed, the residual of a test has a
+covariance matrix that is not the unit matrix. It depends on how the model passes the input on. All
+explanations are compared under one covariance.
 """
 
 from abc import abstractmethod
@@ -16,7 +16,7 @@ from wedgesweep.diagnose.evaluation import Point, Scenario
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.whitened import real
 
-# A covariance is taken anew if the variance of some combination of numbers changes by this factor.
+# A covariance is replaced if the variance of some combination of residuals changes by more than this factor.
 CHANGED = 1.1
 
 
@@ -45,7 +45,7 @@ class CorrelatedHarmonics(HarmonicData):
         return np.einsum("tij,...tj->...ti", self.whitening, residual)
 
     def correlated(self, noise: np.ndarray) -> np.ndarray:
-        """Noise of responses with what is unknown of inputs, as the response passes it on."""
+        """Noise of unit covariance (..., T, m) as residuals over the noise of the responses alone."""
         if self.whitening is None:
             return noise
         return np.einsum("tij,...tj->...ti", np.linalg.inv(self.whitening), noise)
@@ -98,16 +98,16 @@ class CorrelatedHarmonics(HarmonicData):
         if self.whitening is None:
             return some
         turn = _real_matrix(some.whitening_of_responses @ self._unwhitening_of_responses)
-        return replace(some, whitening=self._turned(turn))
+        return replace(some, whitening=self._transformed_whitening(turn))
 
-    def _turned(self, turn: np.ndarray) -> np.ndarray:
-        """The whitening of residuals to which matrices (T, m, m) turn those of these data."""
+    def _transformed_whitening(self, turn: np.ndarray) -> np.ndarray:
+        """The whitening after residuals were multiplied by matrices ``turn`` (T, m, m)."""
         by_input = turn @ self.by_input @ np.swapaxes(turn, 1, 2)
         return _inverse_root(np.eye(by_input.shape[-1]) + by_input)
 
     @cached_property
     def by_input(self) -> np.ndarray:
-        """What inputs add to the unit covariance of the responses' own noise, (T, m, m)."""
+        """Covariance (T, m, m) that the inputs add to the unit matrix of the responses' own noise."""
         assert self.whitening is not None
         inverse = np.linalg.inv(self.whitening)
         return inverse @ inverse - np.eye(inverse.shape[-1])
@@ -133,11 +133,11 @@ def _real_matrix(matrices: np.ndarray) -> np.ndarray:
 
 
 def _inverse_root(covariance: np.ndarray) -> np.ndarray:
-    """Symmetric matrices W (T, m, m) with W covariance W = 1; noise is not taken for less than a tenth."""
+    """Symmetric matrices W (T, m, m) with W covariance W = 1; eigenvalues below 0.1 count as 0.1."""
     values, vectors = np.linalg.eigh(covariance)
     return (vectors / np.sqrt(np.maximum(values, 0.1))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
 
 
 def stated(data: HarmonicData) -> Scenario:
-    """The base model as stated."""
+    """The scenario of the base model as stated, each test starting at rest."""
     return Scenario({}, Point(np.zeros(0), *data.start()))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wedgesweep.config import Config
+from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.steady import tone
 from wedgesweep.diagnose.steady.correlated import stated
@@ -62,7 +62,7 @@ def _models(measurement: Measurement) -> tuple | None:
 
 
 def _channels(test: TestRecord, derived_velocity: bool) -> np.ndarray:
-    """Channels with information of their own, (C, n)."""
+    """Displacement and, if it was measured by itself, velocity, (C, n)."""
     assert test.displacement is not None
     if test.velocity is None or derived_velocity:
         return test.displacement[None]
@@ -74,7 +74,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
     quantity = measurement.recorded_input
     assert quantity is not None
     named = _compared(measurement)
-    motions = [_motion_of_channel(measurement.model, of) for *_, of in named]
+    motions = [channel_factors(measurement.model, of) for *_, of in named]
     read = [_read_test(test, named, motions, quantity) for test in measurement.tests]
     spectra = tuple(each[0] for each in read)
     orders = max(each[1].displacement.shape[1] for each in read)
@@ -100,25 +100,28 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         input_phase=inputs.phase,
         inputs=inputs,
         model_error=measurement.model_error,
-        untold=_untold(as_measured, any(share for _, share in motions)),
+        hidden=_hidden_effects(as_measured, any(share for _, share in motions)),
     )
     return data.with_covariance(stated(data))
 
 
-def _untold(as_measured: set[str], converted: bool) -> tuple[str, ...]:
-    """Effects that the channels cannot show: those compared as measured, and whether others are converted."""
+def _hidden_effects(as_measured: set[str], converted: bool) -> tuple[str, ...]:
+    """Effects that the channels cannot show.
+
+    ``as_measured``: channels that are compared without conversion; ``converted``: whether the input
+    was added to any channel.
+    """
     found = [effect for effect, channel in OF_SENSORS.items() if channel not in as_measured]
     return (*found, "fixture_resonance") if converted else tuple(found)
 
 
+# Quantity that a channel measures, the one that it is compared as, and of which motion: "relative" or
+# "absolute".
 Channel = tuple[str, str, str]
 
 
 def _compared(measurement: Measurement) -> list[Channel]:
-    """Quantity that each compared channel measures, the one it is compared as, and of which motion.
-
-    The first one is compared as a displacement, a second one as a velocity.
-    """
+    """The compared channels: the first one is compared as a displacement, a second one as a velocity."""
     named = [
         name
         for name in ("displacement", "velocity", "acceleration")
@@ -128,23 +131,10 @@ def _compared(measurement: Measurement) -> list[Channel]:
     return [(name, slots[i], measurement.columns[name].get("of", "relative")) for i, name in enumerate(named)]
 
 
-def _motion_of_channel(model: Config, of: str) -> tuple[float, float]:
-    """Factors of a channel and of the input in what the solvers record as displacement.
-
-    That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
-    where its contact or a force does not move with the base.
-    """
-    if model.system == "suspension":
-        return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
-    if of in model.simulated_motion:
-        return 1.0, 0.0
-    return 1.0, 1.0 if of == "relative" else -1.0
-
-
 def _read_test(
     test: TestRecord, named: list[Channel], motions: list[tuple[float, float]], quantity: str
 ) -> tuple[Spectrum, InputHarmonics]:
-    """Spectrum of the responses of a test and harmonics of its input; ``motions``: see _motion_of_channel."""
+    """Spectrum of the responses of a test and harmonics of its input; ``motions``: see channel_factors."""
     frequency = test.refined_frequency
     signals = np.array(
         [sign * getattr(test, name) for (name, *_), (sign, _) in zip(named, motions, strict=True)]
@@ -153,43 +143,48 @@ def _read_test(
     found = fitted(test.time, signals, frequency)
     recorded = fitted(test.time, test.input[None], frequency)
     displacement, variance = without_noise(*input_harmonics(recorded, quantity))
-    shared = np.array(
+    coherence = np.array(
         [noise_coherence(test.time, np.array([test.input, each]), frequency) for each in signals]
     )[: len(found.mean)]
-    found, absolute = _as_motion(found, named, [share for _, share in motions], displacement)
-    # Of the input as recorded; as a displacement it is turned as its harmonics are.
-    turn = motion_factor(recorded, quantity)
-    turn /= np.abs(turn)
+    found, conversion = _as_motion(found, named, [share for _, share in motions], displacement)
+    # The noise is that of channels and input as recorded, and turns as their harmonics are converted. Of that
+    # of the input, a harmonic keeps the share that is not left out.
+    turn = _direction(motion_factor(recorded, quantity))
     kept = np.sqrt(variance / np.maximum(input_harmonics(recorded, quantity)[1], 1e-300))
-    ratio = np.array([_turned(found, each) for each in named])[: len(found.mean)]
-    covariance = shared[:, None] * ratio * (turn.conj() * kept)[None]
-    return found, InputHarmonics(displacement[None], variance[None], absolute[None], covariance[None])
+    channel_turns = np.array([_direction(_slot_factor(found, each)) for each in named])[: len(found.mean)]
+    shared = coherence[:, None] * channel_turns * (turn.conj() * kept)[None]
+    return found, InputHarmonics(displacement[None], variance[None], conversion[None], shared[None])
 
 
 def _as_motion(
     found: Spectrum, named: list[Channel], shares: list[float], displacement: np.ndarray
 ) -> tuple[Spectrum, np.ndarray]:
-    """The spectrum as what solvers record, and the share (C, N) of the input in each channel."""
+    """The spectrum converted to what solvers record, and the factor (C, N) of the input in each channel."""
     mean, variance = found.mean.copy(), found.variance.copy()
-    absolute = np.zeros(mean.shape, complex)
+    conversion = np.zeros(mean.shape, complex)
     scaled = False
     for i, (name, slot, _) in enumerate(named[: len(mean)]):
-        factor = motion_factor(found, name) / motion_factor(found, slot)
+        factor = _slot_factor(found, named[i])
         scaled = scaled or name != slot
         mean[i] *= factor
         variance[i] *= np.abs(factor) ** 2
-        absolute[i] = shares[i] / motion_factor(found, slot)
-        mean[i] += absolute[i] * displacement[: mean.shape[1]]
+        conversion[i] = shares[i] / motion_factor(found, slot)
+        mean[i] += conversion[i] * displacement[: mean.shape[1]]
     alias_map = None if scaled else found.alias_map
-    return replace(found, mean=mean, variance=variance, alias_map=alias_map), absolute
+    return replace(found, mean=mean, variance=variance, alias_map=alias_map), conversion
 
 
-def _turned(found: Spectrum, channel: Channel) -> np.ndarray:
-    """Direction (N,) in which a channel's harmonics were turned."""
-    factor = motion_factor(found, channel[0]) / motion_factor(found, channel[1])
-    return factor / np.abs(factor)
+def _slot_factor(found: Spectrum, channel: Channel) -> np.ndarray:
+    """Factor (N,) that turns a channel's harmonics into those of the quantity that it is compared as."""
+    name, slot, _ = channel
+    return motion_factor(found, name) / motion_factor(found, slot)
+
+
+def _direction(factors: np.ndarray) -> np.ndarray:
+    """Complex factors over their magnitudes."""
+    return factors / np.abs(factors)
 
 
 def _wider(part: np.ndarray, orders: int) -> np.ndarray:
-    """An array with zeros for harmonics that it does not have."""
+    """An array (..., N) padded with zeros to a number of ``orders``."""
     return np.pad(part, [(0, 0)] * (part.ndim - 1) + [(0, orders - part.shape[-1])])

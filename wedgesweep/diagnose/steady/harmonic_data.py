@@ -32,7 +32,7 @@ TONE_PHASE = NuisanceParameter(step=1e-2, max_step=0.3)
 FILTERED = 1.0
 # A bolster that moves less than this share of the measured motion sticks.
 STICKS = 0.01
-# A relative error of a stated amplitude that is not the measurement's, but the base model's.
+# A stated amplitude that a fit changes by more than this (relative) makes up for a wrong model.
 IMPLAUSIBLE = 0.3
 # Relative standard deviation of an amplitude that is held as stated.
 HELD = 1e-4
@@ -60,7 +60,7 @@ class SteadyResponse(NamedTuple):
 
 
 class Simulated(NamedTuple):
-    """Harmonics (n, T, C, K) of n scenarios, whether they exist (n, T), and final states (n T rows)."""
+    """Harmonics (n, T, C, K) of n scenarios, whether they exist (n, T), and final states of all n T tests."""
 
     harmonics: np.ndarray
     found: np.ndarray
@@ -131,11 +131,14 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return stacked(each)
 
     def decorrelated(self, residual: np.ndarray) -> np.ndarray:
-        """Residuals (..., T, m) over the noise of the responses as such of unit covariance."""
+        """Residuals (..., T, m) over the noise of the responses, transformed to unit covariance.
+
+        They have it already unless the input is not exactly known (CorrelatedHarmonics).
+        """
         return residual
 
     def correlated(self, noise: np.ndarray) -> np.ndarray:
-        """What ``decorrelated`` turns into some noise (..., T, m)."""
+        """The inverse of ``decorrelated``: values that it turns into some noise (..., T, m)."""
         return noise
 
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
@@ -195,7 +198,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
 
     def _squared(self, left: np.ndarray) -> np.ndarray:
-        """Squared misfit (..., T) of whitened harmonics (..., T, C, H) that are left."""
+        """Squared misfit (..., T) of a whitened residual (..., T, C, H)."""
         return (np.abs(left) ** 2).sum((-2, -1))
 
     def with_model_error(self, size: float) -> Self:
@@ -254,8 +257,9 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return replace(self, input_phase=evaluation.response.phase)
 
-    def repeats(self, effects: Iterable[str]) -> bool:
-        return not self.has_tone(effects)
+    def needs_alignment(self, effects: Iterable[str]) -> bool:
+        """Responses under a tone do not repeat: they depend on the input's phase where a record starts."""
+        return self.has_tone(effects)
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
         """Whether (T,) a test was measured to move, and sticks in the simulation."""
@@ -263,7 +267,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return evaluation.found_tests & (moved < STICKS**2 * self.power)
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
-        """Whether (T,) a clock ran for longer than any response takes to repeat."""
+        """Whether (T,) a time that is a state (an age) exceeds that which any response takes to repeat."""
         clocks = [kind == TIME for _, kind in kinds(compact(self.records(scenario)).dtype.fields or {})]
         elapsed = scenario.point.warm.state[:, : len(clocks)][:, clocks]
         return (elapsed * self.omega[:, None] / (2.0 * np.pi) > LONGEST_PERIOD).any(axis=1)
@@ -289,9 +293,9 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """All tests of one frequency, and of one amplitude if all amplitudes are known."""
-        found = [("frequency", rows) for rows in groups(self.omega)]
+        found = [("frequency", rows) for rows in groups_of_equal(self.omega)]
         if not np.isinf(self.amplitude_std).any():
-            found += [("amplitude", rows) for rows in groups(self.amplitude)]
+            found += [("amplitude", rows) for rows in groups_of_equal(self.amplitude)]
         return found
 
     def bootstrap_sample(self, truth: Evaluation, rng: np.random.Generator) -> Self:
@@ -312,7 +316,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return replace(spectrum, mean=mean)
 
 
-def groups(values: np.ndarray) -> list[np.ndarray]:
+def groups_of_equal(values: np.ndarray) -> list[np.ndarray]:
     """Indices of values that are the same to within SAME_GROUP, group by group."""
     order = np.argsort(values)
     found = [[order[0]]]

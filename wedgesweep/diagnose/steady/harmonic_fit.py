@@ -1,4 +1,4 @@
-"""The least-squares fit of harmonics to a record: its columns, and which frequencies it can resolve."""
+"""The least-squares fit of harmonics to a record: its regressors, and which frequencies it can resolve."""
 
 from math import pi
 from typing import NamedTuple
@@ -22,7 +22,7 @@ def distance(frequencies: np.ndarray | float, frequency: float) -> np.ndarray:
 
 
 def within_band(most: int, frequency: float, interval: float) -> int:
-    """How many harmonics, at most ``most``, a record sampled at an interval (s) shows."""
+    """Number of harmonics, at most ``most``, that a record sampled at an interval (s) shows."""
     return min(most, int(BAND / interval / frequency))
 
 
@@ -61,8 +61,13 @@ def phasors_of(time: np.ndarray, frequency: float, multiples: int) -> np.ndarray
     return np.multiply.accumulate(np.repeat(first[None], multiples, axis=0), axis=0)
 
 
-class Design(NamedTuple):
-    """Columns of a fit, and the places of the cosines and sines that are kept; a tone comes last."""
+class DesignMatrix(NamedTuple):
+    """Regressors of a least-squares fit, and which of their coefficients are read.
+
+    ``matrix`` (n, columns). ``cosines``, ``sines``: columns of the ``harmonics`` that are compared, and then
+    those of the ``tone`` (Hz) if it is resolved. ``removed``: number of harmonics that are fitted.
+    ``masked_harmonic``: the harmonic that cannot be resolved from a tone.
+    """
 
     matrix: np.ndarray
     cosines: np.ndarray
@@ -73,19 +78,25 @@ class Design(NamedTuple):
     masked_harmonic: int | None
 
     def read(self, solution: np.ndarray) -> np.ndarray:
-        """Complex amplitudes (columns, ...) from a solution (2 + ..., ...)."""
+        """Complex amplitudes of what is compared, from the coefficients (columns, ...) of a fit."""
         return solution[self.cosines] - 1j * solution[self.sines]
 
     def scatter(self, inverse: np.ndarray) -> np.ndarray:
-        """Variance of each complex amplitude in white noise of variance 1."""
+        """Variance of each complex amplitude in white noise of variance 1.
+
+        ``inverse``: of the normal equations.
+        """
         variance = np.diag(inverse)
         return variance[self.cosines] + variance[self.sines]
 
 
-def design_of(
+def design_matrix(
     time: np.ndarray, interval: float, frequency: float, tone: float | None, doubled: bool
-) -> Design:
-    """Columns for harmonics, for a tone if there is one, and for odd multiples of half the frequency."""
+) -> DesignMatrix:
+    """Columns for harmonics, for a tone if there is one, and for odd multiples of half the frequency.
+
+    The latter are added if the period of the response is known to be ``doubled``.
+    """
     removed, kept = (within_band(most, frequency, interval) for most in (REMOVED, COMPARED))
     columns = [regressors(time, frequency, removed)]
     places = np.array([np.arange(2, 2 + kept), np.arange(2 + removed, 2 + removed + kept)])
@@ -100,4 +111,4 @@ def design_of(
     if position.resolved:
         places = np.c_[places, [matrix.shape[1] - 2, matrix.shape[1] - 1]]
     shown = tone if position.resolved else None
-    return Design(matrix, places[0], places[1], kept, removed, shown, position.masked_harmonic)
+    return DesignMatrix(matrix, places[0], places[1], kept, removed, shown, position.masked_harmonic)

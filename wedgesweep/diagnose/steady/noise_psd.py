@@ -44,11 +44,11 @@ class SmoothPSD:
 
 
 class SpectralLines(NamedTuple):
-    """Where the noise is evaluated.
+    """The m frequencies at which the noise is evaluated.
 
-    ``frequency`` (m,) in Hz, with exp(2 pi i f t) there as ``phasors`` (m, n). ``remaining`` (m,): share of
+    ``frequency`` (m,) in Hz; ``phasors`` (m, n): exp(2 pi i f t) at the samples. ``remaining`` (m,): share of
     white noise that remains after the harmonics were removed. ``redundancy``: number of lines that count as
-    one.
+    one, as neighbours are correlated.
     """
 
     frequency: np.ndarray
@@ -70,7 +70,10 @@ def levels(residual: np.ndarray, lines: SpectralLines) -> tuple[tuple[SmoothPSD,
 
 
 def _periodograms(residual: np.ndarray, lines: SpectralLines) -> tuple[np.ndarray, np.ndarray]:
-    """Power of each channel (channels, m) and product of the first two (m,), as of the whole noise."""
+    """Power of each channel (channels, m), and product of the last one with the first, conjugate (m,).
+
+    Both are corrected for what the removal of the harmonics took of the noise.
+    """
     transform = residual @ lines.phasors.conj().T
     size = residual.shape[1] * lines.remaining
     return np.abs(transform) ** 2 / size, transform[-1] * transform[0].conj() / size

@@ -23,28 +23,28 @@ from wedgesweep.diagnose.steady.correlated import CorrelatedHarmonics
 from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
 
-# Effects of sensors, with the number that stands for none.
+# Effects of sensors: the number that is set, and its value without the effect.
 SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
 # A harmonic counts by the share of its square that exceeds this many times its noise.
 ABOVE_NOISE = 2.0
-# Least finite-difference step of a coefficient, times its order and over the fundamental, so that the error
-# of simulations does not hide it; else its standard deviation.
+# The finite-difference step of a coefficient is its standard deviation, but at least this share of the
+# fundamental over its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
 
 
 class InputHarmonics(NamedTuple):
     """Recorded inputs of T tests.
 
-    ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, from the first sample, what may
-    be noise left out; or likewise a force in N. ``variance`` (T, N): of such a number that remains unknown.
-    ``absolute`` (T, C, N): factor by which each of them was added to a channel to have it as simulated.
-    ``shared`` (T, C, H), complex: covariance of the noise of channels and input, over both standard
-    deviations.
+    ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, t from the first sample, without
+    what may be noise; or a force in N of the same form. ``variance`` (T, N): of what remains unknown of each
+    of these numbers. ``conversion`` (T, C, N): factor by which each was added to a channel to convert that to
+    the motion that is simulated. ``shared`` (T, C, H), complex: covariance of the noise of channels and
+    input, over both standard deviations.
     """
 
     displacement: np.ndarray
     variance: np.ndarray
-    absolute: np.ndarray
+    conversion: np.ndarray
     shared: np.ndarray
 
     @property
@@ -72,9 +72,10 @@ class InputHarmonics(NamedTuple):
 
 
 def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Harmonics (N,) without what may be noise, and the variance of what remains unknown.
+    """Harmonics (N,) of an input without what may be noise, and the variance of what remains unknown.
 
-    A harmonic that does not stand out of its noise is left out: as an acceleration, its noise would be large.
+    A harmonic that does not stand out of its noise is left out: its acceleration would be large, and nothing
+    but noise.
     """
     power = np.abs(measured) ** 2
     share = 1.0 - ABOVE_NOISE * variance / np.maximum(power, ABOVE_NOISE * variance + 1e-300)
@@ -86,11 +87,11 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
 class RecordedInputData(CorrelatedHarmonics):
     """Harmonics of steady tests whose input was recorded.
 
-    ``inputs``: the recorded inputs. ``untold``: effects that these channels cannot show.
+    ``inputs``: the recorded inputs. ``hidden``: effects that these channels cannot show.
     """
 
     inputs: InputHarmonics | None = None
-    untold: tuple[str, ...] = ()
+    hidden: tuple[str, ...] = ()
 
     eliminated = 0
 
@@ -108,21 +109,21 @@ class RecordedInputData(CorrelatedHarmonics):
         return replace(super().subset(rows), inputs=self.recorded.of(rows))
 
     def with_undetected(self, effect: str) -> Self:
-        return self if effect in self.untold else super().with_undetected(effect)
+        return self if effect in self.hidden else super().with_undetected(effect)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         return (AMPLITUDE,)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        return tuple(name for name in super().candidates(effects) if name not in self.untold)
+        return tuple(name for name in super().candidates(effects) if name not in self.hidden)
 
     def records(self, scenario: Scenario) -> np.ndarray:
-        left_out = (*self.untold, INPUT_GAIN)
-        told = {name: each for name, each in scenario.values.items() if name not in left_out}
-        rows = super().records(scenario._replace(values=told))
+        left_out = (*self.hidden, INPUT_GAIN)
+        shown = {name: each for name, each in scenario.values.items() if name not in left_out}
+        rows = super().records(scenario._replace(values=shown))
         rows["input"]["amplitude"] = self.inputs_of(scenario)
         for sensor, number, neutral in SENSORS:
-            if sensor in self.untold:
+            if sensor in self.hidden:
                 rows[sensor][number] = neutral
         excitation.set_series(rows, self.recorded.shape)
         return rows
@@ -131,7 +132,7 @@ class RecordedInputData(CorrelatedHarmonics):
         return self.reference * self._gain(scenario)
 
     def _gain(self, scenario: Scenario) -> np.ndarray:
-        """True input over the recorded one (T,): the gain of the sensor, and of a test by itself."""
+        """True input over the recorded one (T,): gain common to all tests times that of each test."""
         common = scenario.values.get(INPUT_GAIN, {"scale": 1.0})["scale"]
         return common * np.exp(scenario.point.nuisance[:, 0])
 
@@ -141,7 +142,7 @@ class RecordedInputData(CorrelatedHarmonics):
         inputs = self.recorded
         channels, orders = done.harmonics.shape[2], inputs.displacement.shape[1]
         from_zero = inputs.displacement * np.exp(-1j * inputs.phase[:, None] * np.arange(1, orders + 1))
-        share = inputs.absolute[:, :channels] * from_zero[:, None]
+        share = inputs.conversion[:, :channels] * from_zero[:, None]
         for found, scenario in zip(done.harmonics, scenarios, strict=True):
             error = self._gain(scenario) - 1.0
             found[:, :channels, :orders] -= error[:, None, None] * share
@@ -193,15 +194,15 @@ class RecordedInputData(CorrelatedHarmonics):
         for t, spectrum in enumerate(self.spectra):
             mean = spectrum.mean.copy()
             if order < mean.shape[1]:
-                mean[:, order] += self.recorded.absolute[t, : len(mean), order] * change[t]
+                mean[:, order] += self.recorded.conversion[t, : len(mean), order] * change[t]
             spectra.append(replace(spectrum, mean=mean))
         inputs = self.recorded._replace(displacement=displacement)
         return replace(self, inputs=inputs, spectra=tuple(spectra), amplitude=inputs.amplitude)
 
     def _shared_noise(self) -> np.ndarray:
-        """Covariance (T, 2, m, H) of whitened residuals with real and imaginary part of each harmonic.
+        """Covariance (T, 2, m, H) of whitened residuals with the parts of each harmonic of the input.
 
-        The latter over their standard deviation.
+        Real and imaginary part (axis 1) are over their standard deviation.
         """
         channels, columns = self.shape[0], self.columns
         found = np.zeros((self.recorded.shared.shape[0], 2, 2, channels, columns, columns))

@@ -18,16 +18,16 @@ from wedgesweep.excitation import has_series
 from wedgesweep.solvers import periodic
 from wedgesweep.solvers.periodic import Warm
 
-# Periods without a repetition after which a response counts as not periodic; impacts settle slowly.
+# Periods after which a response that has not repeated counts as not periodic; impacts settle slowly.
 MOST_PERIODS, MOST_WITH_IMPACTS = 40, 120
 SAMPLES_PER_PERIOD = 2 * (SIMULATED + 1)
 # Periods run before a response under a spurious tone is evaluated, and further ones if it starts at rest.
 TONE_SETTLING, FROM_REST = 10, 30
-# Periods over which such a response is evaluated if its relative timing is unknown, and at most: by then all
-# relative phases of tone and input have occurred.
+# Periods over which such a response is evaluated if the relative timing of tone and input is unknown, and at
+# most: by then all relative phases have occurred.
 UNTIMED, LONGEST_SIMULATED = 12.0, 60.0
-# Work of one case beside its periods, and of a period with mechanics of an effect's own; see work.py. A
-# period under a recorded input takes so many times as long as one under a sine.
+# Work (see work.py) of a case beside its periods; factors of the work of a period, with mechanics of an
+# effect's own and under a recorded input.
 WORK_OF_CASE, WORK_OF_OWN_MECHANICS, WORK_UNDER_SERIES = 3.0, 3.0, 1.5
 
 
@@ -67,10 +67,10 @@ def _count(rows: np.ndarray, periods: np.ndarray | int) -> None:
 
 
 class ToneTiming(NamedTuple):
-    """Relative timing of input and spurious tone in a record that is ``periods`` of the input long.
+    """Relative timing of input and spurious tone in a record.
 
-    Phases in rad at its first sample: of the input, and of the tone in the displacement (NaN if it does not
-    show).
+    ``periods``: its length in periods of the input. The phases (rad) are those at its first sample, of the
+    input and of the tone in the displacement (NaN if it does not show).
     """
 
     periods: float
@@ -89,8 +89,8 @@ def respond_with_tone(
 ) -> Responses:
     """Responses under a spurious tone, which do not repeat; the tone is the last column of the harmonics.
 
-    A response whose source phase is unknown is simulated twice: with any phase, which tells its lag, and
-    then with the phase that gives the measured one. If the record does not show the tone either, the
+    If the phase of the vibration is unknown, a response is simulated twice: with any phase, which shows its
+    lag, and then with the phase that gives the measured one. If the record does not show the tone either, the
     response is averaged over UNTIMED periods.
 
     Parameters
@@ -104,7 +104,7 @@ def respond_with_tone(
     tone : float
         Frequency of the tone in Hz.
     timings : sequence of ToneTiming, n of them
-        Of the records to be reproduced.
+        Timing of each record.
     source_phase : ndarray, shape (n,)
         Phase (rad) of the vibration that causes the tone, beside that of the parameters; NaN where unknown.
     tolerance : float

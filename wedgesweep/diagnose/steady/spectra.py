@@ -15,8 +15,8 @@ from wedgesweep.diagnose.steady.aliasing import AliasMap, alias_map
 from wedgesweep.diagnose.steady.harmonic_fit import (
     REMOVED,
     RESOLVED,
-    Design,
-    design_of,
+    DesignMatrix,
+    design_matrix,
     distance,
     phasors_of,
     resolvable,
@@ -27,10 +27,10 @@ from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
 SIMULATED = 127
 # The noise is evaluated between harmonics, at multiples of this fraction of the input frequency.
 PARTS = 8
-# Lines of which less than this share remains after the fit say nothing of the noise.
+# Lines of which less than this share remains after the fit are not used for the noise.
 LEAST_REMAINING = 0.2
 # Two channels whose noise is more coherent than this are the same signal.
-SAME = 0.98
+SAME_SIGNAL = 0.98
 # Probability of lines at half multiples of the input frequency in a response that repeats each period.
 DOUBLED = 1e-4
 # Intermodulation lines of a tone and the harmonics hide the noise as close as this (resolutions); they are
@@ -103,7 +103,10 @@ class Spectrum:
         return self.mean.shape[1] - (self.tone is not None)
 
     def excess_at(self, frequencies: np.ndarray) -> np.ndarray:
-        """Power at some frequencies over the smoothed PSD, summed over channels (1 each in noise)."""
+        """Power at some frequencies (Hz) over the smoothed PSD, summed over channels.
+
+        In noise it is 1 for each channel on average.
+        """
         padded = 8 * self.samples
         transform = np.fft.rfft(self.residual, padded, axis=1)
         # Bins beyond the record's band are not used.
@@ -170,7 +173,7 @@ def fitted(
     """
     time = time - time[0]
     interval = time[-1] / (time.size - 1)
-    design = design_of(time, interval, frequency, tone, doubled)
+    design = design_matrix(time, interval, frequency, tone, doubled)
     # The columns are nearly orthogonal, so the normal equations lose no accuracy.
     matrix = design.matrix
     inverse = np.linalg.inv(matrix.T @ matrix)
@@ -179,7 +182,7 @@ def fitted(
     residual = channels - (matrix @ solution).T
     lines = _noise_lines(time, frequency, design, inverse, tone, doubled)
     level, coherence = noise_psd.levels(residual, lines)
-    if abs(coherence) > SAME:
+    if abs(coherence) > SAME_SIGNAL:
         mean, residual, level, coherence = mean[:1], residual[:1], level[:1], 0.0j
     at = frequency * np.arange(1, design.harmonics + 1)
     at = at if design.tone is None else np.r_[at, design.tone]
@@ -202,7 +205,7 @@ def fitted(
 def noise_coherence(time: np.ndarray, channels: np.ndarray, frequency: float) -> complex:
     """Coherence of the noise of two channels (2, n): of the second with the first."""
     time = time - time[0]
-    design = design_of(time, time[-1] / (time.size - 1), frequency, None, False)
+    design = design_matrix(time, time[-1] / (time.size - 1), frequency, None, False)
     inverse = np.linalg.inv(design.matrix.T @ design.matrix)
     residual = channels - (design.matrix @ (inverse @ (design.matrix.T @ channels.T))).T
     return noise_psd.levels(residual, _noise_lines(time, frequency, design, inverse, None, False))[1]
@@ -211,7 +214,7 @@ def noise_coherence(time: np.ndarray, channels: np.ndarray, frequency: float) ->
 def _noise_lines(
     time: np.ndarray,
     frequency: float,
-    design: Design,
+    design: DesignMatrix,
     inverse: np.ndarray,
     tone: float | None,
     doubled: bool,
@@ -222,7 +225,7 @@ def _noise_lines(
     phasors = phasors_of(time, frequency / PARTS, int(parts[-1]))[parts - 1]
     # Lines closer than the resolution of the record are partly redundant.
     redundancy = max(1.0, PARTS / (frequency * time[-1]))
-    remaining = 1.0 - _share(phasors @ design.matrix, inverse) / time.size
+    remaining = 1.0 - _absorbed(phasors @ design.matrix, inverse) / time.size
     seen = remaining > LEAST_REMAINING
     if tone is not None:
         seen = _without_intermodulation(seen, frequency / PARTS * parts, frequency, tone, time[-1])
@@ -234,21 +237,24 @@ def _noise_lines(
 def _without_intermodulation(
     seen: np.ndarray, lines: np.ndarray, frequency: float, tone: float, duration: float
 ) -> np.ndarray:
-    """Which of the lines (Hz) that are seen are not intermodulation of a tone with the harmonics.
+    """Mask of the lines (Hz) without intermodulation lines of a tone with the harmonics.
 
-    That of a weak tone does not stand out of the noise, and still adds to it. All, if too few would be left.
+    Those of a weak tone do not stand out of the noise, but add to it. If too few lines would be left, the
+    mask ``seen`` stays as it is.
     """
     away = np.minimum(distance(lines - tone, frequency), distance(lines + tone, frequency))
     clear = seen & (away * duration > TONE_LINE_WIDTH)
     return clear if clear.sum() > LEAST_CLEAR_SHARE * seen.sum() else seen
 
 
-def _share(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
-    """What a fit absorbs of some lines (m,), from their products with its columns (m, k)."""
+def _absorbed(products: np.ndarray, inverse: np.ndarray) -> np.ndarray:
+    """Power (m,) of unit lines that a fit absorbs, from their products (m, k) with its columns."""
     return ((products @ inverse) * products.conj()).sum(axis=1).real
 
 
-def _alias_map(time: np.ndarray, frequency: float, design: Design, inverse: np.ndarray) -> AliasMap | None:
+def _alias_map(
+    time: np.ndarray, frequency: float, design: DesignMatrix, inverse: np.ndarray
+) -> AliasMap | None:
     """Aliases of harmonics up to SIMULATED; None if the record shows all of them as themselves."""
     if (SIMULATED + REMOVED) * frequency * time[-1] < time.size - 1:
         return None

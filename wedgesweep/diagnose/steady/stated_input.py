@@ -36,8 +36,8 @@ from wedgesweep.uncertain import DISTORTION, harmonic_of, with_harmonic
 ORDERS = {"second": 2, "third": 3}
 # Columns k and q of their real and imaginary parts.
 COLUMNS = 4 * len(ORDERS)
-# Least finite-difference step of a harmonic, times its order, so that the error of simulations does not hide
-# it; else the standard deviation of its real part.
+# The finite-difference step of a harmonic is the standard deviation of its real part, but at least this over
+# its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
 # Newton steps from the best start phase without a covariance, and in rad their largest length and a
 # negligible one.
@@ -64,7 +64,10 @@ class StatedInputData(CorrelatedHarmonics):
     def _changes_by(
         self, name: str, turn: complex, values: Values, here: Evaluation
     ) -> tuple[np.ndarray, np.ndarray]:
-        """What a part of a harmonic adds, (T, m): k and sqrt(3) q."""
+        """Columns k and sqrt(3) q, (T, m) each, of one part of a harmonic of the input.
+
+        ``turn``: 1 for the real part, 1j for the imaginary one.
+        """
         std = sqrt(0.5) * self.harmonics_std
         step = max(std, LEAST_STEP / ORDERS[name])
         moved = [
@@ -81,7 +84,7 @@ class StatedInputData(CorrelatedHarmonics):
         variance, vectors = np.linalg.eigh(self.by_input)
         return vectors[..., -COLUMNS:] * np.sqrt(np.maximum(variance[:, None, -COLUMNS:], 0.0))
 
-    def _turned(self, turn: np.ndarray) -> np.ndarray:
+    def _transformed_whitening(self, turn: np.ndarray) -> np.ndarray:
         vectors, std, _ = np.linalg.svd(turn @ self._passed_on, full_matrices=False)
         change = 1.0 / np.hypot(std, 1.0) - 1.0
         return np.eye(turn.shape[-1]) + (vectors * change[:, None, :]) @ np.swapaxes(vectors, 1, 2)

@@ -17,7 +17,7 @@ PHASES = 256
 ABOVE_NOISE = 4.0
 # First guess at the mean of a motion, over its peak-to-peak.
 FIRST_MEAN = 0.01
-# Effects on what the sensors show.
+# Effects of sensors.
 SENSOR = tuple(name for name, effect in EFFECTS.items() if effect.family == "sensor")
 # A dwell is where the velocity stays below this share of its peak.
 DWELL = 0.05
@@ -48,21 +48,22 @@ def _has_velocity(data: HarmonicData) -> np.ndarray:
 
 
 def peak_to_peak(displacement: np.ndarray) -> np.ndarray:
-    """Of waveforms (T, PHASES), shape (T,)."""
+    """Peak-to-peak (..., T) of waveforms (..., T, PHASES)."""
     return np.ptp(displacement, axis=-1)
 
 
-def dwell(rate: np.ndarray) -> np.ndarray:
+def dwell(velocities: np.ndarray) -> np.ndarray:
     """Share of the period (T,) in which waveforms (T, PHASES) of velocity are nearly zero."""
-    return (np.abs(rate) < DWELL * np.abs(rate).max(axis=-1, keepdims=True)).mean(axis=-1)
+    speed = np.abs(velocities)
+    return (speed < DWELL * speed.max(axis=-1, keepdims=True)).mean(axis=-1)
 
 
 def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     """Energy (J) that the input puts in per period, shape (T,).
 
-    On a moving base it is the work of the inertia forces that friction dissipates, pi m a omega^2 Re D_1,
-    with the amplitudes and the moving mass of the fit; NaN where the data are not relative to the base. A
-    force takes the place of m a omega^2. NaN where the input is not a sine.
+    On a moving base it is the work of the force of inertia, which friction dissipates: pi m a omega^2 Re D_1,
+    with the amplitude a and the moving mass m of the fit. A force on the mass takes the place of m a omega^2.
+    NaN where the data are not relative to the base, and where the input is not a sine.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
     fit : Fit
         Any fit to them.
     fundamental : ndarray, shape (T,)
-        Of the displacement, complex; a measured one from phase 0 of the input of this fit.
+        Complex fundamental of the displacement; a measured one from phase 0 of the input of this fit.
     """
     rows = _rows(data, fit)
     fundamental = fundamental / rows["displacement_gain"]["scale"]
@@ -91,10 +92,10 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
 def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     """Force on the bolster that the model lacks (restoring-force method), N, shape (T, PHASES).
 
-    The measured acceleration less that of the model in the same state, times the moving mass. Both are
-    weighted by harmonic (Wiener), as noise times omega^2 h^2 would hide the force. The mean position of the
-    bolster, which no test tells, is where the model has no mean acceleration. NaN for a model with effects
-    that need the extended mechanics or act on the sensors: these depend on more than the motion, or hide it.
+    This is the measured acceleration less that of the model in the same state, times the moving mass. Both
+    are weighted by harmonic (Wiener), as noise times omega^2 h^2 would hide the force. The mean position of
+    the bolster, which no test shows, is where the model has no mean acceleration. NaN for a model with
+    effects whose mechanics depend on more than the motion, or that act on the sensors and so hide it.
 
     Parameters
     ----------
@@ -103,7 +104,7 @@ def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.nd
     fit : Fit
         Fit of the model in question.
     harmonics : ndarray, shape (T, C, H)
-        Measured harmonics from phase 0 of its input.
+        Measured harmonics from phase 0 of the input of this fit.
     """
     rows = _rows(data, fit)
     if has_own_mechanics(rows).any() or set(acting(data.model.effects)) & set(SENSOR):
@@ -120,7 +121,10 @@ def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.nd
 
 
 def _about_mean_position(row: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """The model's acceleration about the mean position at which it averages to zero."""
+    """Acceleration (PHASES,) of the model in the states of a motion x, v about a mean position.
+
+    The mean position is that at which the acceleration averages to zero. ``row``: parameter record, (1,).
+    """
     acceleration, small = np.zeros_like(x), compact(row)
     if not x.any():  # no motion above the noise, and so no force
         return acceleration

@@ -14,7 +14,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose.steady.simulation import LONGEST_SIMULATED, ToneTiming
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
-# Phases tried for the start of a record, and Newton steps from the best one with their largest length (rad).
+# Number of start phases that are tried, and of Newton steps from the best one; their largest length (rad).
 PHASES, NEWTON_STEPS, NEWTON_LENGTH = 256, 4, 0.02
 
 
@@ -147,7 +147,7 @@ class WhitenedHarmonics:
 
     @cached_property
     def coherence(self) -> np.ndarray:
-        """Coherence (T, H) of what both channels scatter by, complex; model errors are independent."""
+        """Complex coherence (T, H) of the channels' noise and model errors; the latter are independent."""
         coherence = np.array([s.coherence for s in self.spectra])
         return coherence[:, None] * np.sqrt(self._noise_share[:, 0] * self._noise_share[:, -1])
 
@@ -191,7 +191,7 @@ class WhitenedHarmonics:
         return np.divide(scaled, self.weight, out=np.zeros_like(scaled), where=self.weight > 0.0)
 
     def compared(self, simulated: np.ndarray) -> np.ndarray:
-        """Of simulated harmonics (..., K), a tone last, those that are compared (..., H)."""
+        """The harmonics (..., H) that are compared, of simulated ones (..., K); a tone is last in both."""
         if self.tone is None:
             return simulated[..., : self.shape[1]]
         return np.concatenate([simulated[..., : self.shape[1]], simulated[..., -1:]], axis=-1)

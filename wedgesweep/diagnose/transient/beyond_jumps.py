@@ -9,18 +9,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-# Distances, in units of the start, at which others are tried in so many directions, and most moves at each.
+# Distances, in units of the start, at which other starts are tried; numbers of directions, and of moves at
+# each distance.
 DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
 # A test stands out if its misfit, over the median of all tests, is so many standard deviations of noise too
-# large. At most this share of the tests is looked at: where most are wrong, the model is.
-DEVIATIONS, MOST = 4.0, 1.0 / 3.0
+# large. At most this share of the tests can stand out: where most are wrong, the model is.
+DEVIATIONS, LARGEST_SHARE = 4.0, 1.0 / 3.0
 
 
 def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
     """Tests whose misfit (T,) is much larger than that of most, the worst first."""
     over_median = chi2 / dof / max(float(np.median(chi2 / dof)), 1.0)
     deviations = (over_median - 1.0) * np.sqrt(0.5 * dof)
-    worst = np.argsort(-deviations)[: max(int(MOST * dof.size), 1)]
+    worst = np.argsort(-deviations)[: max(int(LARGEST_SHARE * dof.size), 1)]
     return worst[deviations[worst] > DEVIATIONS]
 
 

@@ -12,16 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-# The lowest frequencies, in which a window sees a mean or a drift.
+# Number of lowest frequencies that are left out: the window leaks a mean or a drift into them.
 LOWEST = 2
-# Amplitude over the largest one of bins that tell the gain.
+# Least amplitude, over the largest one, of bins from which gain and lag are estimated.
 MOVING = 0.1
 
 
 class Difference(NamedTuple):
-    """Difference of two channels of a test by frequency (rad a sample), (f,).
+    """Difference of two channels of a test, by ``frequency`` (f,) in rad a sample.
 
-    ``power``: of a sample of the higher derivative; ``share``: of the noise of the lower one in it.
+    ``power`` (f,): of the difference, as noise of a sample of the higher derivative; ``share`` (f,): factor
+    by which the power of the noise of the lower derivative enters it.
     """
 
     frequency: np.ndarray
@@ -30,7 +31,11 @@ class Difference(NamedTuple):
 
 
 class _Sums(NamedTuple):
-    """Weighted sums (f,) of the higher derivative, as the lower one predicts them, and of its change."""
+    """Windowed Fourier sums (f,) by ``frequency`` (rad a sample).
+
+    ``higher``: of the higher derivative; ``predicted``: the same by the lower one; ``change``: of the rate of
+    change of the higher one a sample, which a lag multiplies.
+    """
 
     frequency: np.ndarray
     higher: np.ndarray
@@ -53,7 +58,7 @@ def differences(pairs: Sequence[tuple[np.ndarray, np.ndarray]], orders: int, rat
     tests = [_sums(lower * rate**orders, higher, orders) for lower, higher in pairs]
     columns = np.concatenate([np.column_stack([each.predicted, each.change]) for each in tests])
     measured = np.concatenate([each.higher for each in tests])
-    # Elsewhere the columns are noise, and noise would make the gain too small.
+    # At other frequencies the columns are noise, which would make the gain too small.
     moving = np.concatenate([np.abs(each.higher) > MOVING * np.abs(each.higher).max() for each in tests])
     matrix, values = (
         np.concatenate([each.real, each.imag])[np.r_[moving, moving]] for each in (columns, measured)

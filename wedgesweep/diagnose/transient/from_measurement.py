@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.transient.driven import QUANTITIES_OF_MOTION, Driven, factors
+from wedgesweep.diagnose.transient.cutting import FEWEST, Recorded, windows
 from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidence_of_noise, from_repeats
-from wedgesweep.diagnose.transient.release import Release
+from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput
 from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.diagnose.transient.windows import FEWEST, Recorded, windows
+from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.measured import Measurement, TestRecord
 
 
@@ -17,12 +18,12 @@ def transient_data(measurement: Measurement) -> TransientData:
     channels = [_channels(measurement, test) for test in tests]
     evidence, spectra = _noise(measurement, channels)
     fewest = FEWEST if len(tests) == 1 else 1
-    found: list[Release] = []
+    found: list[RecordWindow] = []
     for number, test in enumerate(tests):
-        model, driven = measurement.model_of(test), _driven(measurement, test)
+        model, given = measurement.model_of(test), _recorded_input(measurement, test)
         orders = tuple(QUANTITIES_OF_MOTION.index(name) for name in _names(measurement, test))
         record = Recorded(
-            test.name, channels[number], test.sampling_rate, spectra[number], driven, number, orders
+            test.name, channels[number], test.sampling_rate, spectra[number], given, number, orders
         )
         record = _as_simulated(record, measurement)
         found += windows(record, model, measurement.law, fewest)
@@ -46,10 +47,10 @@ def _channels(measurement: Measurement, test: TestRecord) -> np.ndarray:
     return np.array([getattr(test, name) for name in _names(measurement, test)])
 
 
-def _driven(measurement: Measurement, test: TestRecord) -> Driven | None:
+def _recorded_input(measurement: Measurement, test: TestRecord) -> RecordedInput | None:
     if test.input is None or measurement.recorded_input is None:
         return None
-    return Driven(test.input, measurement.recorded_input, test.sampling_rate)
+    return RecordedInput(test.input, measurement.recorded_input, test.sampling_rate)
 
 
 def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
@@ -57,20 +58,20 @@ def _as_simulated(record: Recorded, measurement: Measurement) -> Recorded:
     test = measurement.tests[record.number]
     model = measurement.model_of(test)
     named = [measurement.columns[name].get("of", "relative") for name in _names(measurement, test)]
-    both = [factors(model, of) for of in named]
+    both = [channel_factors(model, of) for of in named]
     channels = record.channels * np.array([factor for factor, _ in both])[:, None]
     shares = tuple(share for _, share in both)
-    if record.driven is not None:
+    if record.input is not None:
         for own, order, share in zip(channels, record.orders, shares, strict=True):
             if share:
-                own += share * record.driven.derivative(order)
+                own += share * record.input.derivative(order)
     return record._replace(channels=channels, shares=shares)
 
 
 def _noise(
     measurement: Measurement, channels: list[np.ndarray]
 ) -> tuple[tuple[NoiseEvidence, ...], list[list[NoiseSpectrum]]]:
-    """What tells the noise, and the noise of each channel of each test."""
+    """Evidence of the noise, and the noise of each channel of each test."""
     tests, orders = measurement.tests, range(len(QUANTITIES_OF_MOTION))
     declared = [measurement.columns.get(name, {}) for name in QUANTITIES_OF_MOTION]
     of = {order: declared[order].get("of", "relative") for order in orders}
@@ -79,7 +80,7 @@ def _noise(
         for test, own in zip(tests, channels, strict=True)
     ]
     evidence = evidence_of_noise(by_order, of, [test.sampling_rate for test in tests])
-    found = {key: each for one in evidence for key, each in one.told.most.items()}
+    found = {key: each for one in evidence for key, each in one.bounds.most.items()}
     repeated = from_repeats(tests, by_order)
     found |= {key: each.up_to(found[key].highest) for key, each in repeated.items()}
     spectra = [[found[t, order] for order in sorted(its)] for t, its in enumerate(by_order)]

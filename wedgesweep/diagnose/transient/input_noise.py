@@ -1,8 +1,8 @@
-"""Noise of a recorded input as the response passes it on, from the response that is simulated.
+"""Noise of a recorded input as a simulated response passes it on.
 
-The noise is a sum of cosines over what is simulated of a window, each with a variance of its own. Each is
-added to the input and taken from it; half the change of the response is what that cosine does. A resonance
-turns it into noise of a narrow band, whose neighbouring coefficients are far from independent.
+The noise is a sum of cosines over the simulated span of a window, each with its own variance. Each is added
+to the input and subtracted from it; half the difference of the two responses is what that cosine does. At a
+resonance this is noise of a narrow band, whose neighbouring coefficients are far from independent.
 """
 
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.sampled_input import SampledInput, from_samples
 
-# Coefficients of a window whose noise is taken to be correlated, at most: those of the lowest frequencies.
-MOST = 400
+# Number of coefficients of a channel, from the lowest frequency up, whose correlation is accounted for.
+MOST_CORRELATED = 400
 # Knots of the input beyond a window to either side.
 BEYOND = 3
 
@@ -43,9 +43,10 @@ class InputNoise(NamedTuple):
 
 
 class Cosines(NamedTuple):
-    """Cosines by which the input of a window may be wrong, of ``size`` (k,) and ``frequency`` (rad a sample).
+    """Cosines by which the input of a window may be wrong.
 
-    ``samples`` n: those that are simulated, ``step`` (s) apart.
+    ``size`` (k,): standard deviation of each, in the orthonormal basis of n ``samples``, the simulated ones,
+    ``step`` (s) apart; ``frequency`` (k,) in rad a sample.
     """
 
     size: np.ndarray
@@ -83,27 +84,27 @@ def disturbed(given: SampledInput, parts: Cosines) -> list[SampledInput]:
 
 
 def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], lead: int) -> np.ndarray:
-    """What the cosines (k) add to channels converted with the motion of the base, (k, C, n).
+    """What the k cosines add to channels that were converted with the motion of the base, (k, C, n).
 
     ``orders`` (C,): the derivative of the displacement that each channel is.
     """
     wrong = parts.at(parts.step * np.arange(parts.samples))
     motion = wrong, *(derivative(wrong, 1.0 / parts.step, order) for order in (1, 2))
-    pairs = zip(shares, orders, strict=False)
+    pairs = zip(shares, orders, strict=True)
     return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]
 
 
 def decorrelated(own: np.ndarray, changes: np.ndarray) -> tuple[Decorrelation, ...]:
-    """Independent combinations of the first coefficients of each channel.
+    """Combinations with independent noise of the first MOST_CORRELATED coefficients of each channel.
 
     Parameters
     ----------
     own : ndarray, shape (C, K)
         Variance of each coefficient that does not come from the input.
     changes : ndarray, shape (k, C, n)
-        What each cosine of the input does to a channel.
+        What each cosine of the input does to each channel.
     """
-    size = min(own.shape[1], MOST)
+    size = min(own.shape[1], MOST_CORRELATED)
     found = []
     for variance, change in zip(own, np.moveaxis(changes, 1, 0), strict=True):
         by_input = dct(change, norm="ortho")[:, :size]

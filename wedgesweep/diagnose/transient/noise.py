@@ -16,27 +16,27 @@ import numpy as np
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
 from wedgesweep.diagnose.noise_spectrum import (
-    BEST,
+    BEST_FIT,
     FROM_REPEATS,
-    LEAST,
-    MOST,
+    LEAST_NOISE,
+    MOST_NOISE,
     Choice,
     NoiseBins,
     NoiseSpectrum,
-    fit,
+    fit_spectra,
     of_noise,
 )
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
 from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import TestRecord
 
-# Order of an acceleration, whose jumps are no noise.
+# Order of an acceleration, whose jumps are no noise: derivative of the displacement.
 ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
 SAME_RATE = 1e-3
-# Bins tell the noise near the motion if there are so many below so many times its frequency.
+# Bins reach down to the motion if at least FEWEST of them lie below NEAR times its frequency.
 NEAR, FEWEST = 4.0, 8
-# Rounds in which the noise of each channel is told from that of the others.
+# Rounds in which the noise of each channel is estimated from that of the others.
 ROUNDS = 3
 
 # Channels (n,) of a test, by the order of the derivative of the displacement that each is.
@@ -53,8 +53,8 @@ class Shared(NamedTuple):
     higher: int
     difference: Difference
 
-    def told(self, order: int, other: NoiseSpectrum) -> NoiseBins:
-        """What it tells of the channel of an order, by the noise of the other one."""
+    def bins_of(self, order: int, other: NoiseSpectrum) -> NoiseBins:
+        """Bins of noise of the channel of an order; ``other``: noise of the other channel, which is known."""
         frequency, power, share = self.difference
         if order == self.higher:
             return NoiseBins(frequency, power, share * other(frequency))
@@ -98,77 +98,82 @@ class NoiseEvidence:
         return found
 
     def others(self, key: Key, first: float, known: Spectra) -> list[NoiseBins]:
-        """Bins below a frequency (rad a sample) that tell the noise of a channel beside its own ones.
+        """Bins of noise of a channel below a frequency (rad a sample), from other sources than its own bins.
 
-        Differences tell it where the noise of the other channel is known.
+        These are the quiet part of its record, and differences to channels whose noise is ``known``.
         """
         t, order = key
         found = [self.quiet[key].up_to(first)] if key in self.quiet else []
         for each in self.shared[t]:
             other = {each.lower: each.higher, each.higher: each.lower}.get(order)
             if other is not None and (t, other) in known:
-                found.append(each.told(order, known[t, other]).up_to(first))
+                found.append(each.bins_of(order, known[t, other]).up_to(first))
         return found
 
     def without_skirts(self, order: int, known: Spectra) -> dict[Key, OwnNoise]:
-        """Own bins of one channel, without those of the motion that only noise of the same shape unmasks."""
+        """Own bins of one channel, without skirts of the motion, which only the other tests reveal."""
         own = {key: each for key, each in self.own.items() if key[1] == order}
         others = [self.others(key, each.first, known) for key, each in own.items()]
         return dict(zip(own, without_skirts(list(own.values()), others), strict=True))
 
     def fitted(self, own: Mapping[Key, OwnNoise], known: Spectra, choice: Choice) -> Spectra:
-        """Noise of one channel from its own bins and all others."""
+        """Noise of one channel in all tests, from its ``own`` bins and from other sources."""
         bins = self._bins(own, known)
         if not _near_the_motion(bins, own.values()):
             choice = choice._replace(coloured=0.0)
-        return _by_key(own, fit(bins, choice))
+        return _by_key(own, fit_spectra(bins, choice))
 
     @cached_property
-    def told(self) -> "Told":
-        """Noise of all channels: as much as each may have while the others have as little as they may."""
+    def bounds(self) -> "NoiseBounds":
+        """Bounds of the noise of all channels: the most of one goes with the least of the others."""
         own: list[dict[Key, OwnNoise]] = []
         best: Spectra = {}
         for order in self.of:
             own.append(self.without_skirts(order, best))
-            best |= self.fitted(own[-1], best, BEST)
+            best |= self.fitted(own[-1], best, BEST_FIT)
         for _ in range(ROUNDS):
             for each in own:
-                best |= self.fitted(each, best, BEST)
+                best |= self.fitted(each, best, BEST_FIT)
         most = best
         for _ in range(ROUNDS):
-            least = {key: one for each in own for key, one in self.fitted(each, most, LEAST).items()}
-            most = {key: one for each in own for key, one in self.fitted(each, least, MOST).items()}
-        return Told(most, least, own)
+            least = {key: one for each in own for key, one in self.fitted(each, most, LEAST_NOISE).items()}
+            most = {key: one for each in own for key, one in self.fitted(each, least, MOST_NOISE).items()}
+        return NoiseBounds(most, least, own)
 
     @cached_property
     def far_above(self) -> list[dict[Key, OwnNoise]]:
-        """Channels whose noise is only told well above the motion, with their own bins."""
-        bins = [self._bins(its, self.told.least) for its in self.told.own]
-        both = zip(bins, self.told.own, strict=True)
+        """Own bins, test by test, of the channels whose noise shows only well above the motion."""
+        bins = [self._bins(its, self.bounds.least) for its in self.bounds.own]
+        both = zip(bins, self.bounds.own, strict=True)
         return [its for each, its in both if not _near_the_motion(each, its.values())]
 
     def _bins(self, own: Mapping[Key, OwnNoise], known: Spectra) -> list[list[NoiseBins]]:
         return [[its.bins, *self.others(key, its.first, known)] for key, its in own.items()]
 
     def bounded(self, left: Mapping[Key, Sequence[NoiseBins]]) -> Spectra:
-        """Noise of channels that is only told far above the motion, by what an explanation leaves of them.
+        """Noise of the channels ``far_above``, bounded by what an explanation leaves of them.
 
-        That is noise, or more. It can show that there is less noise than there might be, and never that there
-        is more: physics that is missing would pass for noise.
+        ``left``: bins of the residual of each window of a channel. A residual is noise and missing physics
+        together. It may show that there is less noise than ``bounds.most``, never that there is more.
         """
         found: Spectra = {}
         for own in self.far_above:
-            bins = self._bins(own, self.told.least)
+            bins = self._bins(own, self.bounds.least)
             more = [[each.up_to(its.first) for each in left.get(key, ())] for key, its in own.items()]
-            spectra = _by_key(own, fit([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST))
+            spectra = _by_key(
+                own, fit_spectra([[*one, *other] for one, other in zip(bins, more, strict=True)], MOST_NOISE)
+            )
             for key, its in own.items():
-                most, at = self.told.most[key], np.array(its.main)
+                most, at = self.bounds.most[key], np.array(its.main)
                 found[key] = spectra[key] if spectra[key](at) < most(at) else most
         return found
 
 
-class Told(NamedTuple):
-    """Noise of all channels: the ``most`` and the ``least``, and ``own`` bins of each channel."""
+class NoiseBounds(NamedTuple):
+    """The ``most`` and the ``least`` noise of every channel of every test that the records allow.
+
+    ``own``: for each channel, the bins of noise that each test shows by itself.
+    """
 
     most: Spectra
     least: Spectra
@@ -180,9 +185,9 @@ def _by_key(own: Mapping[Key, OwnNoise], spectra: Sequence[NoiseSpectrum]) -> Sp
 
 
 def _near_the_motion(tests: Sequence[Sequence[NoiseBins]], own: Iterable[OwnNoise]) -> bool:
-    """Whether bins of several tests reach down to where the motion is.
+    """Whether bins of several tests reach down to the frequency of the motion.
 
-    If not, that noise is white above it says little about what it is there.
+    If not, noise that is white above the motion may be red at it.
     """
     pairs = zip(tests, own, strict=True)
     return sum(each.up_to(NEAR * its.main).frequency.size for bins, its in pairs for each in bins) >= FEWEST

@@ -27,18 +27,19 @@ from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
-from wedgesweep.diagnose.transient.release import Release
+from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.natural_units import NaturalUnits
 
-# Effects of a sine as an input, of what a recorded input holds already, or of mechanics for sines only.
+# Effects that are no candidates: of a sine as the input, of what a recorded input contains already, or of
+# mechanics for sines only.
 OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip", "lift_off")
-# Effects of sensors, each of one derivative of the displacement.
+# Effects of sensors, and the derivative of the displacement whose sensor has each.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Blocks of a record that are left out in turn, at most.
 MOST_BLOCKS = 12
-# Displacement and velocity of the start, over the largest displacement and that a natural time later.
+# Displacement and velocity of the start, over the largest displacement (times omega_n for the velocity).
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
-# Displacements that are tried beside the measured one, over the largest, where so few points are tried.
+# Offsets of the start, over the largest displacement, that are tried if there are at most FEW points.
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
@@ -46,14 +47,14 @@ GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
 @dataclass(frozen=True, eq=False)
 class TransientData(SampledData):
-    """T windows; arrays (T, m) hold coefficients of displacement and velocity, one after the other.
+    """T windows; arrays (T, m) hold the coefficients of their channels, one channel after the other.
 
     ``decorrelations``: combinations with independent noise of the first coefficients of each channel of each
-    test; without them coefficients count as independent. ``evidence``: what tells the noise of the channels.
+    test; without them coefficients count as independent. ``evidence``: what the records show of their noise.
     ``gain_std``: relative standard deviation of the gain of recorded inputs, 0 for exact ones or none.
     """
 
-    releases: tuple[Release, ...]
+    windows: tuple[RecordWindow, ...]
     uncertain: dict[str, float]
     model_error: float = 0.0
     gain_std: float = 0.0
@@ -65,20 +66,20 @@ class TransientData(SampledData):
 
     @cached_property
     def names(self) -> tuple[str, ...]:  # type: ignore[override]
-        return tuple(own.name for own in self.releases)
+        return tuple(own.name for own in self.windows)
 
     @property
     def measured_tests(self) -> int:
-        return len({own.number for own in self.releases})
+        return len({own.number for own in self.windows})
 
     @property
     def model(self) -> Config:  # type: ignore[override]
         """The base model, with the numbers of the first test."""
-        return self.releases[0].model
+        return self.windows[0].model
 
     @property
     def law(self) -> str:  # type: ignore[override]
-        return self.releases[0].law
+        return self.windows[0].law
 
     def _padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
         """Values (..., C, k) of each test as (..., T, m), with zeros at the end."""
@@ -90,20 +91,20 @@ class TransientData(SampledData):
 
     @cached_property
     def recorded(self) -> np.ndarray:
-        return self._padded([own.compared for own in self.releases])
+        return self._padded([own.compared for own in self.windows])
 
     @cached_property
     def noise(self) -> np.ndarray:
-        noise = self._padded([own.noise for own in self.releases])
+        noise = self._padded([own.noise for own in self.windows])
         for t, part, each in self._combinations():
             noise[t, part] = each.std
         return noise
 
     def _combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
-        """Test, place and combination of all coefficients that are correlated."""
+        """Test, coefficients and their decorrelation, for all channels with correlated noise."""
         for t, both in enumerate(self.decorrelations or ()):
             for channel, each in enumerate(both):
-                first = channel * self.releases[t].coefficients
+                first = channel * self.windows[t].coefficients
                 yield t, slice(first, first + each.std.size), each
 
     def decorrelated(self, values: np.ndarray) -> np.ndarray:
@@ -119,46 +120,46 @@ class TransientData(SampledData):
         return found
 
     def renewed(self, scenario: Scenario) -> Self:
-        """The data with the noise that a scenario leaves room for.
+        """The data with their noise as a scenario has it.
 
-        Noise of the input is passed on as its response does. Noise of a channel that is told far above its
-        motion only is no more than what it leaves.
+        Its response passes on the noise of the input. Noise of a channel that shows only far above the motion
+        is at most what the scenario leaves of that channel.
         """
         data = self._with_bounded_noise(scenario)
-        if not any(own.driven for own in data.releases):
+        if not any(own.driven for own in data.windows):
             return data
         (values,) = data.known_values([scenario], OF_INPUT)
         starts, gains = data.starts(scenario.point), data._gain(scenario.point)
-        own = zip(data.releases, starts, gains, strict=True)
+        own = zip(data.windows, starts, gains, strict=True)
         found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
         return replace(data, decorrelations=found)
 
     def _with_bounded_noise(self, scenario: Scenario) -> Self:
-        """The data with less noise where a scenario shows that there is less."""
+        """The data with less noise where the residual of a scenario shows that there is less."""
         if not any(each.far_above for each in self.evidence):
             return self
         left = self.without_zero(self.measured - np.nan_to_num(self.simulated([scenario])[0]))
         bins: dict[Key, list[NoiseBins]] = {}
-        for own, row in zip(self.releases, left, strict=True):
+        for own, row in zip(self.windows, left, strict=True):
             shape = own.compared.shape
             for key, each in own.noise_in(row[: own.compared.size].reshape(shape)).items():
                 bins.setdefault(key, []).append(each)
-        told = {key: each for one in self.evidence for key, each in one.bounded(bins).items()}
-        return replace(self, releases=tuple(own.with_noise(told) for own in self.releases))
+        bounded = {key: each for one in self.evidence for key, each in one.bounded(bins).items()}
+        return replace(self, windows=tuple(own.with_noise(bounded) for own in self.windows))
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Rms (T, m) that the coefficients of each channel have where they hold all its power."""
-        rms = [np.sqrt(own.spread) * own.rms for own in self.releases]
-        shapes = [(each.size, own.coefficients) for each, own in zip(rms, self.releases, strict=True)]
+        """Rms (T, m) that the coefficients of each channel have if they hold all its power."""
+        rms = [np.sqrt(own.spread) * own.rms for own in self.windows]
+        shapes = [(each.size, own.coefficients) for each, own in zip(rms, self.windows, strict=True)]
         pairs = zip(rms, shapes, strict=True)
         return self._padded([np.broadcast_to(each[:, None], shape) for each, shape in pairs])
 
     @cached_property
     def shifted(self) -> np.ndarray:
-        """The first coefficient of the first channel is its mean."""
+        """A unit of the zero adds this to the first coefficient of the first channel, that of its mean."""
         found = np.zeros_like(self.recorded)
-        found[:, 0] = [np.sqrt(own.channels.shape[1]) for own in self.releases]
+        found[:, 0] = [np.sqrt(own.channels.shape[1]) for own in self.windows]
         return found
 
     @property
@@ -171,18 +172,18 @@ class TransientData(SampledData):
         start = np.full((self.tests, len(START)), np.inf)
         if not self.gain_std:
             return start
-        driven = np.array([own.driven for own in self.releases])
+        driven = np.array([own.driven for own in self.windows])
         return np.column_stack([start, np.where(driven, self.gain_std, 1.0)])
 
     @cached_property
     def units(self) -> NaturalUnits:
-        return self.model.natural_units(max(own.length for own in self.releases))
+        return self.model.natural_units(max(own.length for own in self.windows))
 
     @cached_property
     def _scale(self) -> np.ndarray:
-        """Displacement (m) and velocity (m/s) of the largest displacement of each test, (T, 2)."""
-        length = np.array([own.length for own in self.releases])
-        return np.column_stack([length, length * np.array([own.grid.omega for own in self.releases])])
+        """Units (T, 2) of the starts: the largest displacement (m), and that times omega_n (m/s)."""
+        length = np.array([own.length for own in self.windows])
+        return np.column_stack([length, length * np.array([own.grid.omega for own in self.windows])])
 
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
@@ -196,20 +197,20 @@ class TransientData(SampledData):
         return (*START, GAIN) if self.gain_std else START
 
     def start(self) -> tuple[np.ndarray, NoStart]:
-        start = np.array([own.guess for own in self.releases]) / self._scale
+        start = np.array([own.guess for own in self.windows]) / self._scale
         return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0)))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
-        releases = tuple(self.releases[row] for row in np.arange(self.tests)[rows])
+        windows = tuple(self.windows[row] for row in np.arange(self.tests)[rows])
         known = self.decorrelations
         kept = None if known is None else tuple(known[row] for row in np.arange(self.tests)[rows])
-        part = replace(self, releases=releases, resampled=None, decorrelations=kept)
+        part = replace(self, windows=windows, resampled=None, decorrelations=kept)
         if self.resampled is None:
             return part
         return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        shown = {order for own in self.releases for order in own.shown_as_measured}
+        shown = {order for own in self.windows for order in own.shown_as_measured}
         hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
         return tuple(name for name in effects if name not in hidden)
 
@@ -217,16 +218,19 @@ class TransientData(SampledData):
         values = self.known_values(scenarios, OF_INPUT)
         starts = np.array([self.starts(each.point) for each in scenarios])
         gains = np.array([self._gain(each.point) for each in scenarios])
-        work.add(len(values) * sum(own.periods for own in self.releases))
+        work.add(len(values) * sum(own.periods for own in self.windows))
         return self._padded(
             [
                 own.simulated(values, starts[:, t], gains[:, t], TOLERANCE)
-                for t, own in enumerate(self.releases)
+                for t, own in enumerate(self.windows)
             ]
         )
 
     def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
-        """Evaluations from several starts: where a mass rests before it moves, friction hides its place."""
+        """Evaluations of points, each test from the best of several starts.
+
+        A mass that rests before it moves may do so at any place where friction holds it.
+        """
         stated, at_rest = self.start()
         offsets = OFFSETS if len(points) <= FEW else (0.0,)
         tried = [points]
@@ -250,8 +254,8 @@ class TransientData(SampledData):
         return None if np.array_equal(found, evaluation.point.nuisance) else found
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        """Each record, or where there is only one blocks of windows that follow one another."""
-        numbers = np.array([own.number for own in self.releases])
+        """Each record; of a single record blocks of successive windows."""
+        numbers = np.array([own.number for own in self.windows])
         if np.ptp(numbers) > 0:
             return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
         blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))

@@ -1,4 +1,4 @@
-"""Records cut into windows, so that errors of phase do not add up over a long one."""
+"""Cut records into windows, so that errors of phase do not add up over a long one."""
 
 from collections.abc import Sequence
 from math import ceil, floor, pi
@@ -9,17 +9,17 @@ import numpy as np
 from wedgesweep.config import Config
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
-from wedgesweep.diagnose.transient.driven import Driven, at, nothing
-from wedgesweep.diagnose.transient.release import Grid, Release
+from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
+from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
-# A motion that swings by less than this share of the largest swing of its record may stick: how friction lets
-# go then depends on how long it has stuck.
+# A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
+# friction lets go depends on how long it has stuck.
 STUCK = 0.05
 # Share of a record under an input that is simulated before its first window, at most.
 LEAD_SHARE = 0.125
-# Windows that a single record makes at least, if each has so many natural periods.
+# A single record is cut into at least FEWEST windows, if each has SHORTEST natural periods.
 FEWEST, SHORTEST = 3, 3.0
 # Highest frequency that is compared, over the natural frequency and over the highest that stands out.
 HARMONICS, BEYOND = 8.0, 2.0
@@ -30,19 +30,20 @@ FEWEST_COMPARED, SMALL = 8, 1e-3
 
 
 class Recorded(NamedTuple):
-    """A record: channels (C, n) at a rate (Hz), the noise of each, the input; ``number`` of its test.
+    """The record of a test before it is cut.
 
-    ``orders`` (C,): derivatives of the displacement that were recorded; ``shares`` (C,): of the base's motion
-    in each channel, which was added to what was recorded.
+    ``channels`` (C, n) sampled at a ``rate`` (Hz); ``spectra``: noise of each; ``input``: None if it was not
+    recorded; ``number``: index of the test. ``orders`` (C,): derivative of the displacement that each channel
+    is; ``shares`` (C,): share of the base's motion that was added to each.
     """
 
     name: str
     channels: np.ndarray
     rate: float
     spectra: Sequence[NoiseSpectrum]
-    driven: Driven | None = None
-    number: int = 0
-    orders: tuple[int, ...] = (0, 1)
+    input: RecordedInput | None
+    number: int
+    orders: tuple[int, ...]
     shares: tuple[float, ...] = ()
 
 
@@ -50,8 +51,8 @@ def highest_compared(record: Recorded, model: Config) -> float:
     """Highest frequency (rad a sample) that is compared of a record."""
     own = HARMONICS * 2.0 * pi / _period(record, model)
     seen = [each.highest for each in record.spectra]
-    if record.driven is not None:
-        seen.append(record.driven.noise.highest)
+    if record.input is not None:
+        seen.append(record.input.noise.highest)
     return max(own, BEYOND * min(seen))
 
 
@@ -64,9 +65,18 @@ class Cut(NamedTuple):
 
 
 def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
-    """Windows of a record of some samples, of which there should be so many at least.
+    """Windows of equal length, about WINDOW natural periods each.
 
-    ``period``: a natural one, in samples. ``skipped``: samples at either end at which the input is not right.
+    Parameters
+    ----------
+    samples : int
+        Length of the record.
+    period : float
+        Natural period in samples.
+    skipped : int
+        Samples at either end in which the filter of the input has not settled; 0 without an input.
+    fewest : int
+        Number of windows to make at least, as far as each has SHORTEST natural periods.
     """
     compared = samples - 2 * skipped
     # The lead of the first window comes after what is skipped.
@@ -80,9 +90,9 @@ def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
 
 
 def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -> Cut:
-    """The window with a lead that goes back to where a motion (n,) that may stick has last slipped.
+    """The window with a lead that goes back to where the motion (n,) last slipped, if it may stick.
 
-    Only if it slips within the window: else its friction does not let go there.
+    A window in which the mass rests all the time stays as it is: there friction does not let go.
     """
     size, allowed = ceil(period), STUCK * float(np.ptp(motion))
     start = cut.first - cut.lead
@@ -93,59 +103,65 @@ def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -
     return cut._replace(lead=cut.first - start)
 
 
-def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[Release]:
-    """Prepare the windows of a record, of which there should be so many at least."""
-    rate, driven = record.rate, record.driven
+def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[RecordWindow]:
+    """Windows of a record; ``fewest``: see ``cuts``."""
+    rate, given = record.rate, record.input
     period, top = _period(record, model), highest_compared(record, model)
     displacement = _displacement(record, 2.0 * pi / period)
     rest, length = _extent(displacement)
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest
     slope = np.gradient(smooth) * rate
-    parts = cuts(record.channels.shape[1], period, driven.settling if driven else 0, fewest)
-    if driven:
-        parts = [_from_last_slip(each, smooth, period, driven.settling) for each in parts]
-    passed_on, input_noise = _passed_on(record), driven.input_noise(record.shares) if driven else None
+    parts = _cuts(record, smooth, period, fewest)
+    passed_on, input_noise = _passed_on(record), given.input_noise(record.shares) if given else None
     found = []
     for place, (first, inside, lead) in enumerate(parts, 1):
         start, end = first - lead, first + inside
-        own = record.channels[:, first:end]
         found.append(
-            Release(
+            RecordWindow(
                 name=record.name if len(parts) == 1 else f"{record.name} {place}",
                 model=model,
                 law=law,
                 step=1.0 / rate,
                 begins=first / rate,
                 number=record.number,
-                channels=own,
+                channels=record.channels[:, first:end],
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
                 coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
                 grid=Grid(lead, inside, 2.0 * pi * rate / period),
-                input=at(driven.acting, start / rate) if driven else nothing((end - start) / rate),
+                input=starting_at(given.acting, start / rate) if given else no_input((end - start) / rate),
                 input_noise=input_noise,
                 length=max(float(np.abs(displacement[start:end] - rest).max()), SMALL * length),
                 guess=(float(smooth[start]), float(slope[start])),
-                orders=record.orders[: len(own)],
+                orders=record.orders,
             )
         )
     return found
 
 
-def _displacement(record: Recorded, omega: float) -> np.ndarray:
-    """Displacement (n,), roughly where none was recorded: that of a spring that accelerates the mass.
+def _cuts(record: Recorded, motion: np.ndarray, period: float, fewest: int) -> list[Cut]:
+    """Windows of a record; under an input they are simulated from where the motion (n,) last slipped."""
+    samples = record.channels.shape[1]
+    if record.input is None:
+        return cuts(samples, period, 0, fewest)
+    skipped = record.input.settling
+    return [_from_last_slip(each, motion, period, skipped) for each in cuts(samples, period, skipped, fewest)]
 
-    ``omega``: natural frequency in rad a sample.
+
+def _displacement(record: Recorded, omega: float) -> np.ndarray:
+    """Displacement (n,); where none was recorded, roughly that at which the spring accelerates the mass so.
+
+    ``omega``: angular natural frequency in rad a sample.
     """
     if record.orders[0] == 0:
         return record.channels[0]
-    last = record.channels[-1] / record.rate ** record.orders[len(record.channels) - 1]
-    acceleration = last if record.orders[len(record.channels) - 1] > 1 else np.gradient(last)
+    last = record.channels[-1] / record.rate ** record.orders[-1]
+    acceleration = last if record.orders[-1] > 1 else np.gradient(last)
     return -acceleration / omega**2
 
 
 def _extent(displacement: np.ndarray) -> tuple[float, float]:
-    """Where a motion (n,) comes to rest, and its largest distance from there."""
+    """Displacement at which a motion (n,) comes to rest, and its largest distance from there."""
     rest = float(displacement[-max(int(REST * displacement.size), 1) :].mean())
     return rest, max(float(np.abs(displacement - rest).max()), 1e-300)
 
@@ -157,6 +173,6 @@ def _period(record: Recorded, model: Config) -> float:
 
 def _passed_on(record: Recorded) -> np.ndarray:
     """Power of the input's noise in each channel, (C, f)."""
-    if record.driven is None:
+    if record.input is None:
         return np.zeros((len(record.channels), 2))
-    return np.array([record.driven.passed_on(each) for each in record.channels])
+    return np.array([record.input.passed_on(each) for each in record.channels])

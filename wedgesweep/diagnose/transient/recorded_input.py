@@ -7,30 +7,30 @@ from math import ceil, pi
 import numpy as np
 from scipy import signal
 
-from wedgesweep.config import Config
-from wedgesweep.diagnose.noise_bins import of_record
+from wedgesweep.diagnose.noise_bins import noise_of_record
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
 # Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
-# acceleration would shake a mass loose that sticks. Order of the filter, which leaves the rest alone.
+# acceleration would shake a mass loose that sticks. Order of the low-pass filter.
 KEPT, ORDER = 1.4, 8
-# Highest cut-off in cycles a sample, and samples over a period of it.
+# Cut-off (cycles a sample) from which on the input is not filtered, and samples that are kept in a period of
+# the cut-off.
 HIGHEST, SAMPLED = 0.4, 8.0
 # Part of a record at either end, in periods of the cut-off, in which the filter has not settled.
 SETTLING = 2.0
 # Largest rms of the input's noise over that of the input: where all that moves the base looks like noise,
 # most of it is not.
-MOST_NOISE = 0.05
+LARGEST_NOISE = 0.05
 # Bins over which spectra of input and response are averaged, as a share of all.
 AVERAGED = 0.01
 QUANTITIES_OF_MOTION = ("displacement", "velocity", "acceleration")
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class RecordedInput:
     """A recorded input: ``samples`` (n,) of a ``quantity`` (SI) at a ``rate`` (Hz), and their noise."""
 
     samples: np.ndarray
@@ -39,7 +39,7 @@ class Driven:
 
     @cached_property
     def noise(self) -> NoiseSpectrum:
-        return of_record(self.samples)
+        return noise_of_record(self.samples)
 
     @cached_property
     def size(self) -> float:
@@ -58,7 +58,7 @@ class Driven:
 
     @cached_property
     def acting(self) -> SampledInput:
-        """The input as it acts, from the first sample on."""
+        """The input as it acts in simulations, low-passed; its time counts from the first sample."""
         cutoff, smooth, stride = self._cutoff, self.samples, 1
         if cutoff < HIGHEST:
             sections = signal.butter(ORDER, cutoff, fs=1.0, output="sos")
@@ -82,7 +82,7 @@ class Driven:
         return self.acting(np.arange(self.samples.size) / self.rate)
 
     def derivative(self, order: int) -> np.ndarray:
-        """Displacement (m) of the base at the samples, or a derivative of it."""
+        """Displacement (m) of the base at the samples, or its derivative of an order up to 2 (SI)."""
         if order == 0:
             return self.displacement
         if order == 1:
@@ -94,7 +94,7 @@ class Driven:
         """Power (f,) of the noise of a sample by frequency, from 0 to half the sampling rate."""
         given = _power(self.samples)
         noise = np.minimum(self.noise(np.linspace(0.0, pi, given.size)), given)
-        return noise * min(MOST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
+        return noise * min(LARGEST_NOISE**2 * given.sum() / max(noise.sum(), 1e-300), 1.0)
 
     def input_noise(self, shares: tuple[float, ...]) -> InputNoise:
         """The noise as it acts; ``shares`` (C,): of the base's displacement in each channel."""
@@ -108,35 +108,22 @@ class Driven:
         input does not stand out of its noise, that ratio says nothing.
         """
         given, seen = (_power(each) for each in (self.samples, response))
-        noise = np.minimum(self.noise_power, MOST_NOISE**2 * given)
+        noise = np.minimum(self.noise_power, LARGEST_NOISE**2 * given)
         return seen * noise / np.maximum(given, 1e-300)
 
 
-def at(given: SampledInput, start: float) -> SampledInput:
+def starting_at(given: SampledInput, start: float) -> SampledInput:
     """The input for a simulation that starts at a time (s) of it."""
     return replace(given, begin=given.begin - start)
 
 
-def nothing(span: float) -> SampledInput:
-    """No input for some time (s)."""
+def no_input(span: float) -> SampledInput:
+    """An input that is zero for some time (s)."""
     return from_samples(np.zeros(2), span)
 
 
-def factors(model: Config, of: str) -> tuple[float, float]:
-    """Factors of a channel and of the base's displacement in the motion that is simulated.
-
-    That is base less mass for the suspension; for the oscillator mass less base, or the mass's own motion
-    where it does not rub on the base.
-    """
-    if model.system == "suspension":
-        return (1.0, 0.0) if of == "relative" else (-1.0, 1.0)
-    if of in model.simulated_motion:
-        return 1.0, 0.0
-    return 1.0, 1.0 if of == "relative" else -1.0
-
-
 def _power(samples: np.ndarray) -> np.ndarray:
-    """Periodogram (m,) of samples (n,), averaged over neighbours."""
+    """Periodogram (n // 2 + 1,) of samples (n,) under a Hann window, averaged over neighbours."""
     window = np.hanning(samples.size)
     power = np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 / (window**2).sum()
     width = max(int(AVERAGED * power.size), 3)

@@ -1,6 +1,6 @@
-"""A window of a recorded motion as it is compared, and its simulation.
+"""A window of a recorded motion: what is compared of it, its noise, and its simulation.
 
-Compared are the cosine coefficients of the window (DCT-II) up to the highest frequency that the motion may
+The cosine coefficients (DCT-II) of the window are compared, up to the highest frequency that the motion may
 have: under noise whose spectrum is smooth they are all but independent.
 """
 
@@ -24,24 +24,25 @@ from wedgesweep.diagnose.transient.input_noise import (
     decorrelated,
     disturbed,
 )
-from wedgesweep.diagnose.transient.noise import Key
+from wedgesweep.diagnose.transient.noise import ACCELERATION, Key
 from wedgesweep.effects import merge
 from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
-# Derivative of the displacement that an accelerometer shows.
-ACCELERATION = 2
-# Zero of an accelerometer over the rms of what it shows, as good as unknown.
-UNKNOWN = 1e3
-# Coefficients, the lowest ones, that a zero and a start take most of.
-LEFT = 4
-# Error of a simulation over the rms of the motion, which counts as noise.
-SIMULATED = 1e-5
+# Standard deviation of an accelerometer's zero over the rms of its signal: as good as unknown.
+UNKNOWN_ZERO = 1e3
+# Number of coefficients, the lowest ones, that do not show noise: zero and start are fitted to them.
+ABSORBED = 4
+# Error of a simulation over the rms of the motion; it counts as noise.
+SIMULATION_ERROR = 1e-5
 
 
 class Grid(NamedTuple):
-    """Samples of a simulation: ``lead`` before a window, ``inside`` it; ``omega``: natural (rad/s)."""
+    """Samples of a simulation: ``lead`` before a window, ``inside`` it.
+
+    ``omega``: angular natural frequency (rad/s).
+    """
 
     lead: int
     inside: int
@@ -54,16 +55,36 @@ class Grid(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Release:
-    """One window.
+class RecordWindow:
+    """One window of the record of a test, with C channels of n samples.
 
-    ``model``: the base model with the numbers of the test; ``step`` (s) between samples; ``begins`` (s):
-    time of its first sample in its record, of the ``number``-th test; ``channels`` (C, n): what was recorded
-    of displacement (m), velocity (m/s) and acceleration (m/s^2), as they are simulated; ``orders`` (C,): the
-    derivative of the displacement that each of them is; ``spectra``: their noise, beside that of the input,
-    ``passed_on`` (C, f) by frequency up to half the sampling rate. ``coefficients`` K of a channel are
-    compared. ``input`` acts in the simulation; ``input_noise``: that of its record, None for no input;
-    ``length`` (m): of the motion; ``guess``: displacement (m) and velocity (m/s) where it starts, roughly.
+    Attributes
+    ----------
+    model, law
+        The base model with the numbers of the test, and its friction law.
+    step, begins
+        Time between samples, and time of the window's first sample in its record (s).
+    number : int
+        Index of the test.
+    channels : ndarray, shape (C, n)
+        Recorded displacement (m), velocity (m/s) and acceleration (m/s^2), or some of them, converted to the
+        motion that is simulated.
+    spectra : tuple of NoiseSpectrum
+        Noise of each channel but for what the input's noise adds.
+    passed_on : ndarray, shape (C, f)
+        Power of the input's noise in each channel, by frequency from 0 to half the sampling rate.
+    coefficients : int
+        Number K of cosine coefficients of a channel that are compared.
+    grid : Grid
+        Samples that are simulated.
+    input, input_noise
+        What acts in the simulation, and the noise of its record (None: no input was recorded).
+    length : float
+        Largest displacement of the motion in the window (m).
+    guess : tuple of float
+        Rough displacement (m) and velocity (m/s) at the first simulated sample.
+    orders : tuple of int
+        Derivative of the displacement that each channel is (0, 1 or 2).
     """
 
     name: str
@@ -81,7 +102,7 @@ class Release:
     input_noise: InputNoise | None
     length: float
     guess: tuple[float, float]
-    orders: tuple[int, ...] = (0, 1)
+    orders: tuple[int, ...]
 
     @cached_property
     def compared(self) -> np.ndarray:
@@ -95,18 +116,17 @@ class Release:
 
     @property
     def spread(self) -> float:
-        """Samples for each coefficient; an error that has all its power there is larger by the root of it."""
+        """Samples per compared coefficient.
+
+        An error of a given rms whose power is all in the compared coefficients has an rms there that is
+        larger by the square root of this.
+        """
         return self.channels.shape[1] / self.coefficients
 
     @property
     def driven(self) -> bool:
         """Whether an input was recorded."""
         return self.input_noise is not None
-
-    @property
-    def _orders(self) -> tuple[int, ...]:
-        """The derivative of the displacement that each channel is."""
-        return self.orders[: len(self.channels)]
 
     @property
     def _shares(self) -> tuple[float, ...]:
@@ -116,14 +136,14 @@ class Release:
     @property
     def shown_as_measured(self) -> tuple[int, ...]:
         """The derivatives of the displacement that sensors show without conversion."""
-        both = zip(self._orders, self._shares, strict=True)
+        both = zip(self.orders, self._shares, strict=True)
         return tuple(order for order, share in both if share == 0.0)
 
     @cached_property
     def _converted(self) -> np.ndarray:
-        """What was added to the channels, (C, n); an error of the input's gain is in it as well."""
+        """Motion of the base that was added to the channels, (C, n); it has the error of the input's gain."""
         times = self.step * np.arange(self.grid.lead, self.grid.samples)
-        both = zip(self._orders, self._shares, strict=True)
+        both = zip(self.orders, self._shares, strict=True)
         return np.array([share * self.input(times, order) if share else 0.0 * times for order, share in both])
 
     @cached_property
@@ -133,18 +153,18 @@ class Release:
 
     @cached_property
     def _own_variance(self) -> np.ndarray:
-        """Variance (C, K) of each coefficient but for what the input adds."""
-        least = SIMULATED * self.rms * sqrt(self.spread)
+        """Variance (C, K) of each coefficient, without what the input's noise adds."""
+        least = SIMULATION_ERROR * self.rms * sqrt(self.spread)
         own = zip(self.spectra, least, strict=True)
         found = np.array([each(self._frequency) + low**2 for each, low in own])
-        # The zero of a first channel is fitted; that of an accelerometer beside others tells nothing.
-        zero = (UNKNOWN * self.rms) ** 2 * self.channels.shape[1]
-        found[1:, 0] += zero[1:] * (np.array(self._orders[1:]) == ACCELERATION)
+        # The zero of the first channel is fitted; that of an accelerometer beside others is unknown.
+        zero = (UNKNOWN_ZERO * self.rms) ** 2 * self.channels.shape[1]
+        found[1:, 0] += zero[1:] * (np.array(self.orders[1:]) == ACCELERATION)
         return found
 
     @cached_property
     def by_input(self) -> np.ndarray:
-        """Variance (C, K) of each coefficient by the input's noise, spread as its motion is."""
+        """Variance (C, K) that the input's noise adds to each coefficient."""
         grid = np.linspace(0.0, pi, self.passed_on.shape[1])
         return np.array([np.interp(self._frequency, grid, each) for each in self.passed_on])
 
@@ -154,16 +174,16 @@ class Release:
         return np.sqrt(self._own_variance + self.by_input)
 
     def noise_in(self, left: np.ndarray) -> dict[Key, NoiseBins]:
-        """What an explanation leaves of the coefficients (C, K) as bins of noise, by test and order."""
-        both = zip(self._orders, left[:, LEFT:] ** 2, self.by_input[:, LEFT:], strict=True)
-        bins = {order: NoiseBins(self._frequency[LEFT:], power, known) for order, power, known in both}
+        """The residual of the coefficients (C, K) as bins of noise, by test and order of the channel."""
+        both = zip(self.orders, left[:, ABSORBED:] ** 2, self.by_input[:, ABSORBED:], strict=True)
+        bins = {order: NoiseBins(self._frequency[ABSORBED:], power, known) for order, power, known in both}
         return {(self.number, order): each for order, each in bins.items()}
 
-    def with_noise(self, told: Mapping[Key, NoiseSpectrum]) -> "Release":
-        """The window with noise that is told anew, but not where repeats had told it."""
-        own = zip(self.spectra, self.orders, strict=False)
+    def with_noise(self, estimates: Mapping[Key, NoiseSpectrum]) -> "RecordWindow":
+        """The window with new estimates of its noise, but not where repeats of the test showed it."""
+        own = zip(self.spectra, self.orders, strict=True)
         spectra = tuple(
-            told.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
+            estimates.get((self.number, order), each) if each.source == FROM_SPECTRUM else each
             for each, order in own
         )
         return replace(self, spectra=spectra)
@@ -171,10 +191,10 @@ class Release:
     def decorrelation(
         self, values: Values, start: np.ndarray, gain: float, tolerance: float
     ) -> tuple[Decorrelation, ...]:
-        """Independent combinations of the coefficients of each channel, by the response in a scenario.
+        """Combinations with independent noise of the coefficients of each channel, in a scenario.
 
-        None without an input: the coefficients are independent as they are.
-        ``start`` (2,) of the simulation; ``gain`` of the input.
+        There are none without an input: the coefficients are independent as they are. ``start`` (2,):
+        displacement (m) and velocity (m/s) at which the simulation begins; ``gain``: of the input.
         """
         if self.input_noise is None:
             return ()
@@ -185,7 +205,7 @@ class Release:
         for place, each in enumerate(inputs):
             self._drive(rows[place : place + 1], each, gain)
         above, below = np.split(self._motions(rows, np.tile(start, (len(rows), 1)), tolerance), 2)
-        changes = converted(parts, self.input_noise.shares, self._orders, grid.lead) - 0.5 * (above - below)
+        changes = converted(parts, self.input_noise.shares, self.orders, grid.lead) - 0.5 * (above - below)
         return decorrelated(self._own_variance, np.nan_to_num(changes))
 
     def in_time(self, coefficients: np.ndarray) -> np.ndarray:
@@ -215,7 +235,7 @@ class Release:
     def simulated(
         self, scenarios: list[Values], starts: np.ndarray, gains: np.ndarray, tolerance: float
     ) -> np.ndarray:
-        """Coefficients (n, C, K) of n scenarios from their starts (n, 2); NaN for none.
+        """Coefficients (n, C, K) of n scenarios from their starts (n, 2); NaN where there is no response.
 
         ``gains`` (n,): of the input.
         """
@@ -236,18 +256,18 @@ class Release:
         set_sampled(rows, given, self._scale, self.grid.omega, self.grid.samples * self.step, gain)
 
     def _motions(self, rows: np.ndarray, starts: np.ndarray, tolerance: float) -> np.ndarray:
-        """Channels (n, C, samples) of the window from starts (n, 2); NaN for none."""
+        """Channels (n, C, samples) of the window from starts (n, 2); NaN where there is no response."""
         states = np.zeros((len(rows), state_count()))
-        # Channels are minus what solvers record, which the suspension has as its state.
+        # Solvers record minus what channels are: the state of a suspension, minus the state of an oscillator.
         states[:, :2] = starts if self.model.system == "oscillator" else -starts
-        orders, samples = self._orders, self.grid.samples
-        run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(orders) == ACCELERATION)
+        samples = self.grid.samples
+        run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(self.orders) == ACCELERATION)
         motion = run.x, run.velocity, run.acceleration
-        return -np.stack([motion[order] for order in orders], axis=1)[..., self.grid.lead :]
+        return -np.stack([motion[order] for order in self.orders], axis=1)[..., self.grid.lead :]
 
     @property
     def _scale(self) -> float:
-        """What motions are compared with: their length (m), or the force (N) that would cause it."""
+        """Scale of the motion for ``set_sampled``: its length (m), or the force (N) that would cause it."""
         if not self.model.forced:
             return self.length
         return self.length * self.model.natural_units(self.length).mass * self.grid.omega**2
