@@ -7,9 +7,11 @@ from typing import Any
 import joblib
 import numpy as np
 
+from wedgesweep import formatting
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import STEADY
+from wedgesweep.measured.kinds import FEWEST
 from wedgesweep.measured.model import with_law
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
@@ -51,6 +53,8 @@ def synthesize(
         raise SynthesisError(problems)
     options = _with_recorded_input(config, plan, options)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
+    if problems := _length_faults(truth, plan, options):
+        raise SynthesisError(problems)
     steady = replace(truth, tests=tuple(test for test in truth.tests if test.plan.kind == STEADY))
     motions = _motions(steady, options, n_jobs, plan.source) if steady.tests else []
     found = iter([_table(steady, *each, options) for each in zip(steady.tests, motions, strict=True)])
@@ -91,6 +95,21 @@ def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) 
         valid = FORCE if config.forced else "displacement, velocity or acceleration"
         faults.append(f"--record-input {recorded}: {excited}; record {valid}")
     return faults
+
+
+def _length_faults(truth: Truth, plan: Plan, options: Options) -> list[str]:
+    """Transients and loops with fewer samples than a diagnosis takes."""
+    counts = {
+        i: other_tables.sample_count(test, options)
+        for i, test in enumerate(truth.tests)
+        if test.plan.kind != STEADY
+    }
+    return [
+        f"{plan.source}: test[{i}].duration_s: {plan.tests[i].duration_s:g} s have "
+        f"{formatting.counted(count, 'sample')}; at least {FEWEST} make a record"
+        for i, count in counts.items()
+        if count < FEWEST
+    ]
 
 
 def _name(i: int, test: TrueTest) -> str:

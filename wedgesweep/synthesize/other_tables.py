@@ -16,9 +16,19 @@ SLOWER = 0.25
 BETTER = 0.003
 
 
+def sampling_rate(test: TrueTest, options: Options) -> float:
+    """Samples per second of a transient or a loop."""
+    return options.sampling_hz or round(SLOWER * test.sampling_hz, 3)
+
+
+def sample_count(test: TrueTest, options: Options) -> int:
+    """Number of samples of a transient or a loop."""
+    return round(test.plan.duration_s * sampling_rate(test, options))
+
+
 def table(truth: Truth, test: TrueTest, options: Options) -> Table:
     """Channels with offset and noise, as in the CSV file."""
-    rate = options.sampling_hz or round(SLOWER * test.sampling_hz, 3)
+    rate = sampling_rate(test, options)
     if test.plan.kind == LOOP:
         return _of_loop(truth, test, rate, options.level)
     found = transients.transient(truth.config, truth.law, truth.effects, test.plan, rate, test.random)
