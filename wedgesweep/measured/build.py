@@ -114,6 +114,8 @@ def build_record(
 
 
 def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    if not test.channels:  # a fault of the columns
+        return []
     return (
         stationarity_faults(test, file)
         or frequency_faults(test, file, at)

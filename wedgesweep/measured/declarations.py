@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf, isfinite, nan
+from math import inf, nan
 from typing import Any
 
 from wedgesweep import toml
@@ -89,7 +89,8 @@ class Overrides(Key):
         for name, number in value.items():
             if name.count(".") < 1:
                 problems.append(f'{path}: {show(name)} is not "section.key"; write it in quotes')
-            if isinstance(number, bool) or not isinstance(number, int | float) or not isfinite(number):
+            is_number = isinstance(number, int | float) and not isinstance(number, bool)
+            if not is_number or not abs(number) < inf:
                 problems.append(f"{path}.{show(name)}: {show(number)} is not a finite number; write one")
         return value
 
