@@ -1,15 +1,16 @@
 """Measured data as one netCDF file.
 
-Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
-config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
-The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm``
-(or ``amplitude_N``), ``amplitude_std``, ``kind`` and ``lowpass_hz`` as in measured.toml, and variables
-``time``, ``displacement`` and, optionally, ``velocity`` over the dimension ``sample``, with ``units`` as in
-measured.toml; a loop has ``force`` instead of the latter. A velocity that is computed from displacement has
-the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute ``quantity``;
-``acceleration`` is a further response, and responses may have the attribute ``of``. The attribute ``model``
-of a test holds its numbers of the model as a JSON object; ``input_gain_std`` and ``input_harmonics_std`` are
-attributes of the file.
+Layout:
+
+- Attributes of the file: ``title``, ``model_error``, ``input_gain_std``, ``input_harmonics_std``, and
+  ``model``, which is the text of the model's config, not its path.
+- Group ``uncertain``, if there is one: an attribute for each uncertain number.
+- Group ``tests``: a group per test. Its attributes are the keys of ``[[measurement.test]]`` in measured.toml;
+  flags (``detrend``, ``undriven``) are 0 or 1, and ``model`` is a JSON object.
+- Variables of a test, over the dimension ``sample``: ``time``, and what was recorded of ``displacement``,
+  ``velocity``, ``acceleration``, ``force`` and ``input``, with ``units`` as in measured.toml. Responses may have
+  the attribute ``of``, an input has ``quantity``, and a velocity that was computed from the displacement has
+  ``derived`` = 1.
 """
 
 import json
@@ -276,8 +277,10 @@ def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
 def _variable_faults(
     columns: Mapping[str, np.ndarray], units: Mapping[str, str], quantity: str | None
 ) -> list[str]:
-    needed = ("time",) if INPUT in columns else ("time", "displacement")
-    faults = [f"no variable {name}" for name in needed if name not in columns]
+    # What else a test needs depends on its kind and on those beside it: see channels.py.
+    faults = [] if "time" in columns else ["no variable time"]
+    if not columns.keys() - {"time"}:
+        faults.append("no variable displacement")
     if INPUT in columns and quantity not in QUANTITIES:
         faults.append(f"{INPUT}: quantity {show(quantity or 'none')}; valid here: {', '.join(QUANTITIES)}")
         quantity = None
