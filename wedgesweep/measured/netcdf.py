@@ -8,9 +8,9 @@ Layout:
 - Group ``tests``: a group per test. Its attributes are the keys of ``[[measurement.test]]`` in measured.toml;
   flags (``detrend``, ``undriven``) are 0 or 1, and ``model`` is a JSON object.
 - Variables of a test, over the dimension ``sample``: ``time``, and what was recorded of ``displacement``,
-  ``velocity``, ``acceleration``, ``force`` and ``input``, with ``units`` as in measured.toml. Responses may have
-  the attribute ``of``, an input has ``quantity``, and a velocity that was computed from the displacement has
-  ``derived`` = 1.
+  ``velocity``, ``acceleration``, ``force`` and ``input``, with ``units`` as in measured.toml. Responses may
+  have the attribute ``of``, an input has ``quantity``, and a velocity that was computed from the displacement
+  has ``derived`` = 1.
 """
 
 import json
