@@ -1,7 +1,7 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import isnan, sqrt
 from pathlib import Path
 from typing import Any
@@ -58,7 +58,7 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
     problems: list[str] = []
     document = root("input" in given).read(given, "", problems)
-    problems += contradictions(document)
+    problems += _of_other_keys(problems, contradictions(document))
     recorded = document.get("input", {})
     if not problems and recorded.get("kind") == "record" and "sha256" not in recorded:
         problems += _located(recorded, directory)
@@ -71,6 +71,12 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
     if SOFTENING in found.effects and found.system != OSCILLATOR:
         _require_rest(found, source)
     return found
+
+
+def _of_other_keys(problems: Iterable[str], found: Iterable[str]) -> list[str]:
+    """The contradictions found, but for those of keys with a problem of their own: they are absent here."""
+    faulty = {problem.partition(":")[0].partition("[")[0] for problem in problems}
+    return [each for each in found if each.partition(":")[0] not in faulty]
 
 
 def _located(recorded: dict[str, Any], directory: Path) -> list[str]:

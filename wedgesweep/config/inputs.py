@@ -47,7 +47,7 @@ class Levels(Key):
     def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
         given = value if isinstance(value, list) else [value]
         read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
-        return [each for each in read if each is not None]
+        return None if None in read else read
 
     def shape(self) -> dict[str, Any]:
         return {"type": "array", "items": self.item.shape(), "minItems": 1}
