@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET, FiniteRange
+from wedgesweep.cli.options import DATASET, FiniteRange, require_place_for
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
@@ -88,6 +88,7 @@ def plot(
         raise click.UsageError(message)
     if kind == ALL:
         directory, found = output or _beside(path), _read(path)
+        require_place_for(directory)
         directory.mkdir(parents=True, exist_ok=True)
         _draw_all(found, directory, suffix, _options(found, picks))
         return

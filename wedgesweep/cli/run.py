@@ -17,6 +17,7 @@ from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
 from wedgesweep.endings import NETCDF
+from wedgesweep.formatting import counted
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
@@ -177,5 +178,6 @@ def print_remark(settings: "Config") -> None:
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:
     progress.stop()
-    kept = f"{progress.done} finished cases are stored in {sweep.journal_path}"
+    finished = counted(progress.done, "finished case")
+    kept = f"{finished} {'is' if progress.done == 1 else 'are'} stored in {sweep.journal_path}"
     click.echo(f"{reason}\n{kept}; {advice}", err=True)

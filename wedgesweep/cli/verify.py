@@ -7,6 +7,7 @@ import click
 from wedgesweep.cli.failure import SOME_FAILED
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.summary import LISTED
+from wedgesweep.formatting import counted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,11 +20,12 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
     """Solve random cases again and print the largest differences; return the exit code."""
     from wedgesweep.sweep import verification
 
-    log.info(f"verifying {count} random cases by Radau")
+    log.info(f"verifying {counted(count, 'random case')} by Radau")
     found = verification.verify(sweep, ds, count, seed, n_jobs)
     verifiable = found.verifiable
+    cases = counted(len(verifiable), "case")
     click.echo(
-        f"verified by Radau at rtol {verification.RTOL:g}: {len(verifiable)} cases out of {found.candidates} "
+        f"verified by Radau at rtol {verification.RTOL:g}: {cases} out of {found.candidates} "
         f"that were solved (random, seed {found.seed})"
     )
     for name, words in (("ratio", "amplitude ratio"), ("stick", "stick fraction")):
