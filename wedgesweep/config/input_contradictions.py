@@ -68,8 +68,8 @@ def _density(given: Mapping[str, Any]) -> Iterator[str]:
     elif listed and len(given["frequency_hz"]) < 2:
         yield "input.frequency_hz: a single one has no band between; write two or more"
     else:
-        frequencies = given["frequency_hz"] if listed else [given[key] for key in band]
-        yield from _band(frequencies[0], frequencies[-1], given.get("duration_s", 1e9))
+        ends = given["frequency_hz"] if listed else [given[key] for key in band]
+        yield from _band(ends[0], ends[-1], given.get("duration_s", 1e9))
 
 
 def _band(low: float, high: float, duration: float) -> Iterator[str]:

@@ -47,7 +47,8 @@ class Levels(Key):
     def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
         given = value if isinstance(value, list) else [value]
         read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
-        return None if None in read else read
+        known = [each for each in read if each is not None]
+        return known if len(known) == len(read) else None
 
     def shape(self) -> dict[str, Any]:
         return {"type": "array", "items": self.item.shape(), "minItems": 1}
