@@ -249,12 +249,13 @@ def test_an_uncertain_distortion_is_the_same_in_all_tests_and_told(here):
         ("tests.toml", "0.11", "-0.11", "tests.toml: test[0].amplitude_mm: -0.11 is out of range"),
         ("tests.toml", TESTS, "", "tests.toml: test: missing; write [[test]] for each"),
         ("tests.toml", "[[test]]", "[test", "tests.toml: not valid TOML"),
+        ("tests.toml", "[[test]]", "# \udcff\n[[test]]", "tests.toml: not UTF-8 text (byte 2)"),
     ],
 )
 def test_faults_write_nothing(here, file, old, new, words):
     text = (here / file).read_text()
     assert old in text
-    (here / file).write_text(text.replace(old, new, 1))
+    (here / file).write_text(text.replace(old, new, 1), encoding="utf-8", errors="surrogateescape")
     assert words in synthesize(code=2)
     assert sorted(path.name for path in here.iterdir()) == ["tests.toml", "true.toml"]
 

@@ -12,8 +12,7 @@ from wedgesweep.config.cases import AmplitudeUnit, Case, Cases
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import root
 from wedgesweep.config.model import OSCILLATOR, UNIT_FREQUENCY, Config
-from wedgesweep.errors import ConfigError
-from wedgesweep.files import read_text
+from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.inputs import record
 from wedgesweep.kinds import CONFIG, confusion
 
@@ -30,14 +29,10 @@ def load(path: str | Path) -> Config:
     if problem := confusion(Path(path), CONFIG):
         raise ConfigError([problem])
     try:
-        text = read_text(Path(path))
-    except UnicodeDecodeError as error:
-        problem = f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8"
-        raise ConfigError([problem]) from error
-    except OSError as error:
-        problem = f"{path}: {error.strerror}; give the path of a TOML file"
-        raise ConfigError([problem]) from error
-    found = parse(text, str(path), Path(path).parent)
+        given = toml.load(Path(path), "a TOML file")
+    except InputError as error:
+        raise ConfigError(error.problems) from error
+    found = from_document(given, str(path), Path(path).parent)
     log.debug("%s: %d cases, %s", path, found.sweep.count, found.document["solver"]["method"])
     return found
 

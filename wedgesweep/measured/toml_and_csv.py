@@ -9,7 +9,7 @@ from typing import Any
 from wedgesweep import toml
 from wedgesweep.config import Config
 from wedgesweep.csv_files import columns as csv_columns
-from wedgesweep.files import read_text
+from wedgesweep.errors import InputError
 from wedgesweep.hints import show
 from wedgesweep.measured import arrays, channels, overrides
 from wedgesweep.measured.build import Channels, build_record
@@ -92,19 +92,13 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
 def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     """The checked document; its faults go to ``problems``."""
     try:
-        given = toml.loads(read_text(path))
-    except UnicodeDecodeError as error:
-        problems.append(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8")
-    except OSError as error:
-        problems.append(f"{path}: {error.strerror}; give the path of a measured.toml")
-    except ValueError as error:
-        problems.append(f"{path}: not valid TOML: {error}")
-    else:
-        found: list[str] = []
-        document = ROOT.read(given, "", found)
-        problems.extend(f"{path}: {problem}" for problem in found)
-        return document
-    raise MeasuredError(problems)
+        given = toml.load(path, "a measured.toml")
+    except InputError as error:
+        raise MeasuredError(error.problems) from error
+    found: list[str] = []
+    document = ROOT.read(given, "", found)
+    problems.extend(f"{path}: {problem}" for problem in found)
+    return document
 
 
 def _tests(

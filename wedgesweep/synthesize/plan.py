@@ -10,7 +10,6 @@ from wedgesweep import toml
 from wedgesweep.config.keys import Choice, Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError
-from wedgesweep.files import read_text
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
     AMPLITUDE_STD,
@@ -105,14 +104,7 @@ class Plan:
 
 def load(path: Path) -> Plan:
     """Read a tests.toml; raises InputError with everything that is wrong."""
-    try:
-        given = toml.loads(read_text(path))
-    except OSError as error:
-        problem = f"{path}: {error.strerror}; give the path of a tests.toml"
-        raise InputError([problem]) from error
-    except ValueError as error:
-        raise InputError([f"{path}: not valid TOML: {error}"]) from error
-    return from_document(given, str(path))
+    return from_document(toml.load(path, "a tests.toml"), str(path))
 
 
 def from_document(given: Mapping[str, Any], source: str = "tests") -> Plan:
