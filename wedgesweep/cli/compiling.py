@@ -43,18 +43,18 @@ def listener(base: type) -> Any:
             if self.depth == 0:
                 self.began = perf_counter()
             self.depth += 1
-            self._tell()
+            self._announce()
 
         def on_end(self, event: Any) -> None:
             if self.depth == 1:
                 self.before = self.elapsed()
             self.depth -= 1
-            self._tell()
+            self._announce()
 
         def elapsed(self) -> float:
             return self.before + (perf_counter() - self.began if self.depth else 0.0)
 
-        def _tell(self) -> None:
+        def _announce(self) -> None:
             elapsed = self.elapsed()
             if elapsed > self.due:
                 log.info(FIRST if self.due == WORTH else f"compiling, {duration(elapsed)} so far")

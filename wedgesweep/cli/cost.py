@@ -1,4 +1,4 @@
-"""What a sweep will cost: told by check, and by run where it is a lot."""
+"""What a sweep will cost: printed by check, and by run where it is a lot."""
 
 from typing import TYPE_CHECKING
 

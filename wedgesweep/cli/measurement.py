@@ -124,7 +124,7 @@ def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
-        f"{frequency:.6g}{_told(test.frequency, frequency)}",
+        f"{frequency:.6g}{_origin(test.frequency, frequency)}",
         _amplitude(test, size),
         f"{test.duration * frequency:.2f}",
         f"{test.sampling_rate / frequency:.4g}",
@@ -133,7 +133,7 @@ def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     )
 
 
-def _told(stated: float | None, used: float) -> str:
+def _origin(stated: float | None, used: float) -> str:
     """Say where a frequency (Hz) comes from if it is not the stated one."""
     if stated is None:
         return " (estimated)"
@@ -156,11 +156,11 @@ def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
     from wedgesweep.measured.noise_estimate import estimate_noise
 
     found = {name: estimate_noise(test.time, each, frequency) for name, each in test.responses.items()}
-    told = []
+    levels = []
     for name, noise in found.items():
         size, unit = SHOWN[name]
-        told.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
-    return ", ".join(told), _runs(next(iter(found.values())).harmonics)
+        levels.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
+    return ", ".join(levels), _runs(next(iter(found.values())).harmonics)
 
 
 def _runs(orders: tuple[int, ...]) -> str:

@@ -158,12 +158,12 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
             raise Failure(message)
         several = isinstance(values, tuple)
         for value in values if several else (values,):
-            _tell_nearest(found, name, value, pick)
+            _warn_unless_there(found, name, value, pick)
         given[pick.variable] = [value * pick.factor for value in values] if several else values * pick.factor
     return given
 
 
-def _tell_nearest(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None:
+def _warn_unless_there(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None:
     """Say which value is taken for one that is not there, in its unit; refuse one that is far from all."""
     import numpy as np
 
@@ -233,9 +233,11 @@ def _draw(
     except DAMAGE as error:
         if isinstance(found, xr.Dataset):  # whose content has been checked
             raise
-        message = f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it"
-        told = f"{message} ({type(error).__name__}: {error})"
-        raise ValueError(told) from error
+        message = (
+            f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it "
+            f"({type(error).__name__}: {error})"
+        )
+        raise ValueError(message) from error
     click.echo(f"wrote {file}")
 
 

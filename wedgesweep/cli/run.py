@@ -91,8 +91,10 @@ def run(
     _require_consistent(backend, scheduler, options["n_jobs"])
     settings = _settings(config_path, solver)
     if options["verify"] is not None and settings.transient:
-        told = "this input does not repeat; run it again with --solver radau and another -o"
-        message = f"{config_path}: --verify compares responses to a sine, and {told}"
+        message = (
+            f"{config_path}: --verify compares responses to a sine, and this input does not repeat; "
+            "run it again with --solver radau and another -o"
+        )
         raise Failure(message)
     from wedgesweep.errors import MismatchError
     from wedgesweep.sweep.backend import count_jobs

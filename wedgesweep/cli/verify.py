@@ -32,7 +32,7 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
         if verifiable:
             worst = verification.largest(verifiable, name)
             apart = getattr(worst.apart, name)
-            click.echo(f"  largest difference of the {words}: {apart:.2g}, at {_told(worst, name)}")
+            click.echo(f"  largest difference of the {words}: {apart:.2g}, at {_numbers_of(worst, name)}")
     for case in [case for case in found.cases if case.message][:LISTED]:
         click.echo(f"  not verified: {case.case}: {case.message}")
     wrong = [case for case in verifiable if case.is_wrong]
@@ -43,11 +43,11 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
             f"(of {small:g} where it is smaller) or a stick fraction of {stick:g}:"
         )
     for case in wrong[:LISTED]:
-        click.echo(f"    {_told(case, 'ratio')}; stick fraction {_pair(case, 'stick')}")
+        click.echo(f"    {_numbers_of(case, 'ratio')}; stick fraction {_pair(case, 'stick')}")
     return SOME_FAILED if wrong or not verifiable else 0
 
 
-def _told(case: "VerifiedCase", name: str) -> str:
+def _numbers_of(case: "VerifiedCase", name: str) -> str:
     return f"{case.case}: {_pair(case, name)}"
 
 

@@ -37,8 +37,8 @@ def _of_kind(given: Mapping[str, Any]) -> Iterator[str]:
     if given.get("kind") == "record" and {"quantity", "unit"} <= given.keys():
         units = RECORDED[given["quantity"]]
         if given["unit"] not in units:
-            told = f"{given['unit']} is no unit of {given['quantity']}; valid here: {', '.join(units)}"
-            yield f"input.unit: {told}"
+            fault = f"{given['unit']} is no unit of {given['quantity']}"
+            yield f"input.unit: {fault}; valid here: {', '.join(units)}"
     if given.get("kind") == "random":
         yield from _density(given)
     if given.get("sampling_hz", 0.0) * given.get("duration_s", 0.0) > MOST_SAMPLES:

@@ -157,8 +157,8 @@ class ByKind(Key):
             problems.append(f"{path}: {show(value)} is not a table; write [{path}], its keys below")
             return {}
         if value.get(KIND) not in list(self.kinds):
-            told = f"unknown name {show(value[KIND])}" if KIND in value else "missing"
-            problems.append(f"{path}.{KIND}: {told}; {hint(str(value.get(KIND, '')), self.kinds)}")
+            fault = f"unknown name {show(value[KIND])}" if KIND in value else "missing"
+            problems.append(f"{path}.{KIND}: {fault}; {hint(str(value.get(KIND, '')), self.kinds)}")
             return {}
         return self.kinds[value[KIND]].read(value, path, problems)
 

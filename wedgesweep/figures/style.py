@@ -15,7 +15,7 @@ from wedgesweep.friction.names import LAW_NAMES
 
 MM = 1e3  # mm per m
 
-# Okabe and Ito's palette, told apart with any colour vision.
+# Okabe and Ito's palette, distinguishable with any colour vision.
 BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
 PURPLE, YELLOW = "#CC79A7", "#F0E442"
 LAW_STYLES = (

@@ -83,8 +83,8 @@ class Overrides(Key):
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, float] | None:
         if not isinstance(value, dict):
-            told = f'{show(value)} is not a table; write {{ "section.key" = number }}'
-            problems.append(f"{path}: {told}")
+            fault = f'{show(value)} is not a table; write {{ "section.key" = number }}'
+            problems.append(f"{path}: {fault}")
             return None
         for name, number in value.items():
             if name.count(".") < 1:
@@ -122,8 +122,8 @@ class Input(Inline):
         read = super().read(value, path, problems)
         if {"quantity", "unit"} <= read.keys() and read["unit"] not in UNITS[read["quantity"]]:
             valid = ", ".join(UNITS[read["quantity"]])
-            told = f"{show(read['unit'])} is no unit of {read['quantity']}; valid here: {valid}"
-            problems.append(f"{path}.unit: {told}")
+            fault = f"{show(read['unit'])} is no unit of {read['quantity']}; valid here: {valid}"
+            problems.append(f"{path}.unit: {fault}")
         return read
 
 

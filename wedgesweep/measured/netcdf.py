@@ -95,10 +95,10 @@ def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
     for channel, long_name in LONG_NAMES.items():
         samples = getattr(test, channel)
         if samples is not None:
-            told = {key: measurement.columns.get(channel, {}).get(key) for key in ("of", "quantity")}
+            kept = {key: measurement.columns.get(channel, {}).get(key) for key in ("of", "quantity")}
             variable = group.createVariable(channel, "f8", ("sample",), compression="zlib")
-            variable.setncatts({"units": SI_UNITS[told["quantity"] or channel], "long_name": long_name})
-            variable.setncatts({key: value for key, value in told.items() if value is not None})
+            variable.setncatts({"units": SI_UNITS[kept["quantity"] or channel], "long_name": long_name})
+            variable.setncatts({key: value for key, value in kept.items() if value is not None})
             variable[:] = samples
             if channel == "velocity":
                 variable.setncattr("derived", int(measurement.derived_velocity))
@@ -123,8 +123,8 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     groups = list(root.groups["tests"].groups.values()) if "tests" in root.groups else []
     if not groups:
-        told = "no measured data; each test must be a group within the group tests"
-        raise MeasuredError([f"{path}: {told}"])
+        fault = "no measured data; each test must be a group within the group tests"
+        raise MeasuredError([f"{path}: {fault}"])
     problems: list[str] = []
     attributes = _attributes(root)
     unknown = [name for name in attributes if name not in ROOT_NAMES]
@@ -199,9 +199,8 @@ def _columns(group: Any) -> dict[str, dict[str, str]]:
     for name in (*UNITS, INPUT):
         if name in group.variables:
             own = group.variables[name]
-            told = {"column": name, "unit": _unit(own)}
             more = {key: getattr(own, key) for key in ("of", "quantity") if hasattr(own, key)}
-            found[name] = told | more
+            found[name] = {"column": name, "unit": _unit(own)} | more
     return found
 
 

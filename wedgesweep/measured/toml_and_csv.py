@@ -32,8 +32,8 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     model = model or _stated_model(path, measurement, problems)
     config, law = load_model(model, problems) if model else (None, "")
     if complete:
-        told = channels.faults(by_kind, measurement, config)
-        problems += [f"{path}: {_at(fault)}" for fault in told]
+        faults = channels.faults(by_kind, measurement, config)
+        problems += [f"{path}: {_at(fault)}" for fault in faults]
     if config is not None:
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         problems += _override_faults(path, measurement, config)
@@ -140,8 +140,8 @@ def _repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]]
         if other.get("file") == first and "repeat_of" not in other:
             same = other.get("kind", STEADY) == given.get("kind", STEADY)
             return [] if same else [f"repeat_of: {show(first)} is of another kind; a repeat is of the same"]
-    told = "is not the file of an earlier test that repeats none; name that one"
-    return [f"repeat_of: {show(first)} {told}"]
+    fault = "is not the file of an earlier test that repeats none; name that one"
+    return [f"repeat_of: {show(first)} {fault}"]
 
 
 def _test(
@@ -162,7 +162,7 @@ def _test(
     problems.extend(faults)
     if faults:
         return []
-    found = Channels(content.columns, units, str(file), content.where(file), content.told)
+    found = Channels(content.columns, units, str(file), content.where(file), content.form)
     test = build_record(file.stem, given, found, at, problems)
     return [test] if test else []
 

@@ -64,8 +64,8 @@ def synthesize(
     ]
     model = Config(config.document | {"effects": {}, "title": "base model"})
     measured = documents.measured(directory.name, config, plan, options)
-    told = documents.truth_document(truth, steady, motions, options)
-    files.write(directory, measured, model, tables, told)
+    solution = documents.truth_document(truth, steady, motions, options)
+    files.write(directory, measured, model, tables, solution)
     return [
         f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
         for i, (test, motion) in enumerate(zip(steady.tests, motions, strict=True))
