@@ -48,7 +48,7 @@ def init(path: Path, force: bool) -> None:
 def schema(output: Path) -> None:
     """Write the JSON schema of configs, for editors.
 
-    With it they check and complete what is typed.
+    With the schema an editor checks and completes what is typed.
     """
     from wedgesweep import config
 

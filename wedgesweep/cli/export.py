@@ -28,7 +28,7 @@ def export(path: Path, output: Path | None, variables: str | None) -> None:
     """Write the dataset OUT as CSV, a row for each case.
 
     Numbers are in SI units, which the header states. Cases that failed have their status and message, and no
-    numbers. Of an unfinished run the others are not_run.
+    numbers. Cases that an unfinished run has not solved yet have the status not_run.
     """
     from wedgesweep.sweep import table
 

@@ -70,7 +70,7 @@ BACKENDS = ("threads", "loky", "dask")
     "--verify",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Solve N random cases of the result, also of an earlier run, again by Radau at rtol 1e-9, and tell "
+    help="Solve N random cases of the result, also of an earlier run, again by Radau at rtol 1e-9, and print "
     "the largest difference; exit code 1 beyond 1e-3 of an amplitude ratio or a stick fraction of 1e-2.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of --verify.")
