@@ -18,7 +18,7 @@ from wedgesweep.hints import hint, show
 from wedgesweep.quantity import Quantity
 from wedgesweep.units import usual
 
-# Numbers beyond these, 0 aside, are of no rig, and their products are no numbers.
+# No rig has larger or smaller numbers (0 aside), whose products would overflow or vanish.
 LARGEST, SMALLEST = 1e15, 1e-15
 
 

@@ -1,7 +1,7 @@
 """A recorded input: a column of a CSV file, sampled at an even rate.
 
 A displacement counts from its first sample; displacement and velocity of the base are 0 at the first sample
-of a recorded velocity or acceleration, whose mean is taken off if ``detrend`` says so.
+of a recorded velocity or acceleration. ``detrend`` subtracts the mean of what was recorded.
 """
 
 from collections.abc import Mapping
