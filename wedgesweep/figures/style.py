@@ -31,9 +31,6 @@ SEQUENTIAL = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
 
 SIGN = "$x-y$: side frame minus bolster, from the frictionless rest position"
 BETA = "frequency ratio $β = ω/ω_n$ [1]"
-AMPLITUDE = "input amplitude $a$ [mm]"
-DISPLACEMENT = "relative displacement $x-y$ [mm]"
-VELOCITY = "relative velocity $x'-y'$ [mm/s]"
 
 
 def law_style(law: str) -> dict[str, str]:
