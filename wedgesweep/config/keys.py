@@ -190,7 +190,7 @@ class Whole(Number):
 
     def read(self, value: Any, path: str, problems: list[str]) -> int | None:
         if isinstance(value, float):
-            problems.append(f"{path}: {show(value)} is not a whole number; write one, no point")
+            problems.append(f"{path}: {show(value)} is not a whole number; write one without a decimal point")
             return None
         if super().read(value, path, problems) is None:
             return None
