@@ -14,7 +14,7 @@ Layout:
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -141,13 +141,10 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
             f"{path}: tests: they have different variables, units, of or quantity; make them alike"
         )
     columns = {name: each for own in by_kind.values() for name, each in own.items()}
-    stds = {**numbers, UNCERTAIN.key: uncertain}
-    faults = channels.faults(by_kind, stds, None if problems else config)
+    faults = channels.faults(by_kind, {**numbers, UNCERTAIN.key: uncertain}, None if problems else config)
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
-        problems += [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
-        for test in complete:
-            problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
+        problems += _model_faults(config, path, columns, by_kind, complete)
     if problems or config is None:
         raise MeasuredError(problems)
     return Measurement(
@@ -161,6 +158,20 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         columns=columns,
         **numbers,
     )
+
+
+def _model_faults(
+    config: Config,
+    path: Path,
+    columns: Mapping[str, Mapping[str, str]],
+    kinds: Iterable[str],
+    tests: Iterable[TestRecord],
+) -> list[str]:
+    """Faults of the base model beside the channels, the kinds and the own numbers of the tests."""
+    problems = [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, kinds)]
+    for test in tests:
+        problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
+    return problems
 
 
 def _derived_velocity(groups: Sequence[Any], path: Path, problems: list[str]) -> bool:
