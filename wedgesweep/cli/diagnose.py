@@ -81,17 +81,23 @@ def diagnose(
         )
     finally:
         steps.stop()
-    # Beside the result, to be moved there when all is written: an earlier one stays until then.
+    _store(found, directory, reported, processors)
+    click.echo(report.sentence(directory))
+    click.echo(f"wrote {directory / report.PAGE if reported else directory}")
+
+
+def _store(found: "DiagnosisResult", directory: Path, reported: bool, n_jobs: int) -> None:
+    """Write a result beside its directory, and replace an earlier one only when all is written."""
+    from wedgesweep import report
+
     target = directory.resolve()
     target.parent.mkdir(parents=True, exist_ok=True)
     with beside(target) as made:
         found.write(made)
         if reported:
-            _draw(found, made, processors)
-            report.write(made, processors)
+            _draw(found, made, n_jobs)
+            report.write(made, n_jobs)
         _move(made, target)
-    click.echo(report.sentence(directory))
-    click.echo(f"wrote {directory / report.PAGE if reported else directory}")
 
 
 def _names(listed: str | None) -> list[str] | None:
