@@ -467,7 +467,7 @@ def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_da
 def test_what_lies_outside_of_validity_is_counted_and_told(here, drawn_dataset):
     told = invoke("status", drawn_dataset, code=1)
     assert (
-        "lie outside of the model's validity: a joint that it holds would lift off (variable lift_off_"
+        "lie outside of the model's validity: a joint pulls where a real one would lift off (variable "
         in told
     )
     assert "did not reach steady state" in told
