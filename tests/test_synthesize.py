@@ -260,6 +260,19 @@ def test_faults_write_nothing(here, file, old, new, words):
     assert sorted(path.name for path in here.iterdir()) == ["tests.toml", "true.toml"]
 
 
+@pytest.mark.parametrize(
+    ("option", "value", "message"),
+    [
+        ("--periods", 1e9, "e+11 samples, at most 5000000 fit into memory; sample less often"),
+        ("--sampling-hz", 1e12, "samples, at most 5000000 fit into memory"),
+        ("--sampling-hz", 60.0, "3 samples per period, at least 5 are needed; raise --sampling-hz"),
+    ],
+)
+def test_records_of_a_length_that_none_has_write_nothing(here, option, value, message):
+    assert message in synthesize(option, value, code=2)
+    assert not (here / "made").exists()
+
+
 def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):
     tone = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.4\nfrequency_hz = 47.0\n"
     (here / "true.toml").write_text(TRUE.replace("[sweep]", f"{tone}[sweep]"))

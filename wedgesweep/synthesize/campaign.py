@@ -13,6 +13,7 @@ from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import STEADY
 from wedgesweep.measured.kinds import FEWEST
 from wedgesweep.measured.model import with_law
+from wedgesweep.measured.steadiness import FEWEST_SAMPLES as FEWEST_PER_PERIOD
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
@@ -27,6 +28,8 @@ from wedgesweep.systems import kits
 
 # A mass that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
+# Records of more samples would not fit into memory.
+MOST_SAMPLES = 5_000_000
 
 
 class SynthesisError(InputError):
@@ -67,7 +70,8 @@ def synthesize(
     solution = documents.truth_document(truth, steady, motions, options)
     files.write(directory, measured, model, tables, solution)
     return [
-        f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
+        f"{_name(i, test)}: not steady after "
+        f"{formatting.counted(options.settle_periods, 'period')}; raise --settle-periods"
         for i, (test, motion) in enumerate(zip(steady.tests, motions, strict=True))
         if test.stray_phase_deg is None and motion.settle_periods == options.settle_periods
     ]
@@ -98,18 +102,27 @@ def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) 
 
 
 def _length_faults(truth: Truth, plan: Plan, options: Options) -> list[str]:
-    """Transients and loops with fewer samples than a diagnosis takes."""
-    counts = {
-        i: other_tables.sample_count(test, options)
-        for i, test in enumerate(truth.tests)
-        if test.plan.kind != STEADY
-    }
-    return [
-        f"{plan.source}: test[{i}].duration_s: {plan.tests[i].duration_s:g} s have "
-        f"{formatting.counted(count, 'sample')}; at least {FEWEST} make a record"
-        for i, count in counts.items()
-        if count < FEWEST
-    ]
+    """Records with fewer samples than a diagnosis takes, or with more than fit into memory."""
+    faults = [(i, _length_fault(test, options)) for i, test in enumerate(truth.tests)]
+    return [f"{plan.source}: test[{i}]{fault}" for i, fault in faults if fault]
+
+
+def _length_fault(test: TrueTest, options: Options) -> str | None:
+    """Fault of the length of one record, behind the name of its test."""
+    if test.plan.kind != STEADY:
+        count: float = other_tables.sample_count(test, options)
+        if count < FEWEST:
+            length = f"{test.plan.duration_s:g} s have {formatting.counted(int(count), 'sample')}"
+            return f".duration_s: {length}; at least {FEWEST} make a record"
+    else:
+        per_period = test.sampling_hz / test.plan.frequency_hz
+        count = options.periods * per_period
+        if per_period < FEWEST_PER_PERIOD:
+            needed = f"at least {FEWEST_PER_PERIOD} are needed"
+            return f": {per_period:.3g} samples per period, {needed}; raise --sampling-hz"
+    if count <= MOST_SAMPLES:
+        return None
+    return f": {count:.3g} samples, at most {MOST_SAMPLES} fit into memory; sample less often, or record less"
 
 
 def _name(i: int, test: TrueTest) -> str:
