@@ -437,6 +437,13 @@ def test_another_solver_that_cannot_do_what_is_asked_is_told_with_its_file(here)
     assert 'steady.toml: solver "radau": solver.settle' in run("steady.toml", "--solver", "radau", code=2)
 
 
+def test_a_lack_of_memory_is_no_traceback():
+    with pytest.raises(MemoryError) as caught:
+        np.empty(2**60)
+    assert str(_failure(caught.value)).startswith("not enough memory: Unable to allocate")
+    assert str(_failure(MemoryError())) == "not enough memory"
+
+
 def test_an_error_of_the_system_without_a_number_is_told():
     assert str(_failure(TimeoutError("no answer"))) == "no answer"
     assert str(_failure(TimeoutError())) == "TimeoutError"

@@ -97,4 +97,6 @@ def _failure(error: Exception) -> Exception:
     if isinstance(error, OSError):
         described = ": ".join(str(part) for part in (error.filename, error.strerror) if part)
         return Failure(described or str(error) or type(error).__name__)
+    if isinstance(error, MemoryError):
+        return Failure(f"not enough memory: {error}" if str(error) else "not enough memory")
     return error
