@@ -83,7 +83,7 @@ def parts(file):
 
 
 def stage(step):
-    """The stage of a step that is told; the final fit is told with its effects."""
+    """The stage of a step; of the final fit without the effects, which its message names."""
     return step.stage if isinstance(step, Step) else step.partition(" of ")[0]
 
 
@@ -99,8 +99,8 @@ def main():
                 parts(file)  # compiles
                 seconds = whole(file, place / "found")
                 verdict, spent = parts(file)
-                told = ", ".join(f"{part} {value:.1f}" for part, value in spent.items() if value >= 0.05)
-                say(f"{hidden:38}{law:16}{verdict:18}{seconds:7.1f}  {told}")
+                shown = ", ".join(f"{part} {value:.1f}" for part, value in spent.items() if value >= 0.05)
+                say(f"{hidden:38}{law:16}{verdict:18}{seconds:7.1f}  {shown}")
         say("\nOver the number of tests (velocity_lag, static-dynamic):")
         for count in (6, 12, 24):
             tests = [(f, a * (1.0 + 0.01 * (i // 12))) for i, (f, a) in enumerate((*TESTS, *TESTS))]

@@ -3,7 +3,8 @@
 The cases are the paper's: those in which nothing lifts off, then all 1,800. Both kinds of joints run
 interleaved. Times are processor times. Siconos (Debian's python3-siconos) steps some cases with lift-off at
 the longest of some steps that keeps amplitude ratios within a limit of those at a tolerance of 1e-9;
-wedgesweep at the loosest tolerance that does. Skipped, and told, where siconos is not installed.
+wedgesweep at the loosest tolerance that does. Where siconos is not installed, the output says that this is
+skipped.
 """
 
 from math import inf

@@ -65,7 +65,7 @@ def chunks(sweep):
         yield Chunk(sweep.config.records(index), index, sweep.settings, 60.0, sweep.dtype)
 
 
-def told(name, cases, own, loops):
+def line(name, cases, own, loops):
     """One line: what a case takes, what a worker takes before its first one, and what the loop takes."""
     warm = [case for case in cases if case.case in WARM]
     cpu, system, faults = (np.mean([getattr(case, name) for case in warm]) for name in Solved._fields[2:5])
@@ -90,7 +90,7 @@ def main():
     ]
     began = time.process_time()
     cases, own = list(map(solved, chunks(sweep))), time.process_time() - began
-    lines.append(told("in itself", cases, own, list(map(empty_loop, range(LOOPS)))))
+    lines.append(line("in itself", cases, own, list(map(empty_loop, range(LOOPS)))))
     for count in (1, 2):
         began = time.process_time()
         with loky(count, dict) as pool:
@@ -99,7 +99,7 @@ def main():
             cases = list(parallel(joblib.delayed(solved)(chunk) for chunk in chunks(sweep)))
             own = time.process_time() - began
             loops = list(parallel(joblib.delayed(empty_loop)(i) for i in range(LOOPS)))
-        lines.append(told(f"{count} at a time", cases, own, loops))
+        lines.append(line(f"{count} at a time", cases, own, loops))
         get_reusable_executor().shutdown()
     print("\n".join(lines))
     REPORT.write_text("\n".join(lines) + "\n")

@@ -72,8 +72,8 @@ def siconos(cases, steps):
             stdout=subprocess.DEVNULL,
             check=True,
         )
-        told = json.loads(out.read_text())
-        return np.array(told["results"]), told["seconds"]
+        answer = json.loads(out.read_text())
+        return np.array(answer["results"]), answer["seconds"]
 
 
 def extrapolated(runs):

@@ -54,7 +54,7 @@ def main() -> int:
         if options.only is not None:
             place = Path(options.keep or base / "one")
             kind, command, verdict = one(given, options.seed, options.only, place, options.kind)
-            print(f"{kind}: {' '.join(command)}\n{verdict.outcome}\n{verdict.told}")
+            print(f"{kind}: {' '.join(command)}\n{verdict.outcome}\n{verdict.output}")
             return int(verdict.fault)
         (base / "specimens").write_bytes(pickle.dumps(given))
         return campaign(options, base)
@@ -102,12 +102,12 @@ def one(
 
 def work(given: specimens.Specimens, options: argparse.Namespace, base: Path) -> None:
     """Try every so many inputs, and write a line of Python on each to the standard output."""
-    told = os.fdopen(os.dup(1), "w", buffering=1)
+    answers = os.fdopen(os.dup(1), "w", buffering=1)
     leaked = (base / "stderr").open("w+")
     os.dup2(leaked.fileno(), 1)
     os.dup2(leaked.fileno(), 2)
     for number in range(options.first, options.inputs, options.step):
-        print(repr(number), file=told)
+        print(repr(number), file=answers)
         try:
             kind, command, verdict = one(given, options.seed, number, base / "input", options.kind)
         except Exception:
@@ -117,8 +117,8 @@ def work(given: specimens.Specimens, options: argparse.Namespace, base: Path) ->
             verdict = Verdict(WARNING, f"on the standard error of the process: {written[:2000]}")
         leaked.truncate(0)
         print(
-            repr((number, kind, command, verdict.outcome, verdict.told[-4000:] if verdict.fault else "")),
-            file=told,
+            repr((number, kind, command, verdict.outcome, verdict.output[-4000:] if verdict.fault else "")),
+            file=answers,
         )
 
 
@@ -199,10 +199,10 @@ def report(found: list[tuple], options: argparse.Namespace) -> int:
         row = [sum(counts[kind, outcome] for kind in names if name in (kind, "all")) for outcome in OUTCOMES]
         print(" ".join([f"{name:<10}", *(f"{count:>13}" for count in row)]))
     faults = sorted(each for each in found if each[3] in FAULTS)
-    for number, kind, command, outcome, told in _first(faults):
+    for number, kind, command, outcome, output in _first(faults):
         print(f"\n--- {outcome}: {kind}, input {number}: wedgesweep {' '.join(command)[:200]}")
         only = f" --kind {options.kind}" if options.kind else ""
-        print(f"python scripts/fuzz.py --seed {options.seed}{only} --only {number} --keep DIR\n{told}")
+        print(f"python scripts/fuzz.py --seed {options.seed}{only} --only {number} --keep DIR\n{output}")
     print(f"\n{len(faults)} faults")
     return int(bool(faults))
 

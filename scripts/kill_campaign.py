@@ -71,9 +71,9 @@ def main() -> int:
         for number, scenario, moment, ended, found in campaign(chosen, options):
             counts[scenario, ended] += 1
             counts[scenario, "faults"] += bool(found)
-            told = f"kill {number}: {scenario}, {moment}, {ended}: {'; '.join(found) or 'all held'}"
-            faults += [told] if found else []
-            print(told, file=sys.stderr, flush=True)
+            line = f"kill {number}: {scenario}, {moment}, {ended}: {'; '.join(found) or 'all held'}"
+            faults += [line] if found else []
+            print(line, file=sys.stderr, flush=True)
     except KeyboardInterrupt:
         print("stopped early", file=sys.stderr)
     return report(options, [each.name for each in chosen], counts, faults)

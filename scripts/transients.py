@@ -107,12 +107,12 @@ def compared(number):
             found.append(simulate.transient(case, settings.transient, 1.0, chosen).samples.x)
         except CaseError as error:
             status = error.status
-    told = f"{number}: {given.system}, {given.document['sweep']['friction_law'][0]}, " + ", ".join(
+    label = f"{number}: {given.system}, {given.document['sweep']['friction_law'][0]}, " + ", ".join(
         (given.document["input"]["kind"], *given.document["effects"])
     )
     if len(found) < 2:
-        return Result(told, 0.0 if not found else np.inf, status)
-    return Result(told, float(np.abs(found[0] - found[1]).max() / np.abs(found[0]).max()), status)
+        return Result(label, 0.0 if not found else np.inf, status)
+    return Result(label, float(np.abs(found[0] - found[1]).max() / np.abs(found[0]).max()), status)
 
 
 def main(count=100):

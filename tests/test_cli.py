@@ -107,6 +107,17 @@ def test_check_tells_cases_time_and_size(here):
     assert "2 of the 2 cases failed, the first by: normal forces not unique" in told
 
 
+def test_one_case_is_counted_in_the_singular(here):
+    grid = '[sweep]\nfriction_law = "coulomb"\nbeta = 1.4\namplitude_mm = 0.5\n'
+    solver = '[solver]\nmethod = "event-driven"\nsettle = "steady"\n'
+    (here / "one.toml").write_text(grid + solver)
+    assert "cases: 1 = 1 friction law x 1 frequency x 1 amplitude\n" in invoke("check", "one.toml")
+    answer = invoke("run", "one.toml")
+    assert answer.startswith("1 case\n1/1 case, ")
+    assert "1 case: 1 ok" in answer
+    assert "wrote one.csv: 1 case\n" in invoke("export", "one.nc")
+
+
 @pytest.mark.parametrize("command", ["check", "run", "case"])
 def test_a_wrong_config_is_reported_whole_and_nothing_is_run(here, command):
     (here / "wrong.toml").write_text('[sweep]\nbetta = 1.0\namplitude_mm = -1.0\nfriction_law = "x"\n')
@@ -399,7 +410,7 @@ def test_plot_options_reach_the_figure_in_si(here, drawn_dataset, monkeypatch):
         (["stick-map", "absent.nc"], "absent.nc: no such file"),
         (["stick-map", "few.toml"], "few.toml: a config, where the dataset of a run"),
         (["stickmap", "OUT"], "is not one of"),
-        (["all", "OUT", "-o", "few.toml"], "few.toml: File exists"),
+        (["all", "OUT", "-o", "few.toml"], "few.toml: not a directory"),
         (["all", "absent/x.nc"], "absent/x.nc: no such file"),
         (
             ["stick-map", "OUT", "--format", "pdf", "-o", "x.png"],
@@ -424,6 +435,13 @@ def test_another_solver_that_cannot_do_what_is_asked_is_told_with_its_file(here)
         FEW.replace("settle_periods = 3", 'method = "event-driven"\nsettle = "steady"')
     )
     assert 'steady.toml: solver "radau": solver.settle' in run("steady.toml", "--solver", "radau", code=2)
+
+
+def test_a_lack_of_memory_is_no_traceback():
+    with pytest.raises(MemoryError) as caught:
+        np.empty(2**55)
+    assert str(_failure(caught.value)).startswith("not enough memory: Unable to allocate")
+    assert str(_failure(MemoryError())) == "not enough memory"
 
 
 def test_an_error_of_the_system_without_a_number_is_told():
@@ -456,7 +474,7 @@ def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_da
 def test_what_lies_outside_of_validity_is_counted_and_told(here, drawn_dataset):
     told = invoke("status", drawn_dataset, code=1)
     assert (
-        "lie outside of the model's validity: a joint that it holds would lift off (variable lift_off_"
+        "lie outside of the model's validity: a joint pulls where a real one would lift off (variable "
         in told
     )
     assert "did not reach steady state" in told

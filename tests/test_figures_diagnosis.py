@@ -125,7 +125,7 @@ def test_legends_distinguish_a_cause_from_an_attempt():
 
 
 def test_candidates_keep_the_base_model_and_leave_out_what_failed(monkeypatch):
-    monkeypatch.setattr(candidates, "MOST", 3)
+    monkeypatch.setattr(candidates, "MOST_ROWS", 3)
     shown = [each["effects"] for each in candidates.shown(build())]
     assert [] in shown
     assert ["cross_slip"] not in shown

@@ -151,7 +151,7 @@ def test_compilation_is_announced_when_it_takes_long(capfd, clock):
 def test_numba_tells_of_its_compilation(here, monkeypatch, capfd):
     import numba
 
-    monkeypatch.setattr(compiling, "WORTH", 0.0)
+    monkeypatch.setattr(compiling, "FIRST_AFTER", 0.0)
     monkeypatch.setattr(compiling, "_listener", None)
     from numba.core import event
 

@@ -249,14 +249,28 @@ def test_an_uncertain_distortion_is_the_same_in_all_tests_and_told(here):
         ("tests.toml", "0.11", "-0.11", "tests.toml: test[0].amplitude_mm: -0.11 is out of range"),
         ("tests.toml", TESTS, "", "tests.toml: test: missing; write [[test]] for each"),
         ("tests.toml", "[[test]]", "[test", "tests.toml: not valid TOML"),
+        ("tests.toml", "[[test]]", "# \udcff\n[[test]]", "tests.toml: not UTF-8 text (byte 2)"),
     ],
 )
 def test_faults_write_nothing(here, file, old, new, words):
     text = (here / file).read_text()
     assert old in text
-    (here / file).write_text(text.replace(old, new, 1))
+    (here / file).write_text(text.replace(old, new, 1), encoding="utf-8", errors="surrogateescape")
     assert words in synthesize(code=2)
     assert sorted(path.name for path in here.iterdir()) == ["tests.toml", "true.toml"]
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "message"),
+    [
+        ("--periods", 1e9, "e+11 samples, at most 5000000 fit into memory; sample less often"),
+        ("--sampling-hz", 1e12, "samples, at most 5000000 fit into memory"),
+        ("--sampling-hz", 60.0, "3 samples per period, at least 5 are needed; raise --sampling-hz"),
+    ],
+)
+def test_records_of_a_length_that_none_has_write_nothing(here, option, value, message):
+    assert message in synthesize(option, value, code=2)
+    assert not (here / "made").exists()
 
 
 def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):

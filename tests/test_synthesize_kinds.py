@@ -72,16 +72,23 @@ def test_releases_a_sweep_and_a_loop_in_one_measurement(tmp_path):
     assert [each["kind"] for each in told["tests"]] == ["transient"] * 3 + ["loop"]
 
 
+RANDOM = SWEEP.replace('"sweep"', '"random"')
 FAULTS = {
     "to_hz: missing": SWEEP.replace("to_hz = 5.0\n", ""),
     "release_mm: 0": '[[test]]\nkind = "transient"\n',
+    'release_mm: "2" is not a finite number': '[[test]]\nkind = "transient"\nrelease_mm = "2"\n',
     "frequency_hz: missing": LOOP.replace("frequency_hz = 1.1\n", ""),
+    "to_hz: 0.5 is not above frequency_hz = 1": RANDOM.replace("to_hz = 5.0", "to_hz = 0.5"),
+    "duration_s: 0.2 s are too short for a band of 4 Hz": RANDOM.replace("12.0", "0.2"),
+    "duration_s: 0.001 s have 0 samples; at least 64": SWEEP.replace("12.0", "0.001"),
+    "duration_s: 0.002 s have 0 samples; at least 64": LOOP.replace("8.0", "0.002"),
 }
 
 
-@pytest.mark.parametrize("told", FAULTS)
-def test_a_plan_that_lacks_something_says_what(tmp_path, told):
+@pytest.mark.parametrize("message", FAULTS)
+def test_a_plan_that_cannot_be_made_says_why(tmp_path, message):
     (tmp_path / "rig.toml").write_text(RIG)
-    (tmp_path / "tests.toml").write_text(FAULTS[told])
-    result = invoke("synthesize", tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", code=2)
-    assert told in result
+    (tmp_path / "tests.toml").write_text(FAULTS[message])
+    paths = (tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", "-o", tmp_path / "data")
+    assert f"tests.toml: test[0].{message}" in invoke("synthesize", *paths, code=2)
+    assert not (tmp_path / "data").exists()

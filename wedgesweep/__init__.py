@@ -23,7 +23,7 @@ __all__ = [
     "simulate_case",
 ]
 
-# What is done is told to those who ask for it: logging.getLogger("wedgesweep").
+# Messages are shown to those who ask for them: logging.getLogger("wedgesweep").
 logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 

@@ -1,4 +1,4 @@
-"""What kind of file a user gave: one of another kind than is wanted is told as what it is."""
+"""What kind of file a user gave; the message on one of the wrong kind says what it is."""
 
 import re
 from pathlib import Path

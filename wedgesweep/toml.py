@@ -2,12 +2,29 @@
 
 import json
 import tomllib
+from pathlib import Path
 from typing import Any
+
+from wedgesweep.errors import InputError
+from wedgesweep.files import read_text
 
 # Tables and lists of a config are nested less deeply.
 DEEPEST = 20
 # A longer whole number is shown in hexadecimal: Python writes decimals of limited length only.
 MOST_BITS = 4096
+
+
+def load(path: Path, wanted: str) -> dict[str, Any]:
+    """Read a TOML file; raises InputError, which names the file and what is ``wanted`` in its place."""
+    try:
+        return loads(read_text(path))
+    except UnicodeDecodeError as error:
+        problem = f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8"
+    except OSError as error:
+        problem = f"{path}: {error.strerror}; give the path of {wanted}"
+    except ValueError as error:
+        problem = f"{path}: not valid TOML: {error}"
+    raise InputError([problem])
 
 
 def loads(text: str) -> dict[str, Any]:

@@ -95,10 +95,10 @@ class Running:
                 continue
         self.process.wait()
         self.log.seek(0)
-        told = self.log.read()
+        output = self.log.read()
         self.log.close()
         Path(self.log.name).unlink()
-        return told
+        return output
 
 
 def _default_signals() -> None:
@@ -153,9 +153,9 @@ def reference(scenario: Scenario, place: Path) -> Reference:
     while running.process.poll() is None:
         journal = max(journal, *(path.stat().st_size for path in _existing(place / f"{OUT}.partial")), 0)
         time.sleep(0.005)
-    seconds, told = time.monotonic() - running.began, running.end()
+    seconds, output = time.monotonic() - running.began, running.end()
     if running.process.returncode:
-        raise RuntimeError(told)
+        raise RuntimeError(output)
     return Reference(place, seconds, journal)
 
 
@@ -184,10 +184,10 @@ def kill(scenario: Scenario, expected: Reference, place: Path, draw: Random) -> 
     else:
         faults = _kill_parent(running, number) if reached else []
     faults += _orphans(running)
-    told = running.end()
-    faults += _faults_of_the_end(running, moment, number, reached, told)
+    output = running.end()
+    faults += _faults_of_the_end(running, moment, number, reached, output)
     faults += _faults_of_another_run(scenario, expected, place)
-    return moment, number.name if reached else "too late", [f"{each}\n{told[-600:]}" for each in faults]
+    return moment, number.name if reached else "too late", [f"{each}\n{output[-600:]}" for each in faults]
 
 
 def _kill_parent(running: Running, number: int) -> list[str]:
@@ -223,15 +223,15 @@ def _orphans(running: Running) -> list[str]:
     return [f"{len(left)} processes are left"] if left else []
 
 
-def _faults_of_the_end(running: Running, moment: str, number: int, reached: bool, told: str) -> list[str]:
+def _faults_of_the_end(running: Running, moment: str, number: int, reached: bool, output: str) -> list[str]:
     code = running.process.returncode
-    faults = ["a traceback"] if "Traceback" in told else []
+    faults = ["a traceback"] if "Traceback" in output else []
     if not reached or moment == "worker":
         return faults + ([f"exit code {code}"] if code else [])
     # 0: it had just finished; -number: before Python could handle signals, or SIGKILL.
     if code not in (0, -number, 128 + number):
         faults.append(f"exit code {code}")
-    if code == 128 + number and "cases" in told and ADVICE not in told:
+    if code == 128 + number and "cases" in output and ADVICE not in output:
         faults.append("no advice")
     return faults
 
@@ -240,11 +240,10 @@ def _faults_of_another_run(scenario: Scenario, expected: Reference, place: Path)
     """Whether the same command ends with the same result and leaves nothing else."""
     again = Running(place, scenario.command)
     ended = again.finish(IN_ALL)
-    told = again.end()
+    output = again.end()
     if not ended or again.process.returncode:
-        return [
-            f"run again: {'exit code ' + str(again.process.returncode) if ended else 'no end'}\n{told[-600:]}"
-        ]
+        ending = f"exit code {again.process.returncode}" if ended else "no end"
+        return [f"run again: {ending}\n{output[-600:]}"]
     faults = (
         [] if scenario.same(place / scenario.result, expected.place / scenario.result) else ["another result"]
     )

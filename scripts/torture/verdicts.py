@@ -30,7 +30,7 @@ class Verdict:
     """How a command ended, and what it said."""
 
     outcome: str
-    told: str
+    output: str
 
     @property
     def fault(self) -> bool:
@@ -75,8 +75,8 @@ def _names_something(message: str, command: Sequence[str]) -> bool:
     """Whether an error names a file or an option."""
     files = [name for _, directories, names in os.walk(".") for name in (*directories, *names)]
     words = [word for word in (*files, *command[1:]) if word.strip()]
-    told = message.partition("Error: ")[2]
-    return any(word in told for word in words) or bool(OPTION.search(told))
+    reason = message.partition("Error: ")[2]
+    return any(word in reason for word in words) or bool(OPTION.search(reason))
 
 
 def _trace(error: BaseException) -> str:

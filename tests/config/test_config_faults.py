@@ -93,7 +93,7 @@ def test_a_value_that_cannot_be_right(table_name, line, hint):
         ("beta", "[0.2, 0.1]", "0.1 follows 0.2"),
         ("beta", '"1"', "not a finite number"),
         ("beta", "[[1]]", "not a finite number"),
-        ("beta", "{ start = 1, stop = 2 }", "num: missing"),
+        ("beta", "{ start = 1, stop = 2 }", "num: missing; write num = 30"),
         ("beta", "{ start = 1, stop = 2, num = 0 }", "at least 1"),
         ("beta", "{ start = 1, stop = 2, num = 1 }", "1 increasing values"),
         ("beta", "{ start = 1, stop = 1, num = 2 }", "2 increasing values"),

@@ -113,6 +113,17 @@ def test_one_netcdf_file_holds_the_same(tmp_path):
             "input_harmonics_std = 0.004",
             "measurement.input_harmonics_std: the input is recorded",
         ),
+        (
+            "frequency_hz = 20.0",
+            f'frequency_hz = 20.0\nmodel = {{ "suspension.bolster_mass_kg" = 1{400 * "0"} }}',
+            "test[0].model: suspension.bolster_mass_kg: 1000",
+        ),
+        (
+            'displacement = { column = "d", unit = "mm" }\n'
+            'input = { column = "v", unit = "g", quantity = "acceleration" }\n',
+            'force = { column = "d", unit = "N" }\n',
+            "measurement.columns.displacement: missing",
+        ),
     ],
 )  # fmt: skip
 def test_faults(tmp_path, old, new, words):

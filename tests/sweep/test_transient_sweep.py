@@ -229,10 +229,13 @@ RANDOM = '[input]\nkind = "random"\nrms_N = 1.0\nduration_s = 2.0\n'
     ("given", "told"),
     [
         (RANDOM, "input.start_hz: missing; write start_hz and stop_hz, or frequency_hz and level"),
+        (RANDOM + "start_hz = 5.0", "input.stop_hz: missing; write start_hz and stop_hz"),
+        (RANDOM + "frequency_hz = [5.0]", "input.level: missing; write start_hz and stop_hz"),
+        (RANDOM + "frequency_hz = [5.0]\nlevel = [1.0]", "input.frequency_hz: a single one has no band"),
         (RANDOM + "start_hz = 5.0\nstop_hz = 2.0", "input.stop_hz: 2 is not above 5"),
         (RANDOM + "start_hz = 1.1\nstop_hz = 1.2", "holds no multiple of 1/duration_s"),
         (RANDOM + "start_hz = 1\nstop_hz = 2\nlevel = [1.0]", "a band and a table exclude each other"),
-        (RANDOM + "frequency_hz = [1.0, 2.0]\nlevel = [1.0]", "input.level: 1 levels for 2 frequencies"),
+        (RANDOM + "frequency_hz = [1.0, 2.0]\nlevel = [1.0]", "input.level: 1 level for 2 frequencies"),
         (RELEASE.replace("30.0", "0.0"), "0 without a velocity is rest"),
         (
             '[input]\nkind = "ramp"\nvelocity_mm_per_s = 1.0\nduration_s = 1.0',
@@ -245,6 +248,20 @@ def test_faults_of_other_kinds_are_told(given, told):
     with pytest.raises(config.ConfigError) as caught:
         config.parse(HEAD + given + TAIL)
     assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("frequency_hz = [1.0, 2.0]\nlevel = [-1.0, 2.0]", "input.level[0]: -1.0 is out of range"),
+        ("frequency_hz = [1.0, -2.0]\nlevel = [1.0, 2.0]", "input.frequency_hz[1]: -2.0 is out of range"),
+    ],
+)
+def test_a_number_out_of_range_is_the_only_fault_of_its_key(given, message):
+    with pytest.raises(config.ConfigError) as caught:
+        config.parse(HEAD + RANDOM + given + TAIL)
+    (problem,) = caught.value.problems
+    assert message in problem
 
 
 @pytest.mark.parametrize("unit", ["m/s^2", "m/s2", "m/s²"])

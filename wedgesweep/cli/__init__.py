@@ -19,8 +19,8 @@ from wedgesweep.cli.status import status
 from wedgesweep.cli.synthesize import synthesize
 
 EPILOG = """\
-Exit codes: 0 success, 1 some cases failed, Radau disagrees (run --verify) or a
-claim is answered otherwise than recorded (reproduce), 2 bad input, 130 interrupted
+Exit codes: 0 success; 1 some cases failed, Radau disagrees (run --verify) or a
+verdict differs from the recorded one (reproduce); 2 bad input; 130 interrupted
 (129 by SIGHUP, 143 by SIGTERM).
 
 Shell completion: add eval "$(_WEDGESWEEP_COMPLETE=bash_source wedgesweep)" to ~/.bashrc (zsh_source and

@@ -34,7 +34,9 @@ PICTURE = "phase-portrait"
 @click.option("--beta", type=float, help="Input frequency as a ratio to omega_n.")
 @click.option("--frequency", type=float, metavar="HZ", help="Input frequency in Hz, instead of --beta.")
 @click.option("--amplitude", type=float, metavar="MM", help="Input amplitude in mm.")
-@click.option("--force", type=float, metavar="N", help="Amplitude of the force in N, where the input is one.")
+@click.option(
+    "--force", type=float, metavar="N", help="Amplitude of the force in N, if the config's input is a force."
+)
 @click.option(
     "-o",
     "--output",
@@ -81,7 +83,7 @@ def case(
 
 
 def _print_remarks(ds: "xr.Dataset") -> None:
-    """Tell what makes the numbers of a solved case doubtful."""
+    """Warn of what makes the numbers of a solved case doubtful."""
     from wedgesweep.sweep import outcomes
 
     result = outcomes.of_dataset(ds)[0]

@@ -1,4 +1,4 @@
-"""Announces compilation whenever numba has to compile: for a minute nothing else would be heard."""
+"""Announces compilation whenever numba has to compile, which may take a minute."""
 
 from time import perf_counter
 from typing import Any
@@ -6,8 +6,8 @@ from typing import Any
 from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log
 
-# Compilation that takes less (s) is not worth a word; later there is one in so many seconds.
-WORTH, AGAIN = 1.0, 15.0
+# Time (s) of compilation before the first message, and between later ones.
+FIRST_AFTER, REPEATED_AFTER = 1.0, 15.0
 FIRST = "compiling the solver (once: 20 s of CPU time, for a diagnosis a minute)"
 
 _listener: Any = None
@@ -33,31 +33,31 @@ def seconds_compiling() -> float:
 
 
 def listener(base: type) -> Any:
-    """A listener that numba tells when it begins and ends to compile a function, or one inside another."""
+    """Make a listener that numba calls when it begins and ends compiling a function; functions nest."""
 
     class Listener(base):
         def __init__(self) -> None:
-            self.depth, self.began, self.before, self.due = 0, 0.0, 0.0, WORTH
+            self.depth, self.began, self.before, self.due = 0, 0.0, 0.0, FIRST_AFTER
 
         def on_start(self, event: Any) -> None:
             if self.depth == 0:
                 self.began = perf_counter()
             self.depth += 1
-            self._tell()
+            self._announce()
 
         def on_end(self, event: Any) -> None:
             if self.depth == 1:
                 self.before = self.elapsed()
             self.depth -= 1
-            self._tell()
+            self._announce()
 
         def elapsed(self) -> float:
             return self.before + (perf_counter() - self.began if self.depth else 0.0)
 
-        def _tell(self) -> None:
+        def _announce(self) -> None:
             elapsed = self.elapsed()
             if elapsed > self.due:
-                log.info(FIRST if self.due == WORTH else f"compiling, {duration(elapsed)} so far")
-                self.due = elapsed + AGAIN
+                log.info(FIRST if self.due == FIRST_AFTER else f"compiling, {duration(elapsed)} so far")
+                self.due = elapsed + REPEATED_AFTER
 
     return Listener()

@@ -48,7 +48,7 @@ def init(path: Path, force: bool) -> None:
 def schema(output: Path) -> None:
     """Write the JSON schema of configs, for editors.
 
-    With it they check and complete what is typed.
+    With the schema an editor checks and completes what is typed.
     """
     from wedgesweep import config
 
@@ -88,14 +88,12 @@ def _grid(settings: "Config") -> str:
     sweep, count = settings.sweep, settings.sweep.count
     if sweep.cases is not None:
         return f"{count}, listed individually"
+    parts = [formatting.counted(len(sweep.friction_law), "friction law")]
     if settings.transient:
-        return f"{count} = {len(sweep.friction_law)} friction laws x {sweep.amplitude.size} scales"
-    laws, betas, amplitudes = len(sweep.friction_law), sweep.beta.size, sweep.amplitude.size
-    parts = (
-        formatting.counted(laws, "friction law"),
-        formatting.counted(betas, "frequency", "frequencies"),
-        formatting.counted(amplitudes, "amplitude"),
-    )
+        parts.append(formatting.counted(sweep.amplitude.size, "scale"))
+    else:
+        parts.append(formatting.counted(sweep.beta.size, "frequency", "frequencies"))
+        parts.append(formatting.counted(sweep.amplitude.size, "amplitude"))
     return f"{count} = {' x '.join(parts)}"
 
 

@@ -1,4 +1,4 @@
-"""What a sweep will cost: told by check, and by run where it is a lot."""
+"""What a sweep will cost: printed by check, and by run where it is a lot."""
 
 from typing import TYPE_CHECKING
 
@@ -16,14 +16,14 @@ MANY = 10_000_000
 
 
 def print_cost(sweep: "Sweep", n_jobs: int) -> None:
-    """Time some cases of a sweep, and print what all of them need; no more is kept of those that fail."""
+    """Time some cases of a sweep; print what all cases need, and how many of those run here failed."""
     from wedgesweep.sweep.estimate import estimate
 
     cost, jobs = estimate(sweep, n_jobs), formatting.counted(n_jobs, "job")
     cases = formatting.counted(cost.sampled.size, "case")
     click.echo(
         f"time: about {duration(cost.seconds)} on {jobs} (from {cases} run now)\n"
-        f"memory: about {size(cost.memory)} on {jobs}, {size(cost.bytes_per_case)} a case of it\n"
+        f"memory: about {size(cost.memory)} on {jobs}, {size(cost.bytes_per_case)} of it for each case\n"
         f"dataset: at most {size(cost.dataset_bytes)}, less after compression"
     )
     failed = cost.sampled[cost.sampled["status"] != 0]

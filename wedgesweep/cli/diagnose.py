@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain")
 FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
-# A file that is in the directory of a result while an earlier one gives way to it.
-MOVING = ".unfinished-diagnosis"
+# Marks a directory in which an earlier result is being replaced.
+REPLACING = ".unfinished-diagnosis"
 # Figures of one kind of test only.
 OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrogram": "transient"}
 
@@ -81,17 +81,23 @@ def diagnose(
         )
     finally:
         steps.stop()
-    # Beside the result, to be moved there when all is written: an earlier one stays until then.
+    _store(found, directory, reported, processors)
+    click.echo(report.sentence(directory))
+    click.echo(f"wrote {directory / report.PAGE if reported else directory}")
+
+
+def _store(found: "DiagnosisResult", directory: Path, reported: bool, n_jobs: int) -> None:
+    """Write a result beside its directory, and replace an earlier one only when all is written."""
+    from wedgesweep import report
+
     target = directory.resolve()
     target.parent.mkdir(parents=True, exist_ok=True)
     with beside(target) as made:
         found.write(made)
         if reported:
-            _draw(found, made, processors)
-            report.write(made, processors)
+            _draw(found, made, n_jobs)
+            report.write(made, n_jobs)
         _move(made, target)
-    click.echo(report.sentence(directory))
-    click.echo(f"wrote {directory / report.PAGE if reported else directory}")
 
 
 def _names(listed: str | None) -> list[str] | None:
@@ -103,10 +109,10 @@ def _name(measured: Path) -> str:
 
 
 def _require_own(directory: Path) -> None:
-    """Refuse to replace files of the names of a result that no diagnosis has left there."""
+    """Refuse to overwrite files that have the names of a result, but are not from a diagnosis."""
     mark, *others = _result_files()
     foreign = [name for name in others if (directory / name).exists()]
-    if foreign and not any((directory / each).is_file() for each in (mark, MOVING)):
+    if foreign and not any((directory / each).is_file() for each in (mark, REPLACING)):
         message = f"{directory / foreign[0]}: not the result of a diagnosis; choose another -o to keep it"
         raise Failure(message)
 
@@ -123,15 +129,15 @@ def _move(made: Path, directory: Path) -> None:
     """Replace an earlier result by a complete one; between the two there is no verdict."""
     first, *others = _result_files()
     directory.mkdir(exist_ok=True)
-    # If this process is killed now, the next one knows the files for those of a diagnosis.
-    (directory / MOVING).touch()
+    # If this process is killed now, the next one still sees that the files are from a diagnosis.
+    (directory / REPLACING).touch()
     (directory / first).unlink(missing_ok=True)
     for name in (*others, first):
         if (made / name).exists():
             (made / name).replace(directory / name)
         else:
             (directory / name).unlink(missing_ok=True)
-    (directory / MOVING).unlink()
+    (directory / REPLACING).unlink()
 
 
 def _draw(found: "DiagnosisResult", directory: Path, n_jobs: int) -> None:

@@ -10,6 +10,7 @@ from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, OutputPath
 from wedgesweep.cli.plot import read_dataset
 from wedgesweep.endings import CSV
 from wedgesweep.files import written
+from wedgesweep.formatting import counted
 
 
 @click.command()
@@ -27,7 +28,7 @@ def export(path: Path, output: Path | None, variables: str | None) -> None:
     """Write the dataset OUT as CSV, a row for each case.
 
     Numbers are in SI units, which the header states. Cases that failed have their status and message, and no
-    numbers. Of an unfinished run the others are not_run.
+    numbers. Cases that an unfinished run has not solved yet have the status not_run.
     """
     from wedgesweep.sweep import table
 
@@ -42,7 +43,7 @@ def export(path: Path, output: Path | None, variables: str | None) -> None:
     with written(file) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
         for some in rows:
             stream.write(_text(some))
-    click.echo(f"wrote {file}: {ds['status'].size} cases")
+    click.echo(f"wrote {file}: {counted(ds['status'].size, 'case')}")
 
 
 def _text(rows: list[list[str]]) -> str:

@@ -21,7 +21,7 @@ ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasatt
 
 
 class Terminated(KeyboardInterrupt):
-    """The process was told to end by a signal of this number."""
+    """A signal of this number asked the process to end."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -95,6 +95,8 @@ def _failure(error: Exception) -> Exception:
     if isinstance(error, (InputError, SweepError)):
         return Failure(str(error))
     if isinstance(error, OSError):
-        told = ": ".join(str(part) for part in (error.filename, error.strerror) if part)
-        return Failure(told or str(error) or type(error).__name__)
+        described = ": ".join(str(part) for part in (error.filename, error.strerror) if part)
+        return Failure(described or str(error) or type(error).__name__)
+    if isinstance(error, MemoryError):
+        return Failure(f"not enough memory: {error}" if str(error) else "not enough memory")
     return error

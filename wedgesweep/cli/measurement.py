@@ -1,5 +1,6 @@
 """The table of measured tests that check prints."""
 
+from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -8,6 +9,7 @@ import click
 from wedgesweep.cli.messages import log
 
 if TYPE_CHECKING:
+    from wedgesweep.diagnose.transient.window import RecordWindow
     from wedgesweep.measured import Measurement, TestRecord
 
 HEADINGS = ("file", "frequency", "amplitude", "periods", "samples", "noise", "harmonics seen")
@@ -17,7 +19,7 @@ TRANSIENT_HEADINGS = (
     *("file", "duration", "samples", "periods", "windows"),
     *("largest", "noise", "its correlation", "taken from"),
 )
-TRANSIENT_UNITS = ("", "s", "", "natural", "", "mm", "mm", "to the next sample", "")
+TRANSIENT_UNITS = ("", "s", "", "natural", "", "mm", "of first response", "to the next sample", "")
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -69,7 +71,7 @@ def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for number, test in enumerate(measurement.tests):
         own = [each for each in windows if each.number == number]
-        noise, length = own[0].spectra[0], max(each.length for each in own)
+        noise = own[0].spectra[0]
         rows.append(
             (
                 test.file,
@@ -77,13 +79,26 @@ def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
                 f"{test.time.size}",
                 f"{sum(each.natural for each in own):.4g}",
                 f"{len(own)}",
-                f"{1e3 * length:.4g}",
-                f"{1e3 * noise.std:.3g} ({100.0 * noise.std / length:.2g} %)",
+                f"{1e3 * max(each.length for each in own):.4g}",
+                _transient_noise(own),
                 f"{noise.correlation:.2f}",
                 noise.source,
             )
         )
     return rows
+
+
+def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
+    """Noise of the first response of a test, in its unit and as a share of that response at its largest."""
+    from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION
+    from wedgesweep.measured.kinds import SHOWN
+
+    order, signals = windows[0].orders[0], [each.channels[0] for each in windows]
+    # The zero of an accelerometer is unknown.
+    swing = max(0.5 * float(each.max() - each.min()) for each in signals)
+    largest = max(each.length for each in windows) if order == 0 else swing
+    std, (size, unit) = windows[0].spectra[0].std, SHOWN[QUANTITIES_OF_MOTION[order]]
+    return f"{std / size:.3g} {unit} ({100.0 * std / largest:.2g} %)"
 
 
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
@@ -109,7 +124,7 @@ def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     noise, harmonics = _noise(test, frequency)
     return (
         test.file,
-        f"{frequency:.6g}{_told(test.frequency, frequency)}",
+        f"{frequency:.6g}{_origin(test.frequency, frequency)}",
         _amplitude(test, size),
         f"{test.duration * frequency:.2f}",
         f"{test.sampling_rate / frequency:.4g}",
@@ -118,7 +133,7 @@ def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
     )
 
 
-def _told(stated: float | None, used: float) -> str:
+def _origin(stated: float | None, used: float) -> str:
     """Say where a frequency (Hz) comes from if it is not the stated one."""
     if stated is None:
         return " (estimated)"
@@ -141,11 +156,11 @@ def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
     from wedgesweep.measured.noise_estimate import estimate_noise
 
     found = {name: estimate_noise(test.time, each, frequency) for name, each in test.responses.items()}
-    told = []
+    levels = []
     for name, noise in found.items():
         size, unit = SHOWN[name]
-        told.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
-    return ", ".join(told), _runs(next(iter(found.values())).harmonics)
+        levels.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
+    return ", ".join(levels), _runs(next(iter(found.values())).harmonics)
 
 
 def _runs(orders: tuple[int, ...]) -> str:

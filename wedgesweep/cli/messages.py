@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 log = logging.getLogger("wedgesweep")
-# The line of the terminal that shows progress, and is written over.
+# Clears the line of the terminal that shows progress.
 _WIPE = "\r\x1b[2K"
 
 
@@ -64,7 +64,7 @@ def with_verbosity(command: Any) -> Any:
     """Add --quiet and --verbose to a command."""
     options = (
         ("quiet", "Print results, warnings and errors only: no notes, no progress."),
-        ("verbose", "Also tell what is read, solved and written."),
+        ("verbose", "Also print what is read, solved and written."),
     )
     for name, meaning in options:
         command.params.append(

@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET, FiniteRange
+from wedgesweep.cli.options import DATASET, FiniteRange, require_place_for
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
@@ -88,6 +88,7 @@ def plot(
         raise click.UsageError(message)
     if kind == ALL:
         directory, found = output or _beside(path), _read(path)
+        require_place_for(directory)
         directory.mkdir(parents=True, exist_ok=True)
         _draw_all(found, directory, suffix, _options(found, picks))
         return
@@ -157,12 +158,12 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
             raise Failure(message)
         several = isinstance(values, tuple)
         for value in values if several else (values,):
-            _tell_nearest(found, name, value, pick)
+            _warn_unless_there(found, name, value, pick)
         given[pick.variable] = [value * pick.factor for value in values] if several else values * pick.factor
     return given
 
 
-def _tell_nearest(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None:
+def _warn_unless_there(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None:
     """Say which value is taken for one that is not there, in its unit; refuse one that is far from all."""
     import numpy as np
 
@@ -232,9 +233,11 @@ def _draw(
     except DAMAGE as error:
         if isinstance(found, xr.Dataset):  # whose content has been checked
             raise
-        message = f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it"
-        told = f"{message} ({type(error).__name__}: {error})"
-        raise ValueError(told) from error
+        message = (
+            f"{kind}: diagnosis.json or diagnosis.nc is not as a diagnosis writes it "
+            f"({type(error).__name__}: {error})"
+        )
+        raise ValueError(message) from error
     click.echo(f"wrote {file}")
 
 

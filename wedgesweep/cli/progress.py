@@ -8,6 +8,7 @@ import click
 
 from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log, shows_status
+from wedgesweep.formatting import counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -53,7 +54,7 @@ class ProgressReport:
         self._started = self._said = perf_counter()
         self._said_done = self.done
         kept = f", {self.kept} of them from an earlier run" if self.kept else ""
-        log.info(f"{self.total} cases{kept}")
+        log.info(f"{counted(self.total, 'case')}{kept}")
         if shows_status() and self.done < self.total:
             self._bar = click.progressbar(
                 length=self.total - self.kept,
@@ -75,4 +76,5 @@ class ProgressReport:
         left = elapsed / max(self.done - self.kept, 1) * (self.total - self.done)
         ahead = f", about {duration(left)} left" if left else ""
         failed = f", {self.failed} failed" if self.failed else ""
-        return f"{self.done}/{self.total} cases{failed}, {duration(elapsed)}{ahead}"
+        cases = "case" if self.total == 1 else "cases"
+        return f"{self.done}/{self.total} {cases}{failed}, {duration(elapsed)}{ahead}"

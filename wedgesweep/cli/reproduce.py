@@ -1,4 +1,4 @@
-"""reproduce: check the paper's claims, and search what may explain Chandiramani's experiment."""
+"""reproduce: check the paper's claims, and test hypotheses on Chandiramani's experiment."""
 
 from pathlib import Path
 
@@ -21,15 +21,16 @@ from wedgesweep.cli.progress import ProgressReport
 @click.option(
     "--only",
     type=click.Choice(["claims", "chandiramani"]),
-    help="Check only the paper's claims, or search only Chandiramani's experiment (minutes).",
+    help="Check only the paper's claims, or test only the hypotheses on Chandiramani's experiment (minutes).",
 )
 @N_JOBS
 @click.pass_context
 def reproduce(ctx: click.Context, output: Path, only: str | None, n_jobs: int | None) -> None:
     """Run the paper's cases, and check its claims.
 
-    Also searches what may explain the experiment that the paper compares itself with. Exits with code 1 if a
-    verdict differs from the recorded one. Finished cases are stored: rerun the same command to resume.
+    Also tests which hypotheses explain Chandiramani's experiment, with which the paper compares its results.
+    Takes 40 minutes on two cores; finished cases are stored: rerun the same command to resume. Exits with
+    code 1 if a verdict differs from the recorded one.
     """
     from wedgesweep.reproduce import reproduce as run_all
     from wedgesweep.sweep.backend import count_jobs

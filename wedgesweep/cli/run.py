@@ -17,6 +17,7 @@ from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
 from wedgesweep.endings import NETCDF
+from wedgesweep.formatting import counted
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ BACKENDS = ("threads", "loky", "dask")
     "--verify",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Solve N random cases of the result, also of an earlier run, again by Radau at rtol 1e-9, and tell "
+    help="Solve N random cases of the result, also of an earlier run, again by Radau at rtol 1e-9, and print "
     "the largest difference; exit code 1 beyond 1e-3 of an amplitude ratio or a stick fraction of 1e-2.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of --verify.")
@@ -88,18 +89,15 @@ def run(
     Finished cases are stored at once: after an interruption, rerun the same command to resume.
     """
     _require_consistent(backend, scheduler, options["n_jobs"])
-    settings = _settings(config_path, solver)
-    if options["verify"] is not None and settings.transient:
-        told = "this input does not repeat; run it again with --solver radau and another -o"
-        message = f"{config_path}: --verify compares responses to a sine, and {told}"
-        raise Failure(message)
+    settings, count, seed = _settings(config_path, solver), options.pop("verify"), options.pop("seed")
+    if count is not None:
+        _require_sine(settings, config_path)
     from wedgesweep.errors import MismatchError
     from wedgesweep.sweep.backend import count_jobs
     from wedgesweep.sweep.run import CaseFailedError, Sweep
 
     sweep = Sweep(settings, output or Path(f"{config_path.stem}.nc"), command_line())
-    progress, judged, seed = ProgressReport(), options.pop("verify"), options.pop("seed")
-    jobs = count_jobs(options["n_jobs"])
+    progress, jobs = ProgressReport(), count_jobs(options["n_jobs"])
     try:
         options |= {"n_jobs": jobs, "backend": _backend(backend, scheduler)}
         result, code = _run(sweep, progress, options)
@@ -114,8 +112,8 @@ def run(
     except MismatchError as error:
         message = f"{error}; choose another -o to keep it, or --fresh to discard it"
         raise Failure(message) from error
-    if judged is not None:
-        code = max(code, print_verification(sweep, result, judged, seed, jobs))
+    if count is not None:
+        code = max(code, print_verification(sweep, result, count, seed, jobs))
     ctx.exit(code)
 
 
@@ -128,6 +126,16 @@ def _settings(config_path: Path, solver: str | None) -> "Config":
         return with_method(settings, solver) if solver else settings
     except config.ConfigError as error:
         raise config.ConfigError([f"{config_path}: {problem}" for problem in error.problems]) from error
+
+
+def _require_sine(settings: "Config", config_path: Path) -> None:
+    """Refuse to verify responses to an input that does not repeat."""
+    if settings.transient:
+        message = (
+            f"{config_path}: --verify compares responses to a sine, and this input does not repeat; "
+            "run it again with --solver radau and another -o"
+        )
+        raise Failure(message)
 
 
 def _require_consistent(backend: str | None, scheduler: str | None, n_jobs: int | None) -> None:
@@ -177,5 +185,6 @@ def print_remark(settings: "Config") -> None:
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:
     progress.stop()
-    kept = f"{progress.done} finished cases are stored in {sweep.journal_path}"
+    finished = counted(progress.done, "finished case")
+    kept = f"{finished} {'is' if progress.done == 1 else 'are'} stored in {sweep.journal_path}"
     click.echo(f"{reason}\n{kept}; {advice}", err=True)

@@ -15,7 +15,7 @@ LINE_SHARE, LINE_SECONDS = 0.2, 10.0
 
 
 class StepReport:
-    """Is told of each step, and tells how far its stage is and how long the rest may take."""
+    """Called at each step of a diagnosis; shows how far its stage is, and how long the rest may take."""
 
     def __init__(self) -> None:
         self._began = self._said = perf_counter()
@@ -30,9 +30,9 @@ class StepReport:
         else:
             if step.done == 0:
                 self._began, self._said_done = perf_counter() - seconds_compiling(), -step.total
-            self._tell(step)
+            self._show(step)
 
-    def _tell(self, step: "Step") -> None:
+    def _show(self, step: "Step") -> None:
         line = str(step)
         if 0 < step.done < step.total:
             # What is compiled at the first step is not compiled again.

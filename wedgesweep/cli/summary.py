@@ -31,8 +31,8 @@ def print_outcomes(found: "Outcomes", total: int | None = None) -> int:
     _print_share(
         found.lifted,
         len(found),
-        f"{'lies' if found.lifted == 1 else 'lie'} outside of the model's validity: a joint that it holds "
-        "would lift off (variable lift_off_fraction)",
+        f"{'lies' if found.lifted == 1 else 'lie'} outside of the model's validity: a joint pulls where "
+        "a real one would lift off (variable lift_off_fraction)",
     )
     failed = found.failures
     for place in failed[:LISTED].tolist():

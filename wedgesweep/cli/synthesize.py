@@ -24,7 +24,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
     metavar="TESTS",
     help="TOML file with a [[test]] table per test (frequency_hz, amplitude_mm or amplitude_N, optionally "
     "amplitude_std, and known = false to withhold the amplitude) and an optional [uncertain] table as in "
-    "measured.toml.",
+    "measured.toml. Keys of transients and loops (kind, motion, duration_s, ...): docs/diagnosis.md.",
 )
 @click.option(
     "--noise", type=click.Choice(NOISES), default=NOISES[0], show_default=True, help="Kind of noise."

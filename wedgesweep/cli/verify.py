@@ -7,6 +7,7 @@ import click
 from wedgesweep.cli.failure import SOME_FAILED
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.summary import LISTED
+from wedgesweep.formatting import counted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,18 +20,19 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
     """Solve random cases again and print the largest differences; return the exit code."""
     from wedgesweep.sweep import verification
 
-    log.info(f"verifying {count} random cases by Radau")
+    log.info(f"verifying {counted(count, 'random case')} by Radau")
     found = verification.verify(sweep, ds, count, seed, n_jobs)
     verifiable = found.verifiable
+    cases = counted(len(verifiable), "case")
     click.echo(
-        f"verified by Radau at rtol {verification.RTOL:g}: {len(verifiable)} cases out of {found.candidates} "
+        f"verified by Radau at rtol {verification.RTOL:g}: {cases} out of {found.candidates} "
         f"that were solved (random, seed {found.seed})"
     )
     for name, words in (("ratio", "amplitude ratio"), ("stick", "stick fraction")):
         if verifiable:
             worst = verification.largest(verifiable, name)
             apart = getattr(worst.apart, name)
-            click.echo(f"  largest difference of the {words}: {apart:.2g}, at {_told(worst, name)}")
+            click.echo(f"  largest difference of the {words}: {apart:.2g}, at {_numbers_of(worst, name)}")
     for case in [case for case in found.cases if case.message][:LISTED]:
         click.echo(f"  not verified: {case.case}: {case.message}")
     wrong = [case for case in verifiable if case.is_wrong]
@@ -41,11 +43,11 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
             f"(of {small:g} where it is smaller) or a stick fraction of {stick:g}:"
         )
     for case in wrong[:LISTED]:
-        click.echo(f"    {_told(case, 'ratio')}; stick fraction {_pair(case, 'stick')}")
+        click.echo(f"    {_numbers_of(case, 'ratio')}; stick fraction {_pair(case, 'stick')}")
     return SOME_FAILED if wrong or not verifiable else 0
 
 
-def _told(case: "VerifiedCase", name: str) -> str:
+def _numbers_of(case: "VerifiedCase", name: str) -> str:
     return f"{case.case}: {_pair(case, name)}"
 
 

@@ -1,7 +1,7 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import isnan, sqrt
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,7 @@ from wedgesweep.config.cases import AmplitudeUnit, Case, Cases
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import root
 from wedgesweep.config.model import OSCILLATOR, UNIT_FREQUENCY, Config
-from wedgesweep.errors import ConfigError
-from wedgesweep.files import read_text
+from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.inputs import record
 from wedgesweep.kinds import CONFIG, confusion
 
@@ -30,14 +29,10 @@ def load(path: str | Path) -> Config:
     if problem := confusion(Path(path), CONFIG):
         raise ConfigError([problem])
     try:
-        text = read_text(Path(path))
-    except UnicodeDecodeError as error:
-        problem = f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8"
-        raise ConfigError([problem]) from error
-    except OSError as error:
-        problem = f"{path}: {error.strerror}; give the path of a TOML file"
-        raise ConfigError([problem]) from error
-    found = parse(text, str(path), Path(path).parent)
+        given = toml.load(Path(path), "a TOML file")
+    except InputError as error:
+        raise ConfigError(error.problems) from error
+    found = from_document(given, str(path), Path(path).parent)
     log.debug("%s: %d cases, %s", path, found.sweep.count, found.document["solver"]["method"])
     return found
 
@@ -58,7 +53,7 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
     problems: list[str] = []
     document = root("input" in given).read(given, "", problems)
-    problems += contradictions(document)
+    problems += _of_other_keys(problems, contradictions(document))
     recorded = document.get("input", {})
     if not problems and recorded.get("kind") == "record" and "sha256" not in recorded:
         problems += _located(recorded, directory)
@@ -71,6 +66,12 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
     if SOFTENING in found.effects and found.system != OSCILLATOR:
         _require_rest(found, source)
     return found
+
+
+def _of_other_keys(problems: Iterable[str], found: Iterable[str]) -> list[str]:
+    """The contradictions found, but for those of keys with a problem of their own: they are absent here."""
+    faulty = {problem.partition(":")[0].partition("[")[0] for problem in problems}
+    return [each for each in found if each.partition(":")[0] not in faulty]
 
 
 def _located(recorded: dict[str, Any], directory: Path) -> list[str]:

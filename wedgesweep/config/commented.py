@@ -9,7 +9,7 @@ from wedgesweep.config.tables import GridOrList, Table, TableList
 
 HEAD = """\
 # Config of wedgesweep. The ending of a key names its unit. Only [sweep] is required; all other keys are shown
-# with their defaults, but for the solver. To switch an effect on, remove the "# " before its table and keys.
+# with their defaults, except in [solver]. To switch an effect on, remove the "# " before its table and keys.
 
 """
 

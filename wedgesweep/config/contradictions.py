@@ -112,8 +112,8 @@ def _effects(document: Mapping[str, Any]) -> Iterator[str]:
     article = "an" if system == OSCILLATOR else "a"
     for name in given:
         if name not in possible:
-            told = f"{article} {system} has no such part"
-            yield f"effects.{name}: {told}; valid here: {', '.join(possible)}"
+            problem = f"{article} {system} has no such part"
+            yield f"effects.{name}: {problem}; valid here: {', '.join(possible)}"
         for other in set(given).intersection(EFFECTS[name].excludes):
             yield f"effects.{name}: does not go with effects.{other}; remove one of them"
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wedgesweep.formatting import counted
 from wedgesweep.inputs.units import RECORDED
 
 # Effects on a sine, or with a phase of their own against it.
@@ -36,8 +37,8 @@ def _of_kind(given: Mapping[str, Any]) -> Iterator[str]:
     if given.get("kind") == "record" and {"quantity", "unit"} <= given.keys():
         units = RECORDED[given["quantity"]]
         if given["unit"] not in units:
-            told = f"{given['unit']} is no unit of {given['quantity']}; valid here: {', '.join(units)}"
-            yield f"input.unit: {told}"
+            fault = f"{given['unit']} is no unit of {given['quantity']}"
+            yield f"input.unit: {fault}; valid here: {', '.join(units)}"
     if given.get("kind") == "random":
         yield from _density(given)
     if given.get("sampling_hz", 0.0) * given.get("duration_s", 0.0) > MOST_SAMPLES:
@@ -51,24 +52,32 @@ def _of_kind(given: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _density(given: Mapping[str, Any]) -> Iterator[str]:
-    band, listed = {"start_hz", "stop_hz"} & given.keys(), {"frequency_hz", "level"} & given.keys()
-    if band and listed:
-        yield f"input.{min(listed)}: a band and a table exclude each other; keep start_hz and stop_hz, or it"
-    elif len(band) + len(listed) < 2:
-        yield "input.start_hz: missing; write start_hz and stop_hz, or frequency_hz and level"
+    """Faults of the band, or of the table, of a power spectral density."""
+    band, table = ("start_hz", "stop_hz"), ("frequency_hz", "level")
+    listed = [key for key in table if key in given]
+    if listed and any(key in given for key in band):
+        yield f"input.{listed[0]}: a band and a table exclude each other; keep start_hz and stop_hz, or it"
+        return
+    missing = [key for key in (table if listed else band) if key not in given]
+    if missing:
+        yield f"input.{missing[0]}: missing; write start_hz and stop_hz, or frequency_hz and level"
     elif listed and len(given["frequency_hz"]) != len(given["level"]):
-        yield f"input.level: {len(given['level'])} levels for {len(given['frequency_hz'])} frequencies"
+        levels = counted(len(given["level"]), "level")
+        frequencies = counted(len(given["frequency_hz"]), "frequency", "frequencies")
+        yield f"input.level: {levels} for {frequencies}; write one for each"
+    elif listed and len(given["frequency_hz"]) < 2:
+        yield "input.frequency_hz: a single one has no band between; write two or more"
     else:
-        low, high = (
-            (given["start_hz"], given["stop_hz"])
-            if band
-            else (given["frequency_hz"][0], given["frequency_hz"][-1])
-        )
-        lines = high * given.get("duration_s", 1e9)
-        if high <= low:
-            yield f"input.stop_hz: {high:g} is not above {low:g}; write an increasing band"
-        elif int(lines * (1.0 + 1e-12)) < low * given.get("duration_s", 1e9):
-            yield "input.duration_s: too short for the band: it holds no multiple of 1/duration_s"
+        ends = given["frequency_hz"] if listed else [given[key] for key in band]
+        yield from _band(ends[0], ends[-1], given.get("duration_s", 1e9))
+
+
+def _band(low: float, high: float, duration: float) -> Iterator[str]:
+    """Faults of a band (Hz) of an input of some duration (s)."""
+    if high <= low:
+        yield f"input.stop_hz: {high:g} is not above {low:g}; write an increasing band"
+    elif int(high * duration * (1.0 + 1e-12)) < low * duration:
+        yield "input.duration_s: too short for the band: it holds no multiple of 1/duration_s"
 
 
 def _of_system(document: Mapping[str, Any]) -> Iterator[str]:

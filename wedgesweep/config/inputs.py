@@ -32,7 +32,12 @@ def _size(key: str, meaning: str, example: float) -> tuple[Key, ...]:
 
 
 DURATION = _positive("duration_s", "length of the input", example=30.0)
-SAMPLING = _positive("sampling_hz", "rate of the stored waveforms", optional=True, example=500.0)
+SAMPLING = _positive(
+    "sampling_hz",
+    "sampling rate of the stored waveforms; default: as high as input and model need",
+    optional=True,
+    example=500.0,
+)
 FADE = Number.of(
     Quantity("fade_s", 0.0, "time in which it rises at its start and falls at its end", minimum=0.0)
 )
@@ -40,14 +45,15 @@ FADE = Number.of(
 
 @dataclass(frozen=True, kw_only=True)
 class Levels(Key):
-    """Levels of a density, one for each of its frequencies."""
+    """Levels of a power spectral density, one for each frequency."""
 
     item: Number
 
     def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
         given = value if isinstance(value, list) else [value]
         read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
-        return [each for each in read if each is not None]
+        known = [each for each in read if each is not None]
+        return known if len(known) == len(read) else None
 
     def shape(self) -> dict[str, Any]:
         return {"type": "array", "items": self.item.shape(), "minItems": 1}
@@ -77,12 +83,12 @@ SINE_SWEEP = _kind(
 RANDOM = _kind(
     "random",
     "random motion with a given power spectral density",
-    _size("rms", "rms of all", 1.0),
-    _positive("start_hz", "lowest frequency of a band of even density", optional=True, example=2.0),
-    _positive("stop_hz", "highest frequency of it", optional=True, example=30.0),
+    _size("rms", "rms of the whole input", 1.0),
+    _positive("start_hz", "lowest frequency of a band of constant density", optional=True, example=2.0),
+    _positive("stop_hz", "highest frequency of the band", optional=True, example=30.0),
     Series(
         key="frequency_hz",
-        meaning="instead of a band: frequencies of a table of the density",
+        meaning="instead of a band: frequencies at which the density is given",
         item=_positive("frequency_hz", "frequency"),
         optional=True,
         example=[1.0, 10.0, 30.0],
@@ -95,7 +101,11 @@ RANDOM = _kind(
         example=[1.0, 1.0, 0.1],
     ),
     Whole.of(Quantity("seed", 0, "seed of the random numbers", minimum=0, maximum=2**31 - 1)),
-    Flag(key="periodic", meaning="whether it would repeat: then its spectrum is exact", default=True),
+    Flag(
+        key="periodic",
+        meaning="whether it is one period of a periodic signal, whose spectrum is exact",
+        default=True,
+    ),
     DURATION,
     FADE,
     SAMPLING,
@@ -134,7 +144,7 @@ RECORD = _kind(
         Text(key="time", meaning="header of the time's column (s)", example="time"),
         _positive("sampling_hz", "sampling rate, where there is no such column", example=500.0),
     ),
-    Flag(key="detrend", meaning="take off its mean", default=False),
+    Flag(key="detrend", meaning="whether to subtract its mean", default=False),
 )
 KINDS = {
     "sine-sweep": SINE_SWEEP,
@@ -156,8 +166,8 @@ class ByKind(Key):
             problems.append(f"{path}: {show(value)} is not a table; write [{path}], its keys below")
             return {}
         if value.get(KIND) not in list(self.kinds):
-            told = f"unknown name {show(value[KIND])}" if KIND in value else "missing"
-            problems.append(f"{path}.{KIND}: {told}; {hint(str(value.get(KIND, '')), self.kinds)}")
+            fault = f"unknown name {show(value[KIND])}" if KIND in value else "missing"
+            problems.append(f"{path}.{KIND}: {fault}; {hint(str(value.get(KIND, '')), self.kinds)}")
             return {}
         return self.kinds[value[KIND]].read(value, path, problems)
 
@@ -173,7 +183,7 @@ INPUT = ByKind(
 )
 SCALE = Series(
     key="scale",
-    meaning="what multiplies the input, or the displacement and velocity of a release",
+    meaning="factor of the input, or of the displacement and velocity of a release",
     item=_positive("scale", "scale"),
     default=[1.0],
 )

@@ -18,7 +18,7 @@ from wedgesweep.hints import hint, show
 from wedgesweep.quantity import Quantity
 from wedgesweep.units import usual
 
-# Numbers beyond these, 0 aside, are of no rig, and their products are no numbers.
+# No rig has larger or smaller numbers (0 aside), whose products would overflow or vanish.
 LARGEST, SMALLEST = 1e15, 1e-15
 
 
@@ -190,7 +190,7 @@ class Whole(Number):
 
     def read(self, value: Any, path: str, problems: list[str]) -> int | None:
         if isinstance(value, float):
-            problems.append(f"{path}: {show(value)} is not a whole number; write one, no point")
+            problems.append(f"{path}: {show(value)} is not a whole number; write one without a decimal point")
             return None
         if super().read(value, path, problems) is None:
             return None

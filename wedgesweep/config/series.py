@@ -57,13 +57,14 @@ class Series(Several):
     def range(self) -> "Table":
         """The keys of a range."""
         start, stop = (
-            Number(key=key, meaning=meaning, quantity=replace(self.item.quantity, key=key))
-            for key, meaning in (("start", "first value"), ("stop", "last value"))
+            Number(key=key, meaning=meaning, quantity=replace(self.item.quantity, key=key), example=example)
+            for key, meaning, example in (("start", "first value", 0.1), ("stop", "last value", 3.0))
         )
         num = Whole(
             key="num",
             meaning="number of values",
             quantity=Quantity("num", 1, "number of values", minimum=1, maximum=10_000),
+            example=30,
         )
         spacing = Choice(
             key="spacing",

@@ -23,13 +23,13 @@ LISTED = 3
 class Content(NamedTuple):
     """Columns by channel, each of shape (n,), and the line (from 1) of each row.
 
-    ``units``: those that the file itself names, by channel; ``told``: what of its form is worth telling.
+    ``units``: those that the file names, by channel; ``form``: how it is written where that is unusual.
     """
 
     columns: dict[str, np.ndarray]
     lines: np.ndarray
     units: Mapping[str, str] = {}
-    told: str = ""
+    form: str = ""
 
     def where(self, file: Path) -> Callable[[int], str]:
         """The place of a sample in a file of lines, by its index."""
@@ -70,7 +70,7 @@ def read(
         return NOTHING
     columns = _numbers(path, [lines[place] for place in rows], rows + 1, dialect, wanted, problems)
     units = dict(zip(wanted, dialect.units, strict=True)) if dialect.units else {}
-    return Content(columns, rows + 1, units, dialect.told()) if columns else NOTHING
+    return Content(columns, rows + 1, units, dialect.described()) if columns else NOTHING
 
 
 def _header_faults(
@@ -81,8 +81,8 @@ def _header_faults(
     if dialect is not None:
         place, header = dialect.header, list(dialect.names)
     if dialect is None and any(header) and all(DECIMAL.fullmatch(name) for name in header):
-        told = f"write the names of the columns above them, such as {', '.join(wanted.values())}"
-        return [f"{place + 1}: numbers, where the header is expected; {told}"]
+        advice = f"write the names of the columns above them, such as {', '.join(wanted.values())}"
+        return [f"{place + 1}: numbers, where the header is expected; {advice}"]
     if not any(header):
         return [f"{place + 1}: empty; the first line must hold the names of the columns"]
     repeated = [name for name, times in Counter(header).items() if times > 1 and name in wanted.values()]
@@ -90,8 +90,8 @@ def _header_faults(
         name = repeated[0]
         return [f"{place + 1}: column {show(name)} occurs {header.count(name)} times; names must be unique"]
     if len(header) == 1 and len(wanted) > 1:
-        told = "separate columns by commas, semicolons or tabs"
-        return [f"{place + 1}: only one column, {show(header[0])}; {told}"]
+        advice = "separate columns by commas, semicolons or tabs"
+        return [f"{place + 1}: only one column, {show(header[0])}; {advice}"]
     return [
         f"{place + 1}: no column {show(name)} ({channel}); {hint(name, [each for each in header if each])}"
         for channel, name in wanted.items()
@@ -115,15 +115,15 @@ def _numbers(
     for number, line in zip(numbers.tolist(), lines, strict=True):
         cells = csv_dialect.split(line, dialect.delimiter)
         if len(cells) != len(dialect.names):
-            told = f"{len(cells)} cells; the header has {len(dialect.names)}, and so must each line"
-            faults.append(f"{path}:{number}: {told}")
+            fault = f"{len(cells)} cells; the header has {len(dialect.names)}, and so must each line"
+            faults.append(f"{path}:{number}: {fault}")
             continue
         row = [_number(cells[place], dialect.decimal) for place in places.values()]
         for place, value in zip(places.values(), row, strict=True):
             if value is None:
                 wrong = show(cells[place]) if cells[place] else "an empty cell"
-                told = f"{dialect.names[place]}: {wrong} is not a finite number; write one"
-                faults.append(f"{path}:{number}: {told}")
+                fault = f"{dialect.names[place]}: {wrong} is not a finite number; write one"
+                faults.append(f"{path}:{number}: {fault}")
         rows.append(row)
     problems.extend(faults[:LISTED])
     if len(faults) > LISTED:

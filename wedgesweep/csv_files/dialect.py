@@ -49,7 +49,7 @@ class Dialect:
     names: tuple[str, ...]
     units: tuple[str, ...] = ()
 
-    def told(self) -> str:
+    def described(self) -> str:
         """What differs from comma-separated UTF-8 with the header in the first line, in words."""
         delimiter = next(name for name, sign in DELIMITERS.items() if sign == self.delimiter)
         said = (
@@ -64,9 +64,9 @@ class Dialect:
 
 def decode(content: bytes, encoding: str | None) -> tuple[str, str]:
     """Text of a file, and its encoding; raises ValueError if it is no text."""
-    for mark, told in BINARY:
+    for mark, what in BINARY:
         if content.startswith(mark):
-            raise ValueError(told)
+            raise ValueError(what)
     stated, encoding = encoding, encoding or _encoding(content)
     try:
         text = content.decode(encoding)

@@ -31,7 +31,7 @@ class Panels:
     def title(self, what: str, note: str = "") -> None:
         """Write what the figure shows, and below it the sign convention or how to read it.
 
-        Given axes keep the title of their panel; if they have none, they are told what they show.
+        Given axes keep the title of their panel; if they have none, it is what the figure shows.
         """
         if self.embedded:
             ax = self.axes[0]

@@ -15,7 +15,7 @@ from wedgesweep.friction.names import LAW_NAMES
 
 MM = 1e3  # mm per m
 
-# Okabe and Ito's palette, told apart with any colour vision.
+# Okabe and Ito's palette, distinguishable with any colour vision.
 BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
 PURPLE, YELLOW = "#CC79A7", "#F0E442"
 LAW_STYLES = (
@@ -31,9 +31,6 @@ SEQUENTIAL = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
 
 SIGN = "$x-y$: side frame minus bolster, from the frictionless rest position"
 BETA = "frequency ratio $β = ω/ω_n$ [1]"
-AMPLITUDE = "input amplitude $a$ [mm]"
-DISPLACEMENT = "relative displacement $x-y$ [mm]"
-VELOCITY = "relative velocity $x'-y'$ [mm/s]"
 
 
 def law_style(law: str) -> dict[str, str]:

@@ -68,7 +68,7 @@ def mark(ax: Axes, x: np.ndarray, y: np.ndarray, case: xr.Dataset, color: str) -
 
 def shares(ds: xr.Dataset) -> str:
     """How many of the cases lift off and are unsettled, in words; empty if none does."""
-    told = [
+    parts = [
         f"{int(marked.sum())} of {formatting.counted(marked.size, 'case')} {words}"
         for marked, words in (
             (lifted(ds), "with lift-off, outside of the model's validity"),
@@ -76,7 +76,7 @@ def shares(ds: xr.Dataset) -> str:
         )
         if marked.any()
     ]
-    return "; ".join(told)
+    return "; ".join(parts)
 
 
 def handles(ds: xr.Dataset) -> list[Line2D]:
@@ -93,9 +93,9 @@ def handles(ds: xr.Dataset) -> list[Line2D]:
 
 def remark(case: xr.Dataset) -> str:
     """What is to be known of a single case, in brackets; empty if nothing is."""
-    told = [
+    parts = [
         words
         for marked, words in ((lifted(case), "lifts off"), (unsettled(case), "not settled"))
         if marked.item()
     ]
-    return f" ({', '.join(told)})" if told else ""
+    return f" ({', '.join(parts)})" if parts else ""

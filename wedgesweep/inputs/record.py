@@ -1,7 +1,7 @@
 """A recorded input: a column of a CSV file, sampled at an even rate.
 
 A displacement counts from its first sample; displacement and velocity of the base are 0 at the first sample
-of a recorded velocity or acceleration, whose mean is taken off if ``detrend`` says so.
+of a recorded velocity or acceleration. ``detrend`` subtracts the mean of what was recorded.
 """
 
 from collections.abc import Mapping
@@ -51,8 +51,8 @@ def _step(given: Mapping[str, Any], found: Mapping[str, np.ndarray]) -> float:
     uneven = np.abs(steps - step) > EVEN * abs(step)
     if step <= 0.0 or uneven.any():
         row = int(np.argmax(uneven))
-        told = f"{steps[row]:g} s after sample {row + 1}, {step:g} s on average"
-        raise ConfigError([f"input.time: {given['file']}: not sampled at an even rate: {told}; resample it"])
+        fault = f"{steps[row]:g} s after sample {row + 1}, {step:g} s on average"
+        raise ConfigError([f"input.time: {given['file']}: not sampled at an even rate: {fault}; resample it"])
     return step
 
 

@@ -57,8 +57,8 @@ def _read(
     problems.extend(f"{file}: {fault}" for fault in faults)
     if faults:
         return NOTHING
-    told = f"{file.suffix.lower().lstrip('.')} file"
-    return Content(columns, np.arange(columns["time"].size), told=told)
+    form = f"{file.suffix.lower().lstrip('.')} file"
+    return Content(columns, np.arange(columns["time"].size), form=form)
 
 
 def _numbers(values: Any) -> tuple[np.ndarray, list[str]]:

@@ -35,14 +35,15 @@ LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
 class Channels:
     """Columns of a test as in its file, shape (n,) each, with their units.
 
-    ``file`` names the file and ``where`` the place of a sample in it; ``told`` is a remark on its form.
+    ``file`` names the file and ``where`` the place of a sample in it; ``form`` says how it is written where
+    that is unusual.
     """
 
     columns: Mapping[str, np.ndarray]
     units: Mapping[str, str]
     file: str
     where: Callable[[int], str]
-    told: str = ""
+    form: str = ""
 
     def si(self, channel: str) -> np.ndarray | None:
         """Samples of a channel in SI units, or None."""
@@ -107,13 +108,15 @@ def build_record(
         cutoff=given.get("lowpass_hz"),
         recorded_s=float(np.ptp(recorded.seconds)) if cut else None,
         repeat_of=given.get("repeat_of"),
-        remarks=tuple(filter(None, (channels.told, thinned))),
+        remarks=tuple(filter(None, (channels.form, thinned))),
     )
     problems.extend(FAULTS[test.kind](test, channels.file, at))
     return None if len(problems) > before else test
 
 
 def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
+    if not test.channels:  # a fault of the columns
+        return []
     return (
         stationarity_faults(test, file)
         or frequency_faults(test, file, at)
@@ -134,8 +137,8 @@ def _selected(given: Mapping[str, Any], channels: Channels, at: str, problems: l
     first, last = channels.seconds.min(), channels.seconds.max()
     if not (start < last and end > first):
         key, value = ("to_s", end) if end <= first else ("from_s", start)
-        told = f"{channels.file} goes from {first:.6g} to {last:.6g} s; choose a time within"
-        problems.append(f"{at}.{key}: {value:g}, but {told}")
+        span = f"{channels.file} goes from {first:.6g} to {last:.6g} s; choose a time within"
+        problems.append(f"{at}.{key}: {value:g}, but {span}")
         return channels
     return channels.between(start, end)
 
@@ -177,5 +180,5 @@ def _shortened(
         return channels, grid, ""
     columns = {name: samples for name, samples in channels.columns.items() if name != "time"}
     seconds = UNITS["time"][channels.units["time"]]
-    columns, grid, told = decimation.shortened(columns, grid, frequency * seconds, MOST_SAMPLES)
-    return replace(channels, columns={"time": grid, **columns}), grid, told
+    columns, grid, remark = decimation.shortened(columns, grid, frequency * seconds, MOST_SAMPLES)
+    return replace(channels, columns={"time": grid, **columns}), grid, remark

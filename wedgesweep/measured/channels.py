@@ -78,8 +78,8 @@ def channel_faults(
         return ["velocity.derived: there is no displacement that it was computed from; give that one"]
     compared = [name for name in responses if not columns[name].get("derived")]
     if len(compared) > MOST_RESPONSES:
-        told = f"{', '.join(compared)} are given"
-        return [f"{compared[-1]}: {told}; at most {MOST_RESPONSES} are compared, leave the others out"]
+        fault = f"{', '.join(compared)} are given"
+        return [f"{compared[-1]}: {fault}; at most {MOST_RESPONSES} are compared, leave the others out"]
     return []
 
 
@@ -102,17 +102,17 @@ def excitation_faults(
         return []
     faults = []
     if FORCE in columns:
-        told = "no force acts on a mass whose base moves; leave the column out"
+        fault = "no force acts on a mass whose base moves; leave the column out"
         if model.forced:
-            told = f'the force that drives the mass is the column {INPUT}, with quantity = "{FORCE}"'
-        faults.append(f"{FORCE}: {told}")
+            fault = f'the force that drives the mass is the column {INPUT}, with quantity = "{FORCE}"'
+        faults.append(f"{FORCE}: {fault}")
     if INPUT not in columns:
         return faults + _unknown_motion(columns, model)
     recorded = columns[INPUT]["quantity"]
     if (recorded == FORCE) != model.forced:
         moves = "a force drives the mass" if model.forced else "the base moves, and no force drives the mass"
-        told = f'in the model {moves} (sweep.excitation = "{model.excitation}"); record that'
-        faults.append(f"{INPUT}.quantity: {recorded}, but {told}")
+        fault = f'in the model {moves} (sweep.excitation = "{model.excitation}"); record that'
+        faults.append(f"{INPUT}.quantity: {recorded}, but {fault}")
     return faults
 
 
@@ -133,13 +133,13 @@ def keys_faults(given: Mapping[str, Any], columns: Mapping[str, Any], model: Con
         return wrong
     stated = [key for key in (AMPLITUDE.key, FORCE_AMPLITUDE.key) if key in given]
     if INPUT in columns:
-        told = "the input is recorded, which tells more; omit it, or the column input"
-        return [f"{key}: {told}" for key in stated]
+        fault = "the input is recorded, which tells more; omit it, or the column input"
+        return [f"{key}: {fault}" for key in stated]
     if model is None:
         return []
     right = model.amplitude_unit.key
-    told = f'sweep.excitation of the model is "{model.excitation}"; write {right}'
-    return [f"{key}: {told}" for key in stated if key != right]
+    fault = f'sweep.excitation of the model is "{model.excitation}"; write {right}'
+    return [f"{key}: {fault}" for key in stated if key != right]
 
 
 def model_faults(
@@ -155,6 +155,6 @@ def model_faults(
         faults.append(f"effects.{STRAY}: a recorded input repeats each period; remove it from the model")
     absolute = any(each.get("of") == ABSOLUTE for each in columns.values())
     if absolute and "fixture_resonance" in effects:
-        told = "the absolute motion of the bolster does not follow from that of the table"
-        faults.append(f"effects.fixture_resonance: {told}; measure the motion against the side frame")
+        fault = "the absolute motion of the bolster does not follow from that of the table"
+        faults.append(f"effects.fixture_resonance: {fault}; measure the motion against the side frame")
     return faults

@@ -35,12 +35,12 @@ def shortened(
     factor = -(-time.size // most)
     rate = (time.size - 1) / (time[-1] - time[0])
     if not isfinite(frequency) or rate / factor < FEWEST_PER_PERIOD * frequency:
-        told = f"cut to the first {most} of {time.size} samples"
-        return {name: samples[:most] for name, samples in columns.items()}, time[:most], told
+        remark = f"cut to the first {most} of {time.size} samples"
+        return {name: samples[:most] for name, samples in columns.items()}, time[:most], remark
     kept = slice(HALF_LENGTH, -HALF_LENGTH)
     thinned = {name: _decimated(samples, factor)[kept] for name, samples in columns.items()}
-    told = f"low-passed and decimated from {time.size} samples to one in {factor}"
-    return thinned, time[::factor][kept], told
+    remark = f"low-passed and decimated from {time.size} samples to one in {factor}"
+    return thinned, time[::factor][kept], remark
 
 
 def _decimated(samples: np.ndarray, factor: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf, isfinite, nan
+from math import inf, nan
 from typing import Any
 
 from wedgesweep import toml
@@ -83,13 +83,14 @@ class Overrides(Key):
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, float] | None:
         if not isinstance(value, dict):
-            told = f'{show(value)} is not a table; write {{ "section.key" = number }}'
-            problems.append(f"{path}: {told}")
+            fault = f'{show(value)} is not a table; write {{ "section.key" = number }}'
+            problems.append(f"{path}: {fault}")
             return None
         for name, number in value.items():
             if name.count(".") < 1:
                 problems.append(f'{path}: {show(name)} is not "section.key"; write it in quotes')
-            if isinstance(number, bool) or not isinstance(number, int | float) or not isfinite(number):
+            is_number = isinstance(number, int | float) and not isinstance(number, bool)
+            if not is_number or not abs(number) < inf:
                 problems.append(f"{path}.{show(name)}: {show(number)} is not a finite number; write one")
         return value
 
@@ -121,8 +122,8 @@ class Input(Inline):
         read = super().read(value, path, problems)
         if {"quantity", "unit"} <= read.keys() and read["unit"] not in UNITS[read["quantity"]]:
             valid = ", ".join(UNITS[read["quantity"]])
-            told = f"{show(read['unit'])} is no unit of {read['quantity']}; valid here: {valid}"
-            problems.append(f"{path}.unit: {told}")
+            fault = f"{show(read['unit'])} is no unit of {read['quantity']}; valid here: {valid}"
+            problems.append(f"{path}.unit: {fault}")
         return read
 
 

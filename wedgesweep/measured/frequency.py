@@ -26,7 +26,7 @@ RANGE, LOBE = 0.15, 1.5
 DIVISORS = (2, 3, 5, 7)
 # A fundamental is at least this share of its second harmonic: a weaker line at half the frequency of the
 # strongest one is a period-two response or a spurious tone.
-HALF = 0.3
+LEAST_FUNDAMENTAL = 0.3
 # False-alarm probability of a line in noise.
 CHANCE = 1e-5
 # Significance level of a difference: that of 5 std of a normal variable.
@@ -210,7 +210,7 @@ def _divisor(time: np.ndarray, signal: np.ndarray, frequency: float) -> int:
 def _weak(cycles: Cycles, orders: np.ndarray) -> bool:
     """Whether harmonics of some orders are small beside the largest."""
     size, among = np.abs(cycles.harmonics.mean(axis=0)), np.isin(cycles.orders, orders)
-    return bool(size[among].max() < HALF * size.max())
+    return bool(size[among].max() < LEAST_FUNDAMENTAL * size.max())
 
 
 def _repeats(cycles: Cycles, orders: np.ndarray, chance: float = CHANCE) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from wedgesweep.measured.declarations import INPUT, LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.measurement import TestRecord
 
-# The motion of a loop must come back by this share of its range, or friction cannot be told from a spring.
+# The motion of a loop must come back by this share of its range, or friction looks like a spring.
 RETURNS = 0.1
 # Least swing in the first part of a free motion over that in the last one, and that part (share).
 DECAYS, PART = 1.2, 0.25
@@ -23,7 +23,7 @@ OF_A_SINE, OF_A_LOOP = ("frequency_hz", "amplitude_mm", "amplitude_N"), ("lowpas
 OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
 # Responses of a transient, of which it has at least one.
 MOTIONS = ("displacement", "velocity", "acceleration")
-# Their units as they are told.
+# Sizes in SI, and names, of the units in which they are shown.
 SHOWN = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
 # What is compared, and what else a test may have, by kind.
 NEEDED = {"transient": (), "loop": ("displacement", "force")}
@@ -63,13 +63,13 @@ def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
     if test.time.size < FEWEST:
         return [f"{file}: has {test.time.size} samples; at least {FEWEST} make a loop"]
     if test.cutoff is not None and not test.cutoff <= HIGHEST * test.sampling_rate:
-        told = f"{test.cutoff:g} Hz is more than {HIGHEST:g} times the sampling rate"
-        return [f"{at}.lowpass_hz: {told} of {test.sampling_rate:g} Hz; lower it, or omit it"]
+        fault = f"{test.cutoff:g} Hz is more than {HIGHEST:g} times the sampling rate"
+        return [f"{at}.lowpass_hz: {fault} of {test.sampling_rate:g} Hz; lower it, or omit it"]
     steps = np.diff(test.displacement)
     there, back = steps[steps > 0.0].sum(), -steps[steps < 0.0].sum()
     if min(there, back) < RETURNS * float(np.ptp(test.displacement)):
-        told = "the displacement goes one way only, which cannot tell friction from a spring"
-        return [f"{file}: {told}; record at least one cycle, or write another kind ({at}.kind)"]
+        fault = "the displacement goes one way only, which cannot tell friction from a spring"
+        return [f"{file}: {fault}; record at least one cycle, or write another kind ({at}.kind)"]
     return []
 
 
@@ -86,10 +86,10 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
     first, last = float(np.ptp(signal[:size])), float(np.ptp(signal[-size:]))
     if first < DECAYS * last and not _decays_slowly(signal):
         scale, unit = SHOWN[name]
-        told = f"it swings by {first / scale:.3g} {unit}, at last {last / scale:.3g} {unit}"
-        told = f"the motion does not decay ({told})"
+        swings = f"it swings by {first / scale:.3g} {unit}, at last {last / scale:.3g} {unit}"
+        fault = f"the motion does not decay ({swings})"
         better = f'add the column input if there is one; if it is steady write kind = "steady" ({at}.kind)'
-        return [f"{file}: {told}; {better}"]
+        return [f"{file}: {fault}; {better}"]
     return []
 
 

@@ -1,19 +1,20 @@
 """Measured data as one netCDF file.
 
-Layout: the attributes of the file are ``title``, ``model_error`` and ``model`` (the text of the model's
-config, not its path). The group ``uncertain``, if there is one, has an attribute for each uncertain number.
-The group ``tests`` holds a group per test with the attributes ``file``, ``frequency_hz``, ``amplitude_mm``
-(or ``amplitude_N``), ``amplitude_std``, ``kind`` and ``lowpass_hz`` as in measured.toml, and variables
-``time``, ``displacement`` and, optionally, ``velocity`` over the dimension ``sample``, with ``units`` as in
-measured.toml; a loop has ``force`` instead of the latter. A velocity that is computed from displacement has
-the attribute ``derived`` = 1. A recorded input is the variable ``input`` with the attribute ``quantity``;
-``acceleration`` is a further response, and responses may have the attribute ``of``. The attribute ``model``
-of a test holds its numbers of the model as a JSON object; ``input_gain_std`` and ``input_harmonics_std`` are
-attributes of the file.
+Layout:
+
+- Attributes of the file: ``title``, ``model_error``, ``input_gain_std``, ``input_harmonics_std``, and
+  ``model``, which is the text of the model's config, not its path.
+- Group ``uncertain``, if there is one: an attribute for each uncertain number.
+- Group ``tests``: a group per test. Its attributes are the keys of ``[[measurement.test]]`` in measured.toml;
+  flags (``detrend``, ``undriven``) are 0 or 1, and ``model`` is a JSON object.
+- Variables of a test, over the dimension ``sample``: ``time``, and what was recorded of ``displacement``,
+  ``velocity``, ``acceleration``, ``force`` and ``input``, with ``units`` as in measured.toml. Responses may
+  have the attribute ``of``, an input has ``quantity``, and a velocity that was computed from the displacement
+  has ``derived`` = 1.
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -94,10 +95,10 @@ def _write_test(group: Any, test: TestRecord, measurement: Measurement) -> None:
     for channel, long_name in LONG_NAMES.items():
         samples = getattr(test, channel)
         if samples is not None:
-            told = {key: measurement.columns.get(channel, {}).get(key) for key in ("of", "quantity")}
+            kept = {key: measurement.columns.get(channel, {}).get(key) for key in ("of", "quantity")}
             variable = group.createVariable(channel, "f8", ("sample",), compression="zlib")
-            variable.setncatts({"units": SI_UNITS[told["quantity"] or channel], "long_name": long_name})
-            variable.setncatts({key: value for key, value in told.items() if value is not None})
+            variable.setncatts({"units": SI_UNITS[kept["quantity"] or channel], "long_name": long_name})
+            variable.setncatts({key: value for key, value in kept.items() if value is not None})
             variable[:] = samples
             if channel == "velocity":
                 variable.setncattr("derived", int(measurement.derived_velocity))
@@ -122,8 +123,8 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     groups = list(root.groups["tests"].groups.values()) if "tests" in root.groups else []
     if not groups:
-        told = "no measured data; each test must be a group within the group tests"
-        raise MeasuredError([f"{path}: {told}"])
+        fault = "no measured data; each test must be a group within the group tests"
+        raise MeasuredError([f"{path}: {fault}"])
     problems: list[str] = []
     attributes = _attributes(root)
     unknown = [name for name in attributes if name not in ROOT_NAMES]
@@ -140,13 +141,10 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
             f"{path}: tests: they have different variables, units, of or quantity; make them alike"
         )
     columns = {name: each for own in by_kind.values() for name, each in own.items()}
-    stds = {**numbers, UNCERTAIN.key: uncertain}
-    faults = channels.faults(by_kind, stds, None if problems else config)
+    faults = channels.faults(by_kind, {**numbers, UNCERTAIN.key: uncertain}, None if problems else config)
     problems += [f"{path}: tests: {fault}" for fault in faults]
     if config is not None:
-        problems += [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
-        for test in complete:
-            problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
+        problems += _model_faults(config, path, columns, by_kind, complete)
     if problems or config is None:
         raise MeasuredError(problems)
     return Measurement(
@@ -160,6 +158,20 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         columns=columns,
         **numbers,
     )
+
+
+def _model_faults(
+    config: Config,
+    path: Path,
+    columns: Mapping[str, Mapping[str, str]],
+    kinds: Iterable[str],
+    tests: Iterable[TestRecord],
+) -> list[str]:
+    """Faults of the base model beside the channels, the kinds and the own numbers of the tests."""
+    problems = [f"{path}: model: {fault}" for fault in channels.model_faults(config, columns, kinds)]
+    for test in tests:
+        problems += overrides.faults(config, {"model": test.model}, f"{path}: {test.name}.model")
+    return problems
 
 
 def _derived_velocity(groups: Sequence[Any], path: Path, problems: list[str]) -> bool:
@@ -198,9 +210,8 @@ def _columns(group: Any) -> dict[str, dict[str, str]]:
     for name in (*UNITS, INPUT):
         if name in group.variables:
             own = group.variables[name]
-            told = {"column": name, "unit": _unit(own)}
             more = {key: getattr(own, key) for key in ("of", "quantity") if hasattr(own, key)}
-            found[name] = told | more
+            found[name] = {"column": name, "unit": _unit(own)} | more
     return found
 
 
@@ -276,8 +287,10 @@ def _read_numbers(attributes: dict[str, Any]) -> dict[str, Any]:
 def _variable_faults(
     columns: Mapping[str, np.ndarray], units: Mapping[str, str], quantity: str | None
 ) -> list[str]:
-    needed = ("time",) if INPUT in columns else ("time", "displacement")
-    faults = [f"no variable {name}" for name in needed if name not in columns]
+    # What else a test needs depends on its kind and on those beside it: see channels.py.
+    faults = [] if "time" in columns else ["no variable time"]
+    if not columns.keys() - {"time"}:
+        faults.append("no variable displacement")
     if INPUT in columns and quantity not in QUANTITIES:
         faults.append(f"{INPUT}: quantity {show(quantity or 'none')}; valid here: {', '.join(QUANTITIES)}")
         quantity = None

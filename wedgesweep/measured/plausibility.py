@@ -9,9 +9,9 @@ from wedgesweep.measured.measurement import Measurement, TestRecord
 
 # Tolerated errors of gain and phase between the channels.
 FACTOR, ANGLE = 10.0, np.radians(120.0)
-# Limits of the relative motion over the input amplitude: MOST exceeds what any two resonances give, LEAST is
-# less than wherever the bolster slips. As it may stick in one test, LEAST applies to SEVERAL tests together.
-MOST, LEAST, SEVERAL = 300.0, 0.01, 2
+# Limits of the motion over the input amplitude: more than any two resonances give, and less than wherever the
+# bolster slips. As it may stick in one test, the lower limit must fail in all tests, FEWEST_TESTS or more.
+LARGEST_RATIO, LEAST_RATIO, FEWEST_TESTS = 300.0, 0.01, 2
 
 
 def channel_faults(test: TestRecord, file: str) -> list[str]:
@@ -25,11 +25,11 @@ def channel_faults(test: TestRecord, file: str) -> list[str]:
     expected = 2j * np.pi * at * moved
     share = abs(speed / expected)
     if not 1.0 / FACTOR < share < FACTOR:
-        told = f"velocity is {share:.2g} times the rate of displacement at {at:.4g} Hz"
-        return [f"{file}: {told}; correct the units in measurement.columns, or the columns"]
+        fault = f"velocity is {share:.2g} times the rate of displacement at {at:.4g} Hz"
+        return [f"{file}: {fault}; correct the units in measurement.columns, or the columns"]
     if abs(np.angle(speed / expected)) > ANGLE:
-        told = "velocity and displacement have opposite signs; velocity must be the rate of displacement"
-        return [f"{file}: {told}; change the sign of one"]
+        fault = "velocity and displacement have opposite signs; velocity must be the rate of displacement"
+        return [f"{file}: {fault}; change the sign of one"]
     return []
 
 
@@ -45,12 +45,12 @@ def amplitude_faults(measurement: Measurement) -> list[str]:
     faults = [
         f"{file} moves {share:.3g} times {per}; correct one of them"
         for file, share in moved.items()
-        if share > MOST
+        if share > LARGEST_RATIO
     ]
-    if len(moved) >= SEVERAL and 0.0 < max(moved.values()) < LEAST:
+    if len(moved) >= FEWEST_TESTS and 0.0 < max(moved.values()) < LEAST_RATIO:
         most = max(moved, key=lambda file: moved[file])
-        told = f"no test moves more than {moved[most]:.2g} times {per} ({most})"
-        faults.append(f"{told}; correct them, or omit them if they are unknown")
+        fault = f"no test moves more than {moved[most]:.2g} times {per} ({most})"
+        faults.append(f"{fault}; correct them, or omit them if they are unknown")
     return faults
 
 
@@ -62,8 +62,8 @@ def noise_faults(measurement: Measurement) -> list[str]:
     ):
         return []
     frequencies = ", ".join(dict.fromkeys(f"{test.refined_frequency:.4g}" for test in steady))
-    told = f"no test has a vibration at its frequency ({frequencies} Hz) that stands out of the noise"
-    return [f"{told}; correct the columns or frequency_hz, or excite more"]
+    fault = f"no test has a vibration at its frequency ({frequencies} Hz) that stands out of the noise"
+    return [f"{fault}; correct the columns or frequency_hz, or excite more"]
 
 
 def _deflection(measurement: Measurement, test: TestRecord) -> float:

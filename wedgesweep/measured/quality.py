@@ -23,32 +23,32 @@ NOISY = 0.2
 
 def warnings(test: TestRecord) -> list[str]:
     """What is odd in each response of a test, as "channel: what, and what to do"."""
-    told = [
+    found = [
         f"{name}: {warning}"
         for name, samples in test.responses.items()
         if test.kind == STEADY
         for warning in _of_channel(test, samples)
     ]
     if test.recorded_s is not None:
-        told.append(f"{test.duration:.4g} s of {test.recorded_s:.4g} s are used (from_s, to_s)")
-    return told
+        found.append(f"{test.duration:.4g} s of {test.recorded_s:.4g} s are used (from_s, to_s)")
+    return found
 
 
 def _of_channel(test: TestRecord, samples: np.ndarray) -> list[str]:
     noise = estimate_noise(test.time, samples, test.refined_frequency)
     cycles = cut(test.time, samples, test.refined_frequency)
-    found = (
+    checks = (
         _trend(cycles, test.duration),
         _drift(cycles, test.duration, float(samples.std())),
         _outliers(test, noise),
         _flat_tops(samples),
     )
-    told = [each for each in found if each]
+    found = [each for each in checks if each]
     if noise.share > NOISY:
-        told.append(
+        found.append(
             f"noise is {100.0 * noise.share:.0f} % of the periodic part; average it down, or excite more"
         )
-    return told
+    return found
 
 
 def trend_faults(test: TestRecord, file: str) -> list[str]:
@@ -58,9 +58,9 @@ def trend_faults(test: TestRecord, file: str) -> list[str]:
             continue  # it sticks
         change = _growth(cut(test.time, samples, test.refined_frequency), test.duration)
         if abs(change) > MOST_TREND:
-            told = f"the amplitude of {name} changes by {100.0 * change:+.2g} % over the record"
+            fault = f"the amplitude of {name} changes by {100.0 * change:+.2g} % over the record"
             other = ', or write kind = "transient" if it is a ring-down' if change < 0.0 else ""
-            return [f"{file}: not steady: {told}; {MEND}{other}"]
+            return [f"{file}: not steady: {fault}; {MEND}{other}"]
     return []
 
 
@@ -118,8 +118,8 @@ def _flat_tops(samples: np.ndarray) -> str | None:
     share = max(_share_in_runs(samples == end) for end in (samples.max(), samples.min()))
     if share < CLIPPED:
         return None
-    told = f"{100.0 * share:.2g} % of its samples are exactly at its extreme"
-    return f"{told}: the sensor or its amplifier clips, unless the motion sticks there"
+    fault = f"{100.0 * share:.2g} % of its samples are exactly at its extreme"
+    return f"{fault}: the sensor or its amplifier clips, unless the motion sticks there"
 
 
 def _share_in_runs(at_extreme: np.ndarray) -> float:

@@ -74,10 +74,10 @@ def _step_fault(stamps: np.ndarray, where: Callable[[int], str]) -> str | None:
     falls = np.flatnonzero(steps <= 0.0)
     if falls.size:
         i = int(falls[0])
-        told = f"{stamps[i + 1]:.12g} follows {stamps[i]:.12g}"
+        fault = f"{stamps[i + 1]:.12g} follows {stamps[i]:.12g}"
         if steps[i] == 0.0:
-            return f"{where(i + 1)}: time stands still ({told}); write it with more decimals"
-        return f"{where(i + 1)}: time goes back ({told}); put the samples in order"
+            return f"{where(i + 1)}: time stands still ({fault}); write it with more decimals"
+        return f"{where(i + 1)}: time goes back ({fault}); put the samples in order"
     step = _typical(stamps)
     coarse = resolution(stamps)
     rounding = np.minimum(np.maximum(coarse[1:], coarse[:-1]), 0.5 * step)
@@ -87,10 +87,10 @@ def _step_fault(stamps: np.ndarray, where: Callable[[int], str]) -> str | None:
     i = int(wrong[0])
     if steps[i] > 1.5 * step:
         missing = round(steps[i] / step) - 1
-        told = f"a gap of {counted(missing, 'sample')} after {stamps[i]:.12g}"
-        return f"{where(i + 1)}: {told}; samples must follow each other every {step:.6g}"
-    told = f"{steps[i]:.6g} from the sample before, {step:.6g} elsewhere"
-    return f"{where(i + 1)}: sampling not constant ({told}); resample evenly, or write more decimals"
+        fault = f"a gap of {counted(missing, 'sample')} after {stamps[i]:.12g}"
+        return f"{where(i + 1)}: {fault}; samples must follow each other every {step:.6g}"
+    fault = f"{steps[i]:.6g} from the sample before, {step:.6g} elsewhere"
+    return f"{where(i + 1)}: sampling not constant ({fault}); resample evenly, or write more decimals"
 
 
 def _typical(stamps: np.ndarray) -> float:
@@ -105,5 +105,5 @@ def _drift_fault(stamps: np.ndarray, where: Callable[[int], str]) -> str | None:
     worst = int((off - resolution(stamps)).argmax())
     if off[worst] <= resolution(stamps)[worst] + DRIFT * step:
         return None
-    told = f"{stamps[worst]:.12g} is off an even grid by {off[worst] / step:.2g} sampling intervals"
-    return f"{where(worst)}: sampling not constant ({told}); resample evenly"
+    fault = f"{stamps[worst]:.12g} is off an even grid by {off[worst] / step:.2g} sampling intervals"
+    return f"{where(worst)}: sampling not constant ({fault}); resample evenly"

@@ -24,20 +24,22 @@ WORSE = 3.0
 def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
     """Faults of the frequency of a test, in its data or as stated by its keys at ``at``."""
     if test.time.size > MOST_SAMPLES:
-        told = f"has {test.time.size} samples, at most {MOST_SAMPLES} are used"
-        return [f"{file}: {told}; cut it shorter, or low-pass it and sample it down"]
+        fault = f"has {test.time.size} samples, at most {MOST_SAMPLES} are used"
+        return [f"{file}: {fault}; cut it shorter, or low-pass it and sample it down"]
     stated = test.frequency
     found = frequency.estimate_frequency(test.time, test.leading) if stated is None else stated
     if isnan(found):
         return [f"{file}: no vibration stands out of the noise; state frequency_hz in {at}"]
     samples = test.sampling_rate / found
     if samples < FEWEST_SAMPLES:
-        told = f"has {samples:.3g} samples per period of {found:.6g} Hz; at least {FEWEST_SAMPLES} are needed"
-        return [f"{file}: {told}: sample faster, or correct the unit of time"]
+        fault = (
+            f"has {samples:.3g} samples per period of {found:.6g} Hz; at least {FEWEST_SAMPLES} are needed"
+        )
+        return [f"{file}: {fault}: sample faster, or correct the unit of time"]
     periods = test.duration * found
     if periods < FEWEST_PERIODS - WHOLE:
-        told = f"covers {periods:.3g} periods of {found:.6g} Hz; at least {FEWEST_PERIODS} are needed"
-        return [f"{file}: {told}: record longer, or correct the unit of time"]
+        fault = f"covers {periods:.3g} periods of {found:.6g} Hz; at least {FEWEST_PERIODS} are needed"
+        return [f"{file}: {fault}: record longer, or correct the unit of time"]
     estimate = frequency.estimate_near(test.time, test.leading, found, frequency.LOBE / periods)
     return _drift(estimate, periods, file) or _contradiction(test, estimate, file, at)
 

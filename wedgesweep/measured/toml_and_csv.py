@@ -9,7 +9,7 @@ from typing import Any
 from wedgesweep import toml
 from wedgesweep.config import Config
 from wedgesweep.csv_files import columns as csv_columns
-from wedgesweep.files import read_text
+from wedgesweep.errors import InputError
 from wedgesweep.hints import show
 from wedgesweep.measured import arrays, channels, overrides
 from wedgesweep.measured.build import Channels, build_record
@@ -32,8 +32,8 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     model = model or _stated_model(path, measurement, problems)
     config, law = load_model(model, problems) if model else (None, "")
     if complete:
-        told = channels.faults(by_kind, measurement, config)
-        problems += [f"{path}: {_at(fault)}" for fault in told]
+        faults = channels.faults(by_kind, measurement, config)
+        problems += [f"{path}: {_at(fault)}" for fault in faults]
     if config is not None:
         problems += [f"{model}: {fault}" for fault in channels.model_faults(config, columns, by_kind)]
         problems += _override_faults(path, measurement, config)
@@ -92,19 +92,13 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
 def _document(path: Path, problems: list[str]) -> dict[str, Any]:
     """The checked document; its faults go to ``problems``."""
     try:
-        given = toml.loads(read_text(path))
-    except UnicodeDecodeError as error:
-        problems.append(f"{path}: not UTF-8 text (byte {error.start}); save it as UTF-8")
-    except OSError as error:
-        problems.append(f"{path}: {error.strerror}; give the path of a measured.toml")
-    except ValueError as error:
-        problems.append(f"{path}: not valid TOML: {error}")
-    else:
-        found: list[str] = []
-        document = ROOT.read(given, "", found)
-        problems.extend(f"{path}: {problem}" for problem in found)
-        return document
-    raise MeasuredError(problems)
+        given = toml.load(path, "a measured.toml")
+    except InputError as error:
+        raise MeasuredError(error.problems) from error
+    found: list[str] = []
+    document = ROOT.read(given, "", found)
+    problems.extend(f"{path}: {problem}" for problem in found)
+    return document
 
 
 def _tests(
@@ -146,8 +140,8 @@ def _repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]]
         if other.get("file") == first and "repeat_of" not in other:
             same = other.get("kind", STEADY) == given.get("kind", STEADY)
             return [] if same else [f"repeat_of: {show(first)} is of another kind; a repeat is of the same"]
-    told = "is not the file of an earlier test that repeats none; name that one"
-    return [f"repeat_of: {show(first)} {told}"]
+    fault = "is not the file of an earlier test that repeats none; name that one"
+    return [f"repeat_of: {show(first)} {fault}"]
 
 
 def _test(
@@ -168,7 +162,7 @@ def _test(
     problems.extend(faults)
     if faults:
         return []
-    found = Channels(content.columns, units, str(file), content.where(file), content.told)
+    found = Channels(content.columns, units, str(file), content.where(file), content.form)
     test = build_record(file.stem, given, found, at, problems)
     return [test] if test else []
 

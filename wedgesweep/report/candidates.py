@@ -85,8 +85,10 @@ def _not_fitted(result: DiagnosisResult) -> str:
     left = sorted({*document["detectable"], *document["not_testable"]} - fitted)
     tone, steady = stray_vibration.EFFECT.name, document.get("kind", "steady") == "steady"
     others = [effect for effect in left if not (steady and effect == tone)]
-    told = f" Not fitted, as these tests cannot show them: {phrases.listing(others)}." if others else ""
-    return told + (f" Not fitted, as no test has a spurious tone: {tone}." if len(others) < len(left) else "")
+    hidden = f" Not fitted, as these tests cannot show them: {phrases.listing(others)}." if others else ""
+    return hidden + (
+        f" Not fitted, as no test has a spurious tone: {tone}." if len(others) < len(left) else ""
+    )
 
 
 def _ranking(result: DiagnosisResult) -> str:

@@ -100,14 +100,14 @@ def _uncertain(result: DiagnosisResult) -> Markup:
 def _fitted(name: str, numbers: dict[str, float]) -> list[list[str]]:
     """Rows of an effect: its scale, or its harmonics of the input."""
     if "scale" in numbers:
-        told = {f"scale of {name}": (numbers["scale"], numbers["std"])}
+        labelled = {f"scale of {name}": (numbers["scale"], numbers["std"])}
     else:
-        told = {
+        labelled = {
             quantity.meaning: (numbers[quantity.key], numbers[f"{quantity.key}_std"])
             for quantity in EFFECTS[name].quantities
             if f"{quantity.key}_std" in numbers
         }
     return [
         [label, formatting.number(value, 4), formatting.number(std, 2)]
-        for label, (value, std) in told.items()
+        for label, (value, std) in labelled.items()
     ]

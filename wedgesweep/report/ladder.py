@@ -10,7 +10,7 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
 HEAD = ("effects", "explanation", "accuracy", "on held-out tests", "next best", "its accuracy")
-# A pair is told beside its better component if it is so many times as accurate.
+# A pair is mentioned beside its better component if it is so many times as accurate.
 MUCH_BETTER = 2.0
 READING = (
     "The accuracy is the smallest error of the model, as a share of the rms of the response, with which the "
@@ -36,7 +36,7 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     return html.section(
         "accuracy",
         "Accuracy",
-        html.paragraph(" ".join([*(f"{one[0].upper()}{one[1:]}." for one in told(result)), READING])),
+        html.paragraph(" ".join([*(f"{one[0].upper()}{one[1:]}." for one in clauses(result)), READING])),
         draw("ladder", CAPTION),
         html.table("The most accurate explanations", HEAD, rows, 2),
         html.paragraph(f"Noise floor: {phrases.accuracy(floor)}.") if floor else Markup(),
@@ -60,20 +60,20 @@ def levels_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
     return result.document.get("ladder", [])
 
 
-def told(result: DiagnosisResult) -> list[str]:
+def clauses(result: DiagnosisResult) -> list[str]:
     """What the best single effect explains, and the best pair where it is much better, as clauses."""
     levels = levels_of(result)
     if not levels:
         return []
     base, *better = levels
-    clauses: list[str] = []
+    found: list[str] = []
     reached = base["accuracy"]
     for level in better:
-        if level["accuracy"] is None or (clauses and level["accuracy"] * MUCH_BETTER > (reached or 0.0)):
+        if level["accuracy"] is None or (found and level["accuracy"] * MUCH_BETTER > (reached or 0.0)):
             continue
-        clauses.append(_told(level, base, result.document))
+        found.append(_clause(level, base, result.document))
         reached = level["accuracy"]
-    return clauses
+    return found
 
 
 def held_out(level: Mapping[str, Any]) -> str:
@@ -82,7 +82,7 @@ def held_out(level: Mapping[str, Any]) -> str:
     return "" if size is None else f"held-out tests: {phrases.accuracy(size)}"
 
 
-def _told(level: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+def _clause(level: Mapping[str, Any], base: Mapping[str, Any], document: Mapping[str, Any]) -> str:
     meanings = phrases.meanings(level["effects"], document)
     verb = "explains" if len(level["effects"]) == 1 else "explain"
     beside = [f"without: {phrases.accuracy(base['accuracy'])}"]

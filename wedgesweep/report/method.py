@@ -24,10 +24,10 @@ STEPS = (
     "Q is the squared distance between measurement and simulation in units of the noise, which for a "
     "correct model has a chi-squared distribution. Start phases, amplitudes and uncertain parameters are "
     "fitted first, for the base model too.",
-    "Every candidate is fitted alone, then in pairs; each fitted parameter costs a penalty. A cause must "
-    "leave only noise, have the same parameters in all tests (Lagrange multiplier test), and lead its rivals "
-    "by more than the tie width. To be named, it must be the only candidate that leaves only noise. A pair "
-    "that many others imitate is not reported.",
+    "Every candidate is fitted alone, and pairs of candidates if no single one is adequate; each fitted "
+    "parameter costs a penalty. A cause must leave only noise, have the same parameters in all tests "
+    "(Lagrange multiplier test), and lead its rivals by more than the tie width. To be named, it must be the "
+    "only candidate that leaves only noise. A pair that many others imitate is not reported.",
 )
 
 

@@ -20,17 +20,17 @@ def _recommended(result: DiagnosisResult) -> Markup:
         would = f"would not reliably distinguish {' from '.join(test['separates'])}"
         best = "No test within reach does better."
     else:
-        would, best = f"would distinguish {found.told}", "It is the cheapest test that does."
+        would, best = f"would distinguish {found.text}", "It is the cheapest test that does."
     rows = [
         [" from ".join(each["separates"]), formatting.number(each["distance"])]
         for each in test.get("pairs", [test])
     ]
     caption = f"Squared distance of the predicted responses over the noise; {enough:g} is enough"
     table = html.table(caption, ("this test would distinguish", "distance"), rows)
-    return html.join([_told(result, would, best), table])
+    return html.join([_instruction(result, would, best), table])
 
 
-def _told(result: DiagnosisResult, would: str, best: str) -> Markup:
+def _instruction(result: DiagnosisResult, would: str, best: str) -> Markup:
     """The test in words: of a steady one its place, of others what to do."""
     test = result.document["next_test"]
     kind = test.get("kind", "steady")

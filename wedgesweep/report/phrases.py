@@ -149,7 +149,7 @@ class Separated(NamedTuple):
     left: list[str]
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """As the end of a sentence."""
         but = f", but not from {listing(self.left, 'or')}" if self.left else ""
         return f"{self.first} from {listing(self.others)}{but}"

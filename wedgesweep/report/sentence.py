@@ -174,7 +174,7 @@ def _adequate_half(result: DiagnosisResult, pair: Sequence[str]) -> str | None:
 
 def _none(result: DiagnosisResult) -> str:
     strict = f"{_wrong(result)}, and {_unexplained(result)}{_attempt(result)}"
-    return "; ".join([strict, *ladder.told(result)]) + "."
+    return "; ".join([strict, *ladder.clauses(result)]) + "."
 
 
 def _unconfirmed(result: DiagnosisResult) -> bool:
@@ -267,5 +267,5 @@ def _next_test(result: DiagnosisResult, rivals: str = "") -> str:
     if found is None:
         rivals = rivals or " from ".join(test["separates"])
         return f"; no test would reliably distinguish {rivals}, the best one is {place}"
-    told = rivals if rivals and not found.left else found.told
-    return f"; {place} would distinguish {told}"
+    distinguished = rivals if rivals and not found.left else found.text
+    return f"; {place} would distinguish {distinguished}"

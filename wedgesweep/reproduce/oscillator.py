@@ -73,9 +73,12 @@ def lift_off(runs: Runs) -> Finding:
         below("longest share of time with a negative normal force", longest, 0.0),
     )
     numbers = {"low": float(large.min()), "high": float(large.max()), "longest": longest}
-    force = float(ds["minimum_normal_force"].min())
-    told = {"cases": cases, "even": _evenly(share > 0.0), "force": force}
-    return Finding(checks, told | numbers | joints.changes(ds, runs.unilateral.ds))
+    numbers |= {
+        "cases": cases,
+        "even": _evenly(share > 0.0),
+        "force": float(ds["minimum_normal_force"].min()),
+    }
+    return Finding(checks, numbers | joints.changes(ds, runs.unilateral.ds))
 
 
 def _evenly(lifts: xr.DataArray) -> float:

@@ -81,8 +81,8 @@ def _reason(claim: dict[str, Any]) -> str:
     lines = [title, "", claim["reason"], "", *map(_check, claim["checks"])]
     if "unilateral" in claim:
         found = claim["unilateral"]
-        told = f"With joints that lift off the claim {_predicate(found['verdict'], 1)}: {found['here']}."
-        lines += ["", told, "", *map(_check, found["checks"])]
+        sentence = f"With joints that lift off the claim {_predicate(found['verdict'], 1)}: {found['here']}."
+        lines += ["", sentence, "", *map(_check, found["checks"])]
     return "\n".join(lines)
 
 

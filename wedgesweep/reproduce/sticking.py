@@ -9,7 +9,7 @@ from wedgesweep.reproduce.runs import MM, Run, Runs
 from wedgesweep.reproduce.single_case import mirrored_columns, record, single
 
 # A case that is stuck for a larger share of the time hardly moves.
-MOST = 0.9
+HARDLY_MOVES = 0.9
 LAST_BETA = 0.4  # up to which the paper saw stick-slip
 ROUNDING = 1e-6
 ONSET_MM = 0.3  # where the paper saw motion begin
@@ -49,7 +49,7 @@ def stick_slip(runs: Runs) -> Finding:
 def _stick_slip_cases(run: Run) -> tuple[int, int]:
     """Number of coulomb cases in stick-slip up to and above the paper's highest beta."""
     stuck = run.law("coulomb")["stick_fraction"]
-    sticks = (stuck > STICKS) & (stuck < MOST)
+    sticks = (stuck > STICKS) & (stuck < HARDLY_MOVES)
     low = sticks["beta"] <= LAST_BETA + ROUNDING
     return int((sticks & low).sum()), int((sticks & ~low).sum())
 
@@ -58,11 +58,11 @@ def _longest(run: Run, hertz: int) -> dict[str, float]:
     """Numbers of the coulomb case in stick-slip that sticks for the longest time."""
     beta = run.beta_of(hertz)
     stuck = run.cases("coulomb", beta)["stick_fraction"]
-    longest = stuck[int(stuck.where(stuck < MOST, 0.0).fillna(0.0).values.argmax())]
+    longest = stuck[int(stuck.where(stuck < HARDLY_MOVES, 0.0).fillna(0.0).values.argmax())]
     millimetres = round(float(longest["amplitude"]) * MM, 6)
     mirrored = single(run, "coulomb", beta, millimetres, mirrored_columns(run.config))
     return {
-        f"share_{hertz}": float(longest.where(longest < MOST, 0.0)),
+        f"share_{hertz}": float(longest.where(longest < HARDLY_MOVES, 0.0)),
         f"input_{hertz}": millimetres,
         f"mirrored_{hertz}": mirrored["stick_fraction"],
         **{f"{law}_{hertz}": ratio for law, ratio in run.ratios(beta, millimetres).items()},
@@ -93,7 +93,7 @@ def _bolster_face(run: Run) -> dict[str, float]:
 def onset_of_motion(runs: Runs) -> Finding:
     """Compare the inputs from which coulomb keeps slipping, and moves appreciably."""
     run = runs.paper
-    beta, slip = _onsets(run, "stick_fraction", lambda stuck: stuck < MOST)
+    beta, slip = _onsets(run, "stick_fraction", lambda stuck: stuck < HARDLY_MOVES)
     moving_beta, moving = _onsets(run, "amplitude_ratio", lambda ratio: ratio > APPRECIABLE)
     sustained = float(np.median(slip / MM * (beta * run.omega_n) ** 2))
     agree = float(np.mean(np.abs(np.log2(moving / ONSET_MM)) <= 1.0))

@@ -7,10 +7,13 @@ from typing import Any
 import joblib
 import numpy as np
 
+from wedgesweep import formatting
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import STEADY
+from wedgesweep.measured.kinds import FEWEST
 from wedgesweep.measured.model import with_law
+from wedgesweep.measured.steadiness import FEWEST_SAMPLES as FEWEST_PER_PERIOD
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
@@ -25,6 +28,8 @@ from wedgesweep.systems import kits
 
 # A mass that moves less than this share of the input counts as stuck.
 STUCK = 1e-3
+# Records of more samples would not fit into memory.
+MOST_SAMPLES = 5_000_000
 
 
 class SynthesisError(InputError):
@@ -51,6 +56,8 @@ def synthesize(
         raise SynthesisError(problems)
     options = _with_recorded_input(config, plan, options)
     truth = draw(config, law, plan, options.amplitude_error, options.sampling_hz, options.seed)
+    if problems := _length_faults(truth, plan, options):
+        raise SynthesisError(problems)
     steady = replace(truth, tests=tuple(test for test in truth.tests if test.plan.kind == STEADY))
     motions = _motions(steady, options, n_jobs, plan.source) if steady.tests else []
     found = iter([_table(steady, *each, options) for each in zip(steady.tests, motions, strict=True)])
@@ -60,10 +67,11 @@ def synthesize(
     ]
     model = Config(config.document | {"effects": {}, "title": "base model"})
     measured = documents.measured(directory.name, config, plan, options)
-    told = documents.truth_document(truth, steady, motions, options)
-    files.write(directory, measured, model, tables, told)
+    solution = documents.truth_document(truth, steady, motions, options)
+    files.write(directory, measured, model, tables, solution)
     return [
-        f"{_name(i, test)}: not steady after {options.settle_periods} periods; raise --settle-periods"
+        f"{_name(i, test)}: not steady after "
+        f"{formatting.counted(options.settle_periods, 'period')}; raise --settle-periods"
         for i, (test, motion) in enumerate(zip(steady.tests, motions, strict=True))
         if test.stray_phase_deg is None and motion.settle_periods == options.settle_periods
     ]
@@ -91,6 +99,30 @@ def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) 
         valid = FORCE if config.forced else "displacement, velocity or acceleration"
         faults.append(f"--record-input {recorded}: {excited}; record {valid}")
     return faults
+
+
+def _length_faults(truth: Truth, plan: Plan, options: Options) -> list[str]:
+    """Records with fewer samples than a diagnosis takes, or with more than fit into memory."""
+    faults = [(i, _length_fault(test, options)) for i, test in enumerate(truth.tests)]
+    return [f"{plan.source}: test[{i}]{fault}" for i, fault in faults if fault]
+
+
+def _length_fault(test: TrueTest, options: Options) -> str | None:
+    """Fault of the length of one record, behind the name of its test."""
+    if test.plan.kind != STEADY:
+        count: float = other_tables.sample_count(test, options)
+        if count < FEWEST:
+            length = f"{test.plan.duration_s:g} s have {formatting.counted(int(count), 'sample')}"
+            return f".duration_s: {length}; at least {FEWEST} make a record"
+    else:
+        per_period = test.sampling_hz / test.plan.frequency_hz
+        count = options.periods * per_period
+        if per_period < FEWEST_PER_PERIOD:
+            needed = f"at least {FEWEST_PER_PERIOD} are needed"
+            return f": {per_period:.3g} samples per period, {needed}; raise --sampling-hz"
+    if count <= MOST_SAMPLES:
+        return None
+    return f": {count:.3g} samples, at most {MOST_SAMPLES} fit into memory; sample less often, or record less"
 
 
 def _name(i: int, test: TrueTest) -> str:

@@ -15,16 +15,16 @@ def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[s
     """The document of measured.toml."""
     tests = []
     for i, test in enumerate(plan.tests):
-        told: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
+        keys: dict[str, Any] = {"file": f"test-{i:02d}.csv"}
         if test.kind != STEADY:
             undriven = options.record_input is not None and test.kind == TRANSIENT and not test.driven
-            tests.append({**told, "kind": test.kind, **({"undriven": True} if undriven else {})})
+            tests.append({**keys, "kind": test.kind, **({"undriven": True} if undriven else {})})
             continue
-        told["frequency_hz"] = test.frequency_hz
+        keys["frequency_hz"] = test.frequency_hz
         if test.known and options.record_input is None:
-            told[config.amplitude_unit.key] = test.amplitude
-            told["amplitude_std"] = test.amplitude_std or options.amplitude_error
-        tests.append(told)
+            keys[config.amplitude_unit.key] = test.amplitude
+            keys["amplitude_std"] = test.amplitude_std or options.amplitude_error
+        tests.append(keys)
     motion = config.simulated_motion[0]
     velocity = {"column": "v", "unit": "mm/s", "derived": options.noise == "differentiated", "of": motion}
     columns: dict[str, dict[str, Any]] = {

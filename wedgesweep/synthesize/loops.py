@@ -11,8 +11,9 @@ from wedgesweep.synthesize.plan import PlannedTest
 
 # Steps of the motion for each sample, over which force and displacement are averaged.
 CELLS = 10
-# A slower part of the motion, so that it turns at many places: its frequency, size and phase (rad).
-SLOWER, SMALLER, LATER = 0.37, 0.3, 1.0
+# A second sine in the motion, so that it reverses at many places: frequency and amplitude over those of the
+# first, and phase (rad).
+SECOND_FREQUENCY, SECOND_AMPLITUDE, SECOND_PHASE = 0.37, 0.3, 1.0
 
 
 def loop(
@@ -36,5 +37,5 @@ def loop(
 def _derivative(test: PlannedTest, time: np.ndarray, order: int) -> np.ndarray:
     """A derivative of the imposed motion (SI) at some times (s)."""
     size, rate = 1e-3 * test.amplitude, 2.0 * pi * test.frequency_hz
-    parts = ((size, rate, 0.0), (SMALLER * size, SLOWER * rate, LATER))
+    parts = ((size, rate, 0.0), (SECOND_AMPLITUDE * size, SECOND_FREQUENCY * rate, SECOND_PHASE))
     return np.sum([a * w**order * np.sin(w * time + p + 0.5 * pi * order) for a, w, p in parts], axis=0)

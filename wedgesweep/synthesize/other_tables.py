@@ -11,14 +11,24 @@ from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.truth import TrueTest, Truth
 
 # Default sampling rate over that of a steady test, which is shorter.
-SLOWER = 0.25
-# Noise of the displacement of a loop over that of its force: a displacement sensor is far better.
-BETTER = 0.003
+SAMPLING_SHARE = 0.25
+# Relative noise of a loop's displacement over that of its force: a displacement sensor is far better.
+DISPLACEMENT_NOISE = 0.003
+
+
+def sampling_rate(test: TrueTest, options: Options) -> float:
+    """Samples per second of a transient or a loop."""
+    return options.sampling_hz or round(SAMPLING_SHARE * test.sampling_hz, 3)
+
+
+def sample_count(test: TrueTest, options: Options) -> int:
+    """Number of samples of a transient or a loop."""
+    return round(test.plan.duration_s * sampling_rate(test, options))
 
 
 def table(truth: Truth, test: TrueTest, options: Options) -> Table:
     """Channels with offset and noise, as in the CSV file."""
-    rate = options.sampling_hz or round(SLOWER * test.sampling_hz, 3)
+    rate = sampling_rate(test, options)
     if test.plan.kind == LOOP:
         return _of_loop(truth, test, rate, options.level)
     found = transients.transient(truth.config, truth.law, truth.effects, test.plan, rate, test.random)
@@ -37,7 +47,9 @@ def table(truth: Truth, test: TrueTest, options: Options) -> Table:
 def _of_loop(truth: Truth, test: TrueTest, rate: float, level: float) -> Table:
     displacement, force = loops.loop(truth.config, truth.law, truth.effects, test.plan, rate)
     force = force + (level * test.random.normal(size=force.size) + test.offset) * force.std()
-    displacement = displacement + BETTER * level * displacement.std() * test.random.normal(size=force.size)
+    displacement = displacement + DISPLACEMENT_NOISE * level * displacement.std() * test.random.normal(
+        size=force.size
+    )
     return Table(np.arange(force.size) / rate, 1e3 * displacement, None, None, force)
 
 

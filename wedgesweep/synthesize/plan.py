@@ -10,7 +10,6 @@ from wedgesweep import toml
 from wedgesweep.config.keys import Choice, Flag, Number
 from wedgesweep.config.tables import TableList, table
 from wedgesweep.errors import InputError
-from wedgesweep.files import read_text
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
     AMPLITUDE_STD,
@@ -105,14 +104,7 @@ class Plan:
 
 def load(path: Path) -> Plan:
     """Read a tests.toml; raises InputError with everything that is wrong."""
-    try:
-        given = toml.loads(read_text(path))
-    except OSError as error:
-        problem = f"{path}: {error.strerror}; give the path of a tests.toml"
-        raise InputError([problem]) from error
-    except ValueError as error:
-        raise InputError([f"{path}: not valid TOML: {error}"]) from error
-    return from_document(given, str(path))
+    return from_document(toml.load(path, "a tests.toml"), str(path))
 
 
 def from_document(given: Mapping[str, Any], source: str = "tests") -> Plan:
@@ -127,19 +119,33 @@ def from_document(given: Mapping[str, Any], source: str = "tests") -> Plan:
 
 
 def _faults(given: Mapping[str, Any]) -> list[str]:
-    """Keys of a test that are missing, as "key: fault"."""
+    """Keys of a test that are missing or contradict each other, as "key: fault"."""
     stated = [key for key in (AMPLITUDE.key, FORCE_AMPLITUDE.key) if key in given]
     if given.get("kind") == TRANSIENT and given.get("motion") == "release":
-        nothing = not (given["release_mm"] or given["release_mm_per_s"])
-        return ["release_mm: 0, and so is release_mm_per_s; nothing would move"] if nothing else []
+        at_rest = given.get("release_mm") == given.get("release_mm_per_s") == 0.0
+        return ["release_mm: 0, and so is release_mm_per_s; nothing would move"] if at_rest else []
     faults = [] if "frequency_hz" in given else ["frequency_hz: missing; write frequency_hz = 20.0"]
     if len(stated) != 1:
         faults.append(f"{AMPLITUDE.key}: write this, or {FORCE_AMPLITUDE.key}, and not both")
     if given.get("motion") in ("sweep", "random") and "to_hz" not in given:
         faults.append("to_hz: missing; write the highest frequency")
+    if given.get("kind") == TRANSIENT and given.get("motion") == "random":
+        faults += _band_faults(given)
     if given.get("kind") == LOOP and FORCE_AMPLITUDE.key in given:
         faults.append(f"{FORCE_AMPLITUDE.key}: a loop imposes a motion; write {AMPLITUDE.key}")
     return faults
+
+
+def _band_faults(given: Mapping[str, Any]) -> list[str]:
+    """Why random motion has no frequency within its band, as "key: fault"."""
+    if not {"frequency_hz", "to_hz", "duration_s"} <= given.keys():
+        return []
+    low, high, duration = (given[key] for key in ("frequency_hz", "to_hz", "duration_s"))
+    if high <= low:
+        return [f"to_hz: {high:g} is not above frequency_hz = {low:g}; write an increasing band"]
+    if (high - low) * duration <= 1.0:
+        return [f"duration_s: {duration:g} s are too short for a band of {high - low:g} Hz; lengthen it"]
+    return []
 
 
 def _planned(given: Mapping[str, Any]) -> PlannedTest:

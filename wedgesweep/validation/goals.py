@@ -80,7 +80,7 @@ def _at_most(what: str, found: Share, most: float) -> Goal:
     return Goal(what, f"<= {most:.0%}", str(found), found.value <= most if found.n else None)
 
 
-def _told(what: str, found: Share) -> Goal:
+def _listed(what: str, found: Share) -> Goal:
     """A line that nothing is required of."""
     return Goal(what, "", str(found), None)
 
@@ -109,11 +109,11 @@ def goals(sets: Sets) -> list[Goal]:
             "small errors, one effect: it leads the ladder", share(imperfect, judge.leads_ladder), 0.90
         ),
         _at_least("  named, alone or with errors that are there", share(imperfect, judge.names_cause), 0.80),
-        _told("  named alone", share(imperfect, judge.exact)),
+        _listed("  named alone", share(imperfect, judge.exact)),
         _at_most("  wrong `named`", share(imperfect, judge.names_another_cause), 0.03),
         _at_least("small errors only: nothing missing", share(errors, judge.nothing_missing), 0.90),
-        _told("  an error that is there named", share(errors, judge.names_what_is_there)),
-        _told("  they leave more than is allowed for", share(errors, judge.errs_by_more)),
+        _listed("  an error that is there named", share(errors, judge.names_what_is_there)),
+        _listed("  they leave more than is allowed for", share(errors, judge.errs_by_more)),
         _at_least(
             "rig of any size: exact or in a tie", share(sets.of("random-rig"), judge.exact_or_tied), 0.95
         ),

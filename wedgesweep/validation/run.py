@@ -143,20 +143,13 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
     wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1)
     clock.lap("diagnose")
     found = json.loads((directory / RESULT / "diagnosis.json").read_text())
-    if found["gain"]:
-        del found["gain"]["held_out"]
     return {
         **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
         "code": git_commit() or __version__,
         "truth": sorted(drawn["hidden"]),
         "numbers": drawn["hidden"],
         **{key: drawn[key] for key in ("law", "noise", "level")},
-        **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
-        "ladder": [
-            {key: level[key] for key in ("effects", "accuracy", "distinct")} for level in found["ladder"]
-        ],
-        "excess": found["misfit"]["excess_base"],
-        **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
+        **_answer(found),
         "gain_in_truth": None,
         "baselines": {},
         "seconds": clock.seconds,
@@ -165,21 +158,28 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
 
 def _record(one: DataSet, draft: Draft, found: dict[str, Any]) -> Record:
     """What is kept of a set, from the document of its diagnosis."""
-    if found["gain"]:
-        del found["gain"]["held_out"]  # test by test: too long for a record
     return {
         **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
         "code": git_commit() or __version__,
         "truth": draft.truth,
         "numbers": draft.hidden,
         **{key: getattr(draft, key) for key in KEPT},
-        **{key: found[key] for key in ("verdict", "causes", "rivals", "gain", "next_test")},
-        "ladder": [
-            {key: level[key] for key in ("effects", "accuracy", "distinct")} for level in found["ladder"]
-        ],
+        **_answer(found),
+        "gain_in_truth": gain_in_truth(draft, found["causes"]),
+    }
+
+
+def _answer(found: dict[str, Any]) -> Record:
+    """What is kept of a diagnosis, from its document."""
+    gain = found["gain"]
+    # Test by test the gain is too long for a record.
+    kept = {key: gain[key] for key in gain if key != "held_out"} if gain else gain
+    levels = [{key: level[key] for key in ("effects", "accuracy", "distinct")} for level in found["ladder"]]
+    return {
+        **{key: found[key] for key in ("verdict", "causes", "rivals")},
+        **{"gain": kept, "next_test": found["next_test"], "ladder": levels},
         "excess": found["misfit"]["excess_base"],
         **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
-        "gain_in_truth": gain_in_truth(draft, found["causes"]),
     }
 
 

@@ -194,8 +194,8 @@ def _right(record: Record) -> bool:
 def _line(record: Record) -> str:
     made = f"{record['name']:12} {record['law']:15} {record['noise']:15} excess {record['excess']:9.0f}"
     rivals = "; ".join("+".join(rival["effects"]) for rival in record["rivals"][:3])
-    told = f" (rivals {rivals})" if rivals else ""
-    return f"{made}  {outcome(record)}{told}"
+    tied = f" (rivals {rivals})" if rivals else ""
+    return f"{made}  {outcome(record)}{tied}"
 
 
 def outcome(record: Record) -> str:

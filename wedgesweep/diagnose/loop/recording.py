@@ -200,12 +200,12 @@ def recording(
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
     if not places.size:
-        told = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
-        raise InputError([f"{name}: {told}; record for longer, or raise lowpass_hz"])
+        problem = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
+        raise InputError([f"{name}: {problem}; record for longer, or raise lowpass_hz"])
     compared, known = low_pass(force)[places], ~at_rest(own, low_pass)[places]
     if known.sum() < FEWEST_KNOWN:
-        told = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
-        raise InputError([f"{name}: {told}; move it faster, or measure it with less noise"])
+        problem = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
+        raise InputError([f"{name}: {problem}; move it faster, or measure it with less noise"])
     blocks = _blocks(own.velocity[places])
     white = low_pass.noise(white_noise(force, rate, jumps=True))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)

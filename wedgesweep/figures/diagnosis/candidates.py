@@ -13,7 +13,7 @@ from wedgesweep.figures.panels import Panels, Target, panels
 NAME = "candidates"
 DESCRIPTION = "penalised misfit of every candidate, the best first"
 
-MOST = 20
+MOST_ROWS = 20
 TIED = "0.88"  # grey of the range in which candidates are tied
 
 
@@ -24,7 +24,7 @@ def shown(result: DiagnosisResult) -> list[dict[str, Any]]:
         for each in result.document["candidates"]
         if each["penalised"] is not None and each["status"] != NO_BETTER
     ]
-    return [each for place, each in enumerate(fitted) if place < MOST or not each["effects"]]
+    return [each for place, each in enumerate(fitted) if place < MOST_ROWS or not each["effects"]]
 
 
 def _mark(candidate: dict[str, Any], least: float) -> dict[str, Any]:

@@ -34,13 +34,13 @@ def largest_cycle(x: np.ndarray) -> slice | None:
 def _draw_loop(ax: Axes, case: xr.Dataset, color: str) -> None:
     x, force = case["displacement"].values, case["force"].values
     ax.plot(x * style.MM, force, color=style.GREY, linewidth=0.5, alpha=0.6)
-    told = "no whole cycle"
+    marked = "no whole cycle"
     if np.isfinite(x).all() and (cycle := largest_cycle(x)) is not None:
         ax.fill(x[cycle] * style.MM, force[cycle], color=color, alpha=0.15)
         ax.plot(x[cycle] * style.MM, force[cycle], color=color, linewidth=1.4)
-        told = f"marked cycle: {area(x[cycle], force[cycle]):.3g} J"
+        marked = f"marked cycle: {area(x[cycle], force[cycle]):.3g} J"
     whole = f"in all: {case['dissipated_energy'].item():.3g} J"
-    ax.text(0.03, 0.97, f"{told}\n{whole}", transform=ax.transAxes, fontsize=8, va="top")
+    ax.text(0.03, 0.97, f"{marked}\n{whole}", transform=ax.transAxes, fontsize=8, va="top")
 
 
 def draw(target: Target, ds: xr.Dataset, scale: float | None = None) -> Panels:
