@@ -7,6 +7,7 @@ from tests.command import invoke
 from tests.diagnose import test_loops, test_transients
 from wedgesweep import diagnosis_result
 from wedgesweep.config import parse
+from wedgesweep.diagnose.cross_validation import local_numbers
 from wedgesweep.diagnose.diagnosis import data_of
 from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.search import Search, base_fit
@@ -105,6 +106,11 @@ def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):
         alone = Search.of(data.subset(np.array([test])), []).model()
         found = alone.evaluate(fit.point.subset(np.array([test]))).chi2
         assert found - fit.evaluation.chi2_by_test[test] < 5.0
+    assert data.input_gain_std == 0.02
+    # Nothing is fitted to a steady test alone; a release and blocks of a loop have zeros of their sensors.
+    local = dict(zip(data.names, local_numbers(fit), strict=True))
+    assert local.pop("sine") == pytest.approx(0.0, abs=1e-3)
+    assert min(local.values()) >= 1.0
 
 
 def test_a_channel_that_one_of_the_kinds_needs_is_missing(tmp_path):

@@ -409,6 +409,10 @@ NETCDF_FAULTS = {
         lambda file, test: test.setncattr("amplitude_mm", -0.1),
         "tests/0000: amplitude_mm: -0.1 is out",
     ),
+    "repeat_of": (
+        lambda file, test: test.setncattr("repeat_of", "other.csv"),
+        'repeat_of: "other.csv" is not the file of an earlier test',
+    ),
     "units": (lambda file, test: test["time"].setncattr("units", "min"), 'time: unknown units "min"'),
     "name": (lambda file, test: test.renameVariable("velocity", "speed"), "speed: unknown variable"),
     "absent": (lambda file, test: test.renameVariable("time", "stamps"), "no variable time"),

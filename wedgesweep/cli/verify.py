@@ -20,7 +20,7 @@ def print_verification(sweep: "Sweep", ds: "xr.Dataset", count: int, seed: int, 
     """Solve random cases again and print the largest differences; return the exit code."""
     from wedgesweep.sweep import verification
 
-    log.info(f"verifying {counted(count, 'random case')} by Radau")
+    log.info(f"verifying at most {counted(count, 'random case')} by Radau")
     found = verification.verify(sweep, ds, count, seed, n_jobs)
     verifiable = found.verifiable
     cases = counted(len(verifiable), "case")

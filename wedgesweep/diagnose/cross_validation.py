@@ -195,7 +195,9 @@ def local_numbers(fit: Fit) -> np.ndarray:
     )
     known = model.nuisance_weight**2 * np.diagonal(np.linalg.inv(reduced), axis1=1, axis2=2)
     determined = np.clip(1.0 - known, 0.0, 1.0).sum(axis=1)
-    return equations.eliminated + determined + model.data.extra_nuisances(fit.effects)
+    # Of several kinds of test not all have as many.
+    eliminated = model.data.eliminated_derivatives(fit.evaluation).any(axis=1).sum(axis=1)
+    return eliminated + determined + model.data.extra_nuisances(fit.effects)
 
 
 def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:

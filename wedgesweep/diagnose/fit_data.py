@@ -68,6 +68,11 @@ class FitData(Protocol):
     eliminated: int
 
     @property
+    def input_gain_std(self) -> float:
+        """Relative standard deviation of the gain of recorded inputs; 0 where it is exact, or none is."""
+        return self.uncertain.get(INPUT_GAIN, 0.0)
+
+    @property
     @abstractmethod
     def tests(self) -> int:
         """Number of tests T."""

@@ -9,6 +9,9 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.jacobian import Jacobian, jacobian
 from wedgesweep.diagnose.model import Model
 
+# What is added to the diagonal of local blocks, over it.
+REGULAR = 1e-12
+
 
 class Reduced(NamedTuple):
     """Normal equations of the parameters alone: matrix (k, k) and gradient (k,)."""
@@ -73,7 +76,9 @@ def normal_equations(
     for i in range(weight.shape[1]):
         local[:, eliminated + i, eliminated + i] += weight[:, i] ** 2
         gradient[:, eliminated + i] += weight[:, i] * evaluation.nuisance_prior[:, i]
-    local += 1e-12 * (1.0 + np.einsum("tii->t", local))[:, None, None] * np.eye(local.shape[-1])
+    # A nuisance parameter without influence on a test leaves no singular block.
+    own = np.einsum("tii->ti", local)
+    own += REGULAR * (1.0 + own)
     global_block = np.einsum("tmk,tml->kl", by_parameter, by_parameter)
     global_gradient = np.einsum("tmk,tm->k", by_parameter, evaluation.residual)
     uncertain = np.arange(model.size, len(global_gradient))

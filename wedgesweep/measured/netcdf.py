@@ -25,7 +25,7 @@ from wedgesweep.config.keys import Number
 from wedgesweep.config.tables import Table
 from wedgesweep.files import json_object, regular, written
 from wedgesweep.hints import hint, show
-from wedgesweep.measured import channels, overrides
+from wedgesweep.measured import channels, overrides, repeated
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import (
     DETREND,
@@ -133,6 +133,7 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
     uncertain = _uncertain(root, path, problems)
     numbers = {each.key: _number(each, attributes, path, problems) for each in NUMBERS}
     tests = [_test(group, path, config, problems) for group in groups]
+    problems += _repeat_faults(groups, path)
     complete = tuple(test for test in tests if test)
     derived = _derived_velocity(groups, path, problems)
     by_kind, different = _columns_by_kind(groups)
@@ -158,6 +159,15 @@ def _read(root: Any, path: Path, model: Path | None) -> Measurement:
         columns=columns,
         **numbers,
     )
+
+
+def _repeat_faults(groups: Sequence[Any], path: Path) -> list[str]:
+    given = [{"file": group.name, **_attributes(group)} for group in groups]
+    return [
+        f"{path}: {group.path.lstrip('/')}: {fault}"
+        for i, group in enumerate(groups)
+        for fault in repeated.faults(given[i], given[:i])
+    ]
 
 
 def _model_faults(

@@ -2,7 +2,7 @@
 
 import errno
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from wedgesweep.config import Config
 from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.errors import InputError
 from wedgesweep.hints import show
-from wedgesweep.measured import arrays, channels, overrides
+from wedgesweep.measured import arrays, channels, overrides, repeated
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
 from wedgesweep.measured.declarations import units as units_of
@@ -121,7 +121,7 @@ def _tests(
             problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
             continue
         seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in _repeat_faults(given, measurement["test"][:i]))
+        problems.extend(f"{at}.{fault}" for fault in repeated.faults(given, measurement["test"][:i]))
         own = by_kind[given.get("kind", STEADY)]
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
@@ -129,19 +129,6 @@ def _tests(
         if complete and own:
             tests += _test(path.parent / file, at, given, {**measurement, "columns": own}, problems)
     return tests
-
-
-def _repeat_faults(given: Mapping[str, Any], before: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Faults of the key that names the test which this one repeats, as "key: fault"."""
-    first = given.get("repeat_of")
-    if first is None:
-        return []
-    for other in before:
-        if other.get("file") == first and "repeat_of" not in other:
-            same = other.get("kind", STEADY) == given.get("kind", STEADY)
-            return [] if same else [f"repeat_of: {show(first)} is of another kind; a repeat is of the same"]
-    fault = "is not the file of an earlier test that repeats none; name that one"
-    return [f"repeat_of: {show(first)} {fault}"]
 
 
 def _test(

@@ -65,7 +65,7 @@ def synthesize(
         next(found) if test.plan.kind == STEADY else other_tables.table(truth, test, options)
         for test in truth.tests
     ]
-    model = Config(config.document | {"effects": {}, "title": "base model"})
+    model = Config(config.document | {"effects": {}, "title": "model on trial"})
     measured = documents.measured(directory.name, config, plan, options)
     solution = documents.truth_document(truth, steady, motions, options)
     files.write(directory, measured, model, tables, solution)

@@ -12,7 +12,7 @@ from pathlib import Path
 import joblib
 
 from wedgesweep import __version__, figures
-from wedgesweep.validation import tables
+from wedgesweep.validation import judge, tables
 from wedgesweep.validation.goals import Sets
 from wedgesweep.validation.judge import Record
 from wedgesweep.validation.run import RECORD, run_chain, write
@@ -102,7 +102,9 @@ def _line(record: Record) -> str:
     if "failure" in record:
         return f"{record['name']:12} failed: {record['failure'].strip().splitlines()[-1]}"
     seconds = sum(record["seconds"].values())
-    return f"{record['name']:12} {tables.outcome(record)} (excess {record['excess']:.0f}, {seconds:.0f} s)"
+    return (
+        f"{record['name']:12} {tables.outcome(record)} (excess {judge.excess(record):.0f}, {seconds:.0f} s)"
+    )
 
 
 def _write(sets: Sets, text: str, out: Path) -> None:

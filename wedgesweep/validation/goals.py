@@ -40,11 +40,11 @@ class Sets(NamedTuple):
 
     @property
     def strong(self) -> list[Record]:
-        return [record for record in self.singles if record["excess"] >= STRONG]
+        return [record for record in self.singles if judge.excess(record) >= STRONG]
 
     @property
     def weak(self) -> list[Record]:
-        return [record for record in self.singles if WEAK <= record["excess"] < STRONG]
+        return [record for record in self.singles if WEAK <= judge.excess(record) < STRONG]
 
     @property
     def exact_singles(self) -> list[Record]:
@@ -52,7 +52,7 @@ class Sets(NamedTuple):
 
 
 def _shows(record: Record) -> bool:
-    return not record["truth"] or bool(record["excess"] >= WEAK)
+    return not record["truth"] or judge.excess(record) >= WEAK
 
 
 class Goal(NamedTuple):
@@ -128,7 +128,7 @@ def _of_time_records(kind: str, records: Sequence[Record]) -> list[Goal]:
     """Lines for sets of one kind of test, some of which hide nothing."""
     clean = [record for record in records if not record["truth"]]
     hidden = [record for record in records if record["truth"]]
-    strong = [record for record in hidden if (record["excess"] or 0.0) >= STRONG]
+    strong = [record for record in hidden if judge.excess(record) >= STRONG]
     return [
         _at_least(f"{kind}, excess >= 800: exact or in a tie", share(strong, judge.exact_or_tied), 0.95),
         _at_most("  wrong `named`", share(hidden, judge.wrongly_named), 0.03),

@@ -1,5 +1,6 @@
 """Compares a verdict with the truth."""
 
+from math import inf
 from typing import Any
 
 from wedgesweep.effects import EFFECTS
@@ -9,6 +10,11 @@ from wedgesweep.validation import imperfect
 Record = dict[str, Any]
 NAMING = ("named", "consistent-with")
 ABSTAINING = ("tied", "data-insufficient", "none-of-mine")
+
+
+def excess(record: Record) -> float:
+    """Excess chi-squared of the base model; infinite where that has no steady response."""
+    return inf if record["excess"] is None else float(record["excess"])
 
 
 def causes(record: Record) -> list[str]:

@@ -126,7 +126,7 @@ def recovery(sets: Sets) -> list[Bin]:
     bins = []
     for low, high in pairwise(EDGES):
         # Noise may make an excess negative.
-        inside = [record for record in sets.singles if low <= max(record["excess"], 0.0) < high]
+        inside = [record for record in sets.singles if low <= max(judge.excess(record), 0.0) < high]
         if inside:
             shares = {name: share(inside, passes) for name, passes in METHODS.items()}
             shares |= {name: _share_of_baseline(inside, name, _is_right) for name in baselines}
@@ -192,7 +192,7 @@ def _right(record: Record) -> bool:
 
 
 def _line(record: Record) -> str:
-    made = f"{record['name']:12} {record['law']:15} {record['noise']:15} excess {record['excess']:9.0f}"
+    made = f"{record['name']:12} {record['law']:15} {record['noise']:15} excess {judge.excess(record):9.0f}"
     rivals = "; ".join("+".join(rival["effects"]) for rival in record["rivals"][:3])
     tied = f" (rivals {rivals})" if rivals else ""
     return f"{made}  {outcome(record)}{tied}"

@@ -82,6 +82,10 @@ class MixedData(FitData):
         return self.present[0].uncertain
 
     @property
+    def input_gain_std(self) -> float:  # type: ignore[override]
+        return max(part.input_gain_std for part in self.present)
+
+    @property
     def eliminated(self) -> int:  # type: ignore[override]
         return max(part.eliminated for part in self.present)
 

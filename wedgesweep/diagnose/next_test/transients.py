@@ -89,7 +89,7 @@ def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
 def _data(best: Fit, known: Sensors, tests: tuple[RecordWindow, ...]) -> TransientData:
     """The tests as if the best explanation were measured, with the noise that sensors would have."""
     own = best.model.data
-    gain_std = getattr(own, "gain_std", 0.0) if any(each.driven for each in tests) else 0.0
+    gain_std = own.input_gain_std if any(each.driven for each in tests) else 0.0
     data = TransientData(tests, dict(own.uncertain), own.model_error, gain_std)
     nuisance, warm = data.start()
     found = best.model.on(data).evaluate(Point(best.x, nuisance, warm))

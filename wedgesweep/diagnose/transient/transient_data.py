@@ -168,6 +168,10 @@ class TransientData(SampledData):
         return self.observations - 1 - len(START)
 
     @property
+    def input_gain_std(self) -> float:  # type: ignore[override]
+        return self.gain_std
+
+    @property
     def nuisance_std(self) -> np.ndarray:
         start = np.full((self.tests, len(START)), np.inf)
         if not self.gain_std:
