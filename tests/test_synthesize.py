@@ -96,7 +96,7 @@ def test_round_trip(here):
     told = invoke("check", "made/measured.toml")
     for words in (
         "made/measured.toml: valid",
-        "model: base model, static-dynamic",
+        "model: model on trial, static-dynamic",
         "tests: 2",
         "unknown",
     ):

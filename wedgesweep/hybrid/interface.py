@@ -11,7 +11,7 @@ first one decides. Times are in s, all else in the units of ``scales``.
 """
 
 from collections.abc import Callable, Mapping
-from math import inf
+from math import inf, nan
 from typing import Any, TypeVar
 
 from wedgesweep.compiled import by_record, inlined
@@ -190,12 +190,33 @@ def closed_form(state, stop, p, keeping, recorder, counts):
     return False, state, NO_EVENT
 
 
+# Imposed motions (solvers/imposed_motion.py), whose states of effects follow the motion.
+
+
 @required
 def driving_force(t, acceleration, y, mode, p):
-    """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined.
+    """Force on the mass (N) that gives it an acceleration (m/s^2); NaN where it is not determined."""
 
-    Only imposed motions need it (solvers/imposed_motion.py).
+
+@optional
+def already_moving(y, p):
+    """A state at rest as a motion that has been going on would have left it."""
+    return y
+
+
+@optional
+def share_before_jump(y, step, p):
+    """Share of a step (s) at a constant velocity after which the force jumps; NaN: it does not."""
+    return nan
+
+
+@optional
+def moved_freely(y, following, step, p):
+    """The state after a step (s) at a constant velocity, with states that move freely between two ends.
+
+    ``following``: the other states after that step, by their rates.
     """
+    return following
 
 
 # Contacts that open and hit.

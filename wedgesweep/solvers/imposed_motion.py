@@ -2,16 +2,23 @@
 
 States of effects (bristles, time at rest) follow the motion. Each is integrated by the exponential Euler
 method, which is exact for a rate that is linear in its state, however stiff (Hochbruck and Ostermann, 2010,
-"Exponential integrators"). The rod of a damper moves freely in its play, exactly.
+"Exponential integrators"). What moves freely between two ends moves exactly.
 """
 
-from math import expm1
+from math import expm1, isnan, nan
 
 import numpy as np
 
 from wedgesweep.compiled import compiled, inner
-from wedgesweep.effects import damper_play
-from wedgesweep.hybrid.interface import driving_force, initial_mode, rate, scales
+from wedgesweep.hybrid.interface import (
+    already_moving,
+    driving_force,
+    initial_mode,
+    moved_freely,
+    rate,
+    scales,
+    share_before_jump,
+)
 from wedgesweep.hybrid.vectors import replaced, vector
 from wedgesweep.systems import grouped
 
@@ -48,73 +55,46 @@ def forces(
     """
     found = np.empty((len(parameters), velocity.size))
     places = np.broadcast_to(displacement, found.shape)
-    motion = np.stack([velocity, acceleration])
+    motion, turns = np.stack([velocity, acceleration]), reversals(velocity)
     for rows, cases in grouped(parameters):
-        found[rows] = _with_all_jumps(cases, *_followed(cases, places[rows], motion, step), velocity)
+        part = np.empty((rows.size, velocity.size))
+        _follow_all(cases, places[rows], motion, turns, step, part)
+        found[rows] = part
     return found
 
 
-def _followed(
-    cases: np.ndarray, places: np.ndarray, motion: np.ndarray, step: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Forces (n, k) at the samples, and the share of the interval after each at which a rod begins to press.
-
-    The latter is NaN where none does, and has no columns without a rod that has play.
-    """
-    found = np.empty(places.shape)
-    rods = (
-        damper_play.EFFECT.name in (cases.dtype.names or ())
-        and (cases["damper_play"]["clearance"] > 0.0).any()
-    )
-    pressed = np.full((len(cases), places.shape[1] - 1 if rods else 0), np.nan)
-    _follow_all(cases, places, motion, step, found, pressed)
-    return found, pressed
-
-
-def _with_all_jumps(
-    cases: np.ndarray, forces: np.ndarray, pressed: np.ndarray, velocity: np.ndarray
-) -> np.ndarray:
-    """Forces (n, k) with the jumps of set-valued friction at reversals, and of rods that begin to press."""
-    turns, when = reversals(velocity)
-    jumps = cases["friction"]["set_valued"] != 0
-    if not pressed.size:
-        forces[jumps] = with_jumps(forces[jumps], turns, when)
-        return forces
-    for row, own, at_turns in zip(forces, pressed, jumps, strict=True):
-        begun = np.flatnonzero(np.isfinite(own))
-        before, share = begun, own[begun]
-        if at_turns:
-            before, share = np.r_[turns, begun], np.r_[when, share]
-        row[:] = with_jumps(row[None], before, share)[0]
-    return forces
-
-
-def reversals(velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The samples (j,) before the reversals of a velocity (k,), and the share of the interval until each."""
-    before = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)
-    return before, velocity[before] / (velocity[before] - velocity[before + 1])
-
-
-def with_jumps(forces: np.ndarray, before: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Forces (n, k) in which a jump between two samples counts for its share of the interval.
-
-    Otherwise the time of each jump would be rounded to the grid. ``before`` (j,): the sample before each;
-    ``share`` (j,): of the interval, after which it jumps.
-    """
-    late = share - 0.5
-    jump = forces[:, before + 1] - forces[:, before]
-    forces[:, before] += np.maximum(-late, 0.0) * jump
-    forces[:, before + 1] -= np.maximum(late, 0.0) * jump
-    return forces
+def reversals(velocity: np.ndarray) -> np.ndarray:
+    """Share of the interval after each sample (k,) but the last at which a velocity reverses, else NaN."""
+    before, after = velocity[:-1], velocity[1:]
+    turning = before * after < 0.0
+    return np.divide(before, before - after, out=np.full(before.size, np.nan), where=turning)
 
 
 @compiled
-def _follow_all(cases, places, motion, step, out, pressed):
+def share_jumps(force, shares):
+    """Let jumps of a force (k,) between two samples count for their share of the interval, in place.
+
+    ``shares`` (k - 1,): of each interval, after which the force jumps; NaN: it does not. Otherwise the time
+    of each jump would be rounded to the grid.
+    """
+    jump = np.diff(force)
+    for i in range(jump.size):
+        late = shares[i] - 0.5
+        if late < 0.0:
+            force[i] -= late * jump[i]
+        elif late > 0.0:
+            force[i + 1] -= late * jump[i]
+
+
+@compiled
+def _follow_all(cases, places, motion, turns, step, out):
+    shares = np.empty(turns.size)
     for k in range(cases.size):
         p = cases[k]
-        y = vector(np.zeros(len(scales(p))), scales(p))
-        # Nobody knows where the rod begins: a motion that goes on presses it to its own side.
-        y = damper_play.put(y, 1 if motion[0, 0] >= 0.0 else -1, p)
+        y = replaced(vector(np.zeros(len(scales(p))), scales(p)), 1, motion[0, 0])
+        y = already_moving(y, p)
+        # Regularised friction does not jump where the velocity reverses.
+        jumps = 1.0 if p.friction.set_valued else nan
         for i in range(motion.shape[1]):
             y = replaced(replaced(y, 0, places[k, i]), 1, motion[0, i])
             out[k, i] = _force(y, motion[1, i], step, p)
@@ -122,10 +102,10 @@ def _follow_all(cases, places, motion, step, out, pressed):
             # States of effects see the mean motion between two samples.
             y = replaced(y, 0, 0.5 * (places[k, i] + places[k, following]))
             y = replaced(y, 1, 0.5 * (motion[0, i] + motion[0, following]))
-            moved = damper_play.moved(y, y[1] * step, p)
-            if i < pressed.shape[1] and motion[0, i] * motion[0, i + 1] > 0.0:
-                pressed[k, i] = damper_play.share_before_end(y, y[1] * step, p)
-            y = damper_play.with_rod(_advanced(y, step, p), moved, p)
+            if i < turns.size:
+                shares[i] = share_before_jump(y, step, p) if isnan(turns[i]) else jumps * turns[i]
+            y = moved_freely(y, _advanced(y, step, p), step, p)
+        share_jumps(out[k], shares)
 
 
 @inner

@@ -14,7 +14,7 @@ import numpy as np
 from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion
-from wedgesweep.solvers.imposed_motion import reversals, with_jumps
+from wedgesweep.solvers.imposed_motion import reversals, share_jumps
 
 FROM_MOTION = "what no smooth function of the motion explains"
 # Knots over the displacement and over the velocity of either sign.
@@ -116,7 +116,10 @@ def _functions(motion: Motion, model: np.ndarray) -> np.ndarray:
     speeds = _hats(np.abs(v), SPEEDS)
     rows = [*simple, *history, *both, *(each * (v > 0.0) for each in speeds)]
     rows += [*(each * (v < 0.0) for each in speeds), *(each * sign for each in both), np.abs(a)]
-    return with_jumps(np.array(rows), *reversals(motion.velocity))
+    found, turns = np.array(rows), reversals(motion.velocity)
+    for row in found:
+        share_jumps(row, turns)
+    return found
 
 
 def _scaled(values: np.ndarray) -> np.ndarray:

@@ -130,6 +130,27 @@ def driving_force(t, acceleration, y, mode, p):
     return p.oscillator.mass * acceleration - load(t, y, mode, p) + friction_force(y, mode, p)
 
 
+@implement(interface.already_moving, OSCILLATOR)
+@inlined
+def already_moving(y, p):
+    """The rod of a damper presses to the side to which the mass moves."""
+    return damper_play.put(y, 1 if y[VELOCITY] >= 0.0 else -1, p)
+
+
+@implement(interface.share_before_jump, OSCILLATOR)
+@inlined
+def share_before_jump(y, step, p):
+    """The rod of a damper reaches an end of its play."""
+    return damper_play.share_before_end(y, slip(y, p) * step, p)
+
+
+@implement(interface.moved_freely, OSCILLATOR)
+@inlined
+def moved_freely(y, following, step, p):
+    """The rod of a damper moves between the ends of its play."""
+    return damper_play.with_rod(following, damper_play.moved(y, slip(y, p) * step, p), p)
+
+
 @implement(interface.rate, OSCILLATOR)
 @inlined
 def rate(t, y, mode, p):
