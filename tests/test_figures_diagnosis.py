@@ -102,7 +102,7 @@ def test_the_tests_with_the_largest_misfit_are_shown():
     result = build(tests=20)
     ratio = (result.data["q"].sel(model="base") / result.data["dof"]).values
     chosen = selection.choose(result, None)
-    assert len(chosen) == selection.SHOWN
+    assert len(chosen) == selection.TESTS_SHOWN
     assert ratio[chosen].min() >= np.delete(ratio, chosen).max()
     figure = figures.draw(result, "waveforms", tests=[4])
     assert "run-04" in figure.axes[0].get_title()

@@ -91,13 +91,13 @@ def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
 def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
     """Noise of the first response of a test, in its unit and as a share of that response at its largest."""
     from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION
-    from wedgesweep.measured.kinds import SHOWN
+    from wedgesweep.measured.kinds import DISPLAY_UNITS
 
     order, signals = windows[0].orders[0], [each.channels[0] for each in windows]
     # The zero of an accelerometer is unknown.
     swing = max(0.5 * float(each.max() - each.min()) for each in signals)
     largest = max(each.length for each in windows) if order == 0 else swing
-    std, (size, unit) = windows[0].spectra[0].std, SHOWN[QUANTITIES_OF_MOTION[order]]
+    std, (size, unit) = windows[0].spectra[0].std, DISPLAY_UNITS[QUANTITIES_OF_MOTION[order]]
     return f"{std / size:.3g} {unit} ({100.0 * std / largest:.2g} %)"
 
 
@@ -152,13 +152,13 @@ def _amplitude(test: "TestRecord", size: float) -> str:
 
 def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
     """Noise per response, and the harmonics of the first one."""
-    from wedgesweep.measured.kinds import SHOWN
+    from wedgesweep.measured.kinds import DISPLAY_UNITS
     from wedgesweep.measured.noise_estimate import estimate_noise
 
     found = {name: estimate_noise(test.time, each, frequency) for name, each in test.responses.items()}
     levels = []
     for name, noise in found.items():
-        size, unit = SHOWN[name]
+        size, unit = DISPLAY_UNITS[name]
         levels.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
     return ", ".join(levels), _runs(next(iter(found.values())).harmonics)
 

@@ -18,7 +18,7 @@ FOLLOWED = 6
 # An explanation is followed only if it leaves less than this share of the base model's chi-squared.
 EXPLAINS = 0.9
 # A number is at an end of its range if it is closer to it than this share of the range's width.
-CLOSE = 1e-3
+AT_END = 1e-3
 
 
 def followed_beyond(
@@ -49,7 +49,7 @@ def effects_at_range_end(fit: Fit) -> tuple[str, ...]:
     hypothesis = fit.model.hypothesis
     ends = []
     for each, x in zip(hypothesis.parameters, fit.x, strict=False):
-        close = CLOSE * (each.high - each.low)
+        close = AT_END * (each.high - each.low)
         below = x - each.low < close and each.wider[0] < each.low
         above = each.high - x < close and each.wider[1] > each.high
         if (below or above) and not each.angle and each.effect not in hypothesis.wider:

@@ -45,7 +45,7 @@ from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
 # Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
-CLOSE = 5.0
+FOLLOWED_GAPS = 5.0
 # Single effects are fitted again if a refit of the base model leaves less than this share of its chi-squared.
 REFIT_BELOW = 0.9
 Data = HarmonicData | LoopData | TransientData | MixedData
@@ -220,7 +220,7 @@ def refit_cause(
 
 def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresholds) -> list[Explanation]:
     """The best explanation and those close to it, followed further where their fits had not converged."""
-    limit = min(map(penalised, found)) + CLOSE * thresholds.gap
+    limit = min(map(penalised, found)) + FOLLOWED_GAPS * thresholds.gap
     waiting = [each for each in found if penalised(each) < limit and not each.fit.converged]
     return search.each(
         lambda each: search.explanation(minimise(each.fit.model, each.fit.evaluation)), waiting

@@ -24,7 +24,7 @@ OF_A_TRANSIENT, NOT_OF_A_SINE = ("undriven",), ("repeat_of",)
 # Responses of a transient, of which it has at least one.
 MOTIONS = ("displacement", "velocity", "acceleration")
 # Sizes in SI, and names, of the units in which they are shown.
-SHOWN = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
+DISPLAY_UNITS = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
 # What is compared, and what else a test may have, by kind.
 NEEDED = {"transient": (), "loop": ("displacement", "force")}
 OPTIONAL = {"transient": (*MOTIONS, INPUT), "loop": ()}
@@ -85,7 +85,7 @@ def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:
     size = int(PART * signal.size)
     first, last = float(np.ptp(signal[:size])), float(np.ptp(signal[-size:]))
     if first < DECAYS * last and not _decays_slowly(signal):
-        scale, unit = SHOWN[name]
+        scale, unit = DISPLAY_UNITS[name]
         swings = f"it swings by {first / scale:.3g} {unit}, at last {last / scale:.3g} {unit}"
         fault = f"the motion does not decay ({swings})"
         better = f'add the column input if there is one; if it is steady write kind = "steady" ({at}.kind)'

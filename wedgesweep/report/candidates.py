@@ -9,7 +9,7 @@ from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 
-SHOWN = 12
+ROWS_SHOWN = 12
 TEXT_COLUMNS = 3
 HEAD = (
     "candidate",
@@ -28,17 +28,18 @@ def section(result: DiagnosisResult, draw: InlineFigures) -> Markup:
     """Section with the ranking and a table."""
     candidates = result.document["candidates"]
     rows = [_row(each, _best(candidates)) for each in candidates]
-    caption = "The best candidates" if len(rows) > SHOWN else "All candidates"
+    caption = "The best candidates" if len(rows) > ROWS_SHOWN else "All candidates"
     others = html.details(
-        f"{len(rows) - SHOWN} more", html.table("Other candidates", HEAD, rows[SHOWN:], TEXT_COLUMNS)
+        f"{len(rows) - ROWS_SHOWN} more",
+        html.table("Other candidates", HEAD, rows[ROWS_SHOWN:], TEXT_COLUMNS),
     )
     return html.section(
         "candidates",
         "The candidates",
         html.paragraph(_summary(result)),
         draw("candidates", _ranking(result)),
-        html.table(caption, HEAD, rows[:SHOWN], TEXT_COLUMNS),
-        others if len(rows) > SHOWN else Markup(),
+        html.table(caption, HEAD, rows[:ROWS_SHOWN], TEXT_COLUMNS),
+        others if len(rows) > ROWS_SHOWN else Markup(),
         html.details("How to read the columns", *map(html.paragraph, COLUMNS)),
     )
 

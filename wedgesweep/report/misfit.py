@@ -8,7 +8,7 @@ import numpy as np
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures.diagnosis import DESCRIPTIONS
-from wedgesweep.figures.diagnosis.selection import SHOWN, by_misfit
+from wedgesweep.figures.diagnosis.selection import TESTS_SHOWN, by_misfit
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
@@ -38,8 +38,8 @@ def section(result: DiagnosisResult, draw: InlineFigures, place: str = "misfit")
         _table(result),
         html.element("h3", "Motion and forces, test by test"),
         html.paragraph(_selected(result)),
-        *(draw(kind, caption, order[:SHOWN]) for kind, caption in CAPTIONS.items()),
-        _rest(draw, order[SHOWN:]),
+        *(draw(kind, caption, order[:TESTS_SHOWN]) for kind, caption in CAPTIONS.items()),
+        _rest(draw, order[TESTS_SHOWN:]),
         html.element("h3", "Plateaus, energy and peak-to-peak"),
         draw("plateaus", _plateaus(result)),
         draw("energy", _energy(result)),
@@ -103,9 +103,9 @@ def _row(test: dict[str, Any], models: Sequence[str]) -> list[str]:
 
 def _selected(result: DiagnosisResult) -> str:
     count = result.data.sizes["test"]
-    if count <= SHOWN:
+    if count <= TESTS_SHOWN:
         return "Tests in order of decreasing misfit." if count > 1 else "The only test."
-    return f"The {SHOWN} of {count} tests with the largest misfit; the others are folded below."
+    return f"The {TESTS_SHOWN} of {count} tests with the largest misfit; the others are folded below."
 
 
 def _rest(draw: InlineFigures, tests: Sequence[int]) -> Markup:

@@ -6,7 +6,7 @@ from typing import Any
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures.diagnosis import spectrogram
-from wedgesweep.figures.diagnosis.selection import SHOWN, by_misfit
+from wedgesweep.figures.diagnosis.selection import TESTS_SHOWN, by_misfit
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
@@ -70,7 +70,7 @@ def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: s
         heading,
         html.paragraph(_overall(result, kind)),
         html.paragraph(noise_source(tests)),
-        draw(FIGURES[kind], CAPTIONS[kind], order[:SHOWN]),
+        draw(FIGURES[kind], CAPTIONS[kind], order[:TESTS_SHOWN]),
         draw("spectrogram", SPECTROGRAM) if spectrogram.possible(result) else Markup(),
         html.table("All tests; errors are rms over that of the response", head, rows),
     )

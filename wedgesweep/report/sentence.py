@@ -9,7 +9,7 @@ from wedgesweep.effects import confounded
 from wedgesweep.report import ladder, phrases
 
 # Tests that a sentence names.
-SHOWN = 3
+NAMES_LISTED = 3
 
 
 def sentence(result: DiagnosisResult) -> str:
@@ -24,7 +24,7 @@ def _never_steady(result: DiagnosisResult) -> str:
     names = result.document.get("never_steady", [])
     if not names:
         return ""
-    which = phrases.listing(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
+    which = phrases.listing(names[:NAMES_LISTED]) + (", ..." if len(names) > NAMES_LISTED else "")
     them = "it is" if len(names) == 1 else "they are"
     where = f"{formatting.counted(len(names), 'test')} ({which})"
     return (
@@ -51,7 +51,9 @@ def _never_tried(result: DiagnosisResult) -> str:
         return ""
     singles = len({each["effects"][0] for each in result.document["candidates"] if len(each["effects"]) == 1})
     possible = singles * (singles - 1) // 2
-    which = ", ".join(map(phrases.combination, never[:SHOWN])) + (", ..." if len(never) > SHOWN else "")
+    which = ", ".join(map(phrases.combination, never[:NAMES_LISTED])) + (
+        ", ..." if len(never) > NAMES_LISTED else ""
+    )
     return f"; {len(never)} of the {possible} possible pairs of effects were never tried ({which})"
 
 

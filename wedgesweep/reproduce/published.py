@@ -13,7 +13,7 @@ from wedgesweep.reproduce.findings import Check, above, below
 from wedgesweep.sweep.run import Sweep
 
 # Relative error of Den Hartog's closed form (1930), and the least number of cases without stops.
-CLOSE, FEWEST = 1e-8, 20
+CLOSED_FORM_ERROR, FEWEST_CASES = 1e-8, 20
 # The block on a belt of Leine et al. (1998): each number (SI) and its allowed error.
 BELT = {
     "period": (12.00103, 1e-5),
@@ -47,8 +47,12 @@ def den_hartog(ds: xr.Dataset) -> tuple[Check, ...]:
         if (case := cases.sel(beta=beta, amplitude=force))["stick_fraction"] == 0.0
     ]
     return (
-        above("Den Hartog: cases that never stop", len(errors), FEWEST),
-        below("Den Hartog: largest relative error of the amplitude", max(errors, default=np.nan), CLOSE),
+        above("Den Hartog: cases that never stop", len(errors), FEWEST_CASES),
+        below(
+            "Den Hartog: largest relative error of the amplitude",
+            max(errors, default=np.nan),
+            CLOSED_FORM_ERROR,
+        ),
     )
 
 

@@ -63,7 +63,7 @@ LONGEST_WINDOW = 1_000_000
 SUSPECT = 0.3
 # Errors of places in a step: of an event, of a minimum, of an extreme; and the phase (rad) after an event in
 # which no other one is sought.
-CLOSE, CLOSE_TO_MINIMUM, CLOSE_TO_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
+PLACE_OF_EVENT, PLACE_OF_MINIMUM, PLACE_OF_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
 # Error of the place of an event that a repeated step will locate, and how far beyond it that step goes, as a
 # share of the first one.
 ROUGHLY, PAST_EVENT = 1e-3, 2e-2
@@ -136,7 +136,7 @@ def _first_zero(function, start, end, from_zero, close):
     nearest = UNSEEN / (function.step.h * fastest(function.p))
     high, at_high = 0.5, _value(0.5, function)[0]
     if at_high > 0.0 and start > 0.0 and _may_graze(start, at_high, end):
-        high = minimum(function, 0.0, 1.0, CLOSE_TO_MINIMUM)
+        high = minimum(function, 0.0, 1.0, PLACE_OF_MINIMUM)
         at_high = _value(high, function)[0]
     elif close == ROUGHLY and start > 0.0 and not from_zero and min(at_high, end) <= 0.0:
         return _parabola_zero(start, at_high, end)
@@ -212,13 +212,13 @@ def _record_extremes(share, step, mode, recorder, p):
     first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
     if first * last < 0.0:
         turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
+        there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
         record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
     upward = _Acceleration(1.0, step, p)
     first, last = _acceleration(0.0, upward)[0], _acceleration(share, upward)[0]
     if first * last < 0.0:
         peak = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(peak, Bracket(0.0, abs(first), share, -abs(last)), CLOSE_TO_EXTREME)
+        there = zero(peak, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
         record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
 
 
@@ -308,7 +308,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             if h < SHORTEST * period:
                 return State(t, y, mode, last_event, h), FAILED
             continue
-        close = CLOSE if taken == aim or to_event < inf else ROUGHLY
+        close = PLACE_OF_EVENT if taken == aim or to_event < inf else ROUGHLY
         share, number = first_event(step, mode, last_event, (at_middle, at_end), close, p, work)
         if number >= 0 and to_event == inf and (taken != aim or share < NEAR_END):
             to_event = (share + PAST_EVENT) * taken

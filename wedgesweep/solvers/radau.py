@@ -33,7 +33,7 @@ STEPS_PER_PERIOD, STEPS_HELD = 16, 64
 # Phase (rad) after which an event function that is passing zero is safely away from it.
 LOOK_AHEAD = 1e-8
 # Error of the place of a minimum, as a share of a step.
-CLOSE = 1e-9
+PLACE_OF_MINIMUM = 1e-9
 # If a mode ends where it began, its first step is divided by SHORTER, down to this share of a period.
 SHORTER, SHORTEST = 10.0, 1e-13
 # While a run settles, its tolerance may be this much coarser.
@@ -330,7 +330,7 @@ def _first_zero(values: Callable[[float], np.ndarray], k: int, before: float, af
     def value(t: float) -> float:
         return float(values(t)[k])
 
-    close = CLOSE * (after - before)
+    close = PLACE_OF_MINIMUM * (after - before)
     least = minimize_scalar(value, bounds=(before, after), method="bounded", options={"xatol": close})
     if value(before) <= 0.0 or least.fun >= 0.0:
         return inf

@@ -31,7 +31,7 @@ FTOL, EVALUATIONS = 1e-2, 40
 ABSENT = 1e3
 START_PHASES = 256
 # Strengths at which `reach` looks first, its iterations, and how close log(excess) must come.
-COARSE, BISECTIONS, CLOSE = 13, 14, 0.2
+COARSE, BISECTIONS, LOG_TOLERANCE = 13, 14, 0.2
 
 
 @dataclass(frozen=True)
@@ -174,14 +174,14 @@ def reach(target: float, excess_at: Callable[[float], float]) -> float | None:
         if found > target:
             return None if strength == 0.0 else _bisect(target, excess_at, low, strength)
         last, low = found, strength
-    return low if last > np.exp(-CLOSE) * target else None
+    return low if last > np.exp(-LOG_TOLERANCE) * target else None
 
 
 def _bisect(target: float, excess_at: Callable[[float], float], low: float, high: float) -> float | None:
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         found = excess_at(middle)
-        if abs(np.log(max(found, 1e-300) / target)) < CLOSE:
+        if abs(np.log(max(found, 1e-300) / target)) < LOG_TOLERANCE:
             return middle
         low, high = (middle, high) if found < target else (low, middle)
     # The response jumps, from a smaller excess to a larger one.

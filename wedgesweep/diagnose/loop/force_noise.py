@@ -24,7 +24,7 @@ DISTANCES = (0.003, 0.01, 0.03, 0.1, 0.3)
 # Share of a column's size that earlier ones must leave of it.
 DEPENDENT = 1e-6
 # Samples for each function, below which some of them are left out.
-ENOUGH = 4
+SAMPLES_PER_FUNCTION = 4
 # Variance by noise of the motion, over its median, beyond which a force is too near a reversal.
 NEAR = 4.0
 # Compared samples to either side of a reversal that are left out here as well, as friction may build up there
@@ -88,7 +88,7 @@ def _left(columns: np.ndarray, force: np.ndarray) -> np.ndarray:
     Generalised cross-validation (Golub, Heath and Wahba, 1979) weighs what a column explains against what it
     would explain of noise.
     """
-    basis = _orthonormal(columns)[:, : max(force.size // ENOUGH, 1)]
+    basis = _orthonormal(columns)[:, : max(force.size // SAMPLES_PER_FUNCTION, 1)]
     along = basis.T @ force
     sizes = np.arange(along.size + 1)
     rest = force @ force - np.r_[0.0, np.cumsum(along**2)]

@@ -23,7 +23,7 @@ FREQUENCIES, OF_NATURAL = np.array([0.25, 0.5, 1.0, 2.0, 4.0]), np.array([0.1, 0
 # Highest frequency over the cut-off.
 HIGHEST = 0.1
 # Largest number of samples in a cycle; lower frequencies are not offered.
-LONGEST = 40_000
+MOST_SAMPLES = 40_000
 # Cycles of a loop, and the number of its forces that are simulated and compared.
 CYCLES, COMPARED = 3.0, 240
 
@@ -69,7 +69,7 @@ def _frequencies(known: Sensors, measured: LoopData | None, low_pass: LowPass) -
     if measured is not None:
         speed = max(float(np.abs(own.motion.velocity).max()) for own in measured.recordings)
         wanted = FREQUENCIES * speed / (2.0 * pi * known.travel)
-    possible = wanted[(wanted <= HIGHEST * low_pass.cutoff) & (wanted >= known.rate / LONGEST)]
+    possible = wanted[(wanted <= HIGHEST * low_pass.cutoff) & (wanted >= known.rate / MOST_SAMPLES)]
     return possible if possible.size else wanted[:1]
 
 

@@ -9,7 +9,7 @@ from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.figures import style
 
-SHOWN = 6  # tests in a figure by default, those with the largest misfit
+TESTS_SHOWN = 6  # tests in a figure by default, those with the largest misfit
 
 
 def by_misfit(data: xr.Dataset) -> np.ndarray:
@@ -20,7 +20,7 @@ def by_misfit(data: xr.Dataset) -> np.ndarray:
 
 def choose(result: DiagnosisResult, tests: Sequence[int] | None) -> np.ndarray:
     """Return indices of the tests asked for, or of those with the largest misfit."""
-    return by_misfit(result.data)[:SHOWN] if tests is None else np.asarray(tests, int)
+    return by_misfit(result.data)[:TESTS_SHOWN] if tests is None else np.asarray(tests, int)
 
 
 def by_frequency(data: xr.Dataset) -> np.ndarray:

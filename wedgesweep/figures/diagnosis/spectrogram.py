@@ -18,7 +18,7 @@ from wedgesweep.figures.panels import Panels, Target, panels
 NAME = "spectrogram"
 DESCRIPTION = "frequencies over time of the measured motion, and of what the models leave"
 
-SHOWN = 4  # records
+RECORDS_SHOWN = 4  # records
 FEWEST = 1024  # samples of a record
 WINDOWS = 24  # of a record, side by side; they overlap
 OVERLAP = 0.875
@@ -137,7 +137,7 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     if "measured" not in result.data:
         message = "the tests are no transients"
         raise ValueError(message)
-    long = _long(result, tests)[:SHOWN]
+    long = _long(result, tests)[:RECORDS_SHOWN]
     if not long:
         message = f"no record has {FEWEST} samples or more"
         raise ValueError(message)

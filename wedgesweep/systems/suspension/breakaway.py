@@ -22,7 +22,7 @@ from wedgesweep.trigonometry import sine
 
 SAMPLES_PER_PERIOD = 64
 # Error of a time, as a share of the interval between samples.
-CLOSE = 1e-13
+TIME_ERROR = 1e-13
 DOWN, UP = 2 * COLUMN, 2 * COLUMN + 1
 
 
@@ -137,14 +137,14 @@ def scanned_breakaway(state, stop, p):
         following = min(current + step, stop)
         after = _lowest(following, context)[0]
         if after > 0.0 and before > now and now < after:
-            lowest = minimum(context, earlier, following, CLOSE * step)
+            lowest = minimum(context, earlier, following, TIME_ERROR * step)
             value = _lowest(lowest, context)[0]
             if value < 0.0:
                 current, now, following, after = earlier, before, lowest, value
         if after < 0.0:
             moment = current
             if now > 0.0:
-                moment = zero(context, Bracket(current, now, following, after), CLOSE * step)
+                moment = zero(context, Bracket(current, now, following, after), TIME_ERROR * step)
             _lowest(moment, context)
             return moment, _smallest(out)
         earlier, before = current, now

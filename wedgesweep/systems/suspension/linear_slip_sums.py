@@ -37,7 +37,7 @@ from wedgesweep.systems.suspension.linear_slip import (
 
 # Scanned intervals per period, in each of which a rate changes its sign at most once; error of the place of
 # an extreme as a share of an interval: the extreme itself has the square of it.
-INTERVALS, CLOSE = 13.0, 1e-6
+INTERVALS, PLACE_OF_EXTREME = 13.0, 1e-6
 LEAST_PARTS = 3
 # What has extremes.
 VELOCITY, COLUMN, BOLSTER = 0, 1, 2
@@ -81,7 +81,7 @@ def _add_extreme(which, phase, later, span, oscillator, recorder, p):
     before, after = _rate(which, phase, oscillator, p), _rate(which, later, oscillator, p)
     if before * after < 0.0:
         rate = _Rate(which, 1.0 if before > 0.0 else -1.0, phase, oscillator, p)
-        time = zero(rate, Bracket(0.0, abs(before), span, -abs(after)), CLOSE * span)
+        time = zero(rate, Bracket(0.0, abs(before), span, -abs(after)), PLACE_OF_EXTREME * span)
         _add_point(advanced_briefly(phase, time, oscillator, p), oscillator, recorder, p)
 
 
