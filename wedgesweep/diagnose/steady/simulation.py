@@ -28,7 +28,7 @@ TONE_SETTLING, FROM_REST = 10, 30
 UNTIMED, LONGEST_SIMULATED = 12.0, 60.0
 # Work (see work.py) of a case beside its periods; factors of the work of a period, with mechanics of an
 # effect's own and under a recorded input.
-WORK_OF_CASE, WORK_OF_OWN_MECHANICS, WORK_UNDER_SERIES = 3.0, 3.0, 1.5
+WORK_OF_CASE, WORK_OF_OWN_MECHANICS, WORK_UNDER_SERIES = 3.0, 3.0, 1.7
 
 
 class Responses(NamedTuple):
