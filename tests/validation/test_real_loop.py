@@ -40,13 +40,28 @@ kind = "loop"
 CANDIDATES = ["friction_level", "stribeck", "viscous_damping", "directional_damping", "quadratic_drag"]
 
 
+REAL = pytest.mark.skipif(not DATA.is_file(), reason="the recording is not here")
+
+
+def diagnosed(folder, measured):
+    (folder / "model.toml").write_text(MODEL)
+    (folder / "measured.toml").write_text(measured)
+    shutil.copy(DATA, folder)
+    return api.diagnose_measurement(read(folder / "measured.toml"), effects=CANDIDATES, n_jobs=2)
+
+
 @pytest.mark.acceptance
-@pytest.mark.skipif(not DATA.is_file(), reason="the recording is not here")
+@REAL
+def test_a_model_that_is_right_to_two_per_cent_lacks_the_direction(tmp_path):
+    found = diagnosed(tmp_path, MEASURED.replace("[measurement]\n", "[measurement]\nmodel_error = 0.02\n"))
+    assert found.verdict in ("named", "consistent-with")
+    assert [cause["effect"] for cause in found.causes] == ["directional_damping"]
+
+
+@pytest.mark.acceptance
+@REAL
 def test_damping_that_differs_by_direction_is_missing(tmp_path):
-    (tmp_path / "model.toml").write_text(MODEL)
-    (tmp_path / "measured.toml").write_text(MEASURED)
-    shutil.copy(DATA, tmp_path)
-    found = api.diagnose_measurement(read(tmp_path / "measured.toml"), effects=CANDIDATES, n_jobs=2)
+    found = diagnosed(tmp_path, MEASURED)
     base, single = found.document["ladder"][:2]
     assert base["accuracy"] < 0.0408
     assert single["effects"] == ["directional_damping"]
