@@ -35,6 +35,16 @@ def test_a_fit_gets_over_a_stop(tmp_path, displacement):
     assert from_other_nuisances(right) is right
 
 
+def test_a_start_that_a_fit_took_far_from_the_record_is_looked_for_there(tmp_path):
+    starts = ((0.0102, 0.0), (0.0065, -0.05), (-0.0091, 0.02))
+    data = transient_data(read(write(tmp_path, STOPS, starts=starts)))
+    model, right = Search.of(data, []).model(), np.array(starts) / data._scale
+    off = np.array([[0.0, 0.0], [0.5, -0.4], [0.0, 0.0]])
+    away = replace(model.start(None, np.zeros(0)), nuisance=right + off)
+    found = data.other_nuisances(model, model.evaluate(away))
+    assert found == pytest.approx(right, abs=0.02)
+
+
 def test_a_minimum_along_a_cliff_is_found():
     # A valley along the cliff x = y, whose bottom is far along it.
     def misfit(starts):

@@ -1,8 +1,10 @@
 """Starts of a simulation that a fit does not reach, because the response jumps on the way.
 
 Where a mass just stops at a turn, or just does not, all that follows is different. The misfit has a cliff
-there: a fit ends on the wrong side of it, or beside it, where the next step along it would lead over it. So
-the start is looked for around where the fit ended, in all directions.
+there: a fit ends on the wrong side of it, or beside it, where the next step along it would lead over it. And
+a spring that stiffens has two steady vibrations under one input: in the wrong one a fit takes the start far
+from the record. So the start is looked for around where the fit ended and around where the record begins, in
+all directions.
 """
 
 from collections.abc import Callable
@@ -33,7 +35,7 @@ def best_start(misfit: Callable[[np.ndarray], np.ndarray], start: np.ndarray) ->
     misfit : callable
         Squared misfits (n,) of starts (n, 2); inf where there is no response.
     start : ndarray, shape (2,)
-        Where a fit has ended.
+        Around which it is looked for.
     """
     angle = 2.0 * np.pi / DIRECTIONS * np.arange(DIRECTIONS)
     around = np.column_stack([np.cos(angle), np.sin(angle)])

@@ -250,11 +250,13 @@ class TransientData(SampledData):
         return model.evaluate_all(best)
 
     def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
-        found = evaluation.point.nuisance.copy()
+        found, stated = evaluation.point.nuisance.copy(), self.start()[0]
         for test in standing_out(evaluation.chi2_by_test, self.dof):
             rows = np.array([test])
             misfit = partial(_misfits, model.on(self.subset(rows)), evaluation.point.subset(rows))
-            found[test, : len(START)] = best_start(misfit, found[test, : len(START)])
+            starts = [each[test, : len(START)] for each in (found, stated)]
+            near = np.array([best_start(misfit, start) for start in starts])
+            found[test, : len(START)] = near[np.argmin(misfit(near))]
         return None if np.array_equal(found, evaluation.point.nuisance) else found
 
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
