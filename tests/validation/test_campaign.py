@@ -164,7 +164,7 @@ def test_coverage_allows_for_full_turns_of_angles():
     [
         (13, RECORDS, ()),
         (83, RIGS_RECORDS, RIGS),
-        (83, TIME_RECORDS, TIME_KINDS),
+        (101, TIME_RECORDS, TIME_KINDS),
         (97, LATER_RECORDS, IDEAL),
         (89, LATEST_RECORDS, ERRORS),
     ],
