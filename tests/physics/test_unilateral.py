@@ -84,7 +84,18 @@ def impacts(draw):
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(impacts())
 def test_an_impact_keeps_momentum_obeys_coulomb_and_never_gains_energy(given_impact):
-    case, y, touches, restitution = given_impact
+    obeys_the_law_of_impacts(*given_impact)
+
+
+@pytest.mark.acceptance
+@settings(max_examples=10_000, deadline=None, derandomize=True)
+@given(impacts())
+def test_ten_thousand_impacts_keep_momentum_obey_coulomb_and_never_gain_energy(given_impact):
+    obeys_the_law_of_impacts(*given_impact)
+
+
+def obeys_the_law_of_impacts(case, y, touches, restitution):
+    """Momentum balances, energy does not grow, and impulses are those of Moreau's law."""
     after, impulses, unique = mechanics.struck(y, *touches, restitution, compact(case))
     assert unique
     old, new = Body(y, case), Body(after, case)
