@@ -134,8 +134,8 @@ def _driven(force: np.ndarray, t: np.ndarray, mass: float, resisting: Resistance
     return solve_ivp(rate, (0.0, later[-1]), [0.0, 0.0], t_eval=later, rtol=RTOL, atol=ATOL).y[0]
 
 
-def damper(asymmetry: float = 0.0, play_mm: float = 0.0) -> LookAlike:
-    """Sines imposed on a damper with dry friction, whose rod may have play."""
+def damper(asymmetry: float = 0.0, play_mm: float = 0.0, bushing: float = np.inf) -> LookAlike:
+    """Sines imposed on a damper with dry friction, whose rod may have play, or be held by a bushing (N/m)."""
     damping, friction, rate, within = 2000.0, 50.0, 500.0, 20
     rng, tests = np.random.default_rng(5), []
     for frequency, amplitude in ((1.0, 20.0), (2.0, 10.0), (0.5, 40.0)):
@@ -143,6 +143,8 @@ def damper(asymmetry: float = 0.0, play_mm: float = 0.0) -> LookAlike:
         x = amplitude * np.sin(2.0 * np.pi * frequency * fine)
         v = 1e-3 * np.gradient(_behind_play(x, 0.5 * play_mm), fine)
         force = damping * v * (1.0 + asymmetry * np.sign(v)) + friction * np.tanh(v / SMOOTH)
+        if bushing < np.inf:
+            force = _through_bushing(1e-3 * x, fine[1], bushing, damping, friction)
         x, force = (each[round(rate / frequency) * within :: within] for each in (x, force))
         x = x + 1e-4 * amplitude * rng.standard_normal(x.size)
         force = force + 1e-2 * force.std() * rng.standard_normal(x.size)
@@ -156,6 +158,18 @@ def _behind_play(x: np.ndarray, half: float) -> np.ndarray:
     for i, place in enumerate(x):
         found[i] = at = min(max(at, place - half), place + half)
     return found
+
+
+def _through_bushing(
+    x: np.ndarray, step: float, bushing: float, damping: float, friction: float
+) -> np.ndarray:
+    """Force (n,) on a rod at x (n,) m whose elastic bushing moves a damper, by implicit Euler steps."""
+    force, at = np.empty_like(x), x[0]
+    for i, place in enumerate(x):
+        slack = bushing * (place - at)
+        at += np.sign(slack) * max(abs(slack) - friction, 0.0) / (bushing + damping / step)
+        force[i] = bushing * (place - at)
+    return force
 
 
 def spring(clearance_mm: float, cubic: float, offset_mm: float) -> LookAlike:
@@ -189,6 +203,7 @@ MADE: dict[str, Callable[[], LookAlike]] = {
     "damper": damper,
     "damper that differs by direction": lambda: damper(asymmetry=0.3),
     "damper with play of 1 mm": lambda: damper(play_mm=1.0),
+    "damper on a bushing": lambda: damper(bushing=2e5),
     "spring with play": lambda: spring(1.0, 0.0, 0.8),
     "spring that stiffens": lambda: spring(0.0, 4e6, 3.0),
 }

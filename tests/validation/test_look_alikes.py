@@ -23,6 +23,7 @@ CLOSE = {
     "pendulum from 60 deg": [["cubic_stiffness"], ["cubic_stiffness", "viscous_damping"]],
     "pendulum with drag": [["cubic_stiffness"], ["cubic_stiffness", "quadratic_drag"]],
     "pendulum with dry friction": [["cubic_stiffness"], ["cubic_stiffness", "guide_friction"]],
+    "damper on a bushing": [["presliding"]],
 }
 
 
