@@ -261,3 +261,16 @@ def test_an_effect_that_a_law_has_no_place_for(law, effect):
     numbers = {"stribeck": "peak = 0.1\nvelocity_mm_per_s = 10.0\n", "ageing": "rate = 0.1\ntime_s = 0.1\n"}
     (problem,) = problems(model + f"[effects.{effect}]\n{numbers[effect]}")
     assert f"effects.{effect}: {law}" in problem
+
+
+@pytest.mark.parametrize(
+    ("more", "possible"),
+    [
+        ("", True),
+        ("[effects.presliding]\nlength_mm = 0.1\n", False),
+        ("[effects.stribeck]\nvelocity_mm_per_s = 1.0\npeak = 0.1\n", True),
+    ],
+)
+def test_an_effect_that_one_of_the_model_excludes_is_no_candidate(more, possible):
+    own = "[oscillator]\nmass_kg = 1.0\nspring_N_per_mm = 1.0\nnormal_force_N = 1.0\n"
+    assert ("damper_play" in config.parse(own + more + SWEEP).possible_effects) == possible

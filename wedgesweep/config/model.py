@@ -13,7 +13,7 @@ from wedgesweep import toml
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
-from wedgesweep.effects import EFFECTS, lift_off
+from wedgesweep.effects import EFFECTS, go_together, lift_off
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.inputs.kinds import made as input_of
 from wedgesweep.inputs.sampled import Input
@@ -92,7 +92,7 @@ class Config:
         Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
         rubs, more friction of its surface is another level of friction; if not, there is nothing that the
         effects on the law of friction could change. Some laws have what an effect would add. Under a force
-        the base is at rest. A mass on a belt has no rod.
+        the base is at rest. A mass on a belt has no rod. Some effects exclude others.
         """
         if self.system != OSCILLATOR:
             return tuple(
@@ -108,7 +108,8 @@ class Config:
             without.add(oscillator.OF_ROD)
         for law in self.sweep.laws:
             without.update(oscillator.OF_LAW.get(law, ()))
-        return tuple(name for name in oscillator.effect_names() if name not in without)
+        names = (name for name in oscillator.effect_names() if name not in without)
+        return tuple(name for name in names if go_together((*self.effects, name)))
 
     def _may_have(self, effect: str) -> bool:
         """Whether the model of a suspension can have a further effect, as far as its joints are concerned."""

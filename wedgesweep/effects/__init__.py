@@ -77,10 +77,10 @@ def with_lift_off() -> tuple[str, ...]:
 
 def go_together(names: Iterable[str]) -> bool:
     """Whether one model can have all of these effects."""
-    all_of_them = set(names)
-    if any(all_of_them.intersection(EFFECTS[name].excludes) for name in all_of_them):
+    together = set(names)
+    if any(together.intersection(EFFECTS[name].excludes) for name in together):
         return False
-    return lift_off.NAME not in all_of_them or all_of_them <= {lift_off.NAME, *with_lift_off()}
+    return lift_off.NAME not in together or together <= {lift_off.NAME, *with_lift_off()}
 
 
 def parts(names: Sequence[str]) -> set[str]:
