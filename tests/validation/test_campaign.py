@@ -15,7 +15,6 @@ DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
 RIGS_RECORDS = DOCS / "validation-rigs-records.jsonl"
 TIME_RECORDS = DOCS / "validation-time-records.jsonl"
-LATER_RECORDS = DOCS / "validation-later-records.jsonl"
 LATEST_RECORDS = DOCS / "validation-latest-records.jsonl"
 RIGS = ("imperfect", "errors-only", "random-rig", "oscillator")
 IDEAL = ("clean", "strong", "weak", "pair", "unknown", "poor", "added")
@@ -162,13 +161,12 @@ def test_coverage_allows_for_full_turns_of_angles():
 @pytest.mark.parametrize(
     ("seed", "records", "kinds"),
     [
-        (13, RECORDS, ()),
+        (97, RECORDS, IDEAL),
         (83, RIGS_RECORDS, RIGS),
         (101, TIME_RECORDS, TIME_KINDS),
-        (97, LATER_RECORDS, IDEAL),
         (89, LATEST_RECORDS, ERRORS),
     ],
-    ids=["bench", "rigs", "time", "later", "latest"],
+    ids=["bench", "rigs", "time", "latest"],
 )
 def test_the_results_page_is_what_the_records_say(seed, records, kinds, capsys):
     only = [word for kind in kinds for word in ("--only", kind)]
@@ -180,7 +178,7 @@ def test_the_results_page_is_what_the_records_say(seed, records, kinds, capsys):
 def test_a_campaign_resumes_from_its_records(tmp_path, capsys):
     only = [
         "--seed",
-        "13",
+        "97",
         "--only",
         "added",
         "--size",
@@ -195,5 +193,5 @@ def test_a_campaign_resumes_from_its_records(tmp_path, capsys):
     assert "2/2 added-000" in printed
     assert (tmp_path / "validation.txt").read_text() in printed
     assert len((tmp_path / "validation-records.jsonl").read_text().splitlines()) == 2
-    with pytest.raises(SystemExit, match="has the seed 13, not 14"):
+    with pytest.raises(SystemExit, match="has the seed 97, not 14"):
         main(["--seed", "14", "--records", str(RECORDS), "--tables"])

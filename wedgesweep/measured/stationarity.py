@@ -40,14 +40,18 @@ def stationarity_faults(test: TestRecord, file: str) -> list[str]:
         if found.moved > MOST_MOVED:
             first, second = found.centres
             fault = f"{100.0 * found.moved:.0f} % of the power of {name} moves to other frequencies"
-            return [f"{file}: {fault} (median {first:.4g} Hz, then {second:.4g} Hz): a sweep; {MEND}"]
+            fault += f" (median {first:.4g} Hz, then {second:.4g} Hz)"
+            return [f"{file}: not steady: {fault}; {MEND}{_kind('a sweep')}"]
         if found.level_ratio > MOST_LEVEL_RATIO:
             levels = ", ".join(f"{100.0 * each / found.levels.max():.3g}" for each in found.levels)
             fault = f"the rms of {name} is {levels} % of its largest in the four quarters"
             decays = bool((np.diff(found.levels) < 0.0).all())
-            other = ', or write kind = "transient" if it is a ring-down' if decays else ""
-            return [f"{file}: not steady: {fault}; {MEND}{other}"]
+            return [f"{file}: not steady: {fault}; {MEND}{_kind('a ring-down') if decays else ''}"]
     return []
+
+
+def _kind(motion: str) -> str:
+    return f', or write kind = "transient" if it is {motion}'
 
 
 def stationarity(signal: np.ndarray, rate: float) -> Stationarity:
