@@ -112,8 +112,7 @@ def _effects(document: Mapping[str, Any]) -> Iterator[str]:
     article = "an" if system == OSCILLATOR else "a"
     for name in given:
         if name not in possible:
-            problem = f"{article} {system} has no such part"
-            yield f"effects.{name}: {problem}; valid here: {', '.join(possible)}"
+            yield f"effects.{name}: {article} {system} has no such part; valid here: {', '.join(possible)}"
         for other in set(given).intersection(EFFECTS[name].excludes):
             yield f"effects.{name}: does not go with effects.{other}; remove one of them"
 

@@ -14,6 +14,7 @@ from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
 from wedgesweep.effects import EFFECTS, go_together, lift_off
+from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.inputs.kinds import made as input_of
 from wedgesweep.inputs.sampled import Input
@@ -24,7 +25,6 @@ from wedgesweep.simulate import Settings, Transient
 from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension import parameters as suspension
 
-OSCILLATOR = "oscillator"
 # What beta refers to where there is no spring: 1 Hz, in rad/s.
 UNIT_FREQUENCY = 2.0 * pi
 

@@ -9,7 +9,7 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.jacobian import Jacobian, jacobian
 from wedgesweep.diagnose.model import Model
 
-# What is added to the diagonal of local blocks, over it.
+# Share of a diagonal element of a local block, plus one, that is added to it.
 REGULAR = 1e-12
 
 

@@ -50,8 +50,9 @@ STATES = (LENGTH,)
 CROSSING = 3
 
 
+# Place (m) of the rod in the play, and the state vector with another one.
 rod = state("damper_play", 0)
-_set_rod = set_state("damper_play", 0)
+with_rod = set_state("damper_play", 0)
 _place = place_of("damper_play", 0)
 
 
@@ -75,20 +76,14 @@ def side(y, p):
     return 1 if rod(y, p) > 0.0 else -1
 
 
-@term("damper_play", off="y")
-def with_rod(y, place, p):
-    """The state with the rod at a place (m) in the play."""
-    return _set_rod(y, place, p)
-
-
 @inlined
-def put(y, end, p):
+def pressing(y, end, p):
     """The state with the rod at an end of the play (-1, 1)."""
     return with_rod(y, end * clearance(p), p)
 
 
 @inlined
-def moved(y, distance, p):
+def rod_after(y, distance, p):
     """Place (m) of the rod after a distance (m) of the mass from the damper."""
     return min(max(rod(y, p) + distance, -clearance(p)), clearance(p))
 

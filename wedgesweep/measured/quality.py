@@ -8,7 +8,7 @@ from wedgesweep.measured.declarations import STEADY
 from wedgesweep.measured.frequency import IMPROBABLE, stands_out
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
-from wedgesweep.measured.stationarity import MEND
+from wedgesweep.measured.stationarity import MEND, remedy
 
 # Changes over the record that are worth a warning: of the amplitude, relative; of the mean, over the rms. A
 # response whose amplitude changes by more than MOST_TREND is not steady.
@@ -59,8 +59,7 @@ def trend_faults(test: TestRecord, file: str) -> list[str]:
         change = _growth(cut(test.time, samples, test.refined_frequency), test.duration)
         if abs(change) > MOST_TREND:
             fault = f"the amplitude of {name} changes by {100.0 * change:+.2g} % over the record"
-            other = ', or write kind = "transient" if it is a ring-down' if change < 0.0 else ""
-            return [f"{file}: not steady: {fault}; {MEND}{other}"]
+            return [f"{file}: not steady: {fault}; {remedy('a ring-down') if change < 0.0 else MEND}"]
     return []
 
 

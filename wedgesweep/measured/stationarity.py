@@ -14,6 +14,11 @@ MOST_MOVED = 0.5
 MEND = "cut the record to its steady part (from_s, to_s)"
 
 
+def remedy(motion: str) -> str:
+    """What mends a record that may be of another motion than a steady vibration."""
+    return f'{MEND}, or write kind = "transient" if it is {motion}'
+
+
 @dataclass(frozen=True)
 class Stationarity:
     """How much a channel changes from beginning to end.
@@ -41,17 +46,13 @@ def stationarity_faults(test: TestRecord, file: str) -> list[str]:
             first, second = found.centres
             fault = f"{100.0 * found.moved:.0f} % of the power of {name} moves to other frequencies"
             fault += f" (median {first:.4g} Hz, then {second:.4g} Hz)"
-            return [f"{file}: not steady: {fault}; {MEND}{_kind('a sweep')}"]
+            return [f"{file}: not steady: {fault}; {remedy('a sweep')}"]
         if found.level_ratio > MOST_LEVEL_RATIO:
             levels = ", ".join(f"{100.0 * each / found.levels.max():.3g}" for each in found.levels)
             fault = f"the rms of {name} is {levels} % of its largest in the four quarters"
             decays = bool((np.diff(found.levels) < 0.0).all())
-            return [f"{file}: not steady: {fault}; {MEND}{_kind('a ring-down') if decays else ''}"]
+            return [f"{file}: not steady: {fault}; {remedy('a ring-down') if decays else MEND}"]
     return []
-
-
-def _kind(motion: str) -> str:
-    return f', or write kind = "transient" if it is {motion}'
 
 
 def stationarity(signal: np.ndarray, rate: float) -> Stationarity:

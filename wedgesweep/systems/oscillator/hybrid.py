@@ -134,7 +134,7 @@ def driving_force(t, acceleration, y, mode, p):
 @inlined
 def already_moving(y, p):
     """The rod of a damper presses to the side to which the mass moves."""
-    return damper_play.put(y, 1 if y[VELOCITY] >= 0.0 else -1, p)
+    return damper_play.pressing(y, 1 if y[VELOCITY] >= 0.0 else -1, p)
 
 
 @implement(interface.share_before_jump, OSCILLATOR)
@@ -148,7 +148,7 @@ def share_before_jump(y, step, p):
 @inlined
 def moved_freely(y, following, step, p):
     """The rod of a damper moves between the ends of its play."""
-    return damper_play.with_rod(following, damper_play.moved(y, slip(y, p) * step, p), p)
+    return damper_play.with_rod(following, damper_play.rod_after(y, slip(y, p) * step, p), p)
 
 
 @implement(interface.rate, OSCILLATOR)
@@ -327,7 +327,7 @@ def _cross(t, y, mode, upward, p):
 def _transition(t, y, mode, place, p):
     upward = place % 2
     if crosses(mode) and place < TRAVEL:
-        y = damper_play.put(y, 2 * upward - 1, p)
+        y = damper_play.pressing(y, 2 * upward - 1, p)
         return y, _mode_at(t, y, mode.segment, p)
     if place >= CLOCK:
         return y, Mode(mode.column, mode.direction, mode.segment, 1 - mode.clock)
