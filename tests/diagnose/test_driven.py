@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.test_transients import MEASURED, OSCILLATOR
+from tests.diagnose.test_transients import MEASURED, OSCILLATOR, WEDGE
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
@@ -227,3 +227,29 @@ def test_a_window_in_which_a_mass_stays_at_rest_is_not_simulated_from_where_it_l
     first, resting, slipping = data.windows
     assert resting.begins - resting.starts_at == pytest.approx(first.grid.lead * first.step, rel=0.5)
     assert slipping.starts_at < resting.begins
+
+
+def test_what_happens_between_table_and_side_frame_shows_in_the_motion_against_the_side_frame(tmp_path):
+    """A recorded input is that of the table; a motion against it is no longer that against the side frame."""
+    path = write(tmp_path, [1e-4 * chirp()], model=WEDGE)
+    effects = ("fixture_resonance", "lift_off", "input_distortion", "stray_vibration", "cross_slip")
+    assert transient_data(read(path)).candidates(effects) == ("fixture_resonance", "lift_off")
+    path.write_text(path.read_text().replace('"x", unit = "mm"', '"x", unit = "mm", of = "absolute"'))
+    assert transient_data(read(path)).candidates(effects) == ("lift_off",)
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize(
+    ("effect", "numbers", "size"),
+    [
+        ("lift_off", {"restitution": 0.3}, 2e-3),
+        ("fixture_resonance", {"frequency": 40.0, "damping_ratio": 0.05}, 6e-4),
+    ],
+)
+def test_wedges_under_a_recorded_motion(tmp_path, effect, numbers, size):
+    path = write(tmp_path, [size * rough(3, 20.0)], {effect: numbers}, WEDGE, noise=(2e-5, 1e-3))
+    path.write_text(path.read_text() + "to_s = 3.0\n")
+    found = diagnosed(path, ["lift_off", "fixture_resonance", "friction_level"])
+    assert [cause["effect"] for cause in found.causes] == [effect]
+    for estimate, true in zip(found.causes[0]["parameters"].values(), numbers.values(), strict=True):
+        assert estimate["value"] == pytest.approx(true, rel=0.02)

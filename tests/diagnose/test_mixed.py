@@ -113,6 +113,31 @@ def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):
     assert min(local.values()) >= 1.0
 
 
+def test_the_start_of_a_frame_has_columns_of_its_own_beside_steady_tests(tmp_path):
+    """Steady tests have a column for the phase of a tone, which none of them has here."""
+    model = test_transients.WEDGE
+    fixture = {"fixture_resonance": {"frequency": 25.0, "damping_ratio": 0.01}}
+    test_transients.write(tmp_path, model, fixture, ((8e-3, 0.0),), noise=1e-6, rate=1000.0, samples=600)
+    time = np.arange(1000) / 500.0
+    table = np.column_stack([time, 0.5 * np.sin(2.0 * np.pi * 10.0 * time)])
+    np.savetxt(tmp_path / "sine.csv", table, "%.12g", ",", header="t,x", comments="")
+    text = test_transients.MEASURED + '[[measurement.test]]\nfile = "sine.csv"\nfrequency_hz = 10.0\n'
+    (tmp_path / "measured.toml").write_text(text + test_transients.TEST.format("drop0"))
+    data = data_of(read(tmp_path / "measured.toml"))
+    model = Search.of(data, []).model("fixture_resonance")
+    start = model.start(
+        None, model.hypothesis.at({"fixture_resonance": {"frequency_hz": 25.0, "damping_ratio": 0.01}})
+    )
+    here = model.evaluate(start)
+    columns = jacobian(model, here).by_nuisance[..., data.eliminated :]
+    # Amplitude of the steady test, start of the release; phase of a tone, start of the frame.
+    steady, *windows = (columns != 0.0).any(axis=1).tolist()
+    assert steady == [True, False, False, False, False, False]
+    assert windows == [[False, True, True, False, True, True]] * 2
+    assert data.extra_nuisances(("fixture_resonance",)).tolist() == [0, 2, 2]
+    assert len(data.nuisances((), start)) == 3
+
+
 def test_a_channel_that_one_of_the_kinds_needs_is_missing(tmp_path):
     path = write(tmp_path)
     path.write_text(path.read_text().replace('force = { column = "F", unit = "N" }\n', ""))

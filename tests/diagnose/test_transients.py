@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 from tests.command import invoke
 from wedgesweep import api, excitation
 from wedgesweep.config import parse
+from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.effects import merge
@@ -154,6 +155,44 @@ def test_a_wedge_that_is_dropped(tmp_path):
     found = diagnosed(path, ["friction_level", "bolster_stiffness"])
     assert [cause["effect"] for cause in found.causes] == ["friction_level"]
     assert found.causes[0]["parameters"]["scale"]["value"] == pytest.approx(1.2, rel=0.01)
+
+
+# Far enough from rest for wedges to lift off; the windows of a record of their own each.
+LARGE = ((0.010, 0.0), (-0.008, 0.1), (0.012, -0.3))
+
+
+@pytest.mark.parametrize(
+    ("effect", "numbers", "keys"),
+    [
+        ("lift_off", {"restitution": 0.3}, ("restitution",)),
+        ("fixture_resonance", {"frequency": 60.0, "damping_ratio": 0.05}, ("frequency_hz", "damping_ratio")),
+    ],
+)
+def test_a_wedge_that_is_dropped_from_far_away(tmp_path, effect, numbers, keys):
+    path = write(tmp_path, WEDGE, {effect: numbers}, LARGE, noise=2e-5, rate=1000.0, samples=600)
+    found = diagnosed(path, ["lift_off", "fixture_resonance", "friction_level", "bolster_mass"])
+    assert (found.verdict, [cause["effect"] for cause in found.causes]) == ("named", [effect])
+    for key, true in zip(keys, numbers.values(), strict=True):
+        low, high = found.causes[0]["parameters"][key]["ci95"]
+        assert low < true < high
+        assert high - low < 0.05 * true
+
+
+def test_the_start_of_a_side_frame_on_its_table_is_fitted(tmp_path):
+    """Each window but the first begins while the side frame moves."""
+    fixture = {"fixture_resonance": {"frequency": 25.0, "damping_ratio": 0.01}}
+    path = write(tmp_path, WEDGE, fixture, LARGE[:1], noise=1e-6, rate=1000.0, samples=1500)
+    path.write_text(path.read_text() + "from_s = 0.1\n")
+    data = transient_data(read(path))
+    assert data.tests > 1
+    model = Search.of(data, ["fixture_resonance"]).model("fixture_resonance")
+    start = model.start(
+        None, model.hypothesis.at({"fixture_resonance": {"frequency_hz": 25.0, "damping_ratio": 0.01}})
+    )
+    fit = minimise(model, model.evaluate(start))
+    assert fit.dof == data.dof.sum() - 2 * data.tests - model.size
+    assert fit.p > 1e-3
+    assert (np.abs(fit.point.nuisance[:, -2:]) > 0.01).any(axis=1).all()
 
 
 def test_files_figures_and_report(tmp_path):

@@ -100,3 +100,24 @@ def grouped(parameters: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     for kit in np.unique(needed):
         rows = np.flatnonzero(needed == kit)
         yield rows, compact(parameters[rows])
+
+
+def set_states(parameters: np.ndarray, vectors: np.ndarray, owner: str, values: np.ndarray) -> None:
+    """Put the states of an effect into state vectors, in place; nothing where a record has no room for it.
+
+    Parameters
+    ----------
+    parameters : structured array, shape (n,)
+        Full records.
+    vectors : ndarray, shape (n, S)
+        State of each, S = ``state_count()``.
+    owner : str
+        Name of the effect.
+    values : ndarray, shape (n, k)
+        Its states, in the order of its STATES (SI).
+    """
+    for rows, cases in grouped(parameters):
+        owners = [name for name, _ in states.kinds(cases.dtype.fields or {})]
+        if owner in owners:
+            first = owners.index(owner)
+            vectors[rows, first : first + values.shape[1]] = values[rows]

@@ -18,7 +18,7 @@ from wedgesweep.diagnose.mixed.layout import Layout, MixedStart
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.natural_units import NaturalUnits
 
-# A nuisance parameter of a kind that has no tests: it is never moved.
+# A nuisance parameter that no test needs: it is never moved.
 ABSENT = NuisanceParameter(step=1.0, max_step=1.0)
 
 
@@ -136,10 +136,16 @@ class MixedData(FitData):
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         effects = tuple(effects)
         own = self._each(lambda part, its: part.nuisances(effects, its), self.points(point))
-        sizes = self.layout.priors
-        first = [(each or (ABSENT,) * size)[:size] for each, size in zip(own, sizes, strict=True)]
-        rest = [(each or ())[size:] for each, size in zip(own, sizes, strict=True)]
-        return tuple(one for each in (*first, *rest) for one in each)
+        full = [
+            ((each or ()) + (ABSENT,) * size)[:size]
+            for each, size in zip(own, self.layout.nuisances, strict=True)
+        ]
+        pairs = list(zip(full, self.layout.priors, strict=True))
+        first = [one for each, size in pairs for one in each[:size]]
+        rest = [one for each, size in pairs for one in each[size:]]
+        while rest and rest[-1] is ABSENT:
+            rest.pop()
+        return (*first, *rest)
 
     def start(self) -> tuple[np.ndarray, MixedStart]:
         starts = [(None, None) if part is None else part.start() for part in self.parts]

@@ -28,11 +28,13 @@ from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import RecordWindow
+from wedgesweep.effects import acting
 from wedgesweep.natural_units import NaturalUnits
 
-# Effects that are no candidates: of a sine as the input, of what a recorded input contains already, or of
-# mechanics for sines only.
-OF_INPUT = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip", "lift_off")
+# Effects that are no candidates: of a sine as the input, or of what a recorded input contains already.
+OF_INPUT = ("input_distortion", "stray_vibration", "cross_slip")
+# The effect whose states at the start are fitted as well.
+FRAME = "fixture_resonance"
 # Effects of sensors, and the derivative of the displacement whose sensor has each.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Blocks of a record that are left out in turn, at most.
@@ -43,6 +45,8 @@ START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
+# Deflection and velocity of a side frame on a compliant table, in the same units as the start.
+FRAME_START = START
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +133,7 @@ class TransientData(SampledData):
         if not any(own.driven for own in data.windows):
             return data
         (values,) = data.known_values([scenario], OF_INPUT)
-        starts, gains = data.starts(scenario.point), data._gain(scenario.point)
+        starts, gains = data._states(scenario.point), data._gain(scenario.point)
         own = zip(data.windows, starts, gains, strict=True)
         found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
         return replace(data, decorrelations=found)
@@ -193,16 +197,30 @@ class TransientData(SampledData):
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
         return point.nuisance[:, : len(START)] * self._scale
 
+    def _states(self, point: Point) -> np.ndarray:
+        """Displacement and velocity at the first sample of each test, then those of the frame, (T, 4)."""
+        frame = point.nuisance[:, -len(FRAME_START) :] * self._scale
+        return np.concatenate([self.starts(point), frame], axis=1)
+
     def _gain(self, point: Point) -> np.ndarray:
         """True input over the recorded one in each test, (T,)."""
         return np.exp(point.nuisance[:, len(START)]) if self.gain_std else np.ones(self.tests)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
-        return (*START, GAIN) if self.gain_std else START
+        known = (*START, GAIN) if self.gain_std else START
+        return (*known, *FRAME_START) if self._has_frame(effects) else known
+
+    def _has_frame(self, effects: Iterable[str]) -> bool:
+        """Whether the side frame moves against its table, by the base model or by other effects."""
+        return FRAME in {*acting(self.model.effects), *effects}
+
+    def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
+        """The start of the frame in each test, if it moves."""
+        return np.full(self.tests, len(FRAME_START) * self._has_frame(effects))
 
     def start(self) -> tuple[np.ndarray, NoStart]:
         start = np.array([own.guess for own in self.windows]) / self._scale
-        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0)))), NoStart()
+        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0) + len(FRAME_START)))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         windows = tuple(self.windows[row] for row in np.arange(self.tests)[rows])
@@ -216,11 +234,13 @@ class TransientData(SampledData):
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {order for own in self.windows for order in own.shown_as_measured}
         hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
+        if any(own.converted for own in self.windows):
+            hidden.add(FRAME)  # such channels show the motion against the table
         return tuple(name for name in effects if name not in hidden)
 
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
         values = self.known_values(scenarios, OF_INPUT)
-        starts = np.array([self.starts(each.point) for each in scenarios])
+        starts = np.array([self._states(each.point) for each in scenarios])
         gains = np.array([self._gain(each.point) for each in scenarios])
         work.add(len(values) * sum(own.periods for own in self.windows))
         return self._padded(

@@ -28,7 +28,7 @@ from wedgesweep.diagnose.transient.noise import ACCELERATION, Key
 from wedgesweep.effects import merge
 from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
-from wedgesweep.systems import state_count
+from wedgesweep.systems import set_states, state_count
 
 # Standard deviation of an accelerometer's zero over the rms of its signal: as good as unknown.
 UNKNOWN_ZERO = 1e3
@@ -134,6 +134,11 @@ class RecordWindow:
         return (0.0,) * len(self.channels) if self.input_noise is None else self.input_noise.shares
 
     @property
+    def converted(self) -> bool:
+        """Whether the base's motion was added to any channel."""
+        return any(self._shares)
+
+    @property
     def shown_as_measured(self) -> tuple[int, ...]:
         """The derivatives of the displacement that sensors show without conversion."""
         both = zip(self.orders, self._shares, strict=True)
@@ -193,8 +198,8 @@ class RecordWindow:
     ) -> tuple[Decorrelation, ...]:
         """Combinations with independent noise of the coefficients of each channel, in a scenario.
 
-        There are none without an input: the coefficients are independent as they are. ``start`` (2,):
-        displacement (m) and velocity (m/s) at which the simulation begins; ``gain``: of the input.
+        There are none without an input: the coefficients are independent as they are. ``start`` (4,): where
+        the simulation begins, see ``simulated``; ``gain``: of the input.
         """
         if self.input_noise is None:
             return ()
@@ -235,9 +240,10 @@ class RecordWindow:
     def simulated(
         self, scenarios: list[Values], starts: np.ndarray, gains: np.ndarray, tolerance: float
     ) -> np.ndarray:
-        """Coefficients (n, C, K) of n scenarios from their starts (n, 2); NaN where there is no response.
+        """Coefficients (n, C, K) of n scenarios; NaN where there is no response.
 
-        ``gains`` (n,): of the input.
+        ``starts`` (n, 4): displacement (m) and velocity (m/s) at the first simulated sample, and deflection
+        and velocity of a side frame on a compliant table; ``gains`` (n,): of the input.
         """
         rows = self._records(scenarios)
         self._drive(rows, self.input, gains)
@@ -256,10 +262,11 @@ class RecordWindow:
         set_sampled(rows, given, self._scale, self.grid.omega, self.grid.samples * self.step, gain)
 
     def _motions(self, rows: np.ndarray, starts: np.ndarray, tolerance: float) -> np.ndarray:
-        """Channels (n, C, samples) of the window from starts (n, 2); NaN where there is no response."""
+        """Channels (n, C, samples) of the window from starts (n, 4); NaN where there is no response."""
         states = np.zeros((len(rows), state_count()))
         # Solvers record minus what channels are: the state of a suspension, minus the state of an oscillator.
-        states[:, :2] = starts if self.model.system == "oscillator" else -starts
+        states[:, :2] = starts[:, :2] if self.model.system == "oscillator" else -starts[:, :2]
+        set_states(rows, states, "fixture_resonance", starts[:, 2:])
         samples = self.grid.samples
         run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(self.orders) == ACCELERATION)
         motion = run.x, run.velocity, run.acceleration
