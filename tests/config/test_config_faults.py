@@ -229,8 +229,8 @@ def test_springs_that_soften_until_they_hold_no_weight_are_refused():
         ('joints = "loose"', "suspension.joints", "bilateral, unilateral"),
         ('joints = "unilateral"\nwedge_mass_kg = 0', "suspension.wedge_mass_kg", "greater than 0"),
         (
-            'joints = "unilateral"\n[effects.guide_friction]\nforce_N = 0.1',
-            "effects.guide_friction",
+            'joints = "unilateral"\n[effects.presliding]\nlength_mm = 0.1',
+            "effects.presliding",
             "end_stop",
         ),
         ('joints = "unilateral"\n[effects.cross_slip]\nvelocity_mm_per_s = 1', "effects.cross_slip", "valid"),

@@ -62,14 +62,14 @@ def test_it_is_no_candidate_beside_what_it_does_not_go_with():
     model = config.parse(MODEL)
     assert NAME in model.possible_effects
     for more in (
-        "[effects.guide_friction]\nforce_N = 0.1\n",
+        "[effects.presliding]\nlength_mm = 0.1\n",
         "[suspension]\ncolumn_angle_deg = 0.0\n",
         '[suspension]\njoints = "unilateral"\n',
     ):
         assert NAME not in config.parse(MODEL + more).possible_effects
     opens = config.parse(MODEL + "[effects.lift_off]\n")
     assert "cross_slip" not in opens.possible_effects
-    assert {"stribeck", "preload"} < set(opens.possible_effects)
+    assert {"stribeck", "preload", "guide_friction"} < set(opens.possible_effects)
     assert not go_together((NAME, "cross_slip"))
     assert go_together((NAME, "stribeck"))
 

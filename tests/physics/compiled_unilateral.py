@@ -55,8 +55,7 @@ def largest_gain(number, case):
         elif i % 2 == 0:
             y = (0.0, v[0], 0.0, -abs(v[1]), y[4], 0.0)
         now = impact.struck(y, column, bolster, 0.45 * (1.0 + v[3]), p)
-        before = motion.kinetic_energy(motion.velocities(y, p), p)
-        after = motion.kinetic_energy(motion.velocities(now.y, p), p)
+        before, after = motion.kinetic_energy(y, p), motion.kinetic_energy(now.y, p)
         worst = max(worst, after / before - 1.0 if now.unique else np.inf)
     return worst
 
@@ -80,3 +79,15 @@ def breakaway_inputs(y, closed):
     """Base accelerations below and above which a bolster at rest breaks away; NaN if a face opens before."""
     forward = breakaway.breakaway_input(y, 1, 0, closed[0])
     return forward, breakaway.breakaway_input(y, -1, 0, closed[0])
+
+
+@compiled
+def motion_of(solution, free, faces, case):
+    """Motion in a solution of a contact problem."""
+    return contacts.motion_of(solution, free, faces, case[0])
+
+
+@compiled
+def kinetic_energy(y, case):
+    """Kinetic energy against the table."""
+    return motion.kinetic_energy(y, case[0])

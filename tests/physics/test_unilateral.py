@@ -140,7 +140,7 @@ def test_closed_contacts_under_load_are_those_of_bilateral_joints():
             -wedge * g["sin_column"] / s["wedge_mass"],
             bolster / s["bolster_mass"],
         )
-        solution, count = mechanics.solve(free, Faces(True, True, True, *mu), compact(case))
+        solution, count = mechanics.solve(free, Faces(True, True, True, *mu, False), compact(case))
         assert count == 1
         assert (min(now.column, now.bolster) > 0.0) == (min(solution.column, solution.bolster) > 0)
         if min(now.column, now.bolster) > 0.0:
@@ -311,7 +311,7 @@ def test_effects_act_on_joints_that_lift_off(law):
 
 
 @pytest.mark.parametrize(
-    ("name", "numbers"), [("column_compliance", {"stiffness": 1e5}), ("guide_friction", {"force": 0.1})]
+    ("name", "numbers"), [("column_compliance", {"stiffness": 1e5}), ("presliding", {"length": 1e-4})]
 )
 def test_effects_that_the_contacts_do_not_know_are_refused(name, numbers):
     with pytest.raises(ValueError, match=f"unilateral joints do not go with: {name}"):
@@ -344,7 +344,7 @@ def test_friction_that_presses_a_face_on_has_two_solutions_or_none():
     case = record(wedge_mass=2.0)
     s, g = case[0]["suspension"], case[0]["geometry"]
     limit = 0.5 * s["bolster_mass"] / s["wedge_mass"] + g["sin_wedge"] ** 2
-    steep = Faces(False, True, True, 0.0, -2.0 * limit / (g["sin_wedge"] * g["cos_wedge"]))
+    steep = Faces(False, True, True, 0.0, -2.0 * limit / (g["sin_wedge"] * g["cos_wedge"]), False)
     closing = mechanics.solve(Motion(1.0, 0.0, 0.0), steep, compact(case))
     assert closing[1] == 0
     assert closing[0].margin < 0.0

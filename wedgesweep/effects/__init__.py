@@ -69,9 +69,7 @@ def confounded(names: Sequence[str]) -> bool:
 def with_lift_off() -> tuple[str, ...]:
     """Names of the effects that joints which lift off go with."""
     return tuple(
-        name
-        for name in of_system(SUSPENSION)
-        if name in lift_off.GO_WITH or not (EFFECTS[name].extends or name == lift_off.NOT_WITH)
+        name for name in of_system(SUSPENSION) if name in lift_off.GO_WITH or not EFFECTS[name].extends
     )
 
 

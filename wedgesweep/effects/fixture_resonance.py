@@ -11,7 +11,7 @@ import numpy as np
 
 from wedgesweep.compiled import inlined, term
 from wedgesweep.effects.base import EXPERIMENTAL, SUSPENSION, Effect
-from wedgesweep.effects.states import LENGTH, VELOCITY, state
+from wedgesweep.effects.states import LENGTH, VELOCITY, set_state, state
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
 
@@ -67,6 +67,8 @@ DERIVED = ("stiffness", "damping")
 
 deflection = state("fixture_resonance", 0)
 velocity = state("fixture_resonance", 1)
+with_velocity = set_state("fixture_resonance", 1)
+_with_deflection = set_state("fixture_resonance", 0)
 
 
 def prepare(p: np.void) -> None:
@@ -99,3 +101,10 @@ def rates(column_slip, acceleration, mode, y, p):
 def power(velocity_of_mass, y, p):
     """Power (W) that the damper of the table takes."""
     return p.fixture_resonance.damping * velocity(y, p) ** 2
+
+
+@inlined
+def later(y, moment, acceleration, p):
+    """The state with the side frame a moment (s) later, at a constant acceleration against its table."""
+    way = deflection(y, p) + moment * (velocity(y, p) + 0.5 * moment * acceleration)
+    return with_velocity(_with_deflection(y, way, p), velocity(y, p) + moment * acceleration, p)

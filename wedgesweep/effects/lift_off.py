@@ -43,9 +43,8 @@ EFFECT = Effect(
     extends=("restitution",),
 )
 
-# Effects with mechanics of their own that go with it, and one without that does not.
+# Effects with mechanics of their own that go with it.
 GO_WITH = (
     *("viscous_damping", "directional_damping", "quadratic_drag", "cubic_stiffness", "end_stop", "backlash"),
-    *("stribeck", "input_distortion", "stray_vibration"),
+    *("stribeck", "input_distortion", "stray_vibration", "fixture_resonance"),
 )
-NOT_WITH = "guide_friction"

@@ -23,12 +23,12 @@ SIZES = {
 MASS = (LENGTH, VELOCITY)
 
 
-# States that systems have beyond these, by the field that marks their records.
+# States that systems have beyond those of the mass and of effects, by the field that marks their records.
 _OF_SYSTEMS: dict[str, tuple[str, ...]] = {}
 
 
-def add_to_mass(owner: str, kinds: tuple[str, ...]) -> None:
-    """Let records that have a field ``owner`` have states of these kinds after those of the mass."""
+def add_last(owner: str, kinds: tuple[str, ...]) -> None:
+    """Let records that have a field ``owner`` have states of these kinds after all others."""
     _OF_SYSTEMS[owner] = kinds
 
 
@@ -65,11 +65,10 @@ def kinds(fields: Mapping[str, Any]) -> list[tuple[str, str]]:
     from wedgesweep.effects import REGISTERED
 
     found = [("", kind) for kind in MASS]
-    found += [("", kind) for owner, more in _OF_SYSTEMS.items() if owner in fields for kind in more]
     for name, module in REGISTERED.items():
         if name in fields:
             found += [(name, kind) for kind in getattr(module, "STATES", ())]
-    return found
+    return found + [("", kind) for owner, more in _OF_SYSTEMS.items() if owner in fields for kind in more]
 
 
 def _place(owner: str, number: int, fields: Mapping[str, Any]) -> int:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.compiled import allocating, inlined, inner
+from wedgesweep.effects import fixture_resonance
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero
 from wedgesweep.hybrid.state import HANDED_OVER, LOCKED, NO_EVENT
 from wedgesweep.systems.suspension.events import EVENTS, events
@@ -72,7 +73,12 @@ def breakaway_input(y, direction, segment, p):
 
 @inlined
 def carries_load_until_breakaway(y, segment, p):
-    """Whether both faces carry load until a stuck bolster breaks away, whatever its direction."""
+    """Whether both faces carry load until a stuck bolster breaks away, whatever its direction.
+
+    On a compliant table the side frame moves, and with it the load: nothing is known in advance.
+    """
+    if fixture_resonance.acts(p):
+        return False
     forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
     return p.geometry.always_well_posed != 0 and forward < backward
 

@@ -184,8 +184,7 @@ def has_unilateral_joints(rows: np.ndarray | np.void) -> np.ndarray:
 def _kit_of(p: np.void, acting: Sequence[str]) -> int:
     acting = [name for name in acting if name != lift_off.NAME]
     if has_unilateral_joints(p):
-        lateral = [lift_off.NOT_WITH] if p[lift_off.NOT_WITH]["force"] > 0.0 else []
-        if refused := {*acting, *lateral} - set(known.with_lift_off()):
+        if refused := set(acting) - set(known.with_lift_off()):
             message = f"effects that unilateral joints do not go with: {', '.join(sorted(refused))}"
             raise ValueError(message)
         return JOINTS_OPEN_WITH_EFFECTS if acting else JOINTS_OPEN
@@ -271,20 +270,26 @@ def _always_well_posed(p: np.void, acting: Sequence[str], small: np.void) -> boo
     if not isfinite(most):
         return False
     corners = ((most, most), (most, -most), (-most, most), (-most, -most))
-    if has_unilateral_joints(p) and not _bolster_face_never_locks(most, p):
+    if has_unilateral_joints(p) and not _single_faces_never_lock(most, p):
         return False
     return all(determinant(column, bolster, small) > 0.0 for column, bolster in corners)
 
 
-def _bolster_face_never_locks(most: float, p: np.void) -> bool:
-    """Whether the bolster face alone has exactly one normal force under any load, for any |mu| <= ``most``.
+def _single_faces_never_lock(most: float, p: np.void) -> bool:
+    """Whether each face alone has exactly one normal force under any load, for any |mu| <= ``most``.
 
     A linear complementarity problem always has exactly one solution if its principal minors are positive:
-    those of both faces (the four determinants), of the bolster face, and of the column face, which always is.
+    those of both faces (the four determinants), and of each face. The column face may lock only if the side
+    frame moves.
     """
     s, g = p["suspension"], p["geometry"]
     lift = g["sin_wedge"] * (g["sin_wedge"] - most * abs(g["cos_wedge"]))
-    return bool(s["bolster_mass"] + 2.0 * s["wedge_mass"] * lift > 0.0)
+    bolster = s["bolster_mass"] + 2.0 * s["wedge_mass"] * lift
+    if p["fixture_resonance"]["frequency"] == 0.0:
+        return bool(bolster > 0.0)
+    lean = abs(g["sin_column"])
+    column = s["side_frame_mass"] + 2.0 * s["wedge_mass"] * lean * (lean - most * g["cos_column"])
+    return bool(min(bolster, column) > 0.0)
 
 
 def compact(rows: np.ndarray) -> np.ndarray:

@@ -1,15 +1,19 @@
 """Which contacts of a wedge carry load, and their reactions: a complementarity problem with Coulomb friction.
 
-One problem serves accelerations and impulses. Given is how the wedge and the bolster would move without
-reactions; sought are reactions that are compressive, obey Coulomb's law, and let no face penetrate:
+One problem serves accelerations and impulses. Given is the motion m = (A, G, Z) of wedge and bolster against
+the side frame without reactions, m0: along the column, gap at the column, and of the bolster. Sought are
+reactions that are compressive, obey Coulomb's law, and let no face penetrate:
 
-    A = A0 - (T_c + S N_b + c T_b) / M_w          along the column        S, c = sin, cos(alpha + gamma)
-    G = G0 + (N_c - c N_b + S T_b) / M_w          gap at the column
-    Z = Z0 + 2 (sin(alpha) N_b + cos(alpha) T_b) / M_b      bolster
-    B = sin(alpha) Z - S A - c G                  gap at the bolster face
-    v_c = A,  v_b = c A - S G - cos(alpha) Z      slip
+    m = m0 + W f      f_A = -T_c - S N_b - c T_b            S, c = sin, cos(alpha + gamma)
+                      f_G = N_c - c N_b + S T_b
+                      f_Z = sin(alpha) N_b + cos(alpha) T_b + H/2
+    B = sin(alpha) Z - S A - c G                            gap at the bolster face
+    v_c = A,  v_b = c A - S G - cos(alpha) Z                slip
     G >= 0, N_c >= 0, G N_c = 0;  B >= 0, N_b >= 0, B N_b = 0;  -T in mu N Sgn(v) on either face
 
+W = diag(1/M_w, 1/M_w, 2/M_b), and (2/M_sf) e e' more if the side frame rides on a compliant table, with
+e = (cos(gamma), -sin(gamma), 1). H is the friction of a guide against which the bolster rests, under a
+set-valued law: it holds the bolster, or slips with its whole force. Elsewhere the guide is part of m0.
 A, G, Z and B are accelerations and the reactions forces (N), or velocities and impulses (N s). Each face is
 open, slips or sticks; every combination is a linear problem, and one that fulfils the inequalities is a
 solution.
@@ -20,12 +24,15 @@ from math import inf
 from typing import NamedTuple
 
 from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import fixture_resonance
 
 # States of a face.
 OPEN, FORWARD, BACKWARD, STICK = range(4)
 STATES = 4
 # Reactions below this share of the loads count as zero.
 ROUNDING = 1e-11
+# Friction of the guide that lets both faces stick: halvings of the interval in which it is looked for.
+HALVINGS = 60
 
 
 class Motion(NamedTuple):
@@ -34,6 +41,17 @@ class Motion(NamedTuple):
     along: float
     gap: float
     rise: float
+
+
+class Mobility(NamedTuple):
+    """The symmetric matrix W (1/kg), by the initials of along, gap and rise."""
+
+    aa: float
+    ag: float
+    ar: float
+    gg: float
+    gr: float
+    rr: float
 
 
 class Reactions(NamedTuple):
@@ -49,7 +67,8 @@ class Faces(NamedTuple):
     """Which faces touch, and their coefficients of friction.
 
     ``slipping``: whether they slip already, with signed coefficients; else whether they slip, and in which
-    direction, is part of the problem, and the coefficients are not signed.
+    direction, is part of the problem, and the coefficients are not signed. ``guide_rests``: whether the
+    bolster rests against a guide that rubs, so that its motion there is part of the problem as well.
     """
 
     column: bool
@@ -57,36 +76,74 @@ class Faces(NamedTuple):
     slipping: bool
     column_mu: float
     bolster_mu: float
+    guide_rests: bool
 
 
 class Solution(NamedTuple):
-    """States of both faces, reactions, and the margin by which all inequalities are fulfilled (N or N s).
+    """States of both faces and of the guide, reactions, and the least margin of all inequalities (N or N s).
 
-    A solution of the problem has a margin of 0 or more.
+    A solution of the problem has a margin of 0 or more. ``guide``: direction of slip, 0 if it holds the
+    bolster, or if it is no part of the problem.
     """
 
     column: int
     bolster: int
+    guide: int
     reactions: Reactions
     margin: float
+
+
+class Problem(NamedTuple):
+    """Motion without the reactions of the faces, and what these do, for one state of the guide."""
+
+    free: Motion
+    mobility: Mobility
+    guide: int
+    force: float
 
 
 NOTHING = Reactions(0.0, 0.0, 0.0, 0.0)
 
 
 @inlined
-def motion_under(free, now, p):
-    """Motion under reactions, from the motion without them, ``free``."""
+def mobility(p):
+    """W of wedge, bolster and side frame."""
     s, g = p.suspension, p.geometry
-    across, along = g.sin_included, g.cos_included
-    lift = g.sin_wedge * now.bolster + g.cos_wedge * now.bolster_friction
-    push = now.column_friction + across * now.bolster + along * now.bolster_friction
-    part = now.column - along * now.bolster + across * now.bolster_friction
-    return Motion(
-        free.along - push / s.wedge_mass,
-        free.gap + part / s.wedge_mass,
-        free.rise + 2.0 * lift / s.bolster_mass,
+    wedge, frame = 1.0 / s.wedge_mass, 0.0
+    if fixture_resonance.acts(p):
+        frame = 2.0 / s.side_frame_mass
+    return Mobility(
+        wedge + frame * g.cos_column**2,
+        -frame * g.cos_column * g.sin_column,
+        frame * g.cos_column,
+        wedge + frame * g.sin_column**2,
+        -frame * g.sin_column,
+        2.0 / s.bolster_mass + frame,
     )
+
+
+@inlined
+def _times(w, along, gap, rise):
+    """W f."""
+    return Motion(
+        w.aa * along + w.ag * gap + w.ar * rise,
+        w.ag * along + w.gg * gap + w.gr * rise,
+        w.ar * along + w.gr * gap + w.rr * rise,
+    )
+
+
+@inlined
+def motion_under(free, w, now, p):
+    """Motion under reactions of the faces, from the motion without them."""
+    g = p.geometry
+    across, along = g.sin_included, g.cos_included
+    change = _times(
+        w,
+        -(now.column_friction + across * now.bolster + along * now.bolster_friction),
+        now.column - along * now.bolster + across * now.bolster_friction,
+        g.sin_wedge * now.bolster + g.cos_wedge * now.bolster_friction,
+    )
+    return Motion(free.along + change.along, free.gap + change.gap, free.rise + change.rise)
 
 
 @inlined
@@ -103,57 +160,144 @@ def bolster_slip(motion, p):
     return g.cos_included * motion.along - g.sin_included * motion.gap - g.cos_wedge * motion.rise
 
 
+# The guide
+
+
+@inlined
+def _pushed(free, w, force):
+    """Motion under a force (N) on half the bolster."""
+    return Motion(free.along + w.ar * force, free.gap + w.gr * force, free.rise + w.rr * force)
+
+
+@inlined
+def with_guide(free, guide, p):
+    """The problem with a guide that slips in a direction, or holds the bolster (0)."""
+    w, force = mobility(p), 0.5 * p.guide_friction.force
+    if guide != 0:
+        return Problem(_pushed(free, w, -guide * force), w, guide, force)
+    held = _pushed(free, w, -free.rise / w.rr)
+    along, gap = w.ar / w.rr, w.gr / w.rr
+    rest = Mobility(w.aa - w.ar * along, w.ag - w.ar * gap, 0.0, w.gg - w.gr * gap, 0.0, 0.0)
+    return Problem(Motion(held.along, held.gap, 0.0), rest, 0, force)
+
+
+@inlined
+def guide_reaction(free, now, p):
+    """Force (N) with which the guide holds the bolster, under reactions of the faces.
+
+    ``free``: motion without either.
+    """
+    w = mobility(p)
+    return -2.0 * motion_under(free, w, now, p).rise / w.rr
+
+
+@inlined
+def _guide_margin(problem, free, now, after, p):
+    """Margin (N) of the guide: to its limit while it holds, else that of slip in its direction."""
+    if problem.guide != 0:
+        return 0.5 * p.suspension.bolster_mass * problem.guide * after.rise
+    return problem.force - 0.5 * abs(guide_reaction(free, now, p))
+
+
 # Reactions in each state
 
 
 @inlined
-def column_reactions(free, sticks, mu, p):
+def column_reactions(free, w, sticks, mu):
     """Reactions if the column alone is closed; it slips with a signed coefficient."""
-    mass = p.suspension.wedge_mass
-    normal = -mass * free.gap
-    return Reactions(normal, mass * free.along if sticks else mu * normal, 0.0, 0.0)
+    if not sticks:
+        normal = -free.gap / (w.gg - mu * w.ag)
+        return Reactions(normal, mu * normal, 0.0, 0.0)
+    determinant = w.aa * w.gg - w.ag * w.ag
+    normal = (w.ag * free.along - w.aa * free.gap) / determinant
+    return Reactions(normal, (w.gg * free.along - w.ag * free.gap) / determinant, 0.0, 0.0)
 
 
 @inlined
-def bolster_reactions(free, sticks, mu, p):
+def bolster_reactions(free, w, sticks, mu, p):
     """Reactions if the bolster face alone is closed; it slips with a signed coefficient."""
-    s, g = p.suspension, p.geometry
-    mobility = 2.0 / s.bolster_mass
-    normal = 1.0 / s.wedge_mass + mobility * g.sin_wedge**2
-    mixed = mobility * g.sin_wedge * g.cos_wedge
+    g = p.geometry
+    by_normal = _times(w, -g.sin_included, -g.cos_included, g.sin_wedge)
+    by_friction = _times(w, -g.cos_included, g.sin_included, g.cos_wedge)
+    normal, mixed = bolster_gap(by_normal, p), bolster_gap(by_friction, p)
     closing = -bolster_gap(free, p)
     if not sticks:
         load = closing / (normal + mu * mixed)
         return Reactions(0.0, 0.0, load, mu * load)
-    tangential = 1.0 / s.wedge_mass + mobility * g.cos_wedge**2
-    slip, determinant = bolster_slip(free, p), normal * tangential - mixed * mixed
+    tangential, slip = -bolster_slip(by_friction, p), bolster_slip(free, p)
+    determinant = normal * tangential - mixed * mixed
     load = (closing * tangential - mixed * slip) / determinant
     return Reactions(0.0, 0.0, load, (normal * slip - mixed * closing) / determinant)
 
 
 @inlined
-def both_reactions(free, column_mu, bolster_mu, p):
+def both_reactions(free, w, column_mu, bolster_mu, p):
     """Reactions if both faces are closed and slip; the coefficients are signed."""
-    s, g = p.suspension, p.geometry
-    across = column_mu * g.sin_included - g.cos_included
-    into = g.cos_included - bolster_mu * g.sin_included
-    lift = g.sin_wedge * (g.sin_wedge + bolster_mu * g.cos_wedge)
-    determinant = 1.0 + 2.0 * s.wedge_mass / s.bolster_mass * lift + across * into
-    bolster = s.wedge_mass * (free.gap * across - bolster_gap(free, p)) / determinant
-    column = into * bolster - s.wedge_mass * free.gap
+    g = p.geometry
+    by_column = _times(w, -column_mu, 1.0, 0.0)
+    by_bolster = _times(
+        w,
+        -(g.sin_included + bolster_mu * g.cos_included),
+        bolster_mu * g.sin_included - g.cos_included,
+        g.sin_wedge + bolster_mu * g.cos_wedge,
+    )
+    gap, own, other = bolster_gap(free, p), bolster_gap(by_bolster, p), bolster_gap(by_column, p)
+    determinant = by_column.gap * own - by_bolster.gap * other
+    column = (by_bolster.gap * gap - own * free.gap) / determinant
+    bolster = (other * free.gap - by_column.gap * gap) / determinant
     return Reactions(column, column_mu * column, bolster, bolster_mu * bolster)
 
 
+@inlined
+def _holding(free, p):
+    """Forces f that hold wedge and bolster: W f = -m0."""
+    s, g = p.suspension, p.geometry
+    half = 0.5 * s.bolster_mass
+    along, gap, rise = s.wedge_mass * free.along, s.wedge_mass * free.gap, half * free.rise
+    if fixture_resonance.acts(p):
+        # By Sherman and Morrison; the side frame takes part in the motion.
+        load = g.cos_column * along - g.sin_column * gap + rise
+        frame = load / (0.5 * s.side_frame_mass + s.wedge_mass + half)
+        along -= frame * s.wedge_mass * g.cos_column
+        gap += frame * s.wedge_mass * g.sin_column
+        rise -= frame * half
+    return Motion(-along, -gap, -rise)
+
+
 @inner
-def sticking_reactions(free, column_mu, bolster_mu, p):
+def sticking_reactions(free, column_mu, bolster_mu, guide_rests, p):
     """Reactions if both faces stick, and how far (N or N s) friction is from its limits.
 
     The four reactions fulfil three equations: they lie on a line, of which Coulomb's law allows an interval.
-    Returns the reactions in its middle, and its length; this is negative if there is no such interval.
+    Returns the reactions in its middle, and its length; this is negative if there is no such interval. A
+    guide holds what makes the interval longest: its length is a concave function of that force.
     """
-    lift = -0.5 * p.suspension.bolster_mass * free.rise
-    start = _on_line(free, lift, 0.0, p)
-    there = _on_line(free, lift, 1.0, p)
+    hold = _holding(free, p)
+    if not guide_rests:
+        return _sticking(hold, column_mu, bolster_mu, p)
+    force = 0.5 * p.guide_friction.force
+    low, high = -force, force
+    for _ in range(HALVINGS):
+        third = (high - low) / 3.0
+        lower = _sticking(_with_lift(hold, low + third), column_mu, bolster_mu, p)[1]
+        upper = _sticking(_with_lift(hold, high - third), column_mu, bolster_mu, p)[1]
+        if lower < upper:
+            low += third
+        else:
+            high -= third
+    return _sticking(_with_lift(hold, 0.5 * (low + high)), column_mu, bolster_mu, p)
+
+
+@inlined
+def _with_lift(hold, lift):
+    """The same with another force (N) on half the bolster."""
+    return Motion(hold.along, hold.gap, hold.rise + lift)
+
+
+@inner
+def _sticking(hold, column_mu, bolster_mu, p):
+    """Reactions with the resultant ``hold``, and the length of their interval."""
+    start, there = _on_line(hold, 0.0, p), _on_line(hold, 1.0, p)
     low, high = -inf, inf
     for number in range(6):
         value = _limit(number, start, column_mu, bolster_mu)
@@ -164,18 +308,18 @@ def sticking_reactions(free, column_mu, bolster_mu, p):
             high = min(high, -value / slope)
         elif value < 0.0:
             return start, -inf
-    return _on_line(free, lift, 0.5 * (low + high), p), high - low
+    return _on_line(hold, 0.5 * (low + high), p), high - low
 
 
 @inlined
-def _on_line(free, lift, place, p):
-    """Reactions that hold wedge and bolster, at a place on their line; ``lift`` (N): on half the bolster."""
-    s, g = p.suspension, p.geometry
-    bolster = lift * g.sin_wedge + place * g.cos_wedge
-    friction = lift * g.cos_wedge - place * g.sin_wedge
+def _on_line(hold, place, p):
+    """Reactions with the resultant ``hold``, at a place on their line."""
+    g = p.geometry
+    bolster = hold.rise * g.sin_wedge + place * g.cos_wedge
+    friction = hold.rise * g.cos_wedge - place * g.sin_wedge
     return Reactions(
-        g.cos_included * bolster - g.sin_included * friction - s.wedge_mass * free.gap,
-        s.wedge_mass * free.along - g.sin_included * bolster - g.cos_included * friction,
+        hold.gap + g.cos_included * bolster - g.sin_included * friction,
+        -hold.along - g.sin_included * bolster - g.cos_included * friction,
         bolster,
         friction,
     )
@@ -196,13 +340,19 @@ def _limit(number, now, column_mu, bolster_mu):
 
 
 @inlined
-def _possible(column, bolster, faces, p):
-    """Whether the states of both faces can occur together: two closed faces slip or stick only together."""
+def _possible(column, bolster, guide_holds, faces, p):
+    """Whether these states can occur together, if not both faces stick.
+
+    Two closed faces slip only together, and with the bolster.
+    """
     if (column != OPEN and not faces.column) or (bolster != OPEN and not faces.bolster):
+        return False
+    both = column != OPEN and bolster != OPEN
+    if both and guide_holds:
         return False
     if faces.slipping:
         return column <= FORWARD and bolster <= FORWARD
-    if column == OPEN or bolster == OPEN or (column == STICK and bolster == STICK):
+    if not both:
         return True
     if column == STICK or bolster == STICK:
         return False
@@ -230,24 +380,25 @@ def _face_margin(state, touches, slipping, mu, reaction, after):
 
 
 @inner
-def _solution(column, bolster, free, faces, p):
-    """Reactions for given states of both faces, with their margin: -inf if the states cannot occur."""
-    if not _possible(column, bolster, faces, p):
-        return Solution(column, bolster, NOTHING, -inf)
+def _solution(column, bolster, problem, free, faces, p):
+    """Reactions for given states of faces and guide, with their margin: -inf if the states cannot occur.
+
+    Not both faces stick. ``free``: motion without the guide, if it may hold the bolster.
+    """
+    guide, w = problem.guide, problem.mobility
+    if not _possible(column, bolster, faces.guide_rests and guide == 0, faces, p):
+        return Solution(column, bolster, guide, NOTHING, -inf)
     column_mu, bolster_mu = faces.column_mu, faces.bolster_mu
-    if column == STICK and bolster == STICK:
-        now, width = sticking_reactions(free, column_mu, bolster_mu, p)
-        return Solution(column, bolster, now, width)
     if not faces.slipping:
         column_mu, bolster_mu = _direction(column) * column_mu, _direction(bolster) * bolster_mu
     now = NOTHING
     if column != OPEN and bolster != OPEN:
-        now = both_reactions(free, column_mu, bolster_mu, p)
+        now = both_reactions(problem.free, w, column_mu, bolster_mu, p)
     elif column != OPEN:
-        now = column_reactions(free, column == STICK, column_mu, p)
+        now = column_reactions(problem.free, w, column == STICK, column_mu)
     elif bolster != OPEN:
-        now = bolster_reactions(free, bolster == STICK, bolster_mu, p)
-    after, mass = motion_under(free, now, p), p.suspension.wedge_mass
+        now = bolster_reactions(problem.free, w, bolster == STICK, bolster_mu, p)
+    after, mass = motion_under(problem.free, w, now, p), p.suspension.wedge_mass
     of_column = _face_margin(
         column,
         faces.column,
@@ -264,7 +415,10 @@ def _solution(column, bolster, free, faces, p):
         (now.bolster, now.bolster_friction),
         (mass * bolster_gap(after, p), mass * bolster_slip(after, p)),
     )
-    return Solution(column, bolster, now, min(of_column, of_bolster))
+    margin = min(of_column, of_bolster)
+    if faces.guide_rests:
+        margin = min(margin, _guide_margin(problem, free, now, after, p))
+    return Solution(column, bolster, guide, now, margin)
 
 
 @inner
@@ -278,7 +432,8 @@ def solve(free, faces, p):
     zero = rounding(free, p)
     best, certain = solve_unless_stuck(free, faces, p)
     if certain == 0 and faces.column and faces.bolster and not faces.slipping:
-        sticks = _solution(STICK, STICK, free, faces, p)
+        now, width = sticking_reactions(free, faces.column_mu, faces.bolster_mu, faces.guide_rests, p)
+        sticks = Solution(STICK, STICK, 0, now, width)
         if best.margin < -zero and sticks.margin > zero:
             return sticks, 1
         if sticks.margin > best.margin:
@@ -289,15 +444,38 @@ def solve(free, faces, p):
 @inner
 def solve_unless_stuck(free, faces, p):
     """As ``solve``, but for the solution in which both faces stick."""
+    if not faces.guide_rests:
+        return _best(Problem(free, mobility(p), 0, 0.0), free, faces, p)
+    best, certain = _best(with_guide(free, 0, p), free, faces, p)
+    for direction in (-1, 1):
+        found, more = _best(with_guide(free, direction, p), free, faces, p)
+        certain += more
+        if found.margin > best.margin:
+            best = found
+    return best, certain
+
+
+@inner
+def _best(problem, free, faces, p):
+    """The best solution for one state of the guide, and how many are certain."""
     zero = rounding(free, p)
-    best, certain = Solution(OPEN, OPEN, NOTHING, -inf), 0
+    best, certain = Solution(OPEN, OPEN, problem.guide, NOTHING, -inf), 0
     for number in range(STATES * STATES - 1):
-        found = _solution(number // STATES, number % STATES, free, faces, p)
+        found = _solution(number // STATES, number % STATES, problem, free, faces, p)
         if found.margin > zero:
             certain += 1
         if found.margin > best.margin:
             best = found
     return best, certain
+
+
+@inner
+def motion_of(solution, free, faces, p):
+    """Motion in a solution."""
+    if not faces.guide_rests:
+        return motion_under(free, mobility(p), solution.reactions, p)
+    problem = with_guide(free, solution.guide, p)
+    return motion_under(problem.free, problem.mobility, solution.reactions, p)
 
 
 @inlined

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import travel
+from wedgesweep.effects import guide_friction, hooks, states, travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.vectors import replaced
@@ -18,21 +18,25 @@ from wedgesweep.systems.suspension import energy, events, filippov, newton, tran
 from wedgesweep.systems.suspension.modes import (
     BOLSTER,
     COLUMN,
+    GUIDE,
     VELOCITY,
     X,
+    branch,
     held,
     mode_of,
     with_branch,
     with_segment,
 )
+from wedgesweep.systems.suspension.newton import Accelerations
 from wedgesweep.systems.suspension.unilateral import contacts, impact
-from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip, motion_under
+from wedgesweep.systems.suspension.unilateral.contacts import bolster_gap, bolster_slip
 from wedgesweep.systems.suspension.unilateral.modes import (
     Touching,
     bolster_touches,
     closed,
     column_touches,
     resolve,
+    rests_in_guide,
     signed_coefficient,
     stuck,
     touching,
@@ -44,11 +48,13 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     COLUMN_GAP,
     COLUMN_RATE,
     UNILATERAL,
+    frame_acceleration,
     free_accelerations,
     gap_state,
     kinetic_energy,
-    momentum,
+    momentum_against_table,
     velocities,
+    with_gaps,
 )
 from wedgesweep.systems.suspension.while_closed import stays_closed
 
@@ -91,18 +97,20 @@ def opened(mode, p):
 def free(y, p):
     """A closed contact keeps its gap, and a bolster that friction holds its velocity."""
     column, bolster = not column_touches(y), not bolster_touches(y)
-    pinned = p.friction.set_valued != 0 and y[VELOCITY] == 0.0 and not column and not bolster
-    return True, not pinned, column, column, bolster, bolster
+    pinned = p.friction.set_valued != 0 and y[VELOCITY] == 0.0
+    pinned = pinned and (guide_friction.acts(p) or not (column or bolster))
+    moves = replaced(states.active(p), VELOCITY, not pinned)
+    return with_gaps(moves, (column, column, bolster, bolster))
 
 
 # Motion
 
 
 class UnilateralForces(NamedTuple):
-    """Accelerations (m/s^2) of bolster, column and both gaps, and reactions (N) of both faces.
+    """Accelerations (m/s^2) of bolster, column and both gaps, and reactions (N) of both faces and the guide.
 
     Events of bilateral joints read the fields that have the names of ``newton.Forces``. Friction is NaN while
-    both contacts are closed: no event needs it.
+    both contacts are closed: no event needs it. The ``guide`` has a reaction while it holds the bolster.
     """
 
     acceleration: float
@@ -112,22 +120,33 @@ class UnilateralForces(NamedTuple):
     column_friction: float
     bolster: float
     bolster_friction: float
+    guide: float
 
 
 @inlined
 def _motion_and_reactions(t, y, mode, p):
-    """Accelerations (m/s^2) and reactions (N) while a contact is open."""
-    unconstrained, motion = free_accelerations(t, y, mode.segment, p), velocities(y, p)
+    """Accelerations (m/s^2), reactions of the faces and of a guide that holds the bolster (N).
+
+    For modes in which a contact is open.
+    """
+    free, motion = free_accelerations(t, y, mode.segment, mode.guide, p), velocities(y, p)
+    unheld, w = free, contacts.mobility(p)
+    if rests_in_guide(mode, p):
+        held = contacts.with_guide(free, 0, p)
+        free, w = held.free, held.mobility
     now = contacts.NOTHING
     if mode.column_sign == 1:
         rests = p.friction.set_valued != 0 and mode.column == 0
         mu = signed_coefficient(motion.along, mode.column, mode.clock, y, p)
-        now = contacts.column_reactions(unconstrained, rests, mu, p)
+        now = contacts.column_reactions(free, w, rests, mu)
     elif mode.bolster_sign == 1:
         rests = p.friction.set_valued != 0 and mode.bolster == 0
         mu = signed_coefficient(bolster_slip(motion, p), mode.bolster, mode.clock, y, p)
-        now = contacts.bolster_reactions(unconstrained, rests, mu, p)
-    return motion_under(unconstrained, now, p), now
+        now = contacts.bolster_reactions(free, w, rests, mu, p)
+    guide = 0.0
+    if rests_in_guide(mode, p):
+        guide = contacts.guide_reaction(unheld, now, p)
+    return contacts.motion_under(free, w, now, p), now, guide
 
 
 @implement(interface.rate, UNILATERAL)
@@ -135,13 +154,13 @@ def _motion_and_reactions(t, y, mode, p):
 def rate(t, y, mode, p):
     """dy/dt, and the forces."""
     if closed(mode):
-        (velocity, acceleration), both = transitions.rate(t, y, mode, p)
+        of_closed, both = transitions.rate(t, y, mode, p)
         of_gaps = (0.0, 0.0)
         forces = UnilateralForces(
-            acceleration, both.column_acceleration, of_gaps, both.column, nan, both.bolster, nan
+            both.acceleration, both.column_acceleration, of_gaps, both.column, nan, both.bolster, nan, nan
         )
-        return (velocity, acceleration, 0.0, 0.0, 0.0, 0.0), forces
-    motion, now = _motion_and_reactions(t, y, mode, p)
+        return of_closed + (0.0, 0.0, 0.0, 0.0), forces  # noqa: RUF005
+    motion, now, guide = _motion_and_reactions(t, y, mode, p)
     column_rate, column_acceleration, bolster_rate, bolster_acceleration = 0.0, 0.0, 0.0, 0.0
     if mode.column_sign == 0:
         column_rate, column_acceleration = gap_state(y, COLUMN_RATE), motion.gap
@@ -149,12 +168,12 @@ def rate(t, y, mode, p):
         bolster_rate, bolster_acceleration = gap_state(y, BOLSTER_RATE), bolster_gap(motion, p)
     of_gaps = column_acceleration, bolster_acceleration
     forces = UnilateralForces(
-        motion.rise, nan, of_gaps, now.column, now.column_friction, now.bolster, now.bolster_friction
+        motion.rise, nan, of_gaps, now.column, now.column_friction, now.bolster, now.bolster_friction, guide
     )
-    return (
-        (y[VELOCITY], motion.rise, column_rate, column_acceleration, bolster_rate, bolster_acceleration),
-        forces,
-    )
+    others = Accelerations(0.0, frame_acceleration(t, motion, y, p))
+    own = hooks.rates(velocities(y, p).along, others, mode, y, p)
+    gaps = column_rate, column_acceleration, bolster_rate, bolster_acceleration
+    return (y[VELOCITY], motion.rise) + own + gaps, forces  # noqa: RUF005
 
 
 # Events
@@ -163,37 +182,52 @@ def rate(t, y, mode, p):
 @inner
 def _stuck_events(t, y, mode, p, out):
     """Write the events of a stuck bolster: margins (N) to slip or opening, and to the limits of friction."""
-    unconstrained, highest = free_accelerations(t, y, mode.segment, p), friction.static(1, y, p)
-    faces = contacts.Faces(True, True, False, highest, highest)
-    out[2 * COLUMN] = -contacts.solve_unless_stuck(unconstrained, faces, p)[0].margin
-    out[2 * COLUMN + 1] = contacts.sticking_reactions(unconstrained, highest, highest, p)[1]
+    free, highest = free_accelerations(t, y, mode.segment, 0, p), friction.static(1, y, p)
+    rubs = guide_friction.acts(p)
+    faces = contacts.Faces(True, True, False, highest, highest, rubs)
+    out[2 * COLUMN] = -contacts.solve_unless_stuck(free, faces, p)[0].margin
+    out[2 * COLUMN + 1] = contacts.sticking_reactions(free, highest, highest, rubs, p)[1]
 
 
 @inlined
-def _face_events(slip, branch, reaction, place, y, p, out):
+def _face_events(slip, its_branch, reaction, place, y, p, out):
     """Write the ends of the slip branch of the only closed face, under its normal and friction force."""
     normal, tangential = reaction
     if not p.friction.set_valued:
-        friction.write_branch_ends(slip, p.friction.v_t, branch, place, out)
-    elif branch == 0:
+        friction.write_branch_ends(slip, p.friction.v_t, its_branch, place, out)
+    elif its_branch == 0:
         most = friction.static(1, y, p) * normal
         out[place], out[place + 1] = most + tangential, most - tangential
     else:
-        out[place if branch > 0 else place + 1] = branch * slip
+        out[place if its_branch > 0 else place + 1] = its_branch * slip
+
+
+@inlined
+def _guide_events(velocity, its_branch, reaction, p, out):
+    """Write the ends of the slip branch of the guide, under its reaction (N) while it holds the bolster."""
+    if not p.friction.set_valued:
+        friction.write_branch_ends(velocity, p.friction.v_t, its_branch, 2 * GUIDE, out)
+    elif its_branch == 0:
+        most = p.guide_friction.force
+        out[2 * GUIDE], out[2 * GUIDE + 1] = most + reaction, most - reaction
+    else:
+        out[2 * GUIDE if its_branch > 0 else 2 * GUIDE + 1] = its_branch * velocity
 
 
 @inner
 def _open_events(now, y, mode, p, out):
     """Write the event functions while a contact is open."""
     motion = velocities(y, p)
+    if guide_friction.acts(p):
+        _guide_events(y[VELOCITY], mode.guide, now.guide, p, out)
     if mode.column_sign == 0:
-        out[COLUMN_CLOSES] = y[COLUMN_GAP]
+        out[COLUMN_CLOSES] = gap_state(y, COLUMN_GAP)
     else:
         out[COLUMN_NORMAL] = now.column
         reaction = now.column, now.column_friction
         _face_events(motion.along, mode.column, reaction, 2 * COLUMN, y, p, out)
     if mode.bolster_sign == 0:
-        out[BOLSTER_CLOSES] = y[BOLSTER_GAP]
+        out[BOLSTER_CLOSES] = gap_state(y, BOLSTER_GAP)
     else:
         out[BOLSTER_NORMAL] = now.bolster
         reaction = now.bolster, now.bolster_friction
@@ -242,9 +276,11 @@ def expected_event(now, t, y, mode, p):
         return events.expected_event(now, t, y, mode, p)
     column, bolster = inf, inf
     if mode.column_sign == 0:
-        column = _time_to_close(y[COLUMN_GAP], y[COLUMN_RATE], now.gap_accelerations[0])
+        gap, speed = gap_state(y, COLUMN_GAP), gap_state(y, COLUMN_RATE)
+        column = _time_to_close(gap, speed, now.gap_accelerations[0])
     if mode.bolster_sign == 0:
-        bolster = _time_to_close(y[BOLSTER_GAP], y[BOLSTER_RATE], now.gap_accelerations[1])
+        gap, speed = gap_state(y, BOLSTER_GAP), gap_state(y, BOLSTER_RATE)
+        bolster = _time_to_close(gap, speed, now.gap_accelerations[1])
     return min(column, bolster)
 
 
@@ -271,13 +307,22 @@ def initial_mode(t, y, p):
 @inlined
 def _of_mode(mode):
     """Contacts that are closed in a mode, with its slip branches."""
-    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, mode.column, mode.bolster)
+    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, mode.column, mode.bolster, mode.guide)
 
 
 @inlined
-def _at_rest(mode):
-    """The same with faces that do not slip."""
-    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, 0, 0)
+def _at_rest(mode, place):
+    """The same with what came to rest, or let go, at an event: two closed faces and the guide do together."""
+    column, bolster, guide = mode.column, mode.bolster, mode.guide
+    if closed(mode):
+        column, bolster, guide = 0, 0, 0
+    elif place // 2 == COLUMN:
+        column = 0
+    elif place // 2 == BOLSTER:
+        bolster = 0
+    else:
+        guide = 0
+    return Touching(mode.column_sign == 1, mode.bolster_sign == 1, column, bolster, guide)
 
 
 @implement(interface.well_posed, UNILATERAL)
@@ -295,21 +340,21 @@ def well_posed(t, y, mode, p):
 def _after_slip(t, y, mode, place, p):
     """State and mode at the end of a slip branch, or of sticking, and whether they are unique."""
     if p.friction.set_valued:
-        if closed(mode):
+        if closed(mode) or place // 2 == GUIDE:
             y = replaced(y, VELOCITY, 0.0)
-        found, certain = resolve(t, y, _at_rest(mode), mode.segment, p)
+        found, certain = resolve(t, y, _at_rest(mode, place), mode.segment, p)
         # If sticking ends and the bolster sticks again at once, friction has only touched its limit. That is
         # accepted where every state is proved to be well-posed; elsewhere the case counts as locked.
         again = stuck(mode, p) and stuck(found, p)
         return y, found, certain and (not again or p.geometry.always_well_posed != 0)
     if not closed(mode):
         axis = place // 2
-        now = mode.column if axis == COLUMN else mode.bolster
-        return y, with_branch(mode, axis, now + 2 * (place % 2) - 1, p), True
+        return y, with_branch(mode, axis, branch(mode, axis) + 2 * (place % 2) - 1, p), True
     across, certain = transitions.cross_discontinuity(t, y, mode, place, p)
     if closed(across) and certain:
         return y, across, True
-    contact = without_jump(t, y, Touching(True, True, across.column, across.bolster), mode.segment, p)
+    contact = Touching(True, True, across.column, across.bolster, across.guide)
+    contact = without_jump(t, y, contact, mode.segment, p)
     found, certain = resolve(t, y, contact, mode.segment, p)
     return y, found, certain
 
@@ -338,7 +383,7 @@ def of_impact(y, mode, place, p):
     if place not in (COLUMN_CLOSES, BOLSTER_CLOSES):
         return False, 0.0, 0.0
     now = impact.closing(y, mode, place, COLUMN_CLOSES, BOLSTER_CLOSES, p)
-    lost = kinetic_energy(velocities(y, p), p) - kinetic_energy(velocities(now.y, p), p)
+    lost = kinetic_energy(y, p) - kinetic_energy(now.y, p)
     return True, max(now.impulses.column, now.impulses.bolster), lost
 
 
@@ -365,10 +410,11 @@ def _forces_and_power(t, y, mode, p):
             return now.column, now.bolster, power
         now = newton.forces(t, y, mode, p)
         return now.column, now.bolster, energy.friction_power(t, y, mode, now, p)
-    _, reactions = _motion_and_reactions(t, y, mode, p)
+    _, reactions, _ = _motion_and_reactions(t, y, mode, p)
     motion = velocities(y, p)
     power = reactions.column_friction * motion.along + reactions.bolster_friction * bolster_slip(motion, p)
-    return reactions.column, reactions.bolster, 2.0 * power
+    of_guide = guide_friction.force(y[VELOCITY], mode.guide, p) * y[VELOCITY]
+    return reactions.column, reactions.bolster, 2.0 * power - of_guide
 
 
 @implement(interface.powers, UNILATERAL)
@@ -376,7 +422,7 @@ def _forces_and_power(t, y, mode, p):
 def powers(t, y, mode, p):
     """Power taken and supplied, and the normal forces."""
     column, bolster, power = _forces_and_power(t, y, mode, p)
-    supplied = -excitation.acceleration(t, p) * momentum(velocities(y, p), p)
+    supplied = -excitation.acceleration(t, p) * momentum_against_table(y, p)
     return power + energy.damping_power(y, p), supplied, column, bolster
 
 
@@ -410,4 +456,4 @@ def taken_over(t, y, mode, p):
         return initial_mode(t, y, p)
     if held(now):
         return now, True
-    return resolve(t, y, Touching(True, True, now.column, now.bolster), now.segment, p)
+    return resolve(t, y, Touching(True, True, now.column, now.bolster, now.guide), now.segment, p)

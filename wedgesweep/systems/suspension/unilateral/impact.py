@@ -3,9 +3,9 @@
 Moreau's impact law with one coefficient of restitution e for normal and tangential directions: with the
 velocities v before and v+ after an impact, the weighted velocities v+ + e v and the impulses fulfil the
 inequalities of ``contacts``. As these are homogeneous, v+ = v + (1 + e) (v0 - v), where v0 is the solution
-for e = 0. Both contacts take part if both touch. The energy of an impact cannot grow: with the impulses P
-and the velocities v+ + e v at the contacts its change is [P (v+ + e v) - (1 - e) P G P / 2] / (1 + e), G the
-positive inverse mass, and P (v+ + e v) <= 0.
+for e = 0. Both contacts take part if both touch; the friction of a guide is finite, and does not. The energy
+of an impact cannot grow: with the impulses P and the velocities v+ + e v at the contacts its change is
+[P (v+ + e v) - (1 - e) P G P / 2] / (1 + e), G the positive inverse mass, and P (v+ + e v) <= 0.
 
 Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); Leine and van de Wouw,
 Stability and Convergence of Mechanical Systems with Unilateral Constraints (2008).
@@ -14,14 +14,16 @@ Stability and Convergence of Mechanical Systems with Unilateral Constraints (200
 from typing import Any, NamedTuple
 
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import states
-from wedgesweep.systems.suspension.modes import VELOCITY, X
+from wedgesweep.effects import fixture_resonance, states
+from wedgesweep.hybrid.vectors import replaced
+from wedgesweep.systems.suspension.modes import VELOCITY
 from wedgesweep.systems.suspension.unilateral.contacts import (
     OPEN,
     Faces,
     Motion,
     Reactions,
     bolster_gap,
+    mobility,
     motion_under,
     rounding,
     solve,
@@ -32,7 +34,10 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     BOLSTER_RATE,
     COLUMN_GAP,
     COLUMN_RATE,
+    frame_jump,
+    gap_state,
     velocities,
+    with_gaps,
 )
 
 # A face that falls back more slowly than this share of the input velocity does not bounce: that ends the
@@ -80,29 +85,32 @@ def restitution_at(approach, p):
 def struck(y, column, bolster, restitution, p):
     """The impact of a state in which the contacts ``column`` and ``bolster`` (or one) touch, under mu_d."""
     before, mu = velocities(y, p), p.friction.mu_d
-    found, certain = solve(before, Faces(column, bolster, False, mu, mu), p)
+    found, certain = solve(before, Faces(column, bolster, False, mu, mu, False), p)
     unique = certain == 1 or (certain == 0 and found.margin >= -rounding(before, p))
-    plastic, part = motion_under(before, found.reactions, p), 1.0 + restitution
-    after = Motion(
-        before.along + part * (plastic.along - before.along),
-        before.gap + part * (plastic.gap - before.gap),
-        before.rise + part * (plastic.rise - before.rise),
+    plastic = motion_under(before, mobility(p), found.reactions, p)
+    part = 1.0 + restitution
+    change = Motion(
+        part * (plastic.along - before.along),
+        part * (plastic.gap - before.gap),
+        part * (plastic.rise - before.rise),
     )
-    nothing = STILL * (states.scales(p)[VELOCITY] + abs(before.gap) + abs(y[BOLSTER_RATE]))
+    after = Motion(before.along + change.along, before.gap + change.gap, before.rise + change.rise)
+    rate_before = gap_state(y, BOLSTER_RATE)
+    nothing = STILL * (states.scales(p)[VELOCITY] + abs(before.gap) + abs(rate_before))
     column_rate = _gap_rate(found.column, before.gap, after.gap, restitution, nothing)
-    bolster_rate = _gap_rate(found.bolster, y[BOLSTER_RATE], bolster_gap(after, p), restitution, nothing)
+    bolster_rate = _gap_rate(found.bolster, rate_before, bolster_gap(after, p), restitution, nothing)
     velocity = after.rise
     if column_rate == 0.0 and bolster_rate == 0.0 and column and bolster and abs(velocity) <= nothing:
         velocity = 0.0
-    later = (
-        y[X],
-        velocity,
-        0.0 if column else y[COLUMN_GAP],
+    gaps = (
+        0.0 if column else gap_state(y, COLUMN_GAP),
         column_rate if column else after.gap,
-        0.0 if bolster else y[BOLSTER_GAP],
+        0.0 if bolster else gap_state(y, BOLSTER_GAP),
         bolster_rate if bolster else bolster_gap(after, p),
     )
-    return Impact(later, _scaled(found.reactions, part), unique)
+    frame = fixture_resonance.velocity(y, p) + frame_jump(change, p)
+    later = fixture_resonance.with_velocity(replaced(y, VELOCITY, velocity), frame, p)
+    return Impact(with_gaps(later, gaps), _scaled(found.reactions, part), unique)
 
 
 @inner
@@ -110,5 +118,5 @@ def closing(y, mode, place, column_closes, bolster_closes, p):
     """The impact at the event in which a gap closes; ``column_closes``, ``bolster_closes``: its places."""
     column = mode.column_sign == 1 or place == column_closes
     bolster = mode.bolster_sign == 1 or place == bolster_closes
-    approach = -y[COLUMN_RATE if place == column_closes else BOLSTER_RATE]
+    approach = -gap_state(y, COLUMN_RATE if place == column_closes else BOLSTER_RATE)
     return struck(y, column, bolster, restitution_at(approach, p), p)

@@ -1,14 +1,16 @@
 """Modes of a wedge that may lift off: which contacts are closed, and which faces slip or stick.
 
 A mode is a ``ContactMode`` whose signs of the normal forces are 1 for a closed contact and 0 for an open
-one. The branch of an open face is 0.
+one. The branch of an open face is 0. The bolster may rest against its guide, or slip there, while contacts
+are open.
 """
 
 from typing import NamedTuple
 
 from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.effects import states
+from wedgesweep.effects import fixture_resonance, guide_friction, states
+from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension.modes import HELD, VELOCITY, ContactMode, X
 from wedgesweep.systems.suspension.modes import stuck as both_stuck
 from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
@@ -18,7 +20,7 @@ from wedgesweep.systems.suspension.unilateral.contacts import (
     STICK,
     Faces,
     bolster_slip,
-    motion_under,
+    motion_of,
     rounding,
     solve,
 )
@@ -27,8 +29,11 @@ from wedgesweep.systems.suspension.unilateral.motion import (
     BOLSTER_RATE,
     COLUMN_GAP,
     COLUMN_RATE,
+    frame_acceleration,
     free_accelerations,
+    gap_state,
     velocities,
+    with_gaps,
 )
 
 # Slip below this share of the input velocity counts as none under a set-valued law.
@@ -38,15 +43,16 @@ MOMENTS, FARTHER = 4, 30.0
 
 
 class Touching(NamedTuple):
-    """Contacts whose gap and its rate are 0, and the slip branches of their faces.
+    """Contacts whose gap and its rate are 0, and the slip branches of their faces and of the guide.
 
-    Under a set-valued law branch 0 means that the face does not slip.
+    Under a set-valued law branch 0 means that there is no slip.
     """
 
     column: bool
     bolster: bool
     column_branch: int
     bolster_branch: int
+    guide_branch: int
 
 
 @inlined
@@ -62,15 +68,21 @@ def stuck(mode, p):
 
 
 @inlined
+def rests_in_guide(mode, p):
+    """Whether a guide that rubs holds the bolster under a set-valued law."""
+    return p.friction.set_valued and mode.guide == 0 and guide_friction.acts(p)
+
+
+@inlined
 def column_touches(y):
     """Whether the column face is closed, or about to open."""
-    return y[COLUMN_GAP] == 0.0 and y[COLUMN_RATE] == 0.0
+    return gap_state(y, COLUMN_GAP) == 0.0 and gap_state(y, COLUMN_RATE) == 0.0
 
 
 @inlined
 def bolster_touches(y):
     """Whether the bolster face is closed, or about to open."""
-    return y[BOLSTER_GAP] == 0.0 and y[BOLSTER_RATE] == 0.0
+    return gap_state(y, BOLSTER_GAP) == 0.0 and gap_state(y, BOLSTER_RATE) == 0.0
 
 
 @inlined
@@ -91,7 +103,8 @@ def touching(y, p):
     if column and bolster:
         nothing = 0.0 if y[VELOCITY] != 0.0 else nothing
     column_branch = slip_branch(motion.along, nothing, p)
-    return Touching(column, bolster, column_branch, slip_branch(bolster_slip(motion, p), nothing, p))
+    bolster_branch = slip_branch(bolster_slip(motion, p), nothing, p)
+    return Touching(column, bolster, column_branch, bolster_branch, slip_branch(y[VELOCITY], 0.0, p))
 
 
 @inlined
@@ -103,29 +116,28 @@ def signed_coefficient(slip, branch, clock, y, p):
 @inner
 def _faces(y, contact, p):
     """The contact problem's faces at a state."""
-    slipping = not p.friction.set_valued
+    slipping, guide_rests = not p.friction.set_valued, False
     if not slipping:
         slipping = (contact.column_branch if contact.column else contact.bolster_branch) != 0
+        guide_rests = contact.guide_branch == 0 and guide_friction.acts(p)
     if not slipping:
         highest = friction.static(1, y, p)
-        return Faces(contact.column, contact.bolster, False, highest, highest)
+        return Faces(contact.column, contact.bolster, False, highest, highest, guide_rests)
     motion, clock = velocities(y, p), 1 if contact.column_branch == 0 else 0
     column = signed_coefficient(motion.along, contact.column_branch, clock, y, p)
     bolster = signed_coefficient(bolster_slip(motion, p), contact.bolster_branch, clock, y, p)
-    return Faces(contact.column, contact.bolster, True, column, bolster)
+    return Faces(contact.column, contact.bolster, True, column, bolster, guide_rests)
 
 
 @inner
-def _later(y, motion, moment):
-    """State after a moment (s) at a constant acceleration of the bolster, and constant rates of the gaps."""
-    return (
-        y[X] + moment * y[VELOCITY] + 0.5 * moment * moment * motion.rise,
-        y[VELOCITY] + moment * motion.rise,
-        y[COLUMN_GAP] + moment * y[COLUMN_RATE],
-        y[COLUMN_RATE],
-        y[BOLSTER_GAP] + moment * y[BOLSTER_RATE],
-        y[BOLSTER_RATE],
-    )
+def _later(t, y, motion, moment, p):
+    """State after a moment (s) at constant accelerations of bolster and side frame, and rates of the gaps."""
+    column, column_rate = gap_state(y, COLUMN_GAP), gap_state(y, COLUMN_RATE)
+    bolster, bolster_rate = gap_state(y, BOLSTER_GAP), gap_state(y, BOLSTER_RATE)
+    gaps = column + moment * column_rate, column_rate, bolster + moment * bolster_rate, bolster_rate
+    later = fixture_resonance.later(y, moment, frame_acceleration(t, motion, y, p), p)
+    later = replaced(later, X, y[X] + moment * y[VELOCITY] + 0.5 * moment * moment * motion.rise)
+    return with_gaps(replaced(later, VELOCITY, y[VELOCITY] + moment * motion.rise), gaps)
 
 
 @inlined
@@ -146,20 +158,22 @@ def _mode(found, contact, faces, segment, p):
     clock = 1 if column == 0 else 0
     if p.friction.set_valued:
         clock = 1 if found.column == STICK and found.bolster == STICK else 0
-    return ContactMode(column, bolster, 0, column_sign, bolster_sign, 0, segment, clock)
+    guide = found.guide if faces.guide_rests else contact.guide_branch
+    return ContactMode(column, bolster, guide, column_sign, bolster_sign, 0, segment, clock)
 
 
 @inner
 def resolve(t, y, contact, segment, p):
     """The mode that follows for contacts which touch now, and whether it is unique."""
-    free, faces = free_accelerations(t, y, segment, p), _faces(y, contact, p)
+    guide = contact.guide_branch
+    free, faces = free_accelerations(t, y, segment, guide, p), _faces(y, contact, p)
     found, certain = solve(free, faces, p)
     moment = LOOK_AHEAD / p.input.omega
     for _ in range(MOMENTS):
         if certain > 0:
             break
-        later = _later(y, motion_under(free, found.reactions, p), moment)
-        there, faces = free_accelerations(t + moment, later, segment, p), _faces(later, contact, p)
+        later = _later(t, y, motion_of(found, free, faces, p), moment, p)
+        there, faces = free_accelerations(t + moment, later, segment, guide, p), _faces(later, contact, p)
         found, certain = solve(there, faces, p)
         moment *= FARTHER
     unique = certain == 1 or (certain == 0 and found.margin >= -rounding(free, p))
@@ -172,14 +186,16 @@ def without_jump(t, y, contact, segment, p):
     column, bolster = contact.column_branch, contact.bolster_branch
     if abs(column) != HELD and abs(bolster) != HELD:
         return contact
-    outer = Touching(contact.column, contact.bolster, _beyond_jump(column), _beyond_jump(bolster))
-    free = free_accelerations(t, y, segment, p)
-    motion = motion_under(free, solve(free, _faces(y, outer, p), p)[0].reactions, p)
+    guide = contact.guide_branch
+    outer = Touching(contact.column, contact.bolster, _beyond_jump(column), _beyond_jump(bolster), guide)
+    free, faces = free_accelerations(t, y, segment, guide, p), _faces(y, outer, p)
+    motion = motion_of(solve(free, faces, p)[0], free, faces, p)
     return Touching(
         contact.column,
         contact.bolster,
         _entered(column, motion.along),
         _entered(bolster, bolster_slip(motion, p)),
+        guide,
     )
 
 

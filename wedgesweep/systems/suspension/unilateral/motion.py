@@ -5,7 +5,8 @@ S, c = sin, cos(alpha + gamma) the wedge lies at w = A t_c - g_c n_c against the
 
     A = r z - (g_b + c g_c) / S,    w_z = A cos(gamma) - g_c sin(gamma)
 
-A closed contact has a gap of 0 at a rate of 0, both exact.
+A closed contact has a gap of 0 at a rate of 0, both exact. The gaps are the last states, so that those before
+them are the states of the suspension with bilateral joints.
 """
 
 from typing import Any
@@ -14,15 +15,16 @@ from numba.core import types
 from numba.extending import overload
 
 from wedgesweep.compiled import CONTRACTED, function_of, inlined
-from wedgesweep.effects import hooks, lift_off, states, travel
+from wedgesweep.effects import fixture_resonance, guide_friction, hooks, lift_off, states, travel
 from wedgesweep.excitation import acceleration
 from wedgesweep.systems.suspension.modes import VELOCITY, X
 from wedgesweep.systems.suspension.unilateral.contacts import Motion
 
 UNILATERAL = lift_off.NAME
-COLUMN_GAP, COLUMN_RATE, BOLSTER_GAP, BOLSTER_RATE = 2, 3, 4, 5
+# The states of the gaps, in their order.
+COLUMN_GAP, COLUMN_RATE, BOLSTER_GAP, BOLSTER_RATE = range(4)
 
-states.add_to_mass(UNILATERAL, (states.LENGTH, states.VELOCITY) * 2)
+states.add_last(UNILATERAL, (states.LENGTH, states.VELOCITY) * 2)
 
 
 def gap_state(y: Any, place: int) -> float:
@@ -34,12 +36,24 @@ def gap_state(y: Any, place: int) -> float:
 def _gap_state(y, place):
     if not isinstance(y, types.BaseTuple):
         return None
-    return function_of(("y", "place"), "0.0" if len(y) == 2 else "y[place]")
+    return function_of(("y", "place"), "0.0" if len(y) == 2 else f"y[{len(y) - 4} + place]")
+
+
+def with_gaps(y: Any, gaps: Any) -> Any:
+    """The state with other states of the gaps, a tuple of four."""
+    raise NotImplementedError
+
+
+@overload(with_gaps, jit_options=CONTRACTED)
+def _with_gaps(y, gaps):
+    if not isinstance(y, types.BaseTuple):
+        return None
+    return function_of(("y", "gaps"), f"({', '.join(f'y[{i}]' for i in range(len(y) - 4))},) + gaps")
 
 
 @inlined
 def velocities(y, p):
-    """Motion (m/s)."""
+    """Motion (m/s) against the side frame."""
     g, column, bolster = p.geometry, gap_state(y, COLUMN_RATE), gap_state(y, BOLSTER_RATE)
     along = g.column_ratio * y[VELOCITY] - (bolster + g.cos_included * column) / g.sin_included
     return Motion(along, column, y[VELOCITY])
@@ -54,24 +68,51 @@ def wedge_rise(y, p):
 
 
 @inlined
-def free_accelerations(t, y, segment, p):
-    """Accelerations without contact forces (m/s^2); ``segment`` of the travel of the bolster."""
+def free_accelerations(t, y, segment, guide, p):
+    """Accelerations without contact forces (m/s^2), against the side frame.
+
+    ``segment`` of the travel of the bolster, and its slip branch in the ``guide``.
+    """
     s, g, z, velocity = p.suspension, p.geometry, p.geometry.rest + y[X], y[VELOCITY]
-    base = acceleration(t, p)
-    wedge = s.wedge_preload - s.wedge_spring * wedge_rise(y, p) - s.wedge_mass * (s.gravity + base)
+    wedge = s.wedge_preload - s.wedge_spring * wedge_rise(y, p) - s.wedge_mass * s.gravity
     bolster = hooks.force_on_mass(z, velocity, y, p) + hooks.damping(velocity, y, p)
-    bolster += travel.force(y[X], segment, s.bolster_spring, p)
-    bolster -= s.bolster_spring * z + s.bolster_mass * (s.gravity + base)
-    return Motion(
-        wedge * g.cos_column / s.wedge_mass, -wedge * g.sin_column / s.wedge_mass, bolster / s.bolster_mass
-    )
+    bolster += travel.force(y[X], segment, s.bolster_spring, p) + guide_friction.force(velocity, guide, p)
+    bolster -= s.bolster_spring * z + s.bolster_mass * s.gravity
+    frame = acceleration(t, p)
+    if fixture_resonance.acts(p):
+        # All forces but that of the table act between the side frame and what it carries.
+        frame = (fixture_resonance.force(y, p) - bolster - 2.0 * wedge) / s.side_frame_mass
+    rise = wedge / s.wedge_mass - frame
+    return Motion(rise * g.cos_column, -rise * g.sin_column, bolster / s.bolster_mass - frame)
 
 
 @inlined
-def kinetic_energy(motion, p):
-    """Kinetic energy (J) of both wedges and the bolster against the side frame."""
+def _carried(p):
+    """Mass (kg) of the side frame and all that it carries."""
     s = p.suspension
-    return 0.5 * s.bolster_mass * motion.rise**2 + s.wedge_mass * (motion.along**2 + motion.gap**2)
+    return s.side_frame_mass + s.bolster_mass + 2.0 * s.wedge_mass
+
+
+@inlined
+def frame_acceleration(t, motion, y, p):
+    """Acceleration (m/s^2) of the side frame against its table; ``motion``: accelerations against it."""
+    if not fixture_resonance.acts(p):
+        return 0.0
+    return (fixture_resonance.force(y, p) - momentum(motion, p)) / _carried(p) - acceleration(t, p)
+
+
+@inlined
+def frame_jump(change, p):
+    """Change of the side frame's velocity (m/s) in an impact; ``change``: of velocities against it."""
+    return -momentum(change, p) / _carried(p) if fixture_resonance.acts(p) else 0.0
+
+
+@inlined
+def kinetic_energy(y, p):
+    """Kinetic energy (J) of both wedges, bolster and side frame against the table."""
+    s, motion, frame = p.suspension, velocities(y, p), fixture_resonance.velocity(y, p)
+    own = 0.5 * s.bolster_mass * motion.rise**2 + s.wedge_mass * (motion.along**2 + motion.gap**2)
+    return own + frame * (momentum(motion, p) + 0.5 * _carried(p) * frame)
 
 
 @inlined
@@ -80,3 +121,9 @@ def momentum(motion, p):
     s, g = p.suspension, p.geometry
     rising = g.cos_column * motion.along - g.sin_column * motion.gap
     return s.bolster_mass * motion.rise + 2.0 * s.wedge_mass * rising
+
+
+@inlined
+def momentum_against_table(y, p):
+    """Vertical momentum (N s) of wedges, bolster and side frame against the table."""
+    return momentum(velocities(y, p), p) + _carried(p) * fixture_resonance.velocity(y, p)

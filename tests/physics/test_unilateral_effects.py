@@ -1,0 +1,244 @@
+"""Wedges that lift off with a guide that rubs on the bolster, or with a side frame on a compliant table."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.physics import compiled_unilateral as mechanics
+from tests.physics.cases import OMEGA_N
+from tests.physics.compiled_mechanics import reactions
+from tests.physics.test_unilateral import AMPLITUDE, MARGIN, SPEED, vectors
+from wedgesweep import excitation, response
+from wedgesweep.friction import LAW_NAMES
+from wedgesweep.simulate import Settings, respond
+from wedgesweep.solvers import event_driven, radau
+from wedgesweep.solvers.period_map import memory, prepared, run_periods
+from wedgesweep.solvers.trajectory import Window
+from wedgesweep.systems import compact
+from wedgesweep.systems.suspension import parameters
+from wedgesweep.systems.suspension.newton import Coefficients, Loads
+from wedgesweep.systems.suspension.unilateral.contacts import Faces, Motion
+
+FIXTURE = {"fixture_resonance": {"frequency": 40.0, "damping_ratio": 0.05}}
+GUIDE = {"guide_friction": {"force": 1.5}}
+
+
+def record(effects, law="coulomb", amplitude=AMPLITUDE, beta=1.2, joints="unilateral", friction=None, **more):
+    suspension = {"joints": joints, "restitution": 0.0} | more
+    return parameters.record(law, amplitude, beta * OMEGA_N, suspension, friction or {}, effects)
+
+
+# A side frame that an impact moves
+
+
+@st.composite
+def impacts(draw):
+    """A case, a state in which gaps close, the contacts that touch, and the restitution."""
+    case = record(
+        FIXTURE,
+        friction={"dynamic": draw(st.floats(0.0, 0.3))},
+        column_angle=draw(st.sampled_from((-0.07, 0.07, 0.3))),
+        wedge_mass=draw(st.floats(0.02, 0.6)),
+        side_frame_mass=draw(st.floats(0.1, 2.0)),
+    )
+    touches = draw(st.sampled_from(((True, False), (False, True), (True, True))))
+    rates = [-abs(draw(SPEED)) - 1e-3 if touch else draw(SPEED) for touch in touches]
+    gaps = [0.0 if touch else 1e-3 for touch in touches]
+    y = (0.0, draw(SPEED), 0.0, draw(SPEED), gaps[0], rates[0], gaps[1], rates[1])
+    return case, y, touches, draw(st.floats(0.0, 0.9))
+
+
+def velocities(y, case):
+    """Of wedge, bolster and side frame against the table."""
+    along, gap, rise = mechanics.velocities(y, compact(case))
+    t_c, n_c, _, _ = vectors(case[0])
+    frame = np.array([0.0, y[3]])
+    return along * t_c - gap * n_c + frame, rise + y[3], y[3]
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(impacts())
+def test_impulses_move_wedge_bolster_and_side_frame_and_take_energy(given_impact):
+    case, y, touches, restitution = given_impact
+    assert case["geometry"]["always_well_posed"][0]
+    after, now, unique = mechanics.struck(y, *touches, restitution, compact(case))
+    assert unique
+    s, (t_c, n_c, t_b, p_b) = case[0]["suspension"], vectors(case[0])
+    on_bolster = now.bolster * p_b - now.bolster_friction * t_b
+    on_frame = now.column * n_c + now.column_friction * t_c
+    (wedge, bolster, frame), old = velocities(after, case), velocities(y, case)
+    assert s["wedge_mass"] * (wedge - old[0]) == pytest.approx(on_bolster - on_frame, abs=MARGIN)
+    assert s["bolster_mass"] * (bolster - old[1]) == pytest.approx(-2.0 * on_bolster[1], abs=MARGIN)
+    assert s["side_frame_mass"] * (frame - old[2]) == pytest.approx(2.0 * on_frame[1], abs=MARGIN)
+
+    def energy(moving):
+        wedge, bolster, frame = moving
+        own = s["wedge_mass"] * wedge @ wedge + 0.5 * s["bolster_mass"] * bolster**2
+        return own + 0.5 * s["side_frame_mass"] * frame**2
+
+    assert energy((wedge, bolster, frame)) <= energy(old) * (1.0 + MARGIN)
+    assert mechanics.kinetic_energy(after, compact(case)) == pytest.approx(energy((wedge, bolster, frame)))
+    # Newton's law where an impulse acts, and no impulse where a face leaves faster than that.
+    for touch, normal, place in ((touches[0], now.column, 5), (touches[1], now.bolster, 7)):
+        if touch:
+            assert normal >= -MARGIN
+            assert after[place] + restitution * y[place] >= -MARGIN
+            assert abs(normal * (after[place] + restitution * y[place])) < MARGIN
+
+
+def test_closed_contacts_under_load_are_those_of_bilateral_joints_on_a_table():
+    generator, found = np.random.default_rng(3), 0
+    bilateral = compact(record(FIXTURE, "static-dynamic", joints="bilateral"))[0]
+    case = record(FIXTURE, "static-dynamic")
+    s, g = case[0]["suspension"], case[0]["geometry"]
+    for _ in range(200):
+        wedge, bolster, table = generator.uniform((-5.0, -20.0, -20.0), (20.0, 5.0, 20.0))
+        mu = generator.uniform(-0.32, 0.32, 2)
+        load = Loads(wedge * g["cos_column"], wedge * g["sin_column"], bolster, 0.0, table, 0.0)
+        now, _ = reactions(load, Coefficients(*mu, 0.0, 0.0), bilateral)
+        frame = (table - bolster - 2.0 * wedge) / s["side_frame_mass"]
+        rise = wedge / s["wedge_mass"] - frame
+        free = Motion(rise * g["cos_column"], -rise * g["sin_column"], bolster / s["bolster_mass"] - frame)
+        solution, count = mechanics.solve(free, Faces(True, True, True, *mu, False), compact(case))
+        assert count == 1
+        assert (min(now.column, now.bolster) > 0.0) == (min(solution.column, solution.bolster) > 0)
+        if min(now.column, now.bolster) > 0.0:
+            found += 1
+            of_both = solution.reactions.column, solution.reactions.bolster
+            assert of_both == pytest.approx((now.column, now.bolster), rel=1e-10)
+    assert found > 30
+
+
+# A guide that holds the bolster, or slips
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(st.tuples(*[st.floats(-30.0, 30.0)] * 3), st.tuples(st.booleans(), st.booleans()), st.booleans())
+def test_a_guide_holds_the_bolster_or_rubs_with_its_whole_force(load, touches, on_table):
+    """Motion and reactions fulfil the equations and inequalities of Coulomb's law on all three."""
+    case = record(GUIDE | (FIXTURE if on_table else {}))
+    s, (t_c, n_c, t_b, p_b) = case[0]["suspension"], vectors(case[0])
+    free = Motion(load[0], load[1], load[2])
+    mu = 0.32
+    faces = Faces(*touches, False, mu, mu, True)
+    solution, certain = mechanics.solve(free, faces, compact(case))
+    moved = mechanics.motion_of(solution, free, faces, compact(case))
+    assert certain <= 1
+    if certain == 0:  # on the verge of two states
+        assert solution.margin >= -1e-9
+    now = solution.reactions
+    wedge, free_wedge = (each.along * t_c - each.gap * n_c for each in (moved, free))
+    on_bolster = now.bolster * p_b - now.bolster_friction * t_b
+    on_frame = now.column * n_c + now.column_friction * t_c
+    guide = -1.5 * np.sign(moved.rise)
+    if solution.guide == 0:
+        assert abs(moved.rise) < 1e-12
+        guide = -solution_force(free, on_bolster, on_frame, s, on_table)
+        assert abs(guide) <= 1.5 + 1e-9
+    frame = (2.0 * on_frame[1] - guide) / s["side_frame_mass"] if on_table else 0.0
+    up = np.array([0.0, 1.0])
+    off = s["wedge_mass"] * (wedge + frame * up - free_wedge) - on_bolster + on_frame
+    assert off == pytest.approx([0.0, 0.0], abs=1e-8)
+    rise = s["bolster_mass"] * (moved.rise + frame - free.rise) + 2.0 * on_bolster[1] - guide
+    assert rise == pytest.approx(0.0, abs=1e-8)
+    against = wedge - moved.rise * up
+    for touch, normal, friction, gap, slip in (
+        (touches[0], now.column, now.column_friction, -wedge @ n_c, wedge @ t_c),
+        (touches[1], now.bolster, now.bolster_friction, against @ p_b, against @ t_b),
+    ):
+        if not touch:
+            assert normal == friction == 0.0
+            continue
+        assert normal >= -1e-9
+        assert gap >= -1e-9
+        assert abs(normal * gap) < 1e-7
+        assert abs(friction) <= mu * normal + 1e-9
+        if abs(slip) > 1e-6 and normal > 1e-6:
+            assert friction == pytest.approx(mu * normal * np.sign(slip), rel=1e-6)
+
+
+def solution_force(free, on_bolster, on_frame, s, on_table):
+    """Force (N) of the bolster on a guide that holds it."""
+    # Bolster: M (frame - free) = -2 b + h; side frame, where it moves: M_sf frame = 2 c - h.
+    bolster, driven = s["bolster_mass"], -2.0 * on_bolster[1]
+    if not on_table:
+        return driven + bolster * free.rise
+    frame = (2.0 * on_frame[1] + driven + bolster * free.rise) / (s["side_frame_mass"] + bolster)
+    return driven + bolster * (free.rise - frame)
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_a_bolster_in_its_guide_loses_the_same_in_every_swing_while_wedges_fly(law):
+    """Free decay: 2 F/k from turn to turn, and rest where the spring is weaker than friction."""
+    force, start, turns = 0.5, 1e-3, 4
+    friction = {"threshold_velocity": 1e-9}
+    case = record({"guide_friction": {"force": force}}, law, wedge_spring=0.0, friction=friction)
+    excitation.set_no_motion(case, AMPLITUDE)
+    case["input"]["omega"] = 2.0 * OMEGA_N  # half a swing
+    s, g = case[0]["suspension"], case[0]["geometry"]
+    rest = -s["bolster_mass"] * s["gravity"] / s["bolster_spring"] - g["rest"]
+    omega = np.sqrt(s["bolster_spring"] / s["bolster_mass"])
+    case["input"]["omega"] = 2.0 * omega
+    cases, room = prepared(compact(case)), memory(1e-11, 8, 1)
+    y = np.zeros(cases.scales.shape[1])
+    y[0] = rest + start
+    y[-4], y[-2] = 50.0, 20.0  # the wedge falls freely
+    lost, size = 2.0 * force / s["bolster_spring"], start
+    for turn in range(1, turns + 1):
+        assert run_periods(cases, turn - 1, 1, y, True, room) == 0
+        size = abs(size - lost) if size > 0.5 * lost else size
+        assert y[0] - rest == pytest.approx((-1.0) ** turn * (start - turn * lost), abs=2e-8)
+        assert y[1] == pytest.approx(0.0, abs=2e-6)
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("effects", [FIXTURE, GUIDE, FIXTURE | GUIDE], ids=["table", "guide", "both"])
+def test_both_solvers_agree_and_energy_balances(law, effects):
+    case, found = record(effects, law, 2e-3, 1.3), []
+    window = Window(1.3 * OMEGA_N, 3, 2, 64)
+    for solver in (event_driven, radau):
+        run = solver.solve(case, window, rtol=1e-9, time_limit=120.0)
+        found.append(response.evaluate(run, case, harmonics=3).numbers)
+    assert found[0]["impacts"] > 0.0
+    for name in ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "largest_impulse"):
+        assert found[1][name] == pytest.approx(found[0][name], rel=1e-6), name
+    for name in ("impacts", "impact_energy", "dissipated_energy", "supplied_energy"):
+        assert found[1][name] == pytest.approx(found[0][name], rel=1e-6), name
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("effects", [FIXTURE, GUIDE], ids=["table", "guide"])
+def test_friction_impacts_and_the_table_take_what_the_base_supplies(law, effects):
+    settled = Settings(method="event-driven", rtol=1e-9, duration=None, settle_periods=150, kept_periods=2)
+    numbers = respond(record(effects, law, 2e-3, 0.8), settled, 3)[0].numbers
+    assert numbers["periodicity"] < 1e-6
+    assert numbers["impact_energy"] > 0.01 * numbers["dissipated_energy"]
+    taken = numbers["dissipated_energy"] + numbers["impact_energy"]
+    assert taken == pytest.approx(numbers["supplied_energy"], rel=1e-5)
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_a_heavy_side_frame_on_a_stiff_table_moves_as_the_base(law):
+    """A light one does not, however stiff the table: an impact moves it before the table can hold it."""
+    settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=20, kept_periods=2)
+    stiff = {"fixture_resonance": {"frequency": 1e3, "damping_ratio": 0.7}}
+    rigid = respond(record({}, law, 2e-3, 1.3), settled, 3)[0].numbers
+    moving = respond(record(stiff, law, 2e-3, 1.3, side_frame_mass=1e4), settled, 3)[0].numbers
+    assert rigid["impacts"] > 0.0
+    for name in ("amplitude_ratio", "column_open_fraction", "bolster_open_fraction", "impact_energy"):
+        assert moving[name] == pytest.approx(rigid[name], rel=2e-3), name
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("effects", [FIXTURE, {"guide_friction": {"force": 0.3}}], ids=["table", "guide"])
+def test_nothing_changes_where_nothing_lifts_off(law, effects):
+    steady = Settings(method="event-driven", rtol=1e-9, duration=None, settle_periods=20, kept_periods=2)
+    for beta, amplitude in ((0.4, 1e-3), (1.4, 1e-4)):
+        held, opens = (
+            dict(respond(record(effects, law, amplitude, beta, joints=joints), steady, 9)[0].numbers)
+            for joints in parameters.JOINTS
+        )
+        assert held["lift_off_fraction"] == opens["impacts"] == 0.0
+        assert opens.pop("periodicity") == pytest.approx(held.pop("periodicity"), abs=1e-8)
+        assert opens == pytest.approx(held, rel=1e-8, abs=1e-11, nan_ok=True)
