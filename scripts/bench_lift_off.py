@@ -1,6 +1,7 @@
 """Unilateral joints: their cost against bilateral ones, and against siconos where some lift off.
 
-The cases are the paper's: those in which nothing lifts off, then all 1,800. Both kinds of joints run
+The cases are the paper's: those in which nothing lifts off, then all 1,800; and those with so much friction
+that some states could lock, where neither kind of joints does and nothing lifts off. Both kinds of joints run
 interleaved. Times are processor times. Siconos (Debian's python3-siconos) steps some cases with lift-off at
 the longest of some steps that keeps amplitude ratios within a limit of those at a tolerance of 1e-9;
 wedgesweep at the loosest tolerance that does. Where siconos is not installed, the output says that this is
@@ -29,6 +30,7 @@ ROUNDS, REPEATED = 15, 40
 # Of the closed cases those that Radau runs, and their periods.
 EVERY, FEW_PERIODS = 40, 4
 EFFECT = {"viscous_damping": {"coefficient_N_s_per_m": 8.0}}
+ROUGH = {"friction": {"static": 0.46, "dynamic": 0.4}}
 OPEN = [Case("coulomb", beta, a) for beta, a in ((0.75, 4.75e-3), (0.9, 1e-3), (1.2, 1e-3), (1.3, 2.2e-3))]
 LIMIT = 5e-3
 STEPS, LADDER = (250, 500, 1000, 2000, 4000), (1e-3, 1e-4, 1e-5, 1e-6)
@@ -48,9 +50,9 @@ def timed(rows, settings):
     return found, process_time() - began
 
 
-def of_paper(effects=None):
-    """The paper's study with both kinds of joints."""
-    changes = {"solver": {"method": "event-driven"}, "effects": effects or {}}
+def of_paper(**changes):
+    """The paper's study with both kinds of joints, and other changes by section."""
+    changes = {"solver": {"method": "event-driven"}} | changes
     return [
         changed(config.load(PAPER), changes | {"suspension": {"joints": each}}) for each in parameters.JOINTS
     ]
@@ -79,7 +81,7 @@ def closed_cases():
     both = of_paper()
     rows = [each.records() for each in both]
     still, laws = stays_closed(rows[1]), rows[0]["friction"]["law"]
-    damped = [each.records() for each in of_paper(EFFECT)]
+    damped = [each.records() for each in of_paper(effects=EFFECT)]
     radau = Settings(method="radau", duration=None, settle_periods=FEW_PERIODS, kept_periods=2)
     print(f"{'Nothing lifts off':32} cases    speed  largest difference")
     for number, law in enumerate(LAW_NAMES):
@@ -89,6 +91,14 @@ def closed_cases():
         compared(f"{law}, radau", [each[few] for each in rows], radau, 3)
         compared(f"{law}, an effect", [np.tile(each[few], 4) for each in damped], both[0].solver, ROUNDS)
     compared("all 1,800", rows, both[0].solver, 5)
+    rows = [each.records() for each in of_paper(**ROUGH)]
+    answered = [timed(each, both[0].solver)[0]["status"] == 0 for each in rows]
+    could_lock = rows[1]["geometry"]["always_well_posed"] == 0
+    chosen = np.flatnonzero(could_lock & stays_closed(rows[1]) & answered[0] & answered[1])
+    for number, law in enumerate(LAW_NAMES):
+        few = chosen[laws[chosen] == number]
+        if few.size:
+            compared(f"{law}, could lock", [each[few] for each in rows], both[0].solver, ROUNDS)
 
 
 def ours(rows, exact):

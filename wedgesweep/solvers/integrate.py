@@ -319,11 +319,12 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
             return State(t, y, mode, last_event, h), FAILED
         if keeping:
             record_step(step, share, mode, recorder, p)
-        if number >= 0:
-            y = dense_output(share, step) if share < 1.0 else step.end
-            return State(t + share * taken, y, mode, last_event, h), number
-        if not well_posed(t + taken, step.end, mode, p):
+        end = dense_output(share, step) if share < 1.0 else step.end
+        # At events as well: friction may be strongest where its branch ends.
+        if not well_posed(t + share * taken, end, mode, p):
             return State(t, y, mode, last_event, h), LOCKED
+        if number >= 0:
+            return State(t + share * taken, end, mode, last_event, h), number
         t = stop if taken == stop - t else t + taken
         y, k1, last_event = step.end, step.end_rate, NO_EVENT
         for i in range(event_count(p)):

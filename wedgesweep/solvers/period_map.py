@@ -21,7 +21,6 @@ from wedgesweep.hybrid.interface import (
     cycle,
     free,
     impact,
-    never_locks,
     provided,
     repeats,
     scales,
@@ -166,9 +165,9 @@ class Cases(NamedTuple):
 
     ``records`` (n, bytes) for ``period_map``; ``scales`` (n, S): natural sizes of the states, ``clocks``
     (n, S): whether they only count time; ``cycle`` (n,): period of the input (s), ``repeats`` (n,): whether
-    all of the input repeats after it. ``impacts``: whether velocities may jump. ``turns`` (n,): whether
-    ``closed_map`` follows a case, with ``closed_records``, while its contacts are closed; that system has the
-    first ``closed_states`` of the states.
+    all of the input repeats after it. ``impacts``: whether velocities may jump. ``turns``: whether
+    ``closed_map`` follows cases, with ``closed_records``, while their contacts are closed; that system has
+    the first ``closed_states`` of the states.
     """
 
     period_map: Any
@@ -196,14 +195,12 @@ def prepared(records: np.ndarray) -> Cases:
         np.zeros(n),
         np.zeros(n, np.bool_),
         provided(impact, dict(records.dtype.fields or {})),
-        np.zeros(n, np.bool_),
+        closed is not None,
         period_map(smaller.dtype),
         _as_bytes(smaller),
         states if closed is None else count_states(closed),
     )
     describe(records, found.scales, found.clocks, found.cycle, found.repeats)
-    if closed is not None:
-        which_never_lock(records, found.turns)
     return found
 
 
@@ -227,13 +224,6 @@ def describe(records, of_states, counts, period, repeated):
         period[i], repeated[i] = cycle(p), repeats(p)
 
 
-@compiled
-def which_never_lock(records, proved):
-    """Write for which records every state is proved to be well-posed."""
-    for i in range(records.size):
-        proved[i] = never_locks(records[i])
-
-
 @inner
 def run_case(cases, number, first, periods, y, keeping, memory):
     """Run a case from phase 0 of period ``first``; y (n,) is replaced by the state reached.
@@ -242,7 +232,7 @@ def run_case(cases, number, first, periods, y, keeping, memory):
     their rates are zero.
     """
     memory.handed[TIME] = np.nan
-    closed = cases.turns[number]
+    closed = cases.turns
     for i in range(cases.closed_states, y.size):
         closed = closed and y[i] == 0.0
     for _ in range(EVENTS_PER_PERIOD * (1 + periods)):

@@ -107,6 +107,7 @@ def _dtype(marker: list[tuple], names: Iterable[str]) -> np.dtype:
         ("kit", np.int64),
         ("opens", np.int64),  # whether contacts may open
         ("always_well_posed", np.int64),
+        ("each_face_well_posed", np.int64),  # with the other one open
         *((name, np.float64) for name in GEOMETRY),
     ]
     effects = records.effect_parts(names)
@@ -244,7 +245,9 @@ def prepare(case: np.ndarray, acting: Sequence[str]) -> None:
     p["rest"], case[0]["column_compliance"]["rest"] = equilibrium(small)
     if case[0]["load_dependent_friction"]["reference"] == 0.0:
         case[0]["load_dependent_friction"]["reference"] = _column_force_at_rest(case[0])
-    p["always_well_posed"] = _always_well_posed(case[0], acting, small)
+    most = _largest_coefficient(case[0], acting)
+    p["each_face_well_posed"] = _each_face_well_posed(most, case[0])
+    p["always_well_posed"] = _always_well_posed(most, case[0], small)
 
 
 def _column_force_at_rest(p: np.void) -> float:
@@ -255,32 +258,33 @@ def _column_force_at_rest(p: np.void) -> float:
     return abs(float(load * g["cos_wedge"] / g["sin_included"])) or 1.0
 
 
-def _always_well_posed(p: np.void, acting: Sequence[str], small: np.void) -> bool:
-    """Whether every load has exactly one pair of normal forces, at any slip velocity.
+def _largest_coefficient(p: np.void, acting: Sequence[str]) -> float:
+    """A bound of |mu| at any slip velocity; NaN where none is known."""
+    most = float(list(laws.LAWS.values())[p["friction"]["law"]].bound(p))
+    for name in acting:
+        bound = getattr(known.REGISTERED[name], "bound", None)
+        most = float(bound(most, p)) if bound else most
+    return most
+
+
+def _always_well_posed(most: float, p: np.void, small: np.void) -> bool:
+    """Whether every load has exactly one pair of normal forces, for any |mu| <= ``most``.
 
     Newton's equations with |N| are linear on each quadrant of (N_c, N_b), and such a map is one-to-one if
     and only if its four determinants have the same sign (Samelson, Thrall and Wesler, 1958). They are
-    linear in each coefficient of friction, so that the extreme coefficients decide. Where no bound of these
-    is known the answer is no.
+    linear in each coefficient of friction, so that the extreme coefficients decide. Joints that open are a
+    linear complementarity problem, which needs the same of each face alone.
     """
-    most = list(laws.LAWS.values())[p["friction"]["law"]].bound(p)
-    for name in acting:
-        bound = getattr(known.REGISTERED[name], "bound", None)
-        most = bound(most, p) if bound else most
-    if not isfinite(most):
+    if not isfinite(most) or (has_unilateral_joints(p) and not p["geometry"]["each_face_well_posed"]):
         return False
     corners = ((most, most), (most, -most), (-most, most), (-most, -most))
-    if has_unilateral_joints(p) and not _single_faces_never_lock(most, p):
-        return False
     return all(determinant(column, bolster, small) > 0.0 for column, bolster in corners)
 
 
-def _single_faces_never_lock(most: float, p: np.void) -> bool:
+def _each_face_well_posed(most: float, p: np.void) -> bool:
     """Whether each face alone has exactly one normal force under any load, for any |mu| <= ``most``.
 
-    A linear complementarity problem always has exactly one solution if its principal minors are positive:
-    those of both faces (the four determinants), and of each face. The column face may lock only if the side
-    frame moves.
+    That of the column may have several only if the side frame moves.
     """
     s, g = p["suspension"], p["geometry"]
     lift = g["sin_wedge"] * (g["sin_wedge"] - most * abs(g["cos_wedge"]))

@@ -31,6 +31,8 @@ OPEN, FORWARD, BACKWARD, STICK = range(4)
 STATES = 4
 # Reactions below this share of the loads count as zero.
 ROUNDING = 1e-11
+# A determinant below this share of its first product counts as zero.
+SINGULAR = 1e-9
 # Friction of the guide that lets both faces stick: halvings of the interval in which it is looked for.
 HALVINGS = 60
 
@@ -231,16 +233,43 @@ def bolster_reactions(free, w, sticks, mu, p):
 
 
 @inlined
-def both_reactions(free, w, column_mu, bolster_mu, p):
-    """Reactions if both faces are closed and slip; the coefficients are signed."""
+def _by_normal_forces(w, column_mu, bolster_mu, p):
+    """Motion by a unit of N_c and of N_b on faces that slip; the coefficients are signed."""
     g = p.geometry
-    by_column = _times(w, -column_mu, 1.0, 0.0)
     by_bolster = _times(
         w,
         -(g.sin_included + bolster_mu * g.cos_included),
         bolster_mu * g.sin_included - g.cos_included,
         g.sin_wedge + bolster_mu * g.cos_wedge,
     )
+    return _times(w, -column_mu, 1.0, 0.0), by_bolster
+
+
+@inlined
+def minors(column_mu, bolster_mu, p):
+    """Principal minors of the problem for faces that slip with signed coefficients: of each face, of both.
+
+    If all are positive there is exactly one solution under any load (Samelson, Thrall and Wesler, 1958). If
+    that of both faces is not, a solution in which both are closed is never the only one.
+    """
+    by_column, by_bolster = _by_normal_forces(mobility(p), column_mu, bolster_mu, p)
+    own = bolster_gap(by_bolster, p)
+    return by_column.gap, own, by_column.gap * own - by_bolster.gap * bolster_gap(by_column, p)
+
+
+@inlined
+def _singular(faces, p):
+    """Whether the reactions of two faces that slip have a pole: they change their sign, and are not zero."""
+    if not (faces.slipping and faces.column and faces.bolster):
+        return False
+    column, bolster, both = minors(faces.column_mu, faces.bolster_mu, p)
+    return abs(both) < SINGULAR * abs(column * bolster)
+
+
+@inlined
+def both_reactions(free, w, column_mu, bolster_mu, p):
+    """Reactions if both faces are closed and slip; the coefficients are signed."""
+    by_column, by_bolster = _by_normal_forces(w, column_mu, bolster_mu, p)
     gap, own, other = bolster_gap(free, p), bolster_gap(by_bolster, p), bolster_gap(by_column, p)
     determinant = by_column.gap * own - by_bolster.gap * other
     column = (by_bolster.gap * gap - own * free.gap) / determinant
@@ -431,6 +460,8 @@ def solve(free, faces, p):
     """
     zero = rounding(free, p)
     best, certain = solve_unless_stuck(free, faces, p)
+    if _singular(faces, p):
+        return best, 2
     if certain == 0 and faces.column and faces.bolster and not faces.slipping:
         now, width = sticking_reactions(free, faces.column_mu, faces.bolster_mu, faces.guide_rests, p)
         sticks = Solution(STICK, STICK, 0, now, width)

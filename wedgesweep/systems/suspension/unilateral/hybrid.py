@@ -1,7 +1,7 @@
 """The suspension with unilateral joints as a hybrid system; see hybrid/interface.py.
 
-While both contacts are closed its equations and events are those of bilateral joints. If no state can lock,
-bilateral joints themselves follow the motion then (see while_closed.py). Records of this system have a part
+While both contacts are closed its equations and events are those of bilateral joints. Where they surely carry
+load bilateral joints themselves follow the motion (see while_closed.py). Records of this system have a part
 ``lift_off`` beside those of the suspension.
 """
 
@@ -441,7 +441,7 @@ def normal_forces(t, y, mode, p):
 @inlined
 def leaves(y, mode, p):
     """Whether bilateral joints can follow the mode."""
-    return stays_closed(y, mode, p)
+    return p.geometry.opens != 0 and stays_closed(y, mode, p)
 
 
 @implement(interface.taken_over, UNILATERAL)
@@ -449,11 +449,13 @@ def leaves(y, mode, p):
 def taken_over(t, y, mode, p):
     """Mode where bilateral joints cannot tell whether both contacts stay closed, and whether it is unique.
 
-    A mode in which a jump of friction holds a velocity is the same in both systems.
+    A mode in which a jump of friction holds a velocity is the same in both systems, if bilateral joints are
+    sure of it.
     """
     now = mode_of(mode)
     if p.friction.set_valued:
         return initial_mode(t, y, p)
-    if held(now):
+    if held(now) and closed(now):
         return now, True
-    return resolve(t, y, Touching(True, True, now.column, now.bolster, now.guide), now.segment, p)
+    contact = Touching(True, True, now.column, now.bolster, now.guide)
+    return resolve(t, y, without_jump(t, y, contact, now.segment, p), now.segment, p)
