@@ -200,6 +200,10 @@ class FitData(Protocol):
         """
         return None
 
+    def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
+        """The most that ``other_nuisances`` could take off the squared misfit; inf: nothing is known."""
+        return np.inf
+
     def aligned_to(self, evaluation: Evaluation) -> Self:
         """The data, with what an evaluation tells of the records' start (the phase of the input there)."""
         return self

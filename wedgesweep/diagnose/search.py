@@ -295,11 +295,18 @@ def _from_special_case(fit: Fit, special: Fit) -> Fit:
 
 
 def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
-    """Explanations, best first; impossible ones among the best are refitted without influential tests."""
-    best = [each for each in sorted(found, key=penalised)[:REFITTED] if each.fit.p < POSSIBLE]
+    """Explanations, best first; impossible ones among the best are refitted without influential tests.
+
+    Other nuisance parameters are tried where they might make an explanation the best one.
+    """
+    order = sorted(found, key=penalised)
+    best = [each for each in order[:REFITTED] if each.fit.p < POSSIBLE]
 
     def refitted(each: Explanation) -> Explanation:
-        return search.explanation(refit_without_influential_tests(from_other_nuisances(each.fit)))
+        most = search.data.gained_by_other_nuisances(each.fit.evaluation)
+        promising = each.penalised - most < order[0].penalised
+        fit = from_other_nuisances(each.fit) if promising else each.fit
+        return search.explanation(refit_without_influential_tests(fit))
 
     return best_of_each([*search.each(refitted, best), *found], penalised)
 

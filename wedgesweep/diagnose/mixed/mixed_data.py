@@ -306,6 +306,10 @@ class MixedData(FitData):
         ]
         return self._whole(moved).nuisance
 
+    def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
+        own = self._each(lambda part, its: part.gained_by_other_nuisances(its), self.evaluations(evaluation))
+        return float(sum(each for each in own if each is not None))
+
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return self._with(self._each(lambda part, its: part.aligned_to(its), self.evaluations(evaluation)))
 

@@ -279,6 +279,10 @@ class TransientData(SampledData):
             found[test, : len(START)] = near[np.argmin(misfit(near))]
         return None if np.array_equal(found, evaluation.point.nuisance) else found
 
+    def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
+        misfit = evaluation.chi2_by_test
+        return float(misfit[standing_out(misfit, self.dof)].sum())
+
     def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
         """Each record; of a single record blocks of successive windows."""
         numbers = np.array([own.number for own in self.windows])
