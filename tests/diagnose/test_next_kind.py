@@ -153,3 +153,18 @@ def test_a_heavier_rig_gets_the_same_advice(tmp_path):
     assert heavy.kind == light.kind == "loop"
     assert heavy.numbers == pytest.approx(light.numbers, rel=1e-6)
     assert heavy.distance == pytest.approx(light.distance, rel=0.02)
+
+
+@pytest.mark.parametrize("rival", ["preload", "fixture_resonance"])
+def test_explanations_with_and_without_a_moving_side_frame_are_separated(tmp_path, rival):
+    """The start of the side frame is fitted beside one of them only."""
+    numbers = {
+        "preload": {"force_N": 0.2},
+        "fixture_resonance": {"frequency_hz": 60.0, "damping_ratio": 0.05},
+    }
+    starts = ((1e-3, 0.0), (-8e-4, 0.05))
+    data = dropped(tmp_path, test_transients.WEDGE, starts, noise=1e-6, rate=1500.0, samples=600)
+    fits = [explained(data, {"friction_level": {"scale": 1.1}}), explained(data, {rival: numbers[rival]})]
+    found = recommend(fits)
+    assert found is not None
+    assert found.kind == "transient"

@@ -90,8 +90,7 @@ def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
 
     Derivatives alone overestimate it where predictions are far from linear in what is uncertain.
     """
-    fixed = np.zeros(data.start()[0].shape[1])
-    first, second = (_Moved(np.zeros(fit.x.size), fixed) for fit in (one, other))
+    first, second = (_Moved(np.zeros(fit.x.size), _unmoved(data, fit)) for fit in (one, other))
     found = np.inf
     for _ in range(STEPS):
         mine, its = _predicted(one, data, first), _predicted(other, data, second)
@@ -113,6 +112,11 @@ def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
         nuisances = second.nuisances + (step[both:] * std)[data.eliminated :]
         second = _Moved(second.parameters + step[k:both], nuisances)
     return found
+
+
+def _unmoved(data: SampledData, fit: Fit) -> np.ndarray:
+    """No step of the nuisance parameters that are fitted beside an explanation, shape (L,)."""
+    return np.zeros(len(data.nuisances(fit.effects, Point(fit.x, *data.start()))))
 
 
 def _distances(data: SampledData, one: _Prediction, other: _Prediction) -> np.ndarray:
