@@ -1,13 +1,14 @@
 """A long swept record: time of the diagnosis, and of one fit beside scipy's least_squares over solve_ivp.
 
-    python scripts/bench_transient.py [--seconds 25] [--rate 1000] [--scipy-seconds 5]
+    python scripts/bench_transient.py [--seconds 25] [--rate 1000] [--scipy-seconds 5] [--wedge]
 
 The base of an oscillator with dry friction is swept through its resonance and recorded. Radau makes the
 record, which hides a damper; all effects are tried. The fit has five numbers: damping, friction, start and
 zero. scipy gets a shorter record, as it would take minutes for the long one, friction that is smoothed over
 2 mm/s, as solve_ivp does not know of sticking, and finite differences of one part in a thousand, without
 which it does not move; the ratio is of the same short record. CPU times are those of all threads, of a second
-call: the first one compiles. Wall times say something on an idle machine.
+call: the first one compiles. Wall times say something on an idle machine. With ``--wedge`` only the diagnosis
+is timed, of a record of the paper's bench, which has five times as many natural periods.
 """
 
 import argparse
@@ -36,7 +37,7 @@ from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.plan import Plan, PlannedTest
 
 MASS, STIFFNESS, DAMPING, FRICTION = 2.0, 500.0, 0.4, 0.3
-RIG = {
+RIG: dict[str, dict[str, Any]] = {
     "oscillator": {
         "mass_kg": MASS,
         "spring_N_per_mm": 1e-3 * STIFFNESS,
@@ -46,8 +47,13 @@ RIG = {
     "friction": {"static": FRICTION, "dynamic": FRICTION},
     "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 1.0},
 }
-# Hidden damping (N s/m); amplitude (mm) of the base, frequencies of the sweep (Hz).
+WEDGE: dict[str, dict[str, Any]] = {
+    "suspension": {},
+    "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 0.1},
+}
+# Hidden damping (N s/m); amplitude (mm) of the base, frequencies of the sweep (Hz); those of the wedge.
 HIDDEN, AMPLITUDE_MM, LOW_HZ, HIGH_HZ = 0.6, 4.0, 1.0, 5.0
+WEDGE_HIDDEN, WEDGE_SWEEP = 4.0, (0.1, 4.0, 25.0)
 # Noise of response and input over their rms.
 NOISE, INPUT_NOISE = 0.005, 0.002
 # Velocity (m/s) over which scipy's friction is smoothed, and cut-off (Hz) of its input.
@@ -62,11 +68,14 @@ class Spent(NamedTuple):
     wall: float
 
 
-def measured(folder: Path, seconds: float, rate: float) -> Measurement:
+def measured(folder: Path, seconds: float, rate: float, wedge: bool = False) -> Measurement:
     """A sweep with more damping than the model has."""
-    hidden = {"viscous_damping": {"coefficient_N_s_per_m": HIDDEN}}
-    config = from_document({**RIG, "effects": hidden})
-    sweep = LOW_HZ, AMPLITUDE_MM, "mm", 0.0, True, "transient", "sweep", seconds, HIGH_HZ
+    rig, damping, (amplitude, low, high) = RIG, HIDDEN, (AMPLITUDE_MM, LOW_HZ, HIGH_HZ)
+    if wedge:
+        rig, damping, (amplitude, low, high) = WEDGE, WEDGE_HIDDEN, WEDGE_SWEEP
+    hidden = {"viscous_damping": {"coefficient_N_s_per_m": damping}}
+    config = from_document({**rig, "effects": hidden})
+    sweep = low, amplitude, "mm", 0.0, True, "transient", "sweep", seconds, high
     options = Options(level=NOISE, input_level=INPUT_NOISE, sampling_hz=rate, noise="white")
     out = folder / f"{seconds:g}"
     synthesize(config, "rig", Plan((PlannedTest(*sweep),), {}, "plan"), options, out, 1)
@@ -123,15 +132,18 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=25.0)
     parser.add_argument("--rate", type=float, default=1000.0)
     parser.add_argument("--scipy-seconds", type=float, default=5.0)
+    parser.add_argument("--wedge", action="store_true")
     given = parser.parse_args()
     with TemporaryDirectory() as folder:
-        long = measured(Path(folder), given.seconds, given.rate)
-        short = measured(Path(folder), given.scipy_seconds, given.rate)
+        long = measured(Path(folder), given.seconds, given.rate, given.wedge)
         seconds, rate, short_s = given.seconds, given.rate, given.scipy_seconds
         found = timed(lambda: api.diagnose_measurement(long, effects=list(EFFECTS), n_jobs=2))
         named = ", ".join(each["effect"] for each in found.result.causes)
         print(f"A sweep of {seconds:g} s at {rate:g} Hz with its input, all effects, 2 threads (goal: 60 s)")
         print(f"  {found.result.verdict}: {named}; {found.cpu:.1f} s of CPU, {found.wall:.1f} s of wall time")
+        if given.wedge:
+            return
+        short = measured(Path(folder), given.scipy_seconds, given.rate)
         prepared = timed(lambda: Search.of(data_of(short), []).model("viscous_damping", "friction_level"))
         own, other = timed(lambda: own_fit(prepared.result)), timed(lambda: scipy_fit(short))
         print(f"One fit of {short_s:g} s of it        CPU [s]   damping  friction")
