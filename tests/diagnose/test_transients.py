@@ -10,7 +10,7 @@ from wedgesweep.config import parse
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.diagnose.transient.from_measurement import transient_data
-from wedgesweep.effects import merge
+from wedgesweep.effects import EFFECTS, merge
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.solvers import periodic
@@ -178,21 +178,28 @@ def test_a_wedge_that_is_dropped_from_far_away(tmp_path, effect, numbers, keys):
         assert high - low < 0.05 * true
 
 
-def test_the_start_of_a_side_frame_on_its_table_is_fitted(tmp_path):
-    """Each window but the first begins while the side frame moves."""
-    fixture = {"fixture_resonance": {"frequency": 25.0, "damping_ratio": 0.01}}
-    path = write(tmp_path, WEDGE, fixture, LARGE[:1], noise=1e-6, rate=1000.0, samples=1500)
+@pytest.mark.parametrize(
+    ("effect", "numbers", "places"),
+    [
+        ("fixture_resonance", {"frequency": 25.0, "damping_ratio": 0.01}, (2, 3)),
+        ("column_compliance", {"stiffness": 5e3}, (0, 1)),
+    ],
+)
+def test_the_start_of_a_body_that_moves_is_fitted(tmp_path, effect, numbers, places):
+    """Each window begins while the side frame, or a column, moves."""
+    path = write(tmp_path, WEDGE, {effect: numbers}, LARGE[:1], noise=1e-6, rate=1000.0, samples=1500)
     path.write_text(path.read_text() + "from_s = 0.1\n")
     data = transient_data(read(path))
     assert data.tests > 1
-    model = Search.of(data, ["fixture_resonance"]).model("fixture_resonance")
-    start = model.start(
-        None, model.hypothesis.at({"fixture_resonance": {"frequency_hz": 25.0, "damping_ratio": 0.01}})
-    )
-    fit = minimise(model, model.evaluate(start))
+    model = Search.of(data, [effect]).model(effect)
+    factors = {each.name: (each.key, each.factor) for each in EFFECTS[effect].quantities}
+    known = {factors[name][0]: value / factors[name][1] for name, value in numbers.items()}
+    fit = minimise(model, model.evaluate(model.start(None, model.hypothesis.at({effect: known}))))
     assert fit.dof == data.dof.sum() - 2 * data.tests - model.size
     assert fit.p > 1e-3
-    assert (np.abs(fit.point.nuisance[:, -2:]) > 0.01).any(axis=1).all()
+    moved = np.abs(fit.point.nuisance[:, -4:])
+    assert (moved[:, places] > 1e-3).any(axis=1).all()
+    assert not np.delete(moved, places, axis=1).any()
 
 
 def test_files_figures_and_report(tmp_path):

@@ -71,6 +71,10 @@ class NuisanceParameter(NamedTuple):
     max_step: float
 
 
+# In the place of a nuisance parameter that no test needs: it is never moved.
+UNUSED = NuisanceParameter(step=0.0, max_step=0.0)
+
+
 @dataclass(frozen=True)
 class Evaluation:
     """A point with its simulation and its residuals.

@@ -71,7 +71,7 @@ def jacobian(
     steps = side * step_sizes(model, point, near)
     unbounded = [np.inf] * (len(steps) - size)
     low, high = np.r_[model.low - point.x, np.negative(unbounded)], np.r_[model.high - point.x, unbounded]
-    free = low < high
+    free = (low < high) & (steps != 0.0)
     exact = (data.nuisance_std == 0.0).all(axis=0)
     free[size : size + exact.size] &= ~exact
     fitted = np.flatnonzero(free)

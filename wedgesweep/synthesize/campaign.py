@@ -10,7 +10,7 @@ import numpy as np
 from wedgesweep import formatting
 from wedgesweep.config import Config
 from wedgesweep.errors import InputError
-from wedgesweep.measured.declarations import STEADY
+from wedgesweep.measured.declarations import LOOP, STEADY
 from wedgesweep.measured.kinds import FEWEST
 from wedgesweep.measured.model import with_law
 from wedgesweep.measured.steadiness import FEWEST_SAMPLES as FEWEST_PER_PERIOD
@@ -87,8 +87,8 @@ def _with_recorded_input(config: Config, plan: Plan, options: Options) -> Option
 def _unit_faults(config: Config, source: str, plan: Plan, recorded: str | None) -> list[str]:
     """Amplitudes and recorded inputs of another excitation than the config's, and joints of another kind."""
     unit = config.amplitude_unit.unit
-    if config.opens and any(test.kind != STEADY for test in plan.tests):
-        return [f"{source}: joints that lift off are simulated in tests of kind {STEADY} only"]
+    if config.opens and any(test.kind == LOOP for test in plan.tests):
+        return [f"{source}: joints that lift off are not simulated in tests of kind {LOOP}"]
     excited = f'{source} has excitation = "{config.excitation}"'
     faults = [
         f"{plan.source}: test[{i}].amplitude_{test.unit}: {excited}; write amplitude_{unit}"

@@ -12,14 +12,18 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from wedgesweep.config import Config
-from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.evaluation import (
+    UNUSED,
+    Comparison,
+    Evaluation,
+    NuisanceParameter,
+    Point,
+    Scenario,
+)
 from wedgesweep.diagnose.fit_data import Evaluator, FitData
 from wedgesweep.diagnose.mixed.layout import Layout, MixedStart
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.natural_units import NaturalUnits
-
-# A nuisance parameter that no test needs: it is never moved.
-ABSENT = NuisanceParameter(step=1.0, max_step=1.0)
 
 
 class MixedResponse(NamedTuple):
@@ -137,13 +141,13 @@ class MixedData(FitData):
         effects = tuple(effects)
         own = self._each(lambda part, its: part.nuisances(effects, its), self.points(point))
         full = [
-            ((each or ()) + (ABSENT,) * size)[:size]
+            ((each or ()) + (UNUSED,) * size)[:size]
             for each, size in zip(own, self.layout.nuisances, strict=True)
         ]
         pairs = list(zip(full, self.layout.priors, strict=True))
         first = [one for each, size in pairs for one in each[:size]]
         rest = [one for each, size in pairs for one in each[size:]]
-        while rest and rest[-1] is ABSENT:
+        while rest and rest[-1] is UNUSED:
             rest.pop()
         return (*first, *rest)
 

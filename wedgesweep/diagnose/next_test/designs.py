@@ -79,7 +79,8 @@ def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Pre
     stated = data.nuisance_std
     std[:, data.eliminated : data.eliminated + stated.shape[1]] = stated
     size = np.linalg.norm(by_nuisance, axis=1)
-    std = np.where(np.isinf(std), FREE / np.maximum(size, 1e-300), std)
+    free = FREE / np.where(size > 0.0, size, FREE)  # what has no influence keeps its size
+    std = np.where(np.isinf(std), free, std)
     moves = replace(data, resampled=here.response).power > MOVES * data.observations  # type: ignore[type-var]
     spread, adapted = by_parameter @ root, by_nuisance * std[:, None]
     return _Prediction(here, spread, adapted, std, moves & here.found_tests)

@@ -15,6 +15,7 @@ from wedgesweep.config import Config
 from wedgesweep.diagnose import work
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import (
+    UNUSED,
     Evaluation,
     NuisanceParameter,
     Point,
@@ -27,14 +28,12 @@ from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
-from wedgesweep.diagnose.transient.window import RecordWindow
+from wedgesweep.diagnose.transient.window import BODIES, RecordWindow
 from wedgesweep.effects import acting
 from wedgesweep.natural_units import NaturalUnits
 
 # Effects that are no candidates: of a sine as the input, or of what a recorded input contains already.
 OF_INPUT = ("input_distortion", "stray_vibration", "cross_slip")
-# The effect whose states at the start are fitted as well.
-FRAME = "fixture_resonance"
 # Effects of sensors, and the derivative of the displacement whose sensor has each.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Blocks of a record that are left out in turn, at most.
@@ -45,8 +44,6 @@ START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
-# Deflection and velocity of a side frame on a compliant table, in the same units as the start.
-FRAME_START = START
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,9 +195,12 @@ class TransientData(SampledData):
         return point.nuisance[:, : len(START)] * self._scale
 
     def _states(self, point: Point) -> np.ndarray:
-        """Displacement and velocity at the first sample of each test, then those of the frame, (T, 4)."""
-        frame = point.nuisance[:, -len(FRAME_START) :] * self._scale
-        return np.concatenate([self.starts(point), frame], axis=1)
+        """Displacement (m) and velocity (m/s) at the first sample, of the mass, then of BODIES, (T, B, 2)."""
+        count = len(START) * (1 + len(BODIES))
+        both = np.concatenate(
+            [point.nuisance[:, : len(START)], point.nuisance[:, len(START) - count :]], axis=1
+        )
+        return both.reshape(self.tests, -1, len(START)) * self._scale[:, None]
 
     def _gain(self, point: Point) -> np.ndarray:
         """True input over the recorded one in each test, (T,)."""
@@ -208,19 +208,23 @@ class TransientData(SampledData):
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         known = (*START, GAIN) if self.gain_std else START
-        return (*known, *FRAME_START) if self._has_frame(effects) else known
+        moving = self._moving(effects)
+        if not any(moving):
+            return known
+        return (*known, *(each if moves else UNUSED for moves in moving for each in START))
 
-    def _has_frame(self, effects: Iterable[str]) -> bool:
-        """Whether the side frame moves against its table, by the base model or by other effects."""
-        return FRAME in {*acting(self.model.effects), *effects}
+    def _moving(self, effects: Iterable[str]) -> list[bool]:
+        """Which of BODIES move, by the base model or by other effects."""
+        present = {*acting(self.model.effects), *effects}
+        return [name in present for name in BODIES]
 
     def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
-        """The start of the frame in each test, if it moves."""
-        return np.full(self.tests, len(FRAME_START) * self._has_frame(effects))
+        """The starts of BODIES that move, in each test."""
+        return np.full(self.tests, len(START) * sum(self._moving(effects)))
 
     def start(self) -> tuple[np.ndarray, NoStart]:
         start = np.array([own.guess for own in self.windows]) / self._scale
-        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0) + len(FRAME_START)))), NoStart()
+        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0) + len(START) * len(BODIES)))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         windows = tuple(self.windows[row] for row in np.arange(self.tests)[rows])
@@ -235,7 +239,7 @@ class TransientData(SampledData):
         shown = {order for own in self.windows for order in own.shown_as_measured}
         hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
         if any(own.converted for own in self.windows):
-            hidden.add(FRAME)  # such channels show the motion against the table
+            hidden.add("fixture_resonance")  # such channels show the motion against the table
         return tuple(name for name in effects if name not in hidden)
 
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:

@@ -34,6 +34,8 @@ from wedgesweep.systems import set_states, state_count
 UNKNOWN_ZERO = 1e3
 # Number of coefficients, the lowest ones, that do not show noise: zero and start are fitted to them.
 ABSORBED = 4
+# Effects with a body of its own that moves, whose start is fitted as well.
+BODIES = "column_compliance", "fixture_resonance"
 # Error of a simulation over the rms of the motion; it counts as noise.
 SIMULATION_ERROR = 1e-5
 
@@ -198,7 +200,7 @@ class RecordWindow:
     ) -> tuple[Decorrelation, ...]:
         """Combinations with independent noise of the coefficients of each channel, in a scenario.
 
-        There are none without an input: the coefficients are independent as they are. ``start`` (4,): where
+        There are none without an input: the coefficients are independent as they are. ``start`` (B, 2): where
         the simulation begins, see ``simulated``; ``gain``: of the input.
         """
         if self.input_noise is None:
@@ -209,7 +211,7 @@ class RecordWindow:
         rows = np.repeat(self._records([values]), len(inputs), axis=0)
         for place, each in enumerate(inputs):
             self._drive(rows[place : place + 1], each, gain)
-        above, below = np.split(self._motions(rows, np.tile(start, (len(rows), 1)), tolerance), 2)
+        above, below = np.split(self._motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance), 2)
         changes = converted(parts, self.input_noise.shares, self.orders, grid.lead) - 0.5 * (above - below)
         return decorrelated(self._own_variance, np.nan_to_num(changes))
 
@@ -242,8 +244,8 @@ class RecordWindow:
     ) -> np.ndarray:
         """Coefficients (n, C, K) of n scenarios; NaN where there is no response.
 
-        ``starts`` (n, 4): displacement (m) and velocity (m/s) at the first simulated sample, and deflection
-        and velocity of a side frame on a compliant table; ``gains`` (n,): of the input.
+        ``starts`` (n, B, 2): displacement (m) and velocity (m/s) at the first simulated sample, of the mass,
+        then of each of BODIES; ``gains`` (n,): of the input.
         """
         rows = self._records(scenarios)
         self._drive(rows, self.input, gains)
@@ -262,11 +264,12 @@ class RecordWindow:
         set_sampled(rows, given, self._scale, self.grid.omega, self.grid.samples * self.step, gain)
 
     def _motions(self, rows: np.ndarray, starts: np.ndarray, tolerance: float) -> np.ndarray:
-        """Channels (n, C, samples) of the window from starts (n, 4); NaN where there is no response."""
+        """Channels (n, C, samples) of the window from ``starts``; NaN where there is no response."""
         states = np.zeros((len(rows), state_count()))
         # Solvers record minus what channels are: the state of a suspension, minus the state of an oscillator.
-        states[:, :2] = starts[:, :2] if self.model.system == "oscillator" else -starts[:, :2]
-        set_states(rows, states, "fixture_resonance", starts[:, 2:])
+        states[:, :2] = starts[:, 0] if self.model.system == "oscillator" else -starts[:, 0]
+        for place, name in enumerate(BODIES, 1):
+            set_states(rows, states, name, starts[:, place])
         samples = self.grid.samples
         run = periodic.sampled(rows, states, 0, 1, samples, tolerance, max(self.orders) == ACCELERATION)
         motion = run.x, run.velocity, run.acceleration

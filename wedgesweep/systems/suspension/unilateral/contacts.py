@@ -33,8 +33,8 @@ STATES = 4
 ROUNDING = 1e-11
 # A determinant below this share of its first product counts as zero.
 SINGULAR = 1e-9
-# Friction of the guide that lets both faces stick: halvings of the interval in which it is looked for.
-HALVINGS = 60
+# Steps of the search for the force of the guide under which both faces stick; each leaves two thirds.
+SEARCH_STEPS = 60
 
 
 class Motion(NamedTuple):
@@ -306,7 +306,7 @@ def sticking_reactions(free, column_mu, bolster_mu, guide_rests, p):
         return _sticking(hold, column_mu, bolster_mu, p)
     force = 0.5 * p.guide_friction.force
     low, high = -force, force
-    for _ in range(HALVINGS):
+    for _ in range(SEARCH_STEPS):
         third = (high - low) / 3.0
         lower = _sticking(_with_lift(hold, low + third), column_mu, bolster_mu, p)[1]
         upper = _sticking(_with_lift(hold, high - third), column_mu, bolster_mu, p)[1]
