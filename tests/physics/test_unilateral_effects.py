@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from tests.physics import compiled_unilateral as mechanics
 from tests.physics.cases import OMEGA_N
@@ -134,7 +135,7 @@ def test_a_guide_holds_the_bolster_or_rubs_with_its_whole_force(load, touches, o
     guide = -1.5 * np.sign(moved.rise)
     if solution.guide == 0:
         assert abs(moved.rise) < 1e-12
-        guide = -solution_force(free, on_bolster, on_frame, s, on_table)
+        guide = -force_on_guide(free, on_bolster, on_frame, s, on_table)
         assert abs(guide) <= 1.5 + 1e-9
     frame = (2.0 * on_frame[1] - guide) / s["side_frame_mass"] if on_table else 0.0
     up = np.array([0.0, 1.0])
@@ -158,7 +159,7 @@ def test_a_guide_holds_the_bolster_or_rubs_with_its_whole_force(load, touches, o
             assert friction == pytest.approx(mu * normal * np.sign(slip), rel=1e-6)
 
 
-def solution_force(free, on_bolster, on_frame, s, on_table):
+def force_on_guide(free, on_bolster, on_frame, s, on_table):
     """Force (N) of the bolster on a guide that holds it."""
     # Bolster: M (frame - free) = -2 b + h; side frame, where it moves: M_sf frame = 2 c - h.
     bolster, driven = s["bolster_mass"], -2.0 * on_bolster[1]
@@ -190,6 +191,30 @@ def test_a_bolster_in_its_guide_loses_the_same_in_every_swing_while_wedges_fly(l
         size = abs(size - lost) if size > 0.5 * lost else size
         assert y[0] - rest == pytest.approx((-1.0) ** turn * (start - turn * lost), abs=2e-8)
         assert y[1] == pytest.approx(0.0, abs=2e-6)
+
+
+def test_a_guide_holds_the_bolster_until_the_base_shakes_it_loose_while_wedges_fly():
+    """The bolster rests where its spring carries it; inertia exceeds the guide's force from 30 degrees on."""
+    force, omega, samples = 0.5, 2.0 * OMEGA_N, 72
+    case = record({"guide_friction": {"force": force}}, wedge_spring=0.0)
+    s, g = case[0]["suspension"], case[0]["geometry"]
+    mass, stiffness = s["bolster_mass"], s["bolster_spring"]
+    case["input"]["omega"], case["input"]["amplitude"] = omega, 2.0 * force / (mass * omega**2)
+    cases, room = prepared(compact(case)), memory(1e-11, samples, 1)
+    y = np.zeros(cases.scales.shape[1])
+    y[0] = rest = -mass * s["gravity"] / stiffness - g["rest"]
+    y[-4], y[-2] = 50.0, 20.0
+    assert run_periods(cases, 0, 1, y, True, room) == 0
+    moved, phase = room.x - rest, 2.0 * np.pi / samples * np.arange(samples)
+    assert (moved[phase <= np.pi / 6.0 - 1e-9] == 0.0).all()
+    slips = (phase > np.pi / 6.0) & (phase < 0.6 * np.pi)
+
+    def rate(t, z):
+        return z[1], (2.0 * force * np.sin(omega * t) - force - stiffness * z[0]) / mass
+
+    span = np.pi / 6.0 / omega, np.pi / omega
+    exact = solve_ivp(rate, span, (0.0, 0.0), t_eval=phase[slips] / omega, rtol=1e-11, atol=1e-14).y[0]
+    assert moved[slips] == pytest.approx(exact, abs=1e-10)
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
