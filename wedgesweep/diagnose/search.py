@@ -303,7 +303,7 @@ def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation
     best = [each for each in order[:REFITTED] if each.fit.p < POSSIBLE]
 
     def refitted(each: Explanation) -> Explanation:
-        most = search.data.gained_by_other_nuisances(each.fit.evaluation)
+        most = each.fit.model.data.gained_by_other_nuisances(each.fit.evaluation)
         promising = each.penalised - most < order[0].penalised
         fit = from_other_nuisances(each.fit) if promising else each.fit
         return search.explanation(refit_without_influential_tests(fit))

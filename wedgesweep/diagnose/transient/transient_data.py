@@ -40,6 +40,8 @@ OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 MOST_BLOCKS = 12
 # Displacement and velocity of the start, over the largest displacement (times omega_n for the velocity).
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
+# The same of each of BODIES, in their order.
+BODY_STARTS = START * len(BODIES)
 # Offsets of the start, over the largest displacement, that are tried if there are at most FEW points.
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
 # Gain of a recorded input, as its logarithm.
@@ -196,10 +198,8 @@ class TransientData(SampledData):
 
     def _states(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample, of the mass, then of BODIES, (T, B, 2)."""
-        count = len(START) * (1 + len(BODIES))
-        both = np.concatenate(
-            [point.nuisance[:, : len(START)], point.nuisance[:, len(START) - count :]], axis=1
-        )
+        mass, bodies = point.nuisance[:, : len(START)], point.nuisance[:, -len(BODY_STARTS) :]
+        both = np.concatenate([mass, bodies], axis=1)
         return both.reshape(self.tests, -1, len(START)) * self._scale[:, None]
 
     def _gain(self, point: Point) -> np.ndarray:
@@ -224,7 +224,7 @@ class TransientData(SampledData):
 
     def start(self) -> tuple[np.ndarray, NoStart]:
         start = np.array([own.guess for own in self.windows]) / self._scale
-        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0) + len(START) * len(BODIES)))), NoStart()
+        return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0) + len(BODY_STARTS)))), NoStart()
 
     def subset(self, rows: np.ndarray) -> Self:
         windows = tuple(self.windows[row] for row in np.arange(self.tests)[rows])

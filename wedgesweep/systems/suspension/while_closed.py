@@ -6,10 +6,8 @@ opens, or may open, and where more than one state of the contacts may be possibl
 """
 
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.hybrid.interface import implement, leaves, taken_over
-from wedgesweep.hybrid.interface import initial_mode as declared_initial_mode
-from wedgesweep.hybrid.interface import transition as declared_transition
-from wedgesweep.hybrid.interface import well_posed as declared_well_posed
+from wedgesweep.hybrid import interface
+from wedgesweep.hybrid.interface import implement
 from wedgesweep.systems.suspension import transitions
 from wedgesweep.systems.suspension.breakaway import carries_load_until_breakaway
 from wedgesweep.systems.suspension.faces import coefficients
@@ -45,14 +43,14 @@ def stays_closed(y, mode, p):
     return not stuck(mode, p) or carries_load_until_breakaway(y, mode.segment, p)
 
 
-@implement(leaves, MARK)
+@implement(interface.leaves, MARK)
 @inlined
 def may_open(y, mode, p):
     """Whether a contact of joints that can open does so, or may."""
     return p.geometry.opens != 0 and not stays_closed(y, mode, p)
 
 
-@implement(taken_over, MARK)
+@implement(interface.taken_over, MARK)
 @inlined
 def has_closed(t, y, mode, p):
     """The mode that the system of ``unilateral/`` has found, as a tuple."""
@@ -71,7 +69,7 @@ def _known(mode, unique, p):
     return with_signs(mode, 0, 0), True
 
 
-@implement(declared_initial_mode, MARK)
+@implement(interface.initial_mode, MARK)
 @inner
 def initial_mode(t, y, p):
     """Mode in which a run begins, and whether it is unique."""
@@ -79,7 +77,7 @@ def initial_mode(t, y, p):
     return _known(mode, unique, p)
 
 
-@implement(declared_transition, MARK)
+@implement(interface.transition, MARK)
 @inner
 def transition(t, y, mode, place, p):
     """State and mode after an event, and whether they are unique."""
@@ -88,7 +86,7 @@ def transition(t, y, mode, place, p):
     return y, found, unique
 
 
-@implement(declared_well_posed, MARK)
+@implement(interface.well_posed, MARK)
 @inner
 def well_posed(t, y, mode, p):
     """Whether exactly one state of the contacts is possible."""

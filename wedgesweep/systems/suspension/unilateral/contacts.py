@@ -101,7 +101,6 @@ class Problem(NamedTuple):
     free: Motion
     mobility: Mobility
     guide: int
-    force: float
 
 
 NOTHING = Reactions(0.0, 0.0, 0.0, 0.0)
@@ -176,11 +175,11 @@ def with_guide(free, guide, p):
     """The problem with a guide that slips in a direction, or holds the bolster (0)."""
     w, force = mobility(p), 0.5 * p.guide_friction.force
     if guide != 0:
-        return Problem(_pushed(free, w, -guide * force), w, guide, force)
+        return Problem(_pushed(free, w, -guide * force), w, guide)
     held = _pushed(free, w, -free.rise / w.rr)
     along, gap = w.ar / w.rr, w.gr / w.rr
     rest = Mobility(w.aa - w.ar * along, w.ag - w.ar * gap, 0.0, w.gg - w.gr * gap, 0.0, 0.0)
-    return Problem(Motion(held.along, held.gap, 0.0), rest, 0, force)
+    return Problem(Motion(held.along, held.gap, 0.0), rest, 0)
 
 
 @inlined
@@ -198,7 +197,7 @@ def _guide_margin(problem, free, now, after, p):
     """Margin (N) of the guide: to its limit while it holds, else that of slip in its direction."""
     if problem.guide != 0:
         return 0.5 * p.suspension.bolster_mass * problem.guide * after.rise
-    return problem.force - 0.5 * abs(guide_reaction(free, now, p))
+    return 0.5 * (p.guide_friction.force - abs(guide_reaction(free, now, p)))
 
 
 # Reactions in each state
@@ -476,7 +475,7 @@ def solve(free, faces, p):
 def solve_unless_stuck(free, faces, p):
     """As ``solve``, but for the solution in which both faces stick."""
     if not faces.guide_rests:
-        return _best(Problem(free, mobility(p), 0, 0.0), free, faces, p)
+        return _best(Problem(free, mobility(p), 0), free, faces, p)
     best, certain = _best(with_guide(free, 0, p), free, faces, p)
     for direction in (-1, 1):
         found, more = _best(with_guide(free, direction, p), free, faces, p)
