@@ -93,24 +93,34 @@ def from_samples(
         Highest angular frequency (rad/s) that a solver must resolve; by default steps of a solver are no
         longer than ``step``.
     """
-    from scipy.interpolate import make_interp_spline
-
-    times = INTEGRATED[quantity]
-    degree = min(DEGREE if times == 0 else 3, (values.size - 2) // 2 * 2 + 1)
-    places = np.arange(values.size, dtype=float)
-    spline = make_interp_spline(places, values, k=degree)
-    if times:
-        spline = spline.antiderivative(times)
-    # Knots lie at samples, so that the derivatives at a sample give the whole polynomial after it.
-    parts = [spline(places[:-1], k) / factorial(k) for k in range(degree + times + 1)]
-    coefficients = np.zeros((values.size - 1, DEGREE + 1))
-    coefficients[:, : len(parts)] = np.array(parts).T * step**times
+    times, coefficients = INTEGRATED[quantity], polynomials(values, step, quantity)
     if times > 1:
-        coefficients[:, 0] += start[1] * step * places[:-1]
+        coefficients[:, 0] += start[1] * step * np.arange(values.size - 1)
         coefficients[:, 1] += start[1] * step
     if times > 0:
         coefficients[:, 0] += start[0]
     return SampledInput(coefficients, begin, step, fastest or 2.0 * pi / (STEPS * step))
+
+
+def polynomials(values: np.ndarray, step: float, quantity: str = "displacement") -> np.ndarray:
+    """Coefficients of the polynomials between samples of a quantity, see ``SampledInput``.
+
+    ``values`` (n, ...): one record, or several with coefficients (..., n - 1, 6); displacement and velocity
+    are 0 at the first sample where the quantity leaves them open.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    times, n = INTEGRATED[quantity], len(values)
+    degree = min(DEGREE if times == 0 else 3, (n - 2) // 2 * 2 + 1)
+    places = np.arange(n, dtype=float)
+    spline = make_interp_spline(places, values, k=degree)
+    if times:
+        spline = spline.antiderivative(times)
+    coefficients = np.zeros((*values.shape[1:], n - 1, DEGREE + 1))
+    # Knots lie at samples, so that the derivatives at a sample give the whole polynomial after it.
+    for k in range(degree + times + 1):
+        coefficients[..., k] = np.moveaxis(spline(places[:-1], k), 0, -1) * (step**times / factorial(k))
+    return coefficients
 
 
 def set_sampled(

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Scenario
+from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Scenario, best_evaluation_per_test
 from wedgesweep.diagnose.fit_data import INPUT_GAIN, FitData
 
 
@@ -179,3 +179,21 @@ class SampledData(FitData):
             {name: numbers for name, numbers in each.values.items() if name not in left_out}
             for each in scenarios
         ]
+
+
+def best_of_each_test(evaluations: Sequence[Evaluation]) -> Evaluation:
+    """Of evaluations with the same parameters x one in which each test is as it fits best."""
+    first, best = evaluations[0], best_evaluation_per_test(evaluations)
+
+    def chosen(values: Sequence[np.ndarray]) -> np.ndarray:
+        return np.array(values)[best, np.arange(best.size)]
+
+    nuisance_prior = chosen([each.nuisance_prior for each in evaluations])
+    return replace(
+        first,
+        point=replace(first.point, nuisance=chosen([each.point.nuisance for each in evaluations])),
+        response=chosen([each.response for each in evaluations]),
+        residual=chosen([each.residual for each in evaluations]),
+        prior=np.r_[nuisance_prior.ravel(), first.uncertain_prior],
+        found_tests=chosen([each.found_tests for each in evaluations]),
+    )

@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.evaluation import Evaluation
+from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, parameter_penalty, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
-from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model
+from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model, unfitted
 from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
 from wedgesweep.effects import EFFECTS
@@ -264,7 +264,9 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
         if implausible:
             evaluations = evaluations + beside_stated(model, fresh)
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else NEARER_SCHEDULE if implausible else SCHEDULE
-    fit = best_of(model, evaluations, schedule, CUT_OFF * base.chi2)
+    rows = data.representative(base.evaluation)
+    limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum())
+    fit = best_of(model, evaluations, schedule, limit, rows)
     if data.brings_nuisances(effect):
         fit = _aligned(fit)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
@@ -332,6 +334,7 @@ def best_of(
     evaluations: Sequence[Evaluation],
     schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
+    rows: np.ndarray | None = None,
 ) -> Fit:
     """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
@@ -345,16 +348,31 @@ def best_of(
         Rounds, into each of which fewer fits enter.
     limit : float
         The search ends after a round whose best fit has a larger chi-squared than this.
+    rows : ndarray of int, optional
+        Tests that the rounds are content with; by default all.
     """
-    points = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
-    evaluations = model.evaluate_all(points)
+    starts = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
+    some = rows is not None and rows.size < model.data.tests
+    part = model.on(model.data.subset(rows)) if some else model
+    evaluations = part.evaluate_all([point.subset(rows) for point in starts] if some else starts)
     for entering, iterations in schedule:
-        fits = [minimise(model, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
+        fits = [minimise(part, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
         evaluations = [fit.evaluation for fit in fits]
         best = min(fits, key=_chi2)
-        if best.chi2 > limit:
-            return best
-    return best if best.converged else minimise(model, best.evaluation)
+        hopeless = best.chi2 > limit
+        if hopeless:
+            break
+    if some:
+        best = _on_all_tests(model, best, rows, starts)
+    return best if best.converged or hopeless else minimise(model, best.evaluation)
+
+
+def _on_all_tests(model: Model, fit: Fit, rows: np.ndarray, starts: Sequence[Point]) -> Fit:
+    """A fit to some tests as the start of one to all; other tests have the nuisances of the best start."""
+    points = [replace(point, x=fit.x) for point in starts]
+    nuisance = model.best_nuisances(points)
+    nuisance[rows] = fit.point.nuisance
+    return unfitted(model, model.evaluate(replace(points[0], nuisance=nuisance)))
 
 
 def _chi2(each: Fit | Evaluation) -> float:

@@ -223,8 +223,8 @@ def _record_extremes(share, step, mode, recorder, p):
 
 
 @inner
-def record_step(step, share, mode, recorder, p):
-    """Record a step up to a share of it."""
+def _add_step(step, share, mode, recorder, p):
+    """Add a step up to a share of it to the sums."""
     t, h, end = step.t, step.h, dense_output(share, step)
     record_node(t, step.start, 0.0, mode, recorder, p)
     for node in range(len(NODES)):
@@ -232,6 +232,14 @@ def record_step(step, share, mode, recorder, p):
         record_node(t + there * h, dense_output(there, step), share * h * WEIGHTS[node], mode, recorder, p)
     record_node(t + share * h, end, 0.0, mode, recorder, p)
     _record_extremes(share, step, mode, recorder, p)
+
+
+@inner
+def record_step(step, share, mode, recorder, p):
+    """Record a step up to a share of it."""
+    if recorder.summed:
+        _add_step(step, share, mode, recorder, p)
+    t, h = step.t, step.h
     for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
         place = (recorder.start + i * recorder.step - t) / h
         record_sample(i, dense_output(place, step), mode, recorder, p)

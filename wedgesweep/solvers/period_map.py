@@ -58,6 +58,7 @@ class Memory(NamedTuple):
     handed: Any
     acceleration: Any
     samples_per_period: int
+    summed: bool
     energies: bool
 
 
@@ -68,11 +69,12 @@ def memory(
     energies: bool = True,
     forces: bool = True,
     acceleration: bool = False,
+    summed: bool = True,
 ) -> Memory:
     """Room for runs of which at most this many periods are recorded.
 
     ``energies``: whether the sums include forces and energies; ``forces``, ``acceleration``: whether these
-    are sampled.
+    are sampled; ``summed``: whether the sums are wanted at all.
     """
     n = periods * samples_per_period
     return Memory(
@@ -87,6 +89,7 @@ def memory(
         np.full(MODE + MOST_MODE, np.nan),
         np.zeros(n if acceleration else 0),
         samples_per_period,
+        summed,
         energies,
     )
 
@@ -126,6 +129,7 @@ def _run_periods(first, periods, y, p, keeping, memory):
     recorder = Recorder(
         start,
         cycle(p) / memory.samples_per_period,
+        memory.summed,
         memory.energies,
         memory.sums,
         memory.x,

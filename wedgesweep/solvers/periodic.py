@@ -215,7 +215,13 @@ def sampled(
     # The lag of the velocity channel dies out before the kept samples.
     before = min(settle_periods, ceil(LAG_TIMES * slowest))
     room = memory(
-        rtol, samples_per_period, before + periods, energies=False, forces=False, acceleration=acceleration
+        rtol,
+        samples_per_period,
+        before + periods,
+        energies=False,
+        forces=False,
+        acceleration=acceleration,
+        summed=False,
     )
     spans = np.array([settle_periods - before, before + periods])
     for rows, cases in grouped(parameters):

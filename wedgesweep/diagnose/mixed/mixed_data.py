@@ -344,6 +344,11 @@ class MixedData(FitData):
                 each[i] = found.point
         return model.evaluate_all([self._whole(each) for each in by_point])
 
+    def representative(self, evaluation: Evaluation) -> np.ndarray:
+        own = self._each(lambda part, its: part.representative(its), self.evaluations(evaluation))
+        pairs = zip(self.layout.rows, own, strict=True)
+        return np.concatenate([rows.start + its for rows, its in pairs if its is not None])
+
     def held_as_stated(self) -> Self:
         return self._with(self._each(lambda part: part.held_as_stated()))
 

@@ -77,7 +77,7 @@ def _window(known: Sensors, start: float, duration: float) -> RecordWindow:
         spectra=known.spectra,
         passed_on=np.zeros((len(known.spectra), 2)),
         coefficients=min(max(ceil(highest * count / pi), FEWEST_COMPARED), count),
-        grid=Grid(0, count, known.omega),
+        grid=Grid(0, count, known.omega, 0),
         input=no_input(count / known.rate),
         input_noise=None,
         length=start,

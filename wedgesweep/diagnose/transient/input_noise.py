@@ -15,7 +15,7 @@ from scipy.fft import dct
 
 from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.smoothing import derivative
-from wedgesweep.sampled_input import SampledInput, from_samples
+from wedgesweep.sampled_input import SampledInput, polynomials
 
 # Number of coefficients of a channel, from the lowest frequency up, whose correlation is accounted for.
 MOST_CORRELATED = 400
@@ -45,37 +45,40 @@ class InputNoise(NamedTuple):
 class Cosines(NamedTuple):
     """Cosines by which the input of a window may be wrong.
 
-    ``size`` (k,): standard deviation of each, in the orthonormal basis of n ``samples``, the simulated ones,
-    ``step`` (s) apart; ``frequency`` (k,) in rad a sample.
+    ``size`` (k,): standard deviation of each, in the orthonormal basis of n ``samples``, ``step`` (s) apart;
+    ``frequency`` (k,) in rad a sample; ``first``: index of the first of these among the simulated samples,
+    before which the cosines go on.
     """
 
     size: np.ndarray
     frequency: np.ndarray
     samples: int
     step: float
+    first: int
 
     def at(self, times: np.ndarray) -> np.ndarray:
-        """Their values (k, t) at times (s) from the first sample."""
-        angles = np.multiply.outer(self.frequency, times / self.step + 0.5)
+        """Their values (k, t) at times (s) from the first simulated sample."""
+        angles = np.multiply.outer(self.frequency, times / self.step - self.first + 0.5)
         return self.size[:, None] * sqrt(2.0 / self.samples) * np.cos(angles)
 
 
-def cosines(noise: InputNoise, samples: int, step: float, highest: float) -> Cosines:
+def cosines(noise: InputNoise, samples: int, step: float, highest: float, first: int = 0) -> Cosines:
     """The cosines up to a frequency (rad a sample)."""
     count = int(min(noise.cutoff, highest) * samples / pi)
     frequency = pi * np.arange(1, max(count, 1) + 1) / samples
-    return Cosines(np.sqrt(noise.of_acting(frequency, step)), frequency, samples, step)
+    return Cosines(np.sqrt(noise.of_acting(frequency, step)), frequency, samples, step, first)
 
 
 def disturbed(given: SampledInput, parts: Cosines) -> list[SampledInput]:
     """The input with each of the cosines added, then with each of them taken away."""
-    first, last = (np.array([0.0, parts.samples * parts.step]) - given.begin) / given.step
+    span = (parts.first + parts.samples) * parts.step
+    first, last = (np.array([0.0, span]) - given.begin) / given.step
     begin = min(max(int(first) - BEYOND, 0), len(given.coefficients) - 1)
     end = min(int(last) + BEYOND + 1, len(given.coefficients))
     own = given.coefficients[begin : max(end, begin + 1)]
     start = given.begin + begin * given.step
     knots = start + given.step * np.arange(len(own) + 1)
-    changes = [from_samples(values, given.step).coefficients for values in parts.at(knots)]
+    changes = polynomials(parts.at(knots).T, given.step)
     return [
         replace(given, coefficients=own + sign * each, begin=start)
         for sign in (1.0, -1.0)
@@ -88,7 +91,7 @@ def converted(parts: Cosines, shares: Sequence[float], orders: Sequence[int], le
 
     ``orders`` (C,): the derivative of the displacement that each channel is.
     """
-    wrong = parts.at(parts.step * np.arange(parts.samples))
+    wrong = parts.at(parts.step * np.arange(parts.first + parts.samples))
     motion = wrong, *(derivative(wrong, 1.0 / parts.step, order) for order in (1, 2))
     pairs = zip(shares, orders, strict=True)
     return np.stack([share * motion[order] for share, order in pairs], axis=1)[..., lead:]

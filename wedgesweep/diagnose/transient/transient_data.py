@@ -7,7 +7,8 @@ zero of the displacement is unknown in each.
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Self
+from math import ceil
+from typing import Any, Self
 
 import numpy as np
 
@@ -20,15 +21,14 @@ from wedgesweep.diagnose.evaluation import (
     NuisanceParameter,
     Point,
     Scenario,
-    best_evaluation_per_test,
 )
 from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
-from wedgesweep.diagnose.sampled_data import NoStart, SampledData
+from wedgesweep.diagnose.sampled_data import NoStart, SampledData, best_of_each_test
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
-from wedgesweep.diagnose.transient.window import BODIES, RecordWindow
+from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
 from wedgesweep.natural_units import NaturalUnits
 
@@ -44,6 +44,10 @@ START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4
 BODY_STARTS = START * len(BODIES)
 # Offsets of the start, over the largest displacement, that are tried if there are at most FEW points.
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
+# Samples that are simulated at a time, at most: they take some hundred megabytes.
+MOST_TOGETHER = 4_000_000
+# A search begins with at least FEWEST_WINDOWS windows, one of at most MOST_REPRESENTED successive ones.
+FEWEST_WINDOWS, MOST_REPRESENTED = 8, 3
 # Gain of a recorded input, as its logarithm.
 GAIN = NuisanceParameter(step=1e-3, max_step=0.1)
 
@@ -247,12 +251,21 @@ class TransientData(SampledData):
         starts = np.array([self._states(each.point) for each in scenarios])
         gains = np.array([self._gain(each.point) for each in scenarios])
         work.add(len(values) * sum(own.periods for own in self.windows))
-        return self._padded(
-            [
-                own.simulated(values, starts[:, t], gains[:, t], TOLERANCE)
-                for t, own in enumerate(self.windows)
-            ]
-        )
+        found: list[Any] = [None] * self.tests
+        for rows in self._together(len(values)):
+            alike = [self.windows[row] for row in rows]
+            several = simulated_together(alike, values, starts[:, rows], gains[:, rows], TOLERANCE)
+            for place, row in enumerate(rows):
+                found[row] = several[:, place]
+        return self._padded(found)
+
+    def _together(self, scenarios: int) -> Iterator[np.ndarray]:
+        """Rows of windows that are simulated together, at most MOST_TOGETHER samples at a time."""
+        keys = [own.alike for own in self.windows]
+        for key in dict.fromkeys(keys):
+            rows = np.array([row for row, each in enumerate(keys) if each == key])
+            samples = scenarios * rows.size * self.windows[rows[0]].grid.samples
+            yield from np.array_split(rows, min(ceil(samples / MOST_TOGETHER), rows.size))
 
     def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations of points, each test from the best of several starts.
@@ -266,12 +279,17 @@ class TransientData(SampledData):
             moved = stated + offset * (np.arange(stated.shape[1]) == 0)
             tried.append([replace(each, nuisance=moved, warm=at_rest) for each in points])
         by_try = [model.evaluate_all(each) for each in tried]
-        best = []
-        for evaluations in zip(*by_try, strict=True):
-            chosen = best_evaluation_per_test(evaluations)
-            nuisance = np.array([each.point.nuisance for each in evaluations])
-            best.append(replace(evaluations[0].point, nuisance=nuisance[chosen, np.arange(chosen.size)]))
-        return model.evaluate_all(best)
+        return [best_of_each_test(evaluations) for evaluations in zip(*by_try, strict=True)]
+
+    def representative(self, evaluation: Evaluation) -> np.ndarray:
+        """Of each few successive windows of a record the one that fits worst, if there are many."""
+        numbers, misfit = np.array([own.number for own in self.windows]), evaluation.chi2_by_test
+        size = min(self.tests // FEWEST_WINDOWS, MOST_REPRESENTED)
+        if size < 2:
+            return np.arange(self.tests)
+        records = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
+        groups = [part for rows in records for part in np.array_split(rows, -(-rows.size // size))]
+        return np.array([rows[np.argmax(misfit[rows])] for rows in groups])
 
     def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
         found, stated = evaluation.point.nuisance.copy(), self.start()[0]

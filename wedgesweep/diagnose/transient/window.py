@@ -4,7 +4,7 @@ The cosine coefficients (DCT-II) of the window are compared, up to the highest f
 have: under noise whose spectrum is smooth they are all but independent.
 """
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi, sqrt
@@ -43,12 +43,14 @@ SIMULATION_ERROR = 1e-5
 class Grid(NamedTuple):
     """Samples of a simulation: ``lead`` before a window, ``inside`` it.
 
-    ``omega``: angular natural frequency (rad/s).
+    ``omega``: angular natural frequency (rad/s); ``recent``: those of the lead that count for the noise of
+    the input. Before them the motion has forgotten it, or the mass sticks.
     """
 
     lead: int
     inside: int
     omega: float
+    recent: int
 
     @property
     def samples(self) -> int:
@@ -126,6 +128,11 @@ class RecordWindow:
         return self.channels.shape[1] / self.coefficients
 
     @property
+    def alike(self) -> Hashable:
+        """What windows have in common that can be simulated together."""
+        return id(self.model), self.grid, self.orders, self.coefficients, self.converted
+
+    @property
     def driven(self) -> bool:
         """Whether an input was recorded."""
         return self.input_noise is not None
@@ -147,7 +154,7 @@ class RecordWindow:
         return tuple(order for order, share in both if share == 0.0)
 
     @cached_property
-    def _converted(self) -> np.ndarray:
+    def added(self) -> np.ndarray:
         """Motion of the base that was added to the channels, (C, n); it has the error of the input's gain."""
         times = self.step * np.arange(self.grid.lead, self.grid.samples)
         both = zip(self.orders, self._shares, strict=True)
@@ -201,17 +208,18 @@ class RecordWindow:
         """Combinations with independent noise of the coefficients of each channel, in a scenario.
 
         There are none without an input: the coefficients are independent as they are. ``start`` (B, 2): where
-        the simulation begins, see ``simulated``; ``gain``: of the input.
+        the simulation begins, see ``simulated_together``; ``gain``: of the input.
         """
         if self.input_noise is None:
             return ()
         grid = self.grid
-        parts = cosines(self.input_noise, grid.samples, self.step, float(self._frequency[-1]))
+        highest, noisy = float(self._frequency[-1]), grid.recent + grid.inside
+        parts = cosines(self.input_noise, noisy, self.step, highest, grid.lead - grid.recent)
         inputs = disturbed(self.input, parts)
-        rows = np.repeat(self._records([values]), len(inputs), axis=0)
+        rows = np.repeat(self.records([values]), len(inputs), axis=0)
         for place, each in enumerate(inputs):
-            self._drive(rows[place : place + 1], each, gain)
-        above, below = np.split(self._motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance), 2)
+            self.drive(rows[place : place + 1], each, gain)
+        above, below = np.split(self.motions(rows, np.repeat(start[None], len(rows), axis=0), tolerance), 2)
         changes = converted(parts, self.input_noise.shares, self.orders, grid.lead) - 0.5 * (above - below)
         return decorrelated(self._own_variance, np.nan_to_num(changes))
 
@@ -239,31 +247,18 @@ class RecordWindow:
         """Length of what is simulated in natural periods of the model."""
         return self.grid.samples * self._natural_step
 
-    def simulated(
-        self, scenarios: list[Values], starts: np.ndarray, gains: np.ndarray, tolerance: float
-    ) -> np.ndarray:
-        """Coefficients (n, C, K) of n scenarios; NaN where there is no response.
-
-        ``starts`` (n, B, 2): displacement (m) and velocity (m/s) at the first simulated sample, of the mass,
-        then of each of BODIES; ``gains`` (n,): of the input.
-        """
-        rows = self._records(scenarios)
-        self._drive(rows, self.input, gains)
-        motions = self._motions(rows, starts, tolerance) - (gains - 1.0)[:, None, None] * self._converted
-        return dct(motions, norm="ortho")[..., : self.coefficients]
-
-    def _records(self, scenarios: list[Values]) -> np.ndarray:
+    def records(self, scenarios: list[Values]) -> np.ndarray:
         """Parameter records of scenarios, without an input."""
         known, omega = self.model.effects, self.grid.omega
         return np.concatenate(
             [self.model.record_with(merge(known, each), self.law, 1.0, omega) for each in scenarios]
         )
 
-    def _drive(self, rows: np.ndarray, given: SampledInput, gain: float | np.ndarray) -> None:
+    def drive(self, rows: np.ndarray, given: SampledInput, gain: float | np.ndarray) -> None:
         """Let an input act in records."""
         set_sampled(rows, given, self._scale, self.grid.omega, self.grid.samples * self.step, gain)
 
-    def _motions(self, rows: np.ndarray, starts: np.ndarray, tolerance: float) -> np.ndarray:
+    def motions(self, rows: np.ndarray, starts: np.ndarray, tolerance: float) -> np.ndarray:
         """Channels (n, C, samples) of the window from ``starts``; NaN where there is no response."""
         states = np.zeros((len(rows), state_count()))
         # Solvers record minus what channels are: the state of a suspension, minus the state of an oscillator.
@@ -281,3 +276,26 @@ class RecordWindow:
         if not self.model.forced:
             return self.length
         return self.length * self.model.natural_units(self.length).mass * self.grid.omega**2
+
+
+def simulated_together(
+    windows: Sequence[RecordWindow],
+    scenarios: list[Values],
+    starts: np.ndarray,
+    gains: np.ndarray,
+    tolerance: float,
+) -> np.ndarray:
+    """Coefficients (n, W, C, K) of n scenarios in W windows that are ``alike``; NaN where there is no response.
+
+    ``starts`` (n, W, B, 2): displacement (m) and velocity (m/s) at the first simulated sample, of the mass,
+    then of each of BODIES; ``gains`` (n, W): of the input.
+    """
+    first, (n, count) = windows[0], gains.shape
+    rows = np.repeat(first.records(scenarios), count, axis=0)
+    for place, own in enumerate(windows):
+        own.drive(rows[place::count], own.input, gains[:, place])
+    motions = first.motions(rows, starts.reshape(n * count, -1, 2), tolerance)
+    motions = motions.reshape(n, count, *motions.shape[1:])
+    if first.converted:
+        motions -= (gains - 1.0)[..., None, None] * np.array([own.added for own in windows])
+    return dct(motions, norm="ortho")[..., : first.coefficients]
