@@ -17,7 +17,7 @@ import numpy as np
 from numba import types
 from numba.extending import intrinsic
 
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import inlined, inner
 
 DEGREE = 5
 # How often each quantity is integrated to become what acts: a displacement of the base, or a force.
@@ -25,6 +25,8 @@ INTEGRATED = {"displacement": 0, "force": 0, "velocity": 1, "acceleration": 2}
 # Least number of a solver's steps in a period of the fastest input: none is longer than the time between
 # samples.
 STEPS = 12.0
+# Error of a place between two samples, as a share of their distance.
+PLACE_ERROR = 1e-13
 # What a record says of its samples; ``rows`` = 0: nothing. ``gain``: of the samples, over the amplitude.
 FIELDS: list[tuple] = [
     *((name, np.int64) for name in ("rows", "address")),
@@ -216,3 +218,52 @@ def bend(t, p):
     for k in range(4, 1, -1):
         found = found * s + k * (k - 1) * number_at(a, first + k)
     return p.series.gain * found / (p.series.step * p.series.step)
+
+
+@inlined
+def _hull(a2, a3, a4, a5, share, width):
+    """Least and largest Bernstein coefficient of the rate of a polynomial's slope on a part of its interval."""
+    value = 2.0 * a2 + share * (6.0 * a3 + share * (12.0 * a4 + share * 20.0 * a5))
+    first = width * (6.0 * a3 + share * (24.0 * a4 + share * 60.0 * a5))
+    second = width * width * (12.0 * a4 + 60.0 * a5 * share)
+    third = width * width * width * 20.0 * a5
+    b1, b2 = value + first / 3.0, value + (2.0 * first + second) / 3.0
+    b3 = value + first + second + third
+    return min(min(value, b1), min(b2, b3)), max(max(value, b1), max(b2, b3))
+
+
+@inner
+def bend_leaves(t, stop, low, high, p):
+    """First time from t on at which ``bend`` is below ``low`` (side -1) or above ``high`` (1), and that side.
+
+    It is ``stop`` and 0 if that does not happen before. A cubic lies between its least and largest Bernstein
+    coefficient: a part of an interval where these are within the range is passed at once, others are halved.
+    """
+    own = p.series
+    outside = -1 if low > 0.0 else 1 if high < 0.0 else 0
+    if t < own.begin:
+        if outside != 0:
+            return t, outside
+        t = min(own.begin, stop)
+    scale, end = own.gain / (own.step * own.step), (stop - own.begin) / own.step
+    place = (t - own.begin) / own.step
+    row = int(place)
+    share = place - row
+    while row < own.rows and row + share < end:
+        first, last = (DEGREE + 1) * row, min(end - row, 1.0)
+        a2, a3 = scale * number_at(own.address, first + 2), scale * number_at(own.address, first + 3)
+        a4, a5 = scale * number_at(own.address, first + 4), scale * number_at(own.address, first + 5)
+        width = last - share
+        while share < last:
+            least, largest = _hull(a2, a3, a4, a5, share, width)
+            if low <= least and largest <= high:
+                share += width
+                width = min(2.0 * width, last - share)
+            elif width < PLACE_ERROR:
+                return min(own.begin + (row + share) * own.step, stop), -1 if least < low else 1
+            else:
+                width *= 0.5
+        row, share = row + 1, 0.0
+    if outside != 0 and row + share < end:
+        return own.begin + row * own.step, outside
+    return stop, 0

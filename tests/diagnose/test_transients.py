@@ -1,5 +1,7 @@
 """Transients: free motions in time, from files to a verdict."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -8,7 +10,7 @@ from tests.command import invoke
 from wedgesweep import api, excitation
 from wedgesweep.config import parse
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.diagnose.search import Search, base_fit, from_shared_nuisances, single_fits
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.effects import EFFECTS, merge
 from wedgesweep.measured import MeasuredError, read
@@ -141,6 +143,32 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
     for (key, estimate), true in zip(numbers.items(), HIDDEN[effect].values(), strict=True):
         unit = next((factor for end, factor in size.items() if key.endswith(end)), 1.0)
         assert estimate["value"] * unit == pytest.approx(true, rel=0.02), key
+
+
+def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
+    data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 2.0}})))
+    names = ("viscous_damping", "directional_damping")
+    search, base = base_fit(Search.of(data, names))
+    search, (damper, other), _ = single_fits(search, base.fit)
+    model, nuisance = damper.fit.model, damper.fit.point.nuisance.copy()
+    nuisance[0, 1] += 0.5
+    astray = model.evaluate(replace(damper.fit.point, nuisance=nuisance))
+    stuck = search.explanation(replace(damper.fit, evaluation=astray))
+    assert stuck.fit.chi2 > other.fit.chi2 + 100.0
+    found = {each.effects: each for each in from_shared_nuisances(search, [stuck, other])}
+    assert found[other.effects] is other
+    assert found[damper.effects].fit.chi2 == pytest.approx(damper.fit.chi2, abs=0.1)
+
+
+def test_early_rounds_of_a_search_see_the_worst_window_of_each_few(tmp_path):
+    starts = [(0.01, 0.0), (0.012, 0.0)]
+    data = transient_data(read(write(tmp_path, starts=starts, samples=18_000, noise=1e-4)))
+    here = base_fit(Search.of(data, [])).base.fit.evaluation
+    rows = data.representative(here)
+    assert 8 <= rows.size < data.tests
+    assert {data.windows[row].number for row in rows} == {0, 1}
+    assert np.argmax(here.chi2_by_test) in rows
+    assert data.subset(rows[:4]).representative(here).tolist() == [0, 1, 2, 3]
 
 
 def test_nothing_is_missing_where_nothing_is(tmp_path):

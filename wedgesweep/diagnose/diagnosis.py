@@ -25,6 +25,7 @@ from wedgesweep.diagnose.search import (
     PAIRS_SHARE,
     Search,
     base_fit,
+    from_shared_nuisances,
     from_special_cases,
     multistart,
     quiet,
@@ -249,7 +250,7 @@ def explain(search: Search) -> Explained:
     if better.fit.chi2 < REFIT_BELOW * base.fit.chi2:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
-    found = from_special_cases(search, found)
+    found = from_shared_nuisances(search, from_special_cases(search, found))
     search, base, found, scans = with_renewed_covariance(Explained(search, better, found, scans))
     if verdict.none_adequate([base]):
         found = refit_best(search, found)

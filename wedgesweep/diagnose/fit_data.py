@@ -113,6 +113,11 @@ class FitData(Protocol):
         """Rms of the noise over that of the response."""
 
     @property
+    def shares_nuisances(self) -> bool:
+        """Whether fits of different effects may take nuisance parameters from each other."""
+        return False
+
+    @property
     def known(self) -> Mapping[str, tuple[float, float]]:
         return {}
 

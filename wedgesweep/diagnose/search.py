@@ -50,8 +50,8 @@ REFITTED = 8
 HELD_ITERATIONS = 8
 # Rounds of fits of an effect beside a base model in which everything is as stated.
 STATED_SCHEDULE = (Round(4, 3), Round(2, 5))
-# A fit is better if it takes this much off chi-squared.
-SLIGHT = 1.0
+# A fit is better if it takes this much off chi-squared, and a test fits markedly better with this much less.
+SLIGHT, MARKED = 1.0, 9.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
 # that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
@@ -284,6 +284,28 @@ def from_special_cases(search: Search, found: Sequence[Explanation]) -> list[Exp
         return each if best is each.fit else search.explanation(best)
 
     return search.each(refitted, found)
+
+
+def from_shared_nuisances(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """All explanations; leading ones begin again where nuisance parameters of another fit a test better.
+
+    A single start that a fit cannot leave may decide between two explanations.
+    """
+    if not search.data.shares_nuisances:
+        return list(found)
+    leading = sorted(found, key=penalised)[:REFITTED]
+    least = np.min([each.fit.evaluation.chi2_by_test for each in leading], axis=0)
+
+    def refitted(each: Explanation) -> Explanation:
+        fit = each.fit
+        if not (fit.evaluation.chi2_by_test > least + MARKED).any():
+            return each
+        tried = [replace(fit.point, nuisance=other.fit.point.nuisance) for other in leading]
+        start = replace(fit.point, nuisance=fit.model.best_nuisances([fit.point, *tried]))
+        again = minimise(fit.model, fit.model.evaluate(start))
+        return search.explanation(again) if again.chi2 < fit.chi2 else each
+
+    return best_of_each([*search.each(refitted, leading), *found], penalised)
 
 
 def _from_special_case(fit: Fit, special: Fit) -> Fit:

@@ -297,6 +297,10 @@ class MixedData(FitData):
     def brings_nuisances(self, effect: str) -> bool:
         return any(part.brings_nuisances(effect) for part in self.present)
 
+    @property
+    def shares_nuisances(self) -> bool:
+        return any(part.shares_nuisances for part in self.present)
+
     def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
         points = self.points(evaluation.point)
         own = self._each(

@@ -70,6 +70,7 @@ class TransientData(SampledData):
     evidence: tuple[NoiseEvidence, ...] = ()
 
     kind = "transient"
+    shares_nuisances = True
 
     @cached_property
     def names(self) -> tuple[str, ...]:  # type: ignore[override]

@@ -54,6 +54,12 @@ def _lowest(t, stuck):
     return stuck.out[_smallest(stuck.out)], nan
 
 
+@inlined
+def _with_base(load, acceleration):
+    """The loads under another acceleration of the base."""
+    return Loads(load.tangential, load.normal, load.vertical, load.lateral, load.frame, acceleration)
+
+
 @inner
 def breakaway_input(y, direction, segment, p):
     """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative.
@@ -64,10 +70,10 @@ def breakaway_input(y, direction, segment, p):
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)
     mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
     load = loads(0.0, y, mode, p)
-    at_rest = reactions(load, mu, p)[0].acceleration
+    at_rest = reactions(_with_base(load, 0.0), mu, p)[0].acceleration
     inertia = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0].acceleration
     limit = -at_rest / inertia
-    there = reactions(Loads(load.tangential, load.normal, load.vertical, 0.0, 0.0, limit), mu, p)[0]
+    there = reactions(_with_base(load, limit), mu, p)[0]
     return limit if min(there.column, there.bolster) > 0.0 else nan
 
 

@@ -9,7 +9,14 @@ from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.shared import implement_shared
-from wedgesweep.systems.suspension import closed_form, events, stiffness, transitions, while_closed  # noqa: F401
+from wedgesweep.systems.suspension import (  # noqa: F401
+    closed_form,
+    events,
+    sampled_breakaway,
+    stiffness,
+    transitions,
+    while_closed,
+)
 from wedgesweep.systems.suspension.energy import damping_power, friction_power, supplied_power
 from wedgesweep.systems.suspension.faces import column_slip
 from wedgesweep.systems.suspension.filippov import filippov_forces, forces_of_mode

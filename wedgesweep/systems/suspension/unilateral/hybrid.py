@@ -13,6 +13,7 @@ from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction, hooks, states, travel
 from wedgesweep.hybrid import interface
 from wedgesweep.hybrid.interface import implement
+from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.suspension import energy, events, filippov, newton, transitions
 from wedgesweep.systems.suspension.modes import (
@@ -432,6 +433,13 @@ def normal_forces(t, y, mode, p):
     """Normal forces on column and bolster face; not determined while set-valued friction holds."""
     column, bolster, _ = _forces_and_power(t, y, mode, p)
     return column, bolster
+
+
+@implement(interface.closed_form, UNILATERAL)
+@inlined
+def closed_form(state, stop, p, keeping, recorder, counts):
+    """There is none, unlike for the bilateral joints whose records these extend."""
+    return False, state, NO_EVENT
 
 
 # Turns with bilateral joints

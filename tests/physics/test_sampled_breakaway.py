@@ -1,0 +1,74 @@
+"""A wedge that sticks under a sampled input: it breaks away where the base reaches the acceleration for it."""
+
+import numpy as np
+import pytest
+from numpy.random import default_rng
+
+from wedgesweep.compiled import compiled
+from wedgesweep.config import from_document
+from wedgesweep.sampled_input import bend_leaves, from_samples, set_sampled
+from wedgesweep.solvers import periodic
+from wedgesweep.systems import compact, state_count
+from wedgesweep.systems.suspension.equilibrium import _acceleration_on_verge
+
+CONFIG = from_document({"suspension": {}, "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 1.0}})
+LENGTH, OMEGA = 1e-3, 85.0
+
+
+@compiled
+def _leaves(rows, t, stop, low, high):
+    return bend_leaves(t, stop, low, high, rows[0])
+
+
+def _record(given, span, effects=None):
+    """Record of the paper's bench under a sampled input."""
+    row = CONFIG.record_with(effects or {}, "coulomb", 1.0, OMEGA)
+    set_sampled(row, given, LENGTH, OMEGA, span)
+    return row
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_range_of_an_acceleration_is_left_where_dense_samples_leave_it(seed):
+    rng = default_rng(seed)
+    given = from_samples(rng.normal(size=40), 0.01, "acceleration", begin=0.05)
+    t = np.linspace(0.0, 0.5, 200_001)
+    bend = given(t, 2)
+    low, high = -rng.uniform(0.5, 3.0), rng.uniform(0.5, 3.0)
+    found, side = _leaves(compact(_record(given, 0.5)), 0.0, 0.5, low / LENGTH, high / LENGTH)
+    outside = (bend < low) | (bend > high)
+    if not outside.any():
+        assert (found, side) == (0.5, 0)
+        return
+    first = np.argmax(outside)
+    assert t[first] - 3e-6 < found <= t[first] + 1e-12
+    assert side == (1 if bend[first] > high else -1)
+
+
+def test_a_range_without_zero_is_left_before_the_samples_begin_and_after_they_end():
+    given = from_samples(np.full(20, 2.0), 0.01, "acceleration", begin=0.1)
+    rows = compact(_record(given, 1.0))
+    assert _leaves(rows, 0.02, 1.0, 1.0 / LENGTH, 3.0 / LENGTH) == (0.02, -1)
+    after, side = _leaves(rows, 0.12, 1.0, 1.0 / LENGTH, 3.0 / LENGTH)
+    assert (after, side) == (pytest.approx(given.end), -1)
+    assert _leaves(rows, 0.02, 1.0, -1.0 / LENGTH, 3.0 / LENGTH) == (1.0, 0)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("effects", [{}, {"viscous_damping": {"coefficient": 5.0}}])
+def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_breakaway(sign, effects):
+    growth, span, samples = 1.0, 1.0, 200_000
+    time = np.arange(2001) * 5e-4
+    begin = 0.1
+    given = from_samples(sign * (begin + growth * time), 5e-4, "acceleration")
+    row = _record(given, span, effects)
+    expected = (_breakaway(row[0], sign) - begin) / growth
+    assert 0.1 < expected < 0.9
+    run = periodic.sampled(row, np.zeros((1, state_count())), 0, 1, samples, 1e-10)
+    moves = np.flatnonzero(run.velocity[0] != 0.0)[0] / samples
+    assert moves == pytest.approx(expected, abs=2.0 / samples)
+
+
+def _breakaway(p, side):
+    """Size of the base acceleration (m/s^2) on one side of 0 at which the bolster slips from its equilibrium."""
+    at_rest, inertia = _acceleration_on_verge(-side, float(p["friction"]["mu_d"]), p)
+    return abs(at_rest / inertia)
