@@ -55,8 +55,8 @@ SLIGHT, MARKED = 1.0, 9.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
 # that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
-# Effects with states of their own take longest to fit, and begin first.
-SLOWEST = ("column_compliance", "fixture_resonance", "presliding")
+# Effects with states or an iteration of their own take longest to fit, and begin first.
+SLOWEST = ("load_dependent_friction", "column_compliance", "fixture_resonance", "presliding")
 
 # Evaluations of each effect over the range of its parameters, beside the base model.
 Scans = Mapping[str, Sequence[Evaluation]]
