@@ -91,3 +91,9 @@ def motion_of(solution, free, faces, case):
 def kinetic_energy(y, case):
     """Kinetic energy against the table."""
     return motion.kinetic_energy(y, case[0])
+
+
+@compiled
+def rate_at(t, y, case):
+    """Rate of a state in the mode in which a run begins there."""
+    return interface.rate(t, y, interface.initial_mode(t, y, case[0])[0], case[0])[0]
