@@ -1,17 +1,19 @@
 """Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
 
-An oscillator hides one effect, or none in every fifth set. It is as strong as is needed for a drawn change of
-the response; sets whose excess is too small for a name all the same count as weak.
+Oscillators and suspensions of any size take turns. Each hides one effect, or none in every fifth set. It is as
+strong as is needed for a drawn change of the response; sets whose excess is too small for a name all the same
+count as weak.
 """
 
 from collections.abc import Callable
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
+from wedgesweep.natural_units import FREQUENCY, LENGTH
 from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.names import NOISES
@@ -29,7 +31,11 @@ OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_
 NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_lag")
 # Every so many sets one hides nothing.
 CLEAN_EACH = 5
-# Natural frequency (Hz), damping ratio, and friction over the spring's force at the largest motion.
+# Natural frequency (Hz) of a suspension of the bench's size, and the largest motion (mm) that it is released
+# to, and that is imposed on it: a larger one lifts its wedges off.
+BENCH_HZ, BENCH_TRAVEL_MM, BENCH_IMPOSED_MM = 13.6, 1.0, 0.15
+# Of an oscillator: natural frequency (Hz), damping ratio, and friction over the spring's force at the largest
+# motion.
 FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
 # Largest motion (mm) of a mass (kg), noise over the rms of a channel.
 TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
@@ -43,6 +49,15 @@ SAMPLED, RELEASE, SWEEP, LOOPS = 60.0, 8.0, 24.0, 20.0
 STEADY = (0.7, 0.9, 1.15, 1.4)
 
 
+class Drawn(NamedTuple):
+    """A rig, its natural frequency (Hz), the largest motion (mm) of its tests and the largest imposed one."""
+
+    rig: Rig
+    frequency: float
+    travel: float
+    imposed: float
+
+
 def draw(one: DataSet) -> dict[str, Any]:
     """Rig, tests, effect and noise of a set, as documents.
 
@@ -52,8 +67,8 @@ def draw(one: DataSet) -> dict[str, Any]:
         If no rig shows the effect as strongly as is wanted.
     """
     for attempt in range(ATTEMPTS):
-        if drawn := _drawn(one, attempt):
-            return drawn
+        if found := _drawn(one, attempt):
+            return found
     message = f"{one.name}: no rig shows its effect as is wanted in {ATTEMPTS} attempts"
     raise RuntimeError(message)
 
@@ -61,11 +76,10 @@ def draw(one: DataSet) -> dict[str, Any]:
 def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     """Documents of a set; None if its effect cannot be as strong as is wanted."""
     random = one.random(attempt)
-    frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
     law = LAWS[one.index % len(LAWS)]
-    rig = _rig(frequency, travel, random)
-    tests = TESTS[one.kind](frequency, travel)
-    sampling_hz = round(SAMPLED * frequency, 3)
+    drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
+    rig, tests = drawn.rig, TESTS[one.kind](drawn)
+    sampling_hz = round(SAMPLED * drawn.frequency, 3)
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
         left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
@@ -111,7 +125,15 @@ def _change(
     return change
 
 
-def _rig(frequency: float, travel: float, random: np.random.Generator) -> Rig:
+def _suspension(random: np.random.Generator) -> Drawn:
+    rig = rigs.any_size(random)
+    length = rig.units.ratio(LENGTH)
+    frequency = BENCH_HZ * rig.units.ratio(FREQUENCY)
+    return Drawn(rig, frequency, BENCH_TRAVEL_MM * length, BENCH_IMPOSED_MM * length)
+
+
+def _oscillator(random: np.random.Generator) -> Drawn:
+    frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
     mass, omega = rigs.logarithmic(MASS_KG, random), 2.0 * pi * frequency
     stiffness = mass * omega**2
     own = {
@@ -126,10 +148,11 @@ def _rig(frequency: float, travel: float, random: np.random.Generator) -> Rig:
         "oscillator": {**rounded, "contact": "base"},
         "friction": {"static": 0.36, "dynamic": 0.3, "threshold_velocity_mm_per_s": threshold},
     }
-    return Rig(sections)
+    return Drawn(Rig(sections), frequency, travel, travel)
 
 
-def _releases(frequency: float, travel: float) -> list[dict[str, Any]]:
+def _releases(drawn: Drawn) -> list[dict[str, Any]]:
+    frequency, travel = drawn.frequency, drawn.travel
     length = {"kind": "transient", "duration_s": RELEASE / frequency}
     speed = 2.0 * pi * frequency * travel
     return [
@@ -139,32 +162,32 @@ def _releases(frequency: float, travel: float) -> list[dict[str, Any]]:
     ]
 
 
-def _transients(frequency: float, travel: float) -> list[dict[str, Any]]:
+def _transients(drawn: Drawn) -> list[dict[str, Any]]:
     sweep = {
         "kind": "transient",
         "motion": "sweep",
-        "frequency_hz": 0.5 * frequency,
-        "to_hz": 2.0 * frequency,
-        "amplitude_mm": 0.25 * travel,
-        "duration_s": SWEEP / frequency,
+        "frequency_hz": 0.5 * drawn.frequency,
+        "to_hz": 2.0 * drawn.frequency,
+        "amplitude_mm": 0.25 * drawn.travel,
+        "duration_s": SWEEP / drawn.frequency,
     }
-    return [*_releases(frequency, travel), sweep]
+    return [*_releases(drawn), sweep]
 
 
-def _loops(frequency: float, travel: float) -> list[dict[str, Any]]:
-    length = {"kind": "loop", "duration_s": LOOPS / frequency}
+def _loops(drawn: Drawn) -> list[dict[str, Any]]:
+    length = {"kind": "loop", "duration_s": LOOPS / drawn.frequency}
     return [
-        {**length, "frequency_hz": 0.4 * frequency, "amplitude_mm": travel},
-        {**length, "frequency_hz": 0.7 * frequency, "amplitude_mm": 0.5 * travel},
+        {**length, "frequency_hz": 0.4 * drawn.frequency, "amplitude_mm": drawn.imposed},
+        {**length, "frequency_hz": 0.7 * drawn.frequency, "amplitude_mm": 0.5 * drawn.imposed},
     ]
 
 
-def _mixed(frequency: float, travel: float) -> list[dict[str, Any]]:
+def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
     steady = [
-        {"frequency_hz": share * frequency, "amplitude_mm": 0.25 * travel, "amplitude_std": 0.005}
+        {"frequency_hz": share * drawn.frequency, "amplitude_mm": 0.25 * drawn.travel, "amplitude_std": 0.005}
         for share in STEADY
     ]
-    return [*steady, *_releases(frequency, travel), _loops(frequency, travel)[0]]
+    return [*steady, *_releases(drawn), _loops(drawn)[0]]
 
 
 TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed}
