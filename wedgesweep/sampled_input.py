@@ -222,7 +222,7 @@ def bend(t, p):
 
 @inlined
 def _hull(a2, a3, a4, a5, share, width):
-    """Least and largest Bernstein coefficient of the rate of a polynomial's slope on a part of its interval."""
+    """Least and largest Bernstein coefficient of a polynomial's second derivative, on a part of it."""
     value = 2.0 * a2 + share * (6.0 * a3 + share * (12.0 * a4 + share * 20.0 * a5))
     first = width * (6.0 * a3 + share * (24.0 * a4 + share * 60.0 * a5))
     second = width * width * (12.0 * a4 + 60.0 * a5 * share)

@@ -1,4 +1,4 @@
-"""A wedge that sticks under a sampled input: it breaks away where the base reaches the acceleration for it."""
+"""A wedge that sticks under a sampled input breaks away where the base has accelerated enough."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,9 @@ from wedgesweep.solvers import periodic
 from wedgesweep.systems import compact, state_count
 from wedgesweep.systems.suspension.equilibrium import _acceleration_on_verge
 
-CONFIG = from_document({"suspension": {}, "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 1.0}})
+CONFIG = from_document(
+    {"suspension": {}, "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 1.0}}
+)
 LENGTH, OMEGA = 1e-3, 85.0
 
 
@@ -69,6 +71,6 @@ def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_break
 
 
 def _breakaway(p, side):
-    """Size of the base acceleration (m/s^2) on one side of 0 at which the bolster slips from its equilibrium."""
+    """Size of the base acceleration (m/s^2) to one side at which the bolster leaves its equilibrium."""
     at_rest, inertia = _acceleration_on_verge(-side, float(p["friction"]["mu_d"]), p)
     return abs(at_rest / inertia)

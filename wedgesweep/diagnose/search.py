@@ -374,19 +374,27 @@ def best_of(
         Tests that the rounds are content with; by default all.
     """
     starts = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
-    some = rows is not None and rows.size < model.data.tests
-    part = model.on(model.data.subset(rows)) if some else model
-    evaluations = part.evaluate_all([point.subset(rows) for point in starts] if some else starts)
+    if rows is None or rows.size == model.data.tests:
+        best, hopeless = _halved(model, starts, schedule, limit)
+    else:
+        part = model.on(model.data.subset(rows))
+        some, hopeless = _halved(part, [point.subset(rows) for point in starts], schedule, limit)
+        best = _on_all_tests(model, some, rows, starts)
+    return best if best.converged or hopeless else minimise(model, best.evaluation)
+
+
+def _halved(
+    model: Model, starts: Sequence[Point], schedule: Sequence[Round], limit: float
+) -> tuple[Fit, bool]:
+    """The best fit after some rounds, and whether its chi-squared is larger than the limit."""
+    evaluations = model.evaluate_all(starts)
     for entering, iterations in schedule:
-        fits = [minimise(part, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
+        fits = [minimise(model, evaluation, iterations) for evaluation in _leading(evaluations, entering)]
         evaluations = [fit.evaluation for fit in fits]
         best = min(fits, key=_chi2)
-        hopeless = best.chi2 > limit
-        if hopeless:
-            break
-    if some:
-        best = _on_all_tests(model, best, rows, starts)
-    return best if best.converged or hopeless else minimise(model, best.evaluation)
+        if best.chi2 > limit:
+            return best, True
+    return best, False
 
 
 def _on_all_tests(model: Model, fit: Fit, rows: np.ndarray, starts: Sequence[Point]) -> Fit:

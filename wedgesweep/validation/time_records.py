@@ -1,8 +1,8 @@
 """Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
 
-Oscillators and suspensions of any size take turns. Each hides one effect, or none in every fifth set. It is as
-strong as is needed for a drawn change of the response; sets whose excess is too small for a name all the same
-count as weak.
+Oscillators and suspensions of any size take turns. Each hides one effect, or none in every fifth set. It is
+as strong as is needed for a drawn change of the response; sets whose excess is too small for a name all the
+same count as weak.
 """
 
 from collections.abc import Callable

@@ -285,7 +285,7 @@ def simulated_together(
     gains: np.ndarray,
     tolerance: float,
 ) -> np.ndarray:
-    """Coefficients (n, W, C, K) of n scenarios in W windows that are ``alike``; NaN where there is no response.
+    """Coefficients (n, W, C, K) of n scenarios in W windows that are ``alike``; NaN without a response.
 
     ``starts`` (n, W, B, 2): displacement (m) and velocity (m/s) at the first simulated sample, of the mass,
     then of each of BODIES; ``gains`` (n, W): of the input.
