@@ -19,8 +19,8 @@ class Recorder(NamedTuple):
     ``x`` and ``velocity`` have shape (n,), ``sticks`` (n,) says whether the observed contact sticks,
     ``normal`` (2, n) holds the normal forces (N; NaN while they are not determined), ``acceleration`` (n,)
     the rate of the velocity. The last two are not recorded if they have the shapes (2, 0) and (0,). Without
-    ``energies`` the sums leave out forces and energies, which saves half of the time. Unless ``summed``, steps
-    are not added to the sums, which then say nothing.
+    ``energies`` the sums leave out forces and energies, which saves half of the time. Unless ``summed``,
+    steps are not added to the sums, which then say nothing.
     """
 
     start: float
