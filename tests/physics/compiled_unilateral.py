@@ -6,7 +6,7 @@ from wedgesweep.compiled import compiled
 from wedgesweep.hybrid import interface
 from wedgesweep.systems.suspension import breakaway, filippov
 from wedgesweep.systems.suspension.modes import HELD, ContactMode
-from wedgesweep.systems.suspension.unilateral import contacts, impact, modes, motion
+from wedgesweep.systems.suspension.unilateral import contacts, hybrid, impact, modes, motion
 
 
 @compiled
@@ -97,3 +97,19 @@ def kinetic_energy(y, case):
 def rate_at(t, y, case):
     """Rate of a state in the mode in which a run begins there."""
     return interface.rate(t, y, interface.initial_mode(t, y, case[0])[0], case[0])[0]
+
+
+@compiled
+def reactions_of_closed(t, y, case):
+    """Normal forces of two closed faces that slip upwards."""
+    p = case[0]
+    found = interface.contact_forces(t, y, ContactMode(1, -1, 1, 1, 1, 0, 0, 0), p)
+    return found[0], found[1]
+
+
+@compiled
+def after_bolster_closes(y, case):
+    """State after the bolster face hits; before, both contacts were open."""
+    return interface.transition(0.0, y, ContactMode(0, 0, 0, 0, 0, 0, 0, 0), hybrid.BOLSTER_CLOSES, case[0])[
+        0
+    ]

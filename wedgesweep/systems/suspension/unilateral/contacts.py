@@ -509,6 +509,12 @@ def motion_of(solution, free, faces, p):
 
 
 @inlined
+def weight(p):
+    """Weight (N) of bolster and wedge, which the forces of the springs balance at rest."""
+    return (p.suspension.bolster_mass + p.suspension.wedge_mass) * p.suspension.gravity
+
+
+@inlined
 def rounding(free, p):
     """Reactions (N or N s) that may be rounding errors."""
     s = p.suspension

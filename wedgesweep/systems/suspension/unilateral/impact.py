@@ -115,8 +115,11 @@ def struck(y, column, bolster, restitution, p):
 
 @inner
 def closing(y, mode, place, column_closes, bolster_closes, p):
-    """The impact at the event in which a gap closes; ``column_closes``, ``bolster_closes``: its places."""
-    column = mode.column_sign == 1 or place == column_closes
-    bolster = mode.bolster_sign == 1 or place == bolster_closes
+    """The impact at the event in which a gap closes; ``column_closes``, ``bolster_closes``: its places.
+
+    A contact that has opened just now still takes part in it.
+    """
+    column = mode.column_sign == 1 or place == column_closes or gap_state(y, COLUMN_GAP) == 0.0
+    bolster = mode.bolster_sign == 1 or place == bolster_closes or gap_state(y, BOLSTER_GAP) == 0.0
     approach = -gap_state(y, COLUMN_RATE if place == column_closes else BOLSTER_RATE)
     return struck(y, column, bolster, restitution_at(approach, p), p)

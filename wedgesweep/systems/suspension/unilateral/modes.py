@@ -17,12 +17,14 @@ from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
 from wedgesweep.systems.suspension.unilateral.contacts import (
     FORWARD,
     OPEN,
+    ROUNDING,
     STICK,
     Faces,
     bolster_slip,
     motion_of,
     rounding,
     solve,
+    weight,
 )
 from wedgesweep.systems.suspension.unilateral.motion import (
     BOLSTER_GAP,
@@ -168,9 +170,10 @@ def resolve(t, y, contact, segment, p):
     guide = contact.guide_branch
     free, faces = free_accelerations(t, y, segment, guide, p), _faces(y, contact, p)
     found, certain = solve(free, faces, p)
-    moment = LOOK_AHEAD / p.input.omega
+    moment, doubtful = LOOK_AHEAD / p.input.omega, ROUNDING * weight(p)
     for _ in range(MOMENTS):
-        if certain > 0:
+        # Loads that nearly cancel each other leave rounding errors of their own size, not of their sum's.
+        if certain > 0 and found.margin > doubtful:
             break
         later = _later(t, y, motion_of(found, free, faces, p), moment, p)
         there, faces = free_accelerations(t + moment, later, segment, guide, p), _faces(later, contact, p)
