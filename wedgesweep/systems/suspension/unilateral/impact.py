@@ -113,13 +113,18 @@ def struck(y, column, bolster, restitution, p):
     return Impact(with_gaps(later, gaps), _scaled(found.reactions, part), unique)
 
 
+@inlined
+def _touches(gap, rate, y):
+    return gap_state(y, gap) == 0.0 and gap_state(y, rate) <= 0.0
+
+
 @inner
 def closing(y, mode, place, column_closes, bolster_closes, p):
     """The impact at the event in which a gap closes; ``column_closes``, ``bolster_closes``: its places.
 
-    A contact that has opened just now still takes part in it.
+    A contact that has opened just now, and does not move apart yet, still takes part in it.
     """
-    column = mode.column_sign == 1 or place == column_closes or gap_state(y, COLUMN_GAP) == 0.0
-    bolster = mode.bolster_sign == 1 or place == bolster_closes or gap_state(y, BOLSTER_GAP) == 0.0
+    column = mode.column_sign == 1 or place == column_closes or _touches(COLUMN_GAP, COLUMN_RATE, y)
+    bolster = mode.bolster_sign == 1 or place == bolster_closes or _touches(BOLSTER_GAP, BOLSTER_RATE, y)
     approach = -gap_state(y, COLUMN_RATE if place == column_closes else BOLSTER_RATE)
     return struck(y, column, bolster, restitution_at(approach, p), p)
