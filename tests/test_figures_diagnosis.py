@@ -189,12 +189,26 @@ def test_transients(kind):
         draw(kind, build())
 
 
-def test_swings_are_the_peaks_between_passages_through_zero():
+def test_swings_reach_from_one_turning_point_to_the_next():
     time = np.linspace(0.0, 10.0, 100_001)
-    when, size = decays.swings(time, (1.0 - 0.05 * time) * np.sin(2.0 * np.pi * time))
-    # The first and the last one are cut, or begin at the first sample.
-    assert np.diff(when) == pytest.approx(0.5, abs=1e-3)
-    assert size == pytest.approx(1.0 - 0.05 * when, abs=1e-4)
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(time.size)
+    when, size = decays.swings(time, (1.0 - 0.05 * time) * np.sin(2.0 * np.pi * time) + noise, 1e-3)
+    # The first one begins at the first sample.
+    assert np.diff(when[1:]) == pytest.approx(0.5, abs=1e-2)
+    assert size[1:] == pytest.approx(1.0 - 0.05 * when[1:], abs=5e-3)
+
+
+def test_swings_of_dry_friction_fall_evenly_though_the_last_ones_do_not_pass_zero():
+    step, start = 0.13, 1.0  # of F/k, and where the mass is released
+    share = np.arange(1000) / 1000.0
+    centre = step * (-1.0) ** np.arange(4)
+    turns = np.array([(-1.0) ** n * (start - 2.0 * step * n) for n in range(4)])
+    motion = np.concatenate([c + (a - c) * np.cos(np.pi * share) for a, c in zip(turns, centre, strict=True)])
+    resting = np.r_[motion, np.full(1000, start - 8.0 * step)]
+    when, size = decays.swings(np.arange(resting.size) / 1000.0, resting - 0.3, 1e-4)
+    # After the last one the mass rests where it stopped, and does not turn.
+    assert size == pytest.approx(start - step - 2.0 * step * np.arange(3), abs=1e-3)
+    assert when == pytest.approx([0.5, 1.5, 2.5], abs=1e-2)
 
 
 def test_a_spectrogram_shows_the_sweep_and_the_harmonic_that_the_base_model_lacks():

@@ -1,4 +1,4 @@
-"""Measured against simulated samples: forces of loops, free motions in time."""
+"""Measured against simulated samples: forces of loops, motions in time."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -50,8 +50,8 @@ NOISE = {
 COMPARED = {
     "loop": "The motion is imposed, and the force is compared in {tests} of whole cycles, below the cut-off "
     "of a low-pass filter. With the zero of the force fitted",
-    "transient": "The free motion of {tests} is compared in time. With the start of each and the zero of the "
-    "displacement fitted",
+    "transient": "The motion of {tests} is compared in time, under the recorded input where there is one. "
+    "With the start of each and the zero of the displacement fitted",
 }
 
 

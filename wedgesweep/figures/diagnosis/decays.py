@@ -1,10 +1,10 @@
 """Measured and simulated motion in time, the size of its swings, and what the models leave of it."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.signal import find_peaks
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
@@ -18,8 +18,8 @@ DESCRIPTION = "motion in time and the size of its swings, measured and simulated
 
 # Of a longer motion the beginning is drawn: more would run together.
 SWINGS = 40
-# Swings below so many standard deviations of the noise are not drawn.
-CLEAR = 3.0
+# Amplitudes below so many standard deviations of the noise are not drawn.
+CLEAR = 5.0
 # Units of the first channel, and what turns SI into them.
 UNITS = {"displacement": ("mm", style.MM), "velocity": ("mm/s", style.MM), "acceleration": ("m/s²", 1.0)}
 
@@ -28,12 +28,16 @@ def _unit(result: DiagnosisResult) -> tuple[str, float]:
     return UNITS[str(result.data["channel"].values[0])]
 
 
-def swings(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Times and sizes of the largest deflection between each two passages through zero."""
-    passed = np.flatnonzero(np.diff(np.signbit(signal)))
-    parts = [slice(a + 1, b + 1) for a, b in pairwise(passed)]
-    places = np.array([part.start + np.abs(signal[part]).argmax() for part in parts], int)
-    return time[places], np.abs(signal[places])
+def swings(time: np.ndarray, signal: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times of the swings from one turning point to the next, and half of their lengths.
+
+    So the middle of the motion may move, as it does where friction holds the mass beside its rest. ``noise``:
+    standard deviation, of which swings stand out.
+    """
+    clear = 2.0 * CLEAR * noise
+    tops, bottoms = (find_peaks(each, prominence=max(clear, 1e-300))[0] for each in (signal, -signal))
+    turns = np.unique(np.r_[0, tops, bottoms])
+    return 0.5 * (time[turns[:-1]] + time[turns[1:]]), 0.5 * np.abs(np.diff(signal[turns]))
 
 
 def _signals(result: DiagnosisResult, test: int) -> dict[str, np.ndarray]:
@@ -55,12 +59,9 @@ def _draw_motion(ax: Axes, result: DiagnosisResult, signals: dict[str, np.ndarra
 
 
 def _draw_swings(ax: Axes, result: DiagnosisResult, signals: dict[str, np.ndarray], noise: float) -> None:
-    time = signals["time"]
     for name in ("measured", *result.models):
-        when, size = swings(time, signals[name])
-        clear = size > CLEAR * noise
         look = {**marks.MEASURED_DOT, "markersize": 3.0} if name == "measured" else marks.line(name)
-        ax.plot(when[clear], size[clear], **look)
+        ax.plot(*swings(signals["time"], signals[name], noise), **look)
     ax.set_ylim(bottom=0.0)
 
 
@@ -72,9 +73,9 @@ def _draw_left(ax: Axes, result: DiagnosisResult, signals: dict[str, np.ndarray]
     ax.set_xlabel("time [s]", fontsize=8.5)
 
 
-def _end(signals: dict[str, np.ndarray]) -> float:
+def _end(signals: dict[str, np.ndarray], noise: float) -> float:
     """Time up to which the motion is drawn."""
-    when, _ = swings(signals["time"], signals["measured"])
+    when, _ = swings(signals["time"], signals["measured"], noise)
     return float(when[SWINGS] if when.size > SWINGS else signals["time"][-1])
 
 
@@ -91,7 +92,8 @@ def draw(target: Target, result: DiagnosisResult, tests: Sequence[int] | None = 
     cut = False
     for test, (motion, sizes, left) in made:
         signals = _signals(result, test)
-        noise, end = float(result.data["sample_noise"].values[test, 0]) * _unit(result)[1], _end(signals)
+        noise = float(result.data["sample_noise"].values[test, 0]) * _unit(result)[1]
+        end = _end(signals, noise)
         cut |= end < signals["time"][-1]
         _draw_motion(motion, result, signals, end)
         _draw_swings(sizes, result, signals, noise)
