@@ -264,7 +264,7 @@ def explain(search: Search) -> Explained:
             search, found = followed_beyond(search, base, found)
         if verdict.none_adequate(found):
             found = found + multistart(search, scans)
-    found = best_of_each(found, penalised)
+    found = from_shared_nuisances(search, best_of_each(found, penalised))
     search, base = refit_base(search, base, found)
     return with_renewed_covariance(Explained(search, base, found, scans))
 

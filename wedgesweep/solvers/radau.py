@@ -8,7 +8,7 @@ joints can open, as in period_map.py.
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from math import inf, pi
+from math import inf, isnan, pi
 from time import perf_counter
 from typing import Any
 
@@ -249,6 +249,7 @@ class _Run:
 
         def event(t: float, y: np.ndarray) -> float:
             value = system.events(t, y, mode, case)[place]
+            self._require(not isnan(value), t)
             # An event that begins at zero may be negative there by rounding, which would hide its return.
             return max(value, 0.0) if t == start else value
 

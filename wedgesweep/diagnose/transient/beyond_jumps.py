@@ -4,7 +4,8 @@ Where a mass just stops at a turn, or just does not, all that follows is differe
 there: a fit ends on the wrong side of it, or beside it, where the next step along it would lead over it. And
 a spring that stiffens has two steady vibrations under one input: in the wrong one a fit takes the start far
 from the record. So the start is looked for around where the fit ended and around where the record begins, in
-all directions.
+all directions. Where a mass rests at first the record shows how it moves later, but not where between the
+limits of friction it rests: its zero is unknown. So all places of rest are tried as well.
 """
 
 from collections.abc import Callable
@@ -14,6 +15,8 @@ import numpy as np
 # Distances, in units of the start, at which other starts are tried; numbers of directions, and of moves at
 # each distance.
 DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
+# Places of rest that are tried, in units of the start.
+PLACES_OF_REST = np.linspace(-1.0, 1.0, 101)
 # A test stands out if its misfit, over the median of all tests, is so many standard deviations of noise too
 # large. At most this share of the tests can stand out: where most are wrong, the model is.
 DEVIATIONS, LARGEST_SHARE = 4.0, 1.0 / 3.0
@@ -39,7 +42,10 @@ def best_start(misfit: Callable[[np.ndarray], np.ndarray], start: np.ndarray) ->
     """
     angle = 2.0 * np.pi / DIRECTIONS * np.arange(DIRECTIONS)
     around = np.column_stack([np.cos(angle), np.sin(angle)])
-    best, least = start, float(misfit(start[None])[0])
+    resting = np.column_stack([PLACES_OF_REST, np.zeros_like(PLACES_OF_REST)])
+    begun = np.vstack([start, resting])
+    found = misfit(begun)
+    best, least = begun[np.argmin(found)], float(found.min())
     for distance in DISTANCES:
         for _ in range(MOVES):
             tried = best + distance * around

@@ -26,7 +26,7 @@ from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData, best_of_each_test
-from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
+from wedgesweep.diagnose.transient.beyond_jumps import PLACES_OF_REST, best_start, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
@@ -42,8 +42,9 @@ MOST_BLOCKS = 12
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 # The same of each of BODIES, in their order.
 BODY_STARTS = START * len(BODIES)
-# Offsets of the start, over the largest displacement, that are tried if there are at most FEW points.
-OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 3
+# Offsets of the start, over the largest displacement, that are tried beside PLACES_OF_REST if there are at
+# most FEW points.
+OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.02, 0.05, 0.1), 3
 # Samples that are simulated at a time, at most: they take some hundred megabytes.
 MOST_TOGETHER = 4_000_000
 # A search begins with at least FEWEST_WINDOWS windows, one of at most MOST_REPRESENTED successive ones.
@@ -274,11 +275,13 @@ class TransientData(SampledData):
         A mass that rests before it moves may do so at any place where friction holds it.
         """
         stated, at_rest = self.start()
-        offsets = OFFSETS if len(points) <= FEW else (0.0,)
-        tried = [points]
-        for offset in offsets:
-            moved = stated + offset * (np.arange(stated.shape[1]) == 0)
-            tried.append([replace(each, nuisance=moved, warm=at_rest) for each in points])
+        starts = [stated]
+        if len(points) <= FEW:
+            first = np.arange(stated.shape[1]) == 0
+            starts += [stated + offset * first for offset in OFFSETS]
+            starts += [place * first + np.zeros_like(stated) for place in PLACES_OF_REST]
+        moved = [[replace(each, nuisance=start, warm=at_rest) for each in points] for start in starts]
+        tried = [points, *moved]
         by_try = [model.evaluate_all(each) for each in tried]
         return [best_of_each_test(evaluations) for evaluations in zip(*by_try, strict=True)]
 
