@@ -92,3 +92,41 @@ def test_a_plan_that_cannot_be_made_says_why(tmp_path, message):
     paths = (tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", "-o", tmp_path / "data")
     assert f"tests.toml: test[0].{message}" in invoke("synthesize", *paths, code=2)
     assert not (tmp_path / "data").exists()
+
+
+LOCKS = """
+[friction]
+static = 0.29
+dynamic = 0.29
+[suspension]
+bolster_mass_kg = 14.6571
+wedge_mass_kg = 4.03934
+side_frame_mass_kg = 11.6343
+bolster_spring_N_per_mm = 2.36518
+wedge_spring_N_per_mm = 1.44404
+wedge_angle_deg = 35.369
+column_angle_deg = 4.6825
+[effects.load_dependent_friction]
+exponent = 0.0914367
+[sweep]
+friction_law = "coulomb"
+beta = 1.0
+amplitude_mm = 0.1
+"""
+
+
+@pytest.mark.parametrize(
+    ("plan", "message"),
+    [
+        (SWEEP.replace("4.0", "60.0"), "test[0] (transient): normal forces not unique at t = "),
+        (LOOP.replace("10.0", "60.0"), "test[0] (loop): no force drives the mass in "),
+    ],
+)
+def test_a_test_in_which_a_wedge_locks_is_refused(tmp_path, plan, message):
+    (tmp_path / "rig.toml").write_text(LOCKS)
+    (tmp_path / "tests.toml").write_text(plan)
+    out = tmp_path / "data"
+    found = invoke("synthesize", tmp_path / "rig.toml", "--tests", tmp_path / "tests.toml", "-o", out, code=2)
+    assert message in found
+    assert "Traceback" not in found
+    assert not out.exists()

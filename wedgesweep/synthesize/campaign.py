@@ -62,8 +62,8 @@ def synthesize(
     motions = _motions(steady, options, n_jobs, plan.source) if steady.tests else []
     found = iter([_table(steady, *each, options) for each in zip(steady.tests, motions, strict=True)])
     tables = [
-        next(found) if test.plan.kind == STEADY else other_tables.table(truth, test, options)
-        for test in truth.tests
+        next(found) if test.plan.kind == STEADY else _other_table(truth, i, options, plan.source)
+        for i, test in enumerate(truth.tests)
     ]
     model = Config(config.document | {"effects": {}, "title": "model on trial"})
     measured = documents.measured(directory.name, config, plan, options)
@@ -75,6 +75,15 @@ def synthesize(
         for i, (test, motion) in enumerate(zip(steady.tests, motions, strict=True))
         if test.stray_phase_deg is None and motion.settle_periods == options.settle_periods
     ]
+
+
+def _other_table(truth: Truth, i: int, options: Options, source: str) -> Table:
+    """Channels of a test that is not steady; raises SynthesisError where the case has no answer."""
+    try:
+        return other_tables.table(truth, truth.tests[i], options)
+    except CaseError as error:
+        kind = f"test[{i}] ({truth.tests[i].plan.kind})"
+        raise SynthesisError([f"{source}: {kind}: {error}"]) from error
 
 
 def _with_recorded_input(config: Config, plan: Plan, options: Options) -> Options:

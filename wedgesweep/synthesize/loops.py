@@ -7,6 +7,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.solvers import imposed_motion
+from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.synthesize.plan import PlannedTest
 
 # Steps of the motion for each sample, over which force and displacement are averaged.
@@ -23,13 +24,24 @@ def loop(
     test: PlannedTest,
     sampling_hz: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Displacement (m) and force (N), shape (n,) each, of a test; ``effects`` in SI units."""
+    """Displacement (m) and force (N), shape (n,) each, of a test; ``effects`` in SI units.
+
+    Raises
+    ------
+    CaseError
+        If no force gives the mass this motion: a face would lift off, or the wedge locks.
+    """
     count, step = round(test.duration_s * sampling_hz), 1.0 / sampling_hz / CELLS
     time = step * (np.arange(count * CELLS) + 0.5)
     record = config.record_with(effects, law, 0.0)
     motion = np.array([_derivative(test, time, order) for order in range(3)])
     sign = 1.0 if config.system == "oscillator" else -1.0
     force = imposed_motion.forces(record, sign * motion[0], sign * motion[1], sign * motion[2], step)[0]
+    if np.isnan(force).any():
+        share = f"{np.isnan(force).mean():.0%} of the motion"
+        reason = f"no force drives the mass in {share}: a face lifts off there, or the wedge locks"
+        message = f"{reason}; lower the amplitude"
+        raise CaseError(message, "locked")
     displacement, mean = (each.reshape(count, CELLS).mean(axis=1) for each in (motion[0], force))
     return displacement, mean
 

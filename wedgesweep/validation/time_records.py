@@ -6,7 +6,7 @@ same count as weak.
 """
 
 from collections.abc import Callable
-from math import pi
+from math import nan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,10 +14,10 @@ import numpy as np
 from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import FREQUENCY, LENGTH
+from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.names import NOISES
-from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.transients import transient
 from wedgesweep.validation import ranges, rigs
 from wedgesweep.validation.rigs import Rig
@@ -31,9 +31,9 @@ OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_
 NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_lag")
 # Every so many sets one hides nothing.
 CLEAN_EACH = 5
-# Natural frequency (Hz) of a suspension of the bench's size, and the largest motion (mm) that it is released
-# to, and that is imposed on it: a larger one lifts its wedges off.
-BENCH_HZ, BENCH_TRAVEL_MM, BENCH_IMPOSED_MM = 13.6, 1.0, 0.15
+# Of a suspension of the bench's size: natural frequency (Hz), largest motion (mm) that it is released to, and
+# that is imposed on it (a larger one lifts its wedges off), motion of the base in steady tests.
+BENCH_HZ, BENCH_TRAVEL_MM, BENCH_IMPOSED_MM, BENCH_BASE_MM = 13.6, 1.0, 0.15, 0.6
 # Of an oscillator: natural frequency (Hz), damping ratio, and friction over the spring's force at the largest
 # motion.
 FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
@@ -50,12 +50,17 @@ STEADY = (0.7, 0.9, 1.15, 1.4)
 
 
 class Drawn(NamedTuple):
-    """A rig, its natural frequency (Hz), the largest motion (mm) of its tests and the largest imposed one."""
+    """A rig, its natural frequency (Hz), and the sizes (mm) of its tests.
+
+    ``travel``: largest motion after a release; ``imposed``: largest imposed one; ``base``: motion of the base
+    in steady tests.
+    """
 
     rig: Rig
     frequency: float
     travel: float
     imposed: float
+    base: float
 
 
 def draw(one: DataSet) -> dict[str, Any]:
@@ -88,11 +93,13 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
         path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
         shown = next((test for test in tests if "release_mm" in test), tests[0])
-        change = _change(rig, law, plan.from_document({"test": [shown]}).tests[0], sampling_hz)
+        change = _change(rig, law, shown, sampling_hz)
         strength = reach(wanted, lambda s: change({effect: path(s)}))
         if strength is None:
             return None
         hidden[effect] = {key: float(f"{value:.6g}") for key, value in path(strength).items()}
+    if not all(_response(rig, law, hidden, test, sampling_hz) is not None for test in tests):
+        return None
     return {
         "law": law,
         "document": rig.document(law, hidden),
@@ -105,31 +112,46 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
 
 
 def _change(
-    rig: Rig, law: str, test: PlannedTest, sampling_hz: float
+    rig: Rig, law: str, test: dict[str, Any], sampling_hz: float
 ) -> Callable[[dict[str, dict[str, float]]], float]:
-    """Change of the response to a test by effects, over the response; of all channels together."""
+    """Change of the response to a test by effects, over the response; of all channels together.
 
-    def response(effects: dict[str, dict[str, float]]) -> np.ndarray:
-        config = from_document(rig.document(law, effects))
-        if test.kind == LOOP:
-            return loop(config, law, config.effects, test, sampling_hz)[1][None]
-        made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
-        return np.array([made.displacement, made.velocity])
-
-    base = response({})
+    NaN where there is no response.
+    """
+    base = _response(rig, law, {}, test, sampling_hz)
 
     def change(effects: dict[str, dict[str, float]]) -> float:
-        left = (response(effects) - base).std(axis=1) / base.std(axis=1)
-        return float(np.linalg.norm(left))
+        found = _response(rig, law, effects, test, sampling_hz)
+        if base is None or found is None:
+            return nan
+        return float(np.linalg.norm((found - base).std(axis=1) / base.std(axis=1)))
 
     return change
+
+
+def _response(
+    rig: Rig, law: str, effects: dict[str, dict[str, float]], document: dict[str, Any], sampling_hz: float
+) -> np.ndarray | None:
+    """Channels of a transient or a loop, nothing of a steady test; None where there is no response."""
+    (test,) = plan.from_document({"test": [document]}).tests
+    config = from_document(rig.document(law, effects))
+    try:
+        if test.kind == LOOP:
+            return loop(config, law, config.effects, test, sampling_hz)[1][None]
+        if test.kind == TRANSIENT:
+            made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
+            return np.array([made.displacement, made.velocity])
+    except CaseError:
+        return None
+    return np.zeros((1, 0))
 
 
 def _suspension(random: np.random.Generator) -> Drawn:
     rig = rigs.any_size(random)
     length = rig.units.ratio(LENGTH)
     frequency = BENCH_HZ * rig.units.ratio(FREQUENCY)
-    return Drawn(rig, frequency, BENCH_TRAVEL_MM * length, BENCH_IMPOSED_MM * length)
+    sizes = (size * length for size in (BENCH_TRAVEL_MM, BENCH_IMPOSED_MM, BENCH_BASE_MM))
+    return Drawn(rig, frequency, *sizes)
 
 
 def _oscillator(random: np.random.Generator) -> Drawn:
@@ -148,7 +170,7 @@ def _oscillator(random: np.random.Generator) -> Drawn:
         "oscillator": {**rounded, "contact": "base"},
         "friction": {"static": 0.36, "dynamic": 0.3, "threshold_velocity_mm_per_s": threshold},
     }
-    return Drawn(Rig(sections), frequency, travel, travel)
+    return Drawn(Rig(sections), frequency, travel, travel, 0.25 * travel)
 
 
 def _releases(drawn: Drawn) -> list[dict[str, Any]]:
@@ -184,7 +206,7 @@ def _loops(drawn: Drawn) -> list[dict[str, Any]]:
 
 def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
     steady = [
-        {"frequency_hz": share * drawn.frequency, "amplitude_mm": 0.25 * drawn.travel, "amplitude_std": 0.005}
+        {"frequency_hz": share * drawn.frequency, "amplitude_mm": drawn.base, "amplitude_std": 0.005}
         for share in STEADY
     ]
     return [*steady, *_releases(drawn), _loops(drawn)[0]]
