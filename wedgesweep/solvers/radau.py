@@ -222,7 +222,7 @@ class _Run:
             (t, stop),
             y,
             method=SmallRadau if y.size == 2 else Radau,
-            jac=lambda t, y: system.jacobian(t, y, mode, self.case),
+            jac=self._jacobian(mode),
             events=[*(self._event(t, mode, place) for place in places), _turn],
             dense_output=at_rest or t >= self.window.keep,
             rtol=self.rtol,
@@ -243,6 +243,16 @@ class _Run:
             return system.rate(t, y, mode, case)
 
         return limited_rate
+
+    def _jacobian(self, mode: Mode) -> Callable[[float, np.ndarray], np.ndarray]:
+        case = self.case
+
+        def determined(t: float, y: np.ndarray) -> np.ndarray:
+            found = system.jacobian(t, y, mode, case)
+            self._require(bool(np.isfinite(found).all()), t)
+            return found
+
+        return determined
 
     def _event(self, start: float, mode: Mode, place: int) -> Callable[[float, np.ndarray], float]:
         case = self.case
