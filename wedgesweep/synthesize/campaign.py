@@ -19,7 +19,7 @@ from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
 from wedgesweep.synthesize import documents, files, noise, other_tables, recorded_input
 from wedgesweep.synthesize.files import Table
-from wedgesweep.synthesize.motion import Motion, steady
+from wedgesweep.synthesize.motion import Motion, NoMotion, steady
 from wedgesweep.synthesize.names import FORCE, QUANTITIES
 from wedgesweep.synthesize.options import Options
 from wedgesweep.synthesize.plan import Plan
@@ -81,7 +81,7 @@ def _other_table(truth: Truth, i: int, options: Options, source: str) -> Table:
     """Channels of a test that is not steady; raises SynthesisError where the case has no answer."""
     try:
         return other_tables.table(truth, truth.tests[i], options)
-    except CaseError as error:
+    except NoMotion as error:
         kind = f"test[{i}] ({truth.tests[i].plan.kind})"
         raise SynthesisError([f"{source}: {kind}: {error}"]) from error
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.solvers import imposed_motion
-from wedgesweep.solvers.trajectory import CaseError
+from wedgesweep.synthesize.motion import NoMotion
 from wedgesweep.synthesize.plan import PlannedTest
 
 # Steps of the motion for each sample, over which force and displacement are averaged.
@@ -28,7 +28,7 @@ def loop(
 
     Raises
     ------
-    CaseError
+    NoMotion
         If no force gives the mass this motion: a face would lift off, or the wedge locks.
     """
     count, step = round(test.duration_s * sampling_hz), 1.0 / sampling_hz / CELLS
@@ -41,7 +41,7 @@ def loop(
         share = f"{np.isnan(force).mean():.0%} of the motion"
         reason = f"no force drives the mass in {share}: a face lifts off there, or the wedge locks"
         message = f"{reason}; lower the amplitude"
-        raise CaseError(message, "locked")
+        raise NoMotion(message)
     displacement, mean = (each.reshape(count, CELLS).mean(axis=1) for each in (motion[0], force))
     return displacement, mean
 

@@ -28,6 +28,10 @@ LAG_STEPS_PER_PERIOD = 4000
 LAG_MEMORY = 25.0
 
 
+class NoMotion(Exception):  # noqa: N818
+    """A test to which the true system has no answer: a wedge locks, or a face lifts off."""
+
+
 @dataclass(frozen=True)
 class Clock:
     """Sample times: from ``start`` (s after a zero crossing of the input), ``step`` (s) apart."""

@@ -10,8 +10,8 @@ from wedgesweep import excitation
 from wedgesweep.config import Config
 from wedgesweep.sampled_input import from_samples, set_sampled
 from wedgesweep.solvers import radau
-from wedgesweep.solvers.trajectory import TimedWindow
-from wedgesweep.synthesize.motion import RTOL, TIME_LIMIT, lagged
+from wedgesweep.solvers.trajectory import CaseError, TimedWindow
+from wedgesweep.synthesize.motion import RTOL, TIME_LIMIT, NoMotion, lagged
 from wedgesweep.synthesize.plan import PlannedTest
 
 RELEASE, SWEEP, RANDOM, BUMP = "release", "sweep", "random", "bump"
@@ -60,7 +60,7 @@ def transient(
     sampling_hz: float,
     random: np.random.Generator,
 ) -> Transient:
-    """Simulate a test; ``effects`` in SI units. Raises CaseError if the solver fails."""
+    """Simulate a test; ``effects`` in SI units. Raises NoMotion if there is no response."""
     count, factor = round(test.duration_s * sampling_hz), config.amplitude_unit.factor
     omega = 1.0 / config.natural_units(1e-3 * max(abs(test.release_mm), test.amplitude, 1e-6)).time
     record = config.record_with(effects, law, 1.0, omega)
@@ -75,7 +75,10 @@ def transient(
     period = test.duration_s
     window = TimedWindow(2.0 * pi / period, 0, 1, 0, np.arange(count) / sampling_hz)
     start = (sign * 1e-3 * test.release_mm, sign * 1e-3 * test.release_mm_per_s)
-    samples = radau.solve(record, window, RTOL, TIME_LIMIT, start=start).samples
+    try:
+        samples = radau.solve(record, window, RTOL, TIME_LIMIT, start=start).samples
+    except CaseError as error:
+        raise NoMotion(str(error)) from error
     lag = effects.get("velocity_lag", {}).get("time", 0.0)
     displacement, velocity = -samples.x, -samples.velocity
     velocity = lagged(velocity, 1.0 / sampling_hz, lag) if lag > 0.0 else velocity

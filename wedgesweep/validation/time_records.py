@@ -14,9 +14,9 @@ import numpy as np
 from wedgesweep.config import from_document
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import FREQUENCY, LENGTH
-from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.loops import loop
+from wedgesweep.synthesize.motion import NoMotion
 from wedgesweep.synthesize.names import NOISES
 from wedgesweep.synthesize.transients import transient
 from wedgesweep.validation import ranges, rigs
@@ -141,7 +141,7 @@ def _response(
         if test.kind == TRANSIENT:
             made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
             return np.array([made.displacement, made.velocity])
-    except CaseError:
+    except NoMotion:
         return None
     return np.zeros((1, 0))
 
