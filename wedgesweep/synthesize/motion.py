@@ -28,7 +28,7 @@ LAG_STEPS_PER_PERIOD = 4000
 LAG_MEMORY = 25.0
 
 
-class NoMotion(Exception):  # noqa: N818
+class NoMotion(Exception):
     """A test to which the true system has no answer: a wedge locks, or a face lifts off."""
 
 
