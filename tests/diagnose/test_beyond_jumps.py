@@ -48,6 +48,14 @@ def test_a_start_that_a_fit_took_far_from_the_record_is_looked_for_there(tmp_pat
     assert found[:, :2] == pytest.approx(right, abs=0.02)
 
 
+def test_the_place_is_found_where_a_mass_rests_at_first():
+    def misfit(starts):
+        x, v = (starts - [0.07, 0.0]).T
+        return np.where(np.hypot(x, v) < 0.02, 1e4 * (x**2 + v**2), 1e3 + x**2 + v**2)
+
+    assert best_start(misfit, np.array([0.99, 0.03])) == pytest.approx([0.07, 0.0], abs=1e-3)
+
+
 def test_a_minimum_along_a_cliff_is_found():
     # A valley along the cliff x = y, whose bottom is far along it.
     def misfit(starts):

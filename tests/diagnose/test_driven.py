@@ -10,6 +10,7 @@ from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.transient.from_measurement import transient_data
+from wedgesweep.diagnose.transient.input_noise import InputNoise, cosines
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
@@ -120,6 +121,13 @@ def test_noise_of_the_input_counts_as_the_resonance_passes_it_on(tmp_path):
     assert (found.verdict, [each["effect"] for each in found.causes]) == ("named", ["cubic_stiffness"])
     low, high = found.causes[0]["parameters"]["coefficient_N_per_mm3"]["ci95"]
     assert low < 2e-4 < high < 1.01 * low
+
+
+def test_noise_counts_from_a_natural_period_before_a_window_that_began_long_before():
+    noise = InputNoise(np.ones(2), 0, np.pi, (0.0,))
+    parts = cosines(noise, 40, 0.01, np.pi, first=100)
+    values = parts.at(0.01 * np.arange(100, 140))[:-1]
+    assert values @ values.T == pytest.approx(np.eye(39), abs=1e-9)
 
 
 def test_all_noise_counts_that_acts_with_the_input():

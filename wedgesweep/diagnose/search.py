@@ -301,7 +301,7 @@ def from_shared_nuisances(search: Search, found: Sequence[Explanation]) -> list[
         if not (fit.evaluation.chi2_by_test > least + MARKED).any():
             return each
         tried = [replace(fit.point, nuisance=other.fit.point.nuisance) for other in leading]
-        start = replace(fit.point, nuisance=fit.model.best_nuisances([fit.point, *tried]))
+        start = replace(fit.point, nuisance=fit.model.best_nuisances(tried))
         again = minimise(fit.model, fit.model.evaluate(start))
         return search.explanation(again) if again.chi2 < fit.chi2 else each
 

@@ -18,6 +18,7 @@ from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.motion import NoMotion
 from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.transients import transient
 from wedgesweep.validation import ranges, rigs
 from wedgesweep.validation.rigs import Rig
@@ -84,6 +85,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     law = LAWS[one.index % len(LAWS)]
     drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
     rig, tests = drawn.rig, TESTS[one.kind](drawn)
+    planned = plan.from_document({"test": tests}).tests
     sampling_hz = round(SAMPLED * drawn.frequency, 3)
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
@@ -92,13 +94,14 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
         effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
         path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
-        shown = next((test for test in tests if "release_mm" in test), tests[0])
+        shown = next((each for each in planned if each.release_mm), planned[0])
         change = _change(rig, law, shown, sampling_hz)
         strength = reach(wanted, lambda s: change({effect: path(s)}))
         if strength is None:
             return None
         hidden[effect] = {key: float(f"{value:.6g}") for key, value in path(strength).items()}
-    if not all(_response(rig, law, hidden, test, sampling_hz) is not None for test in tests):
+    others = [test for test in planned if test.kind in (TRANSIENT, LOOP)]
+    if any(_response(rig, law, hidden, test, sampling_hz) is None for test in others):
         return None
     return {
         "law": law,
@@ -112,7 +115,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
 
 
 def _change(
-    rig: Rig, law: str, test: dict[str, Any], sampling_hz: float
+    rig: Rig, law: str, test: PlannedTest, sampling_hz: float
 ) -> Callable[[dict[str, dict[str, float]]], float]:
     """Change of the response to a test by effects, over the response; of all channels together.
 
@@ -130,20 +133,17 @@ def _change(
 
 
 def _response(
-    rig: Rig, law: str, effects: dict[str, dict[str, float]], document: dict[str, Any], sampling_hz: float
+    rig: Rig, law: str, effects: dict[str, dict[str, float]], test: PlannedTest, sampling_hz: float
 ) -> np.ndarray | None:
-    """Channels of a transient or a loop, nothing of a steady test; None where there is no response."""
-    (test,) = plan.from_document({"test": [document]}).tests
+    """Channels of a transient or a loop; None where there is no response."""
     config = from_document(rig.document(law, effects))
     try:
         if test.kind == LOOP:
             return loop(config, law, config.effects, test, sampling_hz)[1][None]
-        if test.kind == TRANSIENT:
-            made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
-            return np.array([made.displacement, made.velocity])
+        made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
     except NoMotion:
         return None
-    return np.zeros((1, 0))
+    return np.array([made.displacement, made.velocity])
 
 
 def _suspension(random: np.random.Generator) -> Drawn:

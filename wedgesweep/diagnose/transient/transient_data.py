@@ -279,7 +279,7 @@ class TransientData(SampledData):
         if len(points) <= FEW:
             first = np.arange(stated.shape[1]) == 0
             starts += [stated + offset * first for offset in OFFSETS]
-            starts += [place * first + np.zeros_like(stated) for place in PLACES_OF_REST]
+            starts += [np.broadcast_to(place * first, stated.shape) for place in PLACES_OF_REST]
         moved = [[replace(each, nuisance=start, warm=at_rest) for each in points] for start in starts]
         tried = [points, *moved]
         by_try = [model.evaluate_all(each) for each in tried]

@@ -77,6 +77,16 @@ def breakaway_input(y, direction, segment, p):
     return limit if min(there.column, there.bolster) > 0.0 else nan
 
 
+@inner
+def breakaway_range(y, segment, p):
+    """Base accelerations (m/s^2) below which a stuck bolster slips up, and above which it slips down.
+
+    Also whether both faces carry load between them; else the bolster may leave in another way.
+    """
+    forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
+    return forward, backward, p.geometry.always_well_posed != 0 and forward < backward
+
+
 @inlined
 def carries_load_until_breakaway(y, segment, p):
     """Whether both faces carry load until a stuck bolster breaks away, whatever its direction.
@@ -85,8 +95,7 @@ def carries_load_until_breakaway(y, segment, p):
     """
     if fixture_resonance.acts(p):
         return False
-    forward, backward = breakaway_input(y, 1, segment, p), breakaway_input(y, -1, segment, p)
-    return p.geometry.always_well_posed != 0 and forward < backward
+    return breakaway_range(y, segment, p)[2]
 
 
 @inner
@@ -98,9 +107,8 @@ def breakaway_time(state, stop, p):
     accelerations. With positive normal forces these are known, and so are the phases at which a harmonic base
     motion reaches them.
     """
-    segment = state.mode.segment
-    forward, backward = breakaway_input(state.y, 1, segment, p), breakaway_input(state.y, -1, segment, p)
-    if not (p.geometry.always_well_posed and forward < backward):
+    forward, backward, loaded = breakaway_range(state.y, state.mode.segment, p)
+    if not loaded:
         if p.geometry.opens:
             return state.t, HANDED_OVER
         return scanned_breakaway(state, stop, p)

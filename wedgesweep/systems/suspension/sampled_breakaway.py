@@ -9,7 +9,7 @@ from wedgesweep.effects import states, stray_vibration
 from wedgesweep.hybrid.interface import closed_form, implement
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
-from wedgesweep.systems.suspension.breakaway import DOWN, UP, breakaway_input, carries_load_until_breakaway
+from wedgesweep.systems.suspension.breakaway import DOWN, UP, breakaway_range
 from wedgesweep.systems.suspension.modes import VELOCITY, stuck
 
 
@@ -18,11 +18,10 @@ def _waits_for_input(state, p):
     """Whether only a sampled motion of the base can end the mode."""
     if p.series.rows == 0 or not stuck(state.mode, p) or stray_vibration.acts(p):
         return False
-    moving = states.active(p)
+    moving, rests = states.active(p), True
     for i in range(VELOCITY + 1, len(moving)):
-        if moving[i]:
-            return False
-    return carries_load_until_breakaway(state.y, state.mode.segment, p)
+        rests = rests and not moving[i]
+    return rests
 
 
 @implement(closed_form, "suspension")
@@ -32,7 +31,9 @@ def follow_stuck(state, stop, p, keeping, recorder, counts):
     if not _waits_for_input(state, p):
         return False, state, NO_EVENT
     t, y, mode, last_event, step = state
-    forward, backward = breakaway_input(y, 1, mode.segment, p), breakaway_input(y, -1, mode.segment, p)
+    forward, backward, loaded = breakaway_range(y, mode.segment, p)
+    if not loaded:
+        return False, state, NO_EVENT
     size = p.input.amplitude
     end, side = sampled_input.bend_leaves(t, stop, forward / size, backward / size, p)
     if keeping:
