@@ -193,7 +193,8 @@ def test_swings_reach_from_one_turning_point_to_the_next():
     time = np.linspace(0.0, 10.0, 100_001)
     noise = 1e-3 * np.random.default_rng(0).standard_normal(time.size)
     when, size = decays.swings(time, (1.0 - 0.05 * time) * np.sin(2.0 * np.pi * time) + noise, 1e-3)
-    # The first one begins at the first sample.
+    # The first one began before the first sample.
+    assert size[0] == pytest.approx(1.0 - 0.05 * when[0], abs=5e-3)
     assert np.diff(when[1:]) == pytest.approx(0.5, abs=1e-2)
     assert size[1:] == pytest.approx(1.0 - 0.05 * when[1:], abs=5e-3)
 

@@ -37,7 +37,10 @@ def swings(time: np.ndarray, signal: np.ndarray, noise: float) -> tuple[np.ndarr
     clear = 2.0 * CLEAR * noise
     tops, bottoms = (find_peaks(each, prominence=max(clear, 1e-300))[0] for each in (signal, -signal))
     turns = np.unique(np.r_[0, tops, bottoms])
-    return 0.5 * (time[turns[:-1]] + time[turns[1:]]), 0.5 * np.abs(np.diff(signal[turns]))
+    when, size = 0.5 * (time[turns[:-1]] + time[turns[1:]]), 0.5 * np.abs(np.diff(signal[turns]))
+    # A release begins with its longest swing, any other motion in the middle of one.
+    whole = int(size.size > 1 and size[0] < size[1])
+    return when[whole:], size[whole:]
 
 
 def _signals(result: DiagnosisResult, test: int) -> dict[str, np.ndarray]:
