@@ -53,18 +53,23 @@ def mean_period(signal, sign, out):
 def fourier(first, second, out):
     """Write D_h, h = 1..n, of two signals = Re sum D_h exp(i h omega t); out: (2, n, 2), real, imaginary.
 
-    The signals, shape (samples,), cover one forcing period on an even grid. Both share one rotation.
+    The signals, shape (samples,), cover one forcing period on an even grid. Both share one rotation, and so
+    do samples that lie as far before the end of the period as others do after its start.
     """
     samples = first.size
     for h in range(1, out.shape[1] + 1):
         turn_cos, turn_sin = cos(2.0 * pi * h / samples), sin(2.0 * pi * h / samples)
-        c, s, real, imaginary, other_real, other_imaginary = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for i in range(samples):
-            real += first[i] * c
-            imaginary -= first[i] * s
-            other_real += second[i] * c
-            other_imaginary -= second[i] * s
+        c, s, real, imaginary, other_real, other_imaginary = 1.0, 0.0, first[0], 0.0, second[0], 0.0
+        for i in range(1, (samples + 1) // 2):
             c, s = c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin
+            real += (first[i] + first[samples - i]) * c
+            imaginary -= (first[i] - first[samples - i]) * s
+            other_real += (second[i] + second[samples - i]) * c
+            other_imaginary -= (second[i] - second[samples - i]) * s
+        if samples % 2 == 0:
+            middle = 1.0 - 2.0 * (h % 2)
+            real += middle * first[samples // 2]
+            other_real += middle * second[samples // 2]
         out[0, h - 1, 0], out[0, h - 1, 1] = 2.0 * real / samples, 2.0 * imaginary / samples
         out[1, h - 1, 0], out[1, h - 1, 1] = 2.0 * other_real / samples, 2.0 * other_imaginary / samples
 

@@ -129,5 +129,6 @@ def detected_period(distances, tolerance):
 def slid(t, stop, y, mode, p):
     """Oscillator of a mode, and where it ends: time and event."""
     oscillator = linear_slip.linear_oscillator(y, mode, p)
-    end, _, _, event = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), stop, oscillator, p)
-    return oscillator, end, event
+    phase = linear_slip.phase_at(t, y[0], y[1], oscillator, p)
+    end = first_event.slip_to_event(State(t, y, mode, NO_EVENT, 0.0), phase, stop, oscillator, p)
+    return oscillator, end.t, end.event

@@ -56,6 +56,27 @@ class Bracket(NamedTuple):
     at_high: float
 
 
+class Sample(NamedTuple):
+    """Value of a function at a time, and its time derivative."""
+
+    value: float
+    slope: float
+
+
+@inlined
+def crossing(before, after, span):
+    """Estimate of the time in an interval at which a function is zero that changes its sign there.
+
+    Hermite's cubic for time as a function of the value; linear where the function turns in the interval.
+    """
+    rise, start, end = after.value - before.value, before.slope, after.slope
+    share = -before.value / rise
+    if not (start * rise > 0.0 and end * rise > 0.0):
+        return share * span
+    rest = 1.0 - share
+    return share * (share * (3.0 - 2.0 * share) * span + rest * rise * (rest / start - share / end))
+
+
 @inlined
 def zero(context, bracket, close):
     """Place in a bracket at which a function is zero, to within ``close``."""

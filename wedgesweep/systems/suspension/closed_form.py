@@ -6,7 +6,7 @@ from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.breakaway import breakaway_time
 from wedgesweep.systems.suspension.first_event import slip_to_event
-from wedgesweep.systems.suspension.linear_slip import linear_oscillator
+from wedgesweep.systems.suspension.linear_slip import linear_oscillator, motion, phase_at
 from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import stuck
 from wedgesweep.systems.suspension.stick_slip import stick_slip
@@ -34,7 +34,8 @@ def follow(state, stop, p, keeping, recorder, counts):
     oscillator = linear_oscillator(y, mode, p)
     if not oscillator.linear:
         return False, state, NO_EVENT
-    end, x, velocity, event = slip_to_event(state, stop, oscillator, p)
+    phase = phase_at(t, y[0], y[1], oscillator, p)
+    end = slip_to_event(state, phase, stop, oscillator, p)
     if keeping:
-        record_slip(state, end, oscillator, recorder, p)
-    return True, State(end, (x, velocity), mode, last_event, step), event
+        record_slip(state, phase, end.t, oscillator, recorder, p)
+    return True, State(end.t, motion(end.phase, oscillator, p), mode, last_event, step), end.event

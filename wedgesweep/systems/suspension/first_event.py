@@ -9,7 +9,15 @@ from math import inf, pi, sqrt
 from typing import Any, NamedTuple
 
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.hybrid.search import Bracket, minimum, searched, zero_after_start, zero_near
+from wedgesweep.hybrid.search import (
+    Bracket,
+    Sample,
+    crossing,
+    minimum,
+    searched,
+    zero_after_start,
+    zero_near,
+)
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.linear_slip import (
@@ -18,11 +26,12 @@ from wedgesweep.systems.suspension.linear_slip import (
     acceleration,
     advanced_briefly,
     force_rates,
+    jerk,
     motion,
     normal_forces,
-    phase_at,
     rotated,
     small_angles,
+    snap,
 )
 
 # Scanned intervals per period of input or free vibration, whichever is shorter.
@@ -31,13 +40,8 @@ SCAN = 16
 SLIP, COLUMN_FORCE, BOLSTER_FORCE = 0, 1, 2
 # Error of an event's phase (rad), and of that of a minimum as a share of the interval.
 ROUNDING, GRAZING = 1e-15, 1e-9
-
-
-class _Sample(NamedTuple):
-    """Value of an event function at a phase, and its time derivative."""
-
-    value: float
-    slope: float
+# Phase (rad) from which a series of order 3 leads to an event within rounding error.
+CONVERGED = 2e-4
 
 
 class _EventFunction(NamedTuple):
@@ -53,7 +57,7 @@ class _EventFunction(NamedTuple):
 @inlined
 def _slip(phase, oscillator, mode, p):
     """How far |z'| is above the threshold at which the mode ends (m/s)."""
-    return _Sample(
+    return Sample(
         mode.column * motion(phase, oscillator, p)[1] - oscillator.threshold,
         mode.column * acceleration(phase, oscillator, p),
     )
@@ -64,8 +68,8 @@ def _force(which, phase, oscillator, mode, p):
     """The normal force on a face (N), times the sign that it has on the mode."""
     values, slopes = normal_forces(phase, oscillator, p), force_rates(phase, oscillator, p)
     if which == COLUMN_FORCE:
-        return _Sample(mode.column_sign * values[0], mode.column_sign * slopes[0])
-    return _Sample(mode.bolster_sign * values[1], mode.bolster_sign * slopes[1])
+        return Sample(mode.column_sign * values[0], mode.column_sign * slopes[0])
+    return Sample(mode.bolster_sign * values[1], mode.bolster_sign * slopes[1])
 
 
 @inlined
@@ -133,17 +137,19 @@ def _may_graze(before, after, span):
 
 
 @inlined
-def _crossing(before, after, span):
-    """Estimate of the time at which an event function that falls over an interval is zero.
+def _end_of_slip(function, near):
+    """Time at which slip ends, from a time near it, and whether that is within rounding error.
 
-    Hermite's cubic for time as a function of the value; between samples this close it is good to 1e-4.
+    Newton's method with two more terms of the series for time as a function of velocity.
     """
-    rise, start, end = after.value - before.value, before.slope, after.slope
-    share = -before.value / rise
-    if not (start < 0.0 and end < 0.0):
-        return share * span
-    rest = 1.0 - share
-    return share * (share * (3.0 - 2.0 * share) * span + rest * rise * (rest / start - share / end))
+    oscillator, mode, p = function.oscillator, function.mode, function.p
+    phase = advanced_briefly(function.phase, near, oscillator, p)
+    value, slope = _slip(phase, oscillator, mode, p)
+    newton = -value / slope
+    second = -0.5 * mode.column * jerk(phase, oscillator, p) / slope
+    third = 2.0 * second**2 - mode.column * snap(phase, oscillator, p) / (6.0 * slope)
+    close = abs(newton) * max(p.input.omega, oscillator.frequency) < CONVERGED and slope < 0.0
+    return near + newton * (1.0 + newton * (second + newton * third)), close
 
 
 @inner
@@ -158,7 +164,12 @@ def _first_zero(function, before, after, span, from_zero):
     bracket = Bracket(0.0, before.value, high, value)
     if from_zero or before.value <= 0.0:
         return zero_after_start(function, bracket, 1e-12 / omega, ROUNDING / omega)
-    return zero_near(function, bracket, _crossing(before, after, span), ROUNDING / omega)
+    near = crossing(before, after, span)
+    if function.which == SLIP and value == after.value:
+        time, close = _end_of_slip(function, near)
+        if close:
+            return time
+    return zero_near(function, bracket, near, ROUNDING / omega)
 
 
 @inlined
@@ -174,6 +185,14 @@ def _earlier(found, function, later, span, at_zero):
     return (time, function.which) if time < found[0] else found
 
 
+class SlipEnd(NamedTuple):
+    """Where a mode of slip ends, or a run stops: the time (s), the phase there, the event or NO_EVENT."""
+
+    t: float
+    phase: Phase
+    event: int
+
+
 @inlined
 def _begins_at(state, oscillator):
     """Event function that is zero where a mode begins; -1 if none is."""
@@ -183,13 +202,13 @@ def _begins_at(state, oscillator):
     return state.last_event - COLUMN_NORMAL + COLUMN_FORCE if state.last_event >= COLUMN_NORMAL else -1
 
 
-@inner
-def slip_to_event(state, stop, oscillator, p):
-    """Follow slip to its first event or ``stop``: time, displacement, velocity, and the event or NO_EVENT."""
+# Inlined: an oscillator as an argument would be copied at every call.
+@inlined
+def slip_to_event(state, phase, stop, oscillator, p):
+    """Follow slip from a state, whose phase is given, to its first event or ``stop``: a ``SlipEnd``."""
     t, mode, at_zero = state.t, state.mode, _begins_at(state, oscillator)
     step = 2.0 * pi / max(p.input.omega, oscillator.frequency) / SCAN
     turn = small_angles(step, oscillator, p)
-    phase = phase_at(t, state.y[0], state.y[1], oscillator, p)
     forces = at_zero >= COLUMN_FORCE or _forces_may_vanish(phase, oscillator, mode, p)
     while t < stop:
         span = min(step, stop - t)
@@ -204,14 +223,8 @@ def slip_to_event(state, stop, oscillator, p):
             )
         time, which = found
         if which >= 0:
-            x, velocity = motion(advanced_briefly(phase, time, oscillator, p), oscillator, p)
-            return (
-                t + time,
-                x,
-                velocity,
-                oscillator.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which,
-            )
+            event = oscillator.event if which == SLIP else COLUMN_NORMAL - COLUMN_FORCE + which
+            return SlipEnd(t + time, advanced_briefly(phase, time, oscillator, p), event)
         t += span
         phase, at_zero = later, -1
-    x, velocity = motion(phase, oscillator, p)
-    return stop, x, velocity, NO_EVENT
+    return SlipEnd(stop, phase, NO_EVENT)

@@ -113,12 +113,19 @@ class Phase(NamedTuple):
 
 
 @inlined
-def phase_at(t, x, velocity, oscillator, p):
-    """Phase of a state at time t."""
-    c, s = cosine(p.input.omega * t), sine(p.input.omega * t)
+def phase_of(input_phase, x, velocity, oscillator, p):
+    """Phase of a state; ``input_phase``: cosine and sine of that of the input."""
+    c, s = input_phase
     free = x - oscillator.centre - oscillator.forced * s
     quadrature = (velocity - oscillator.forced * p.input.omega * c) / oscillator.frequency
     return Phase(c, s, free, quadrature)
+
+
+@inlined
+def phase_at(t, x, velocity, oscillator, p):
+    """Phase of a state at time t."""
+    input_phase = cosine(p.input.omega * t), sine(p.input.omega * t)
+    return phase_of(input_phase, x, velocity, oscillator, p)
 
 
 @inlined
@@ -173,6 +180,18 @@ def acceleration(phase, oscillator, p):
 
 
 @inlined
+def jerk(phase, oscillator, p):
+    """Rate x''' of the ``acceleration`` (m/s^3)."""
+    return -oscillator.forced * p.input.omega**3 * phase.cosine - oscillator.frequency**3 * phase.quadrature
+
+
+@inlined
+def snap(phase, oscillator, p):
+    """Rate x'''' of the ``jerk`` (m/s^4)."""
+    return oscillator.forced * p.input.omega**4 * phase.sine + oscillator.frequency**4 * phase.free
+
+
+@inlined
 def normal_forces(phase, oscillator, p):
     """Normal forces (N) on column and bolster face."""
     return _forces_at(motion(phase, oscillator, p)[0], base_acceleration(phase, p), oscillator)
@@ -193,6 +212,17 @@ def force_rates(phase, oscillator, p):
     return (
         oscillator.column_x * velocity + oscillator.column_u * u3,
         oscillator.bolster_x * velocity + oscillator.bolster_u * u3,
+    )
+
+
+@inlined
+def force_accelerations(phase, oscillator, p):
+    """Second derivatives of the ``normal_forces`` (N/s^2)."""
+    x2 = acceleration(phase, oscillator, p)
+    u4 = p.input.amplitude * p.input.omega**4 * phase.sine
+    return (
+        oscillator.column_x * x2 + oscillator.column_u * u4,
+        oscillator.bolster_x * x2 + oscillator.bolster_u * u4,
     )
 
 

@@ -11,14 +11,14 @@ where brackets stand for differences between the end and the start of the mode. 
 a rate is zero.
 """
 
-from math import nan, pi
+from math import pi
 from typing import Any, NamedTuple
 
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
 from wedgesweep.hybrid.accumulators import Span, add_extremes, add_span
 from wedgesweep.hybrid.recorder import first_sample, record_sample
-from wedgesweep.hybrid.search import Bracket, searched, zero
+from wedgesweep.hybrid.search import Bracket, Sample, crossing, searched, zero_near
 from wedgesweep.systems.suspension.energy import supplied_power
 from wedgesweep.systems.suspension.linear_slip import (
     LinearOscillator,
@@ -27,10 +27,11 @@ from wedgesweep.systems.suspension.linear_slip import (
     advanced,
     advanced_briefly,
     angles,
+    force_accelerations,
     force_rates,
+    jerk,
     motion,
     normal_forces,
-    phase_at,
     rotated,
     small_angles,
 )
@@ -53,21 +54,41 @@ class _Rate(NamedTuple):
     p: Any
 
 
+class _Rates(NamedTuple):
+    """Rates of the velocity and of both normal forces."""
+
+    velocity: Sample
+    column: Sample
+    bolster: Sample
+
+
 @inlined
 def _rate(which, phase, oscillator, p):
+    """A rate and its slope."""
     if which == VELOCITY:
-        return acceleration(phase, oscillator, p)
-    return force_rates(phase, oscillator, p)[which - COLUMN]
+        return Sample(acceleration(phase, oscillator, p), jerk(phase, oscillator, p))
+    place = which - COLUMN
+    return Sample(force_rates(phase, oscillator, p)[place], force_accelerations(phase, oscillator, p)[place])
+
+
+@inlined
+def _rates(phase, oscillator, p):
+    return _Rates(
+        _rate(VELOCITY, phase, oscillator, p),
+        _rate(COLUMN, phase, oscillator, p),
+        _rate(BOLSTER, phase, oscillator, p),
+    )
 
 
 @searched(_Rate)
-@inner
+@inlined
 def _signed(time, rate):
     there = advanced_briefly(rate.phase, time, rate.oscillator, rate.p)
-    return rate.sign * _rate(rate.which, there, rate.oscillator, rate.p), nan
+    value, slope = _rate(rate.which, there, rate.oscillator, rate.p)
+    return rate.sign * value, rate.sign * slope
 
 
-@inner
+@inlined
 def _add_point(phase, oscillator, recorder, p):
     """Add what may be an extreme."""
     x, velocity = motion(phase, oscillator, p)
@@ -76,16 +97,14 @@ def _add_point(phase, oscillator, recorder, p):
 
 
 @inner
-def _add_extreme(which, phase, later, span, oscillator, recorder, p):
-    """Add the extreme of a velocity or normal force between two phases, if there is one."""
-    before, after = _rate(which, phase, oscillator, p), _rate(which, later, oscillator, p)
-    if before * after < 0.0:
-        rate = _Rate(which, 1.0 if before > 0.0 else -1.0, phase, oscillator, p)
-        time = zero(rate, Bracket(0.0, abs(before), span, -abs(after)), PLACE_OF_EXTREME * span)
-        _add_point(advanced_briefly(phase, time, oscillator, p), oscillator, recorder, p)
+def _add_extreme(rate, before, after, span, recorder):
+    """Add the extreme of a velocity or normal force whose rate changes its sign in a span of time."""
+    bracket = Bracket(0.0, abs(before.value), span, -abs(after.value))
+    time = zero_near(rate, bracket, crossing(before, after, span), PLACE_OF_EXTREME * span)
+    _add_point(advanced_briefly(rate.phase, time, rate.oscillator, rate.p), rate.oscillator, recorder, rate.p)
 
 
-@inner
+@inlined
 def _add_extremes(phase, duration, oscillator, recorder, p):
     """Add both ends of a mode and all extremes in between; the phase at its end."""
     parts = int(duration * max(p.input.omega, oscillator.frequency) / (2.0 * pi) * INTERVALS) + 1
@@ -94,13 +113,15 @@ def _add_extremes(phase, duration, oscillator, recorder, p):
     span = duration / parts
     turn = small_angles(span, oscillator, p)
     _add_point(phase, oscillator, recorder, p)
+    before = _rates(phase, oscillator, p)
     for _ in range(parts):
         later = rotated(phase, *turn)
-        _add_extreme(VELOCITY, phase, later, span, oscillator, recorder, p)
-        if recorder.energies:
-            _add_extreme(COLUMN, phase, later, span, oscillator, recorder, p)
-            _add_extreme(BOLSTER, phase, later, span, oscillator, recorder, p)
-        phase = later
+        after = _rates(later, oscillator, p)
+        for which in range(3 if recorder.energies else 1):
+            if before[which].value * after[which].value < 0.0:
+                rate = _Rate(which, 1.0 if before[which].value > 0.0 else -1.0, phase, oscillator, p)
+                _add_extreme(rate, before[which], after[which], span, recorder)
+        phase, before = later, after
     _add_point(phase, oscillator, recorder, p)
     return phase
 
@@ -123,7 +144,7 @@ def _work(start, end, oscillator, mode, p):
     return taken, supplied_power(base, (0.0, 1.0), p)
 
 
-@inner
+@inlined
 def _add_integrals(start, end, duration, oscillator, mode, recorder, p):
     """Add the integrals between two phases of a mode."""
     of_sine = oscillator.forced * (start.cosine - end.cosine) / p.input.omega
@@ -136,10 +157,9 @@ def _add_integrals(start, end, duration, oscillator, mode, recorder, p):
 
 
 @inner
-def record_slip(state, end, oscillator, recorder, p):
-    """Record what ``slip_to_event`` has followed, from a state to the time ``end`` (s)."""
-    t, (x, velocity), mode, _, _ = state
-    start = phase_at(t, x, velocity, oscillator, p)
+def record_slip(state, start, end, oscillator, recorder, p):
+    """Record what ``slip_to_event`` has followed, from a state at the phase ``start`` to a time (s)."""
+    t, mode = state.t, state.mode
     if end > t:
         last = _add_extremes(start, end - t, oscillator, recorder, p)
         _add_integrals(start, last, end - t, oscillator, mode, recorder, p)

@@ -17,13 +17,17 @@ from wedgesweep.systems.suspension.first_event import slip_to_event
 from wedgesweep.systems.suspension.linear_slip import (
     LinearOscillator,
     acceleration_at,
+    base_acceleration,
     linear_oscillator,
+    motion,
+    phase_of,
     smaller_force_at,
 )
 from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import COLUMN, ContactMode, slipping, stuck
 from wedgesweep.systems.suspension.newton import ROUNDING
 from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
+from wedgesweep.trigonometry import cosine, sine
 
 # Modes after which the integrator checks the number of events.
 MOST_MODES = 1000
@@ -58,9 +62,8 @@ def _rounding(p):
 
 
 @inlined
-def _after_slip(t, x, up, down, p):
-    """Mode after the velocity has become zero, and whether it is certain."""
-    u2 = acceleration(t, p)
+def _after_slip(x, u2, up, down, p):
+    """Mode after the velocity has become zero, and whether it is certain; ``u2``: of the base (m/s^2)."""
     rising, falling = acceleration_at(x, u2, up.verge), acceleration_at(x, u2, down.verge)
     smallest = min(smaller_force_at(x, u2, up.verge), smaller_force_at(x, u2, down.verge))
     nearly_none = ROUNDING * (p.suspension.gravity + abs(u2))
@@ -100,20 +103,28 @@ def _breakaway_time(state, stop, up, down, p):
     return breakaway_time(state, stop, p)
 
 
+@inlined
+def _input_phase(t, p):
+    """Cosine and sine of the phase of the input."""
+    return cosine(p.input.omega * t), sine(p.input.omega * t)
+
+
 @inner
-def _follow_mode(state, stop, directions, p, keeping, recorder):
-    """Follow a mode to its event or ``stop``; the state there, and the event or NO_EVENT."""
-    up, down = directions
-    if stuck(state.mode, p):
-        end, event = _breakaway_time(state, stop, up, down, p)
-        if keeping:
-            record_constant(state.t, end, state.y, state.mode, recorder, p)
-        return State(end, state.y, state.mode, state.last_event, state.step), event
-    oscillator = up.slip if state.mode.column > 0 else down.slip
-    end, x, velocity, event = slip_to_event(state, stop, oscillator, p)
+def _stick(state, stop, up, down, p, keeping, recorder):
+    """Wait for breakaway or ``stop``: the time, and the event or NO_EVENT."""
+    end, event = _breakaway_time(state, stop, up, down, p)
     if keeping:
-        record_slip(state, end, oscillator, recorder, p)
-    return State(end, (x, velocity), state.mode, state.last_event, state.step), event
+        record_constant(state.t, end, state.y, state.mode, recorder, p)
+    return end, event
+
+
+@inlined
+def _slip(state, phase, stop, oscillator, p, keeping, recorder):
+    """Follow slip, which begins at a phase, to its end or ``stop``: a ``SlipEnd``."""
+    end = slip_to_event(state, phase, stop, oscillator, p)
+    if keeping:
+        record_slip(state, phase, end.t, oscillator, recorder, p)
+    return end
 
 
 @inner
@@ -123,22 +134,27 @@ def stick_slip(state, stop, p, keeping, recorder, counts):
     Returns whether both directions of slip are linear oscillators, the state, and the event or NO_EVENT.
     """
     segment = state.mode.segment
-    directions = _direction(1, state.y, segment, p), _direction(-1, state.y, segment, p)
-    if not (_linear(directions[0]) and _linear(directions[1])):
+    up, down = _direction(1, state.y, segment, p), _direction(-1, state.y, segment, p)
+    if not (_linear(up) and _linear(down)):
         return False, state, NO_EVENT
-    up, down = directions
+    input_phase = _input_phase(state.t, p)
     for _ in range(MOST_MODES):
-        was_stuck = stuck(state.mode, p)
-        state, event = _follow_mode(state, stop, directions, p, keeping, recorder)
-        if event // 2 != COLUMN:
-            return True, state, event
-        x = state.y[0]
-        if was_stuck:
-            mode, certain = _after_breakaway(state.t, x, event, up, down, p)
+        x, velocity = state.y
+        if stuck(state.mode, p):
+            t, event = _stick(state, stop, up, down, p, keeping, recorder)
+            if event // 2 == COLUMN:
+                mode, certain = _after_breakaway(t, x, event, up, down, p)
+            input_phase = _input_phase(t, p)
         else:
-            mode, certain = _after_slip(state.t, x, up, down, p)
-        if not certain:
-            return True, state, event
+            oscillator = up.slip if state.mode.column > 0 else down.slip
+            phase = phase_of(input_phase, x, velocity, oscillator, p)
+            t, phase, event = _slip(state, phase, stop, oscillator, p, keeping, recorder)
+            x, velocity = motion(phase, oscillator, p)
+            input_phase = phase.cosine, phase.sine
+            if event // 2 == COLUMN:
+                mode, certain = _after_slip(x, base_acceleration(phase, p), up, down, p)
+        if event // 2 != COLUMN or not certain:
+            return True, State(t, (x, velocity), state.mode, state.last_event, state.step), event
         counts[2] += 1
-        state = State(state.t, (x, 0.0), mode, event, state.step)
+        state = State(t, (x, 0.0), mode, event, state.step)
     return True, state, NO_EVENT
