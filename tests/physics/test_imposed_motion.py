@@ -73,6 +73,22 @@ def test_bristles_follow_a_constant_velocity_as_their_closed_form():
     assert friction == pytest.approx(3.0 * -np.expm1(-motion[0] / length), abs=1e-9)
 
 
+@pytest.mark.parametrize("length", [2e-6, 2e-5, 2e-4, 2e-3])
+def test_bristles_that_turn_over_within_samples_count_by_their_mean(length):
+    # Around a turn the mass moves by 2e-5 m in a sample.
+    record = oscillator.record("coulomb", 0.0, 10.0, OSCILLATOR, FRICTION, {"presliding": {"length": length}})
+    fine, coarse, samples = 256, 6e-3, 400
+    step = coarse / fine
+    every = np.array(sine(5.5e-3, 12.2, samples * fine, step))
+    exact = imposed_motion.forces(record, *every, step)[0].reshape(samples, fine).mean(axis=1)
+    middle = sine(5.5e-3, 12.2, samples, coarse, phase=0.1 + 12.2 * 0.5 * (coarse - step))
+    force = imposed_motion.forces(record, *middle, coarse)[0]
+    # Bristles start half a sample late.
+    moved = np.abs(middle[0] - middle[0][0]) > 10.0 * length
+    begun = np.maximum.accumulate(moved)
+    assert force[begun] == pytest.approx(exact[begun], abs=0.01 * 3.0)
+
+
 def test_stiff_bristles_do_not_overflow():
     x, v, a = sine(0.01, 8.0)
     stiff = oscillator.record("coulomb", 0.0, 10.0, OSCILLATOR, FRICTION, {"presliding": {"length": 1e-9}})

@@ -136,6 +136,11 @@ def velocities(p):
     """Whether each state is a velocity."""
 
 
+@_of_all(dict.fromkeys(SIZES, "False") | {SHARE: "True"})
+def bristles(p):
+    """Whether each state is a share of the largest deflection of bristles."""
+
+
 def active(p):
     """Whether each state moves at all, a vector of booleans."""
 

@@ -5,12 +5,15 @@ method, which is exact for a rate that is linear in its state, however stiff (Ho
 "Exponential integrators"). What moves freely between two ends moves exactly.
 """
 
-from math import expm1, isnan, nan
+from math import expm1, inf, isnan, nan
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep.compiled import compiled, inner
+from wedgesweep.compiled import allocating, compiled, inlined, inner
+from wedgesweep.effects.states import bristles
 from wedgesweep.hybrid.interface import (
+    active,
     already_moving,
     driving_force,
     initial_mode,
@@ -22,8 +25,11 @@ from wedgesweep.hybrid.interface import (
 from wedgesweep.hybrid.vectors import replaced, vector
 from wedgesweep.systems import grouped
 
-# Parts of a sample over which the force is averaged where regularised friction runs through its ramp.
+# Parts of a sample over which the force is averaged where it changes quickly: regularised friction runs
+# through its ramp, or bristles turn over.
 PARTS = 16
+# Change of bristles in an interval, as a share of their largest deflection, above which they still turn over.
+FAST = 0.05
 # States of the mass itself, which the motion gives, and the step of the others for their derivatives.
 GIVEN, DIFFERENCE = 2, 1e-6
 
@@ -34,6 +40,7 @@ def forces(
     velocity: np.ndarray,
     acceleration: np.ndarray,
     step: float,
+    deflected: float = 0.0,
 ) -> np.ndarray:
     """Force on the mass along a motion: the mean over each sample where friction changes within it.
 
@@ -47,6 +54,8 @@ def forces(
         Its derivatives (m/s, m/s^2).
     step : float
         Time (s) between them.
+    deflected : float
+        Deflection of bristles at the start, as a share of their largest one.
 
     Returns
     -------
@@ -58,7 +67,7 @@ def forces(
     motion, turns = np.stack([velocity, acceleration]), reversals(velocity)
     for rows, cases in grouped(parameters):
         part = np.empty((rows.size, velocity.size))
-        _follow_all(cases, places[rows], motion, turns, step, part)
+        _follow_all(cases, places[rows], motion, turns, step, deflected, part)
         found[rows] = part
     return found
 
@@ -87,25 +96,113 @@ def share_jumps(force, shares):
 
 
 @compiled
-def _follow_all(cases, places, motion, turns, step, out):
+def _follow_all(cases, places, motion, turns, step, deflected, out):
     shares = np.empty(turns.size)
     for k in range(cases.size):
         p = cases[k]
-        y = replaced(vector(np.zeros(len(scales(p))), scales(p)), 1, motion[0, 0])
-        y = already_moving(y, p)
+        y = already_moving(_first_state(motion[0, 0], deflected, p), p)
         # Regularised friction does not jump where the velocity reverses.
         jumps = 1.0 if p.friction.set_valued else nan
+        bristly = _has_bristles(p)
+        shares[:] = nan
+        # Whether bristles turn over in the interval before a sample, and the mean force of its later half.
+        turned, late, changed = False, nan, 0.0
         for i in range(motion.shape[1]):
-            y = replaced(replaced(y, 0, places[k, i]), 1, motion[0, i])
+            y = _placed(y, places[k, i], motion[0, i])
             out[k, i] = _force(y, motion[1, i], step, p)
-            following = min(i + 1, motion.shape[1] - 1)
-            # States of effects see the mean motion between two samples.
-            y = replaced(y, 0, 0.5 * (places[k, i] + places[k, following]))
-            y = replaced(y, 1, 0.5 * (motion[0, i] + motion[0, following]))
-            if i < turns.size:
-                shares[i] = share_before_jump(y, step, p) if isnan(turns[i]) else jumps * turns[i]
-            y = moved_freely(y, _advanced(y, step, p), step, p)
+            if i == turns.size:
+                break
+            before, ends = y, _Ends(places[k, i : i + 2], motion[:, i : i + 2])
+            reverses = not isnan(turns[i])
+            turning = bristly and (reverses or (turned and changed > FAST))
+            soon = bristly and i + 1 < turns.size and not isnan(turns[i + 1])
+            if turned or turning or soon:
+                y, early, later = _resolved(y, ends, turns[i], step, p)
+                if turned or turning:
+                    out[k, i] = 0.5 * (late + early)
+                late = later
+            else:
+                mean = _placed(y, _between(ends.place, 0.5), _between(ends.motion[0], 0.5))
+                shares[i] = jumps * turns[i] if reverses else share_before_jump(mean, step, p)
+                # States of effects see the mean motion between two samples.
+                y = moved_freely(mean, _advanced(mean, step, p), step, p)
+            # A reversal late in an interval shows in the next one.
+            changed = inf if reverses else _largest_change(before, y, p)
+            turned = turning
         share_jumps(out[k], shares)
+
+
+@allocating
+def _first_state(velocity, deflected, p):
+    """State vector at the start of a motion."""
+    y, shares = replaced(vector(np.zeros(len(scales(p))), scales(p)), 1, velocity), bristles(p)
+    for place in range(GIVEN, len(y)):
+        if shares[place]:
+            y = replaced(y, place, deflected)
+    return y
+
+
+class _Ends(NamedTuple):
+    """Motion at both ends of an interval: displacement (2,) (m), and velocity and acceleration (2, 2)."""
+
+    place: Any
+    motion: Any
+
+
+@inlined
+def _between(values, share):
+    """Value at a share of an interval, from those at its ends."""
+    return (1.0 - share) * values[0] + share * values[1]
+
+
+@inlined
+def _placed(y, displacement, velocity):
+    """The state vector at a displacement and velocity of the mass."""
+    return replaced(replaced(y, 0, displacement), 1, velocity)
+
+
+@inner
+def _has_bristles(p):
+    """Whether a contact has bristles."""
+    found, shares, acting = False, bristles(p), active(p)
+    for place in range(len(shares)):
+        found = found or (shares[place] and acting[place])
+    return found
+
+
+@inner
+def _largest_change(before, after, p):
+    """Largest change of bristles, as a share of their largest deflection."""
+    found, shares = 0.0, bristles(p)
+    for place in range(GIVEN, len(before)):
+        if shares[place]:
+            found = max(found, abs(after[place] - before[place]))
+    return found
+
+
+@inner
+def _resolved(y, ends, turn, step, p):
+    """State after an interval in which bristles turn over, and the mean forces over both halves of it.
+
+    ``turn``: share of the interval at which the velocity reverses, or NaN.
+    """
+    turn = 0.5 if isnan(turn) else turn
+    edges = (0.0, min(turn, 0.5), max(turn, 0.5), 1.0)
+    early = late = 0.0
+    for piece in range(len(edges) - 1):
+        part = (edges[piece + 1] - edges[piece]) / (PARTS // 2)
+        for i in range(PARTS // 2):
+            share = edges[piece] + (i + 0.5) * part
+            acceleration = _between(ends.motion[1], share)
+            y = _placed(y, _between(ends.place, share), _between(ends.motion[0], share))
+            y = _advanced(y, 0.5 * part * step, p)
+            force = driving_force(0.0, acceleration, y, initial_mode(0.0, y, p)[0], p)
+            y = _advanced(y, 0.5 * part * step, p)
+            if share < 0.5:
+                early += 2.0 * part * force
+            else:
+                late += 2.0 * part * force
+    return y, early, late
 
 
 @inner

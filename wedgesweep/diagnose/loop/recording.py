@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import sqrt
 from typing import Self
 
 import numpy as np
@@ -32,6 +33,9 @@ FEWEST_KNOWN = 24
 REVERSAL = 0.1
 # Blocks of a record that are left out in turn, at most.
 MOST_BLOCKS = 12
+# Standard deviation of the deflection of bristles at the start of a record, which nobody knows, as a share of
+# the largest one: anything between both ends is as likely.
+DEFLECTED = 1.0 / sqrt(3.0)
 # Error of a simulation over the rms of the force, which counts as noise.
 SIMULATED = 1e-4
 NO_NOISE = NoiseSpectrum(0.0, 0.0, 0.0)
@@ -43,7 +47,8 @@ class Recording:
 
     ``model``: the base model with the numbers of the test; ``noise_of_displacement`` (m); ``places`` (k,):
     samples of the motion at which the ``force`` (k,) is compared; ``spectrum`` of its noise there, beside
-    what noise of the motion has ``passed_on`` (L, k), see ``motion_noise.covariance``; ``known`` (k,):
+    what noise of the motion has ``passed_on`` (L, k), see ``motion_noise.covariance``, and the error (k,) (N)
+    that comes from the unknown state of bristles at the ``start``; ``known`` (k,):
     whether friction is, which it is not where the mass may rest; ``blocks``: slices of the k samples, whole
     cycles each; ``white`` (N): noise of the force at the places as frequencies above the filter show it;
     ``differences``: what repeats leave of the force at the places.
@@ -63,6 +68,7 @@ class Recording:
     differences: tuple[np.ndarray, ...] = ()
     spectrum: NoiseSpectrum = NO_NOISE
     passed_on: np.ndarray | None = None
+    start: np.ndarray | None = None
 
     @property
     def noise(self) -> float:
@@ -77,7 +83,8 @@ class Recording:
     def _covariance(self, rows: np.ndarray) -> np.ndarray:
         """Covariance (N^2) of some compared forces (r,) with one another, (r, r)."""
         distance = np.abs(rows[:, None] - rows)
-        return self.spectrum.covariance(distance) + motion_noise.between(self._passed_on, rows)
+        found = self.spectrum.covariance(distance) + motion_noise.between(self._passed_on, rows)
+        return found if self.start is None else found + np.outer(self.start[rows], self.start[rows])
 
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
@@ -115,7 +122,19 @@ class Recording:
         passed_on = motion_noise.covariance(
             self.low_pass, self.places, self.noise_of_displacement, derivatives
         )
-        return replace(self, passed_on=passed_on)
+        return replace(self, passed_on=passed_on, start=self._error_of_start(values, zeros[None]))
+
+    def _error_of_start(self, values: Values, zeros: np.ndarray) -> np.ndarray | None:
+        """Error (k,) (N) of compared forces by a standard deviation of bristles' deflection at the start.
+
+        None if there are no bristles.
+        """
+        up, down = (
+            self._compared(self._forces([values], zeros, self.motion.parts, deflected))[0]
+            for deflected in (DEFLECTED, -DEFLECTED)
+        )
+        error = np.nan_to_num(0.5 * (up - down))
+        return error if error.any() else None
 
     def _derivatives(self, values: Values, zeros: np.ndarray) -> Derivatives:
         """Derivatives of the force of a scenario, over as much as noise changes each part of the motion."""
@@ -139,16 +158,24 @@ class Recording:
         return self._compared(self._forces(scenarios, zeros, self.motion.parts))
 
     def _forces(
-        self, scenarios: list[Values], zeros: np.ndarray, parts: tuple[np.ndarray, ...]
+        self,
+        scenarios: list[Values],
+        zeros: np.ndarray,
+        parts: tuple[np.ndarray, ...],
+        deflected: float = 0.0,
     ) -> np.ndarray:
-        """Forces (n, N) along a motion of some displacement, velocity and acceleration (N,)."""
+        """Forces (n, N) along a motion of some displacement, velocity and acceleration (N,).
+
+        ``deflected``: see ``imposed_motion.forces``.
+        """
         rows = np.concatenate(
             [self.model.record_with(merge(self.model.effects, each), self.law, 0.0) for each in scenarios]
         )
         sign, (displacement, velocity, acceleration) = _sign(self.model), parts
         places = sign * (displacement + zeros[:, self._block])
         step = 1.0 / self.low_pass.rate
-        return imposed_motion.forces(rows, places, sign * velocity, sign * acceleration, step)
+        motion = sign * velocity, sign * acceleration
+        return imposed_motion.forces(rows, places, *motion, step, deflected)
 
     @cached_property
     def _block(self) -> np.ndarray:
