@@ -4,19 +4,24 @@ Where a mass just stops at a turn, or just does not, all that follows is differe
 there: a fit ends on the wrong side of it, or beside it, where the next step along it would lead over it. And
 a spring that stiffens has two steady vibrations under one input: in the wrong one a fit takes the start far
 from the record. So the start is looked for around where the fit ended and around where the record begins, in
-all directions. Where a mass rests at first the record shows how it moves later, but not where between the
-limits of friction it rests: its zero is unknown. So all places of rest are tried as well.
+all directions. The record does not show where it begins, either: its zero is unknown, and friction may hold
+the mass far from where the spring would. So places in all of that range are tried as well.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from math import ceil, log
 
 import numpy as np
 
 # Distances, in units of the start, at which other starts are tried; numbers of directions, and of moves at
 # each distance.
 DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
-# Places of rest that are tried, in units of the start.
-PLACES_OF_REST = np.linspace(-1.0, 1.0, 101)
+# Ratio of the larger distances that come first around the best of places that are farther apart.
+REFINED = 3.0
+# Places that are tried, as shares of their range.
+PLACES = np.linspace(-1.0, 1.0, 101)
+# A velocity below this, in units of the start, is that of a mass at rest.
+AT_REST = 0.05
 # A test stands out if its misfit, over the median of all tests, is so many standard deviations of noise too
 # large. At most this share of the tests can stand out: where most are wrong, the model is.
 DEVIATIONS, LARGEST_SHARE = 4.0, 1.0 / 3.0
@@ -30,23 +35,44 @@ def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
     return worst[deviations[worst] > DEVIATIONS]
 
 
-def best_start(misfit: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
-    """A start (2,) that fits better, or the given one.
+def everywhere(reach: float, start: np.ndarray) -> np.ndarray:
+    """Starts (n, 2) up to ``reach`` to either side, at rest or with the velocity of a start (2,)."""
+    velocity = start[1] if abs(start[1]) > AT_REST else 0.0
+    return np.column_stack([reach * PLACES, np.full_like(PLACES, velocity)])
+
+
+def best_start(
+    misfit: Callable[[np.ndarray], np.ndarray], reach: float, starts: Sequence[np.ndarray]
+) -> np.ndarray:
+    """The start (2,) that fits best: one of some starts, or what is found from them.
 
     Parameters
     ----------
     misfit : callable
         Squared misfits (n,) of starts (n, 2); inf where there is no response.
-    start : ndarray, shape (2,)
-        Around which it is looked for.
+    reach : float
+        Largest displacement, in units of the start.
+    starts : sequence of ndarray, shape (2,) each
+        Around which it is looked for. The last one is what the record shows but for its zero.
     """
+    spacing = reach * (PLACES[1] - PLACES[0])
+    wider = max(ceil(log(spacing / DISTANCES[0], REFINED)), 0)
+    distances = (*(spacing / REFINED**i for i in range(1, wider + 1)), *DISTANCES)
+    anywhere = everywhere(reach, starts[-1])
+    found = misfit(anywhere)
+    near = [_descended(misfit, start, DISTANCES) for start in starts]
+    near.append(_descended(misfit, anywhere[np.argmin(found)], distances))
+    return near[np.argmin(misfit(np.array(near)))]
+
+
+def _descended(
+    misfit: Callable[[np.ndarray], np.ndarray], start: np.ndarray, distances: Sequence[float]
+) -> np.ndarray:
+    """The start (2,) that moves over smaller and smaller distances lead to, as long as they fit better."""
     angle = 2.0 * np.pi / DIRECTIONS * np.arange(DIRECTIONS)
     around = np.column_stack([np.cos(angle), np.sin(angle)])
-    resting = np.column_stack([PLACES_OF_REST, np.zeros_like(PLACES_OF_REST)])
-    begun = np.vstack([start, resting])
-    found = misfit(begun)
-    best, least = begun[np.argmin(found)], float(found.min())
-    for distance in DISTANCES:
+    best, least = start, float(misfit(start[None])[0])
+    for distance in distances:
         for _ in range(MOVES):
             tried = best + distance * around
             found = misfit(tried)

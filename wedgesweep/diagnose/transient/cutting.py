@@ -12,8 +12,9 @@ from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 
-# Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
-WINDOW, LEAD = 10.0, 1.0
+# Natural periods of a window, of what is simulated before it so that the start of bristles and of wedges that
+# have lifted off is forgotten, and of the part of that whose noise of the input counts.
+WINDOW, LEAD, RECENT = 10.0, 2.0, 1.0
 # A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
 # friction lets go depends on how long it has stuck.
 STUCK = 0.05
@@ -128,7 +129,7 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
                 spectra=tuple(record.spectra),
                 passed_on=passed_on,
                 coefficients=min(max(ceil(top * inside / pi), FEWEST_COMPARED), inside),
-                grid=Grid(lead, inside, 2.0 * pi * rate / period, min(lead, ceil(LEAD * period))),
+                grid=Grid(lead, inside, 2.0 * pi * rate / period, min(lead, ceil(RECENT * period))),
                 input=starting_at(given.acting, start / rate) if given else no_input((end - start) / rate),
                 input_noise=input_noise,
                 length=max(float(np.abs(displacement[start:end] - rest).max()), SMALL * length),

@@ -26,7 +26,7 @@ from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData, best_of_each_test
-from wedgesweep.diagnose.transient.beyond_jumps import PLACES_OF_REST, best_start, standing_out
+from wedgesweep.diagnose.transient.beyond_jumps import PLACES, best_start, everywhere, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
@@ -42,8 +42,8 @@ MOST_BLOCKS = 12
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 # The same of each of BODIES, in their order.
 BODY_STARTS = START * len(BODIES)
-# Offsets of the start, over the largest displacement, that are tried beside PLACES_OF_REST if there are at
-# most FEW points.
+# Offsets of the start, over the largest displacement, that are tried beside PLACES if there are at most FEW
+# points.
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.02, 0.05, 0.1), 3
 # Samples that are simulated at a time, at most: they take some hundred megabytes.
 MOST_TOGETHER = 4_000_000
@@ -198,6 +198,15 @@ class TransientData(SampledData):
         length = np.array([own.length for own in self.windows])
         return np.column_stack([length, length * np.array([own.grid.omega for own in self.windows])])
 
+    @cached_property
+    def _reach(self) -> np.ndarray:
+        """Largest displacement (T,) from where the model rests without friction, in units of the starts.
+
+        The record shows that from where the mass rests in the end, which may be somewhere else.
+        """
+        longest = max(own.length for own in self.windows)
+        return max(longest, self.units.length) / self._scale[:, 0]
+
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
         return point.nuisance[:, : len(START)] * self._scale
@@ -270,16 +279,16 @@ class TransientData(SampledData):
             yield from np.array_split(rows, min(ceil(samples / MOST_TOGETHER), rows.size))
 
     def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
-        """Evaluations of points, each test from the best of several starts.
-
-        A mass that rests before it moves may do so at any place where friction holds it.
-        """
+        """Evaluations of points, each test from the best of several starts."""
         stated, at_rest = self.start()
         starts = [stated]
         if len(points) <= FEW:
             first = np.arange(stated.shape[1]) == 0
             starts += [stated + offset * first for offset in OFFSETS]
-            starts += [np.broadcast_to(place * first, stated.shape) for place in PLACES_OF_REST]
+            anywhere = np.zeros((PLACES.size, *stated.shape))
+            for test, reach in enumerate(self._reach):
+                anywhere[:, test, : len(START)] = everywhere(reach, stated[test])
+            starts += list(anywhere)
         moved = [[replace(each, nuisance=start, warm=at_rest) for each in points] for start in starts]
         tried = [points, *moved]
         by_try = [model.evaluate_all(each) for each in tried]
@@ -301,8 +310,7 @@ class TransientData(SampledData):
             rows = np.array([test])
             misfit = partial(_misfits, model.on(self.subset(rows)), evaluation.point.subset(rows))
             starts = [each[test, : len(START)] for each in (found, stated)]
-            near = np.array([best_start(misfit, start) for start in starts])
-            found[test, : len(START)] = near[np.argmin(misfit(near))]
+            found[test, : len(START)] = best_start(misfit, self._reach[test], starts)
         return None if np.array_equal(found, evaluation.point.nuisance) else found
 
     def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
