@@ -8,7 +8,7 @@ import pytest
 from tests.diagnose.test_transients import OSCILLATOR, write
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.transient.beyond_jumps import best_start, standing_out
+from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, standing_out
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.measured import read
 
@@ -53,7 +53,9 @@ def test_the_place_is_found_where_a_mass_rests_at_first():
         x, v = (starts - [0.07, 0.0]).T
         return np.where(np.hypot(x, v) < 0.02, 1e4 * (x**2 + v**2), 1e3 + x**2 + v**2)
 
-    assert best_start(misfit, 1.0, [np.array([0.99, 0.03])]) == pytest.approx([0.07, 0.0], abs=1e-3)
+    assert best_start(misfit, [np.array([0.99, 0.03])], places(1.0, 0.0)) == pytest.approx(
+        [0.07, 0.0], abs=1e-3
+    )
 
 
 def test_the_place_is_found_where_friction_holds_a_mass_far_from_the_spring_s_rest():
@@ -62,8 +64,8 @@ def test_the_place_is_found_where_friction_holds_a_mass_far_from_the_spring_s_re
         x, v = (starts - [-12.8, 3.8]).T
         return np.where(np.hypot(x, v) < 0.8, 1e4 * (x**2 + v**2), 1e6 + x**2 + v**2)
 
-    shown = np.array([-1.0, 3.3])
-    assert best_start(misfit, 32.0, [shown]) == pytest.approx([-12.8, 3.8], abs=1e-3)
+    found = best_start(misfit, [np.array([-1.0, 3.3])], places(32.0, 3.3))
+    assert found == pytest.approx([-12.8, 3.8], abs=1e-3)
 
 
 def test_a_minimum_along_a_cliff_is_found():
@@ -73,14 +75,14 @@ def test_a_minimum_along_a_cliff_is_found():
         return np.where(x + 1e-9 >= y, (x + y) ** 2 + 50.0 * (x - y) ** 2, 1e4)
 
     start = np.array([0.3 + 4e-3, 0.1 + 4e-3])
-    assert best_start(misfit, 1.0, [start]) == pytest.approx([0.3, 0.1], abs=2e-4)
+    assert best_start(misfit, [start], places(1.0, 0.0)) == pytest.approx([0.3, 0.1], abs=2e-4)
 
 
 def test_a_start_without_response_is_left():
     def misfit(starts):
         return np.where(starts[:, 0] > 0.0, 1.0 + 1e4 * starts[:, 0], np.inf)
 
-    assert best_start(misfit, 1.0, [np.array([1e-3, 0.0])])[0] == pytest.approx(0.0, abs=1e-4)
+    assert best_start(misfit, [np.array([1e-3, 0.0])], places(1.0, 0.0))[0] == pytest.approx(0.0, abs=1e-4)
 
 
 def test_tests_stand_out_over_the_others():

@@ -25,6 +25,7 @@ from wedgesweep.diagnose.search import (
     PAIRS_SHARE,
     Search,
     base_fit,
+    followed,
     from_shared_nuisances,
     from_special_cases,
     multistart,
@@ -246,8 +247,12 @@ def explain(search: Search) -> Explained:
     search.progress("base model")
     search, base = base_fit(search)
     search, found, scans = single_fits(search, base.fit)
+    if search.data.shares_nuisances and verdict.none_adequate(found):
+        found = followed(search, found)
     search, better = refit_base(search, base, found)
-    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2:
+    # Where explanations try each other's nuisance parameters, one that is adequate leads the others.
+    led = search.data.shares_nuisances and not verdict.none_adequate(found)
+    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2 and not led:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
     found = from_shared_nuisances(search, from_special_cases(search, found))

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from wedgesweep.diagnose.explanation import Explanation, penalised
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.search import Scans, Search
+from wedgesweep.diagnose.search import Scans, Search, contenders
 
-# Number of best explanations that are fitted again, and iterations of these fits.
-REFITTED, ITERATIONS = 8, 8
+# Iterations of the fits of those that are fitted again.
+ITERATIONS = 8
 
 
 class Explained(NamedTuple):
@@ -36,9 +36,11 @@ def with_renewed_covariance(explained: Explained) -> Explained:
         return explained
     search = replace(search, data=data)
     found = sorted((_compared_again(search, each) for each in found), key=penalised)
-    again = [_compared_again(search, base), *found[:REFITTED]]
+    leading = contenders(search, found)
+    others = [each for each in found if not any(each is one for one in leading)]
+    again = [_compared_again(search, base), *leading]
     base, *leading = search.each(lambda each: _refitted(search, each), again)
-    found = sorted([*leading, *found[REFITTED:]], key=penalised)
+    found = sorted([*leading, *others], key=penalised)
     scans = {effect: [data.compared_again(each) for each in scan] for effect, scan in scans.items()}
     return Explained(search, base, found, scans)
 

@@ -44,7 +44,9 @@ BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
 MULTISTART_SCHEDULE = (Round(None, 3), Round(4, 5), Round(2, 8))
 # An effect is dropped after the first round if its misfit is this many times the base model's.
 CUT_OFF = 100.0
-# So many of the best explanations, if they are impossible, are refitted without influential tests.
+# A fit is far off if it leaves so many times the squared noise in half of the tests.
+FAR = 100.0
+# So many of the best explanations are refitted.
 REFITTED = 8
 # Iterations of a base fit whose nuisance parameters are held as stated.
 HELD_ITERATIONS = 8
@@ -266,10 +268,36 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else NEARER_SCHEDULE if implausible else SCHEDULE
     rows = data.representative(base.evaluation)
     limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum())
-    fit = best_of(model, evaluations, schedule, limit, rows)
+    fit = best_of(model, evaluations, schedule, limit, rows, waits=data.shares_nuisances)
     if data.brings_nuisances(effect):
         fit = _aligned(fit)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
+
+
+def far_off(fit: Fit) -> bool:
+    """Whether a fit leaves much more than noise in most tests."""
+    return float(np.median(fit.evaluation.chi2_by_test / fit.model.data.dof)) > FAR
+
+
+def contenders(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """The best explanations; of transients, whose fits take longest, only those that are not far off.
+
+    All of the best ones if they are far off together.
+    """
+    best = sorted(found, key=penalised)[:REFITTED]
+    if not search.data.shares_nuisances or far_off(best[0].fit):
+        return best
+    return [each for each in best if not far_off(each.fit)]
+
+
+def followed(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """Explanations, continued to their minimum where they have not converged."""
+
+    def continued(each: Explanation) -> Explanation:
+        fit = each.fit
+        return each if fit.converged else search.explanation(minimise(fit.model, fit.evaluation))
+
+    return search.each(continued, found)
 
 
 def from_special_cases(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
@@ -293,7 +321,7 @@ def from_shared_nuisances(search: Search, found: Sequence[Explanation]) -> list[
     """
     if not search.data.shares_nuisances:
         return list(found)
-    leading = sorted(found, key=penalised)[:REFITTED]
+    leading = contenders(search, found)
     least = np.min([each.fit.evaluation.chi2_by_test for each in leading], axis=0)
 
     def refitted(each: Explanation) -> Explanation:
@@ -323,12 +351,12 @@ def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation
 
     Other nuisance parameters are tried where they might make an explanation the best one.
     """
-    order = sorted(found, key=penalised)
-    best = [each for each in order[:REFITTED] if each.fit.p < POSSIBLE]
+    leading = contenders(search, found)
+    best = [each for each in leading if each.fit.p < POSSIBLE]
 
     def refitted(each: Explanation) -> Explanation:
         most = each.fit.model.data.gained_by_other_nuisances(each.fit.evaluation)
-        promising = each.penalised - most < order[0].penalised
+        promising = each.penalised - most < leading[0].penalised
         fit = from_other_nuisances(each.fit) if promising else each.fit
         return search.explanation(refit_without_influential_tests(fit))
 
@@ -357,6 +385,7 @@ def best_of(
     schedule: Sequence[Round] = SCHEDULE,
     limit: float = np.inf,
     rows: np.ndarray | None = None,
+    waits: bool = False,
 ) -> Fit:
     """Fit from several evaluations by successive halving; the best fit is continued to its minimum.
 
@@ -372,6 +401,8 @@ def best_of(
         The search ends after a round whose best fit has a larger chi-squared than this.
     rows : ndarray of int, optional
         Tests that the rounds are content with; by default all.
+    waits : bool
+        Whether a best fit that is far off is not continued.
     """
     starts = [evaluation.point for evaluation in _leading(evaluations, schedule[0].entering)]
     if rows is None or rows.size == model.data.tests:
@@ -380,7 +411,8 @@ def best_of(
         part = model.on(model.data.subset(rows))
         some, hopeless = _halved(part, [point.subset(rows) for point in starts], schedule, limit)
         best = _on_all_tests(model, some, rows, starts)
-    return best if best.converged or hopeless else minimise(model, best.evaluation)
+    done = best.converged or hopeless or (waits and far_off(best))
+    return best if done else minimise(model, best.evaluation)
 
 
 def _halved(

@@ -19,49 +19,55 @@ DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
 # Ratio of the larger distances that come first around the best of places that are farther apart.
 REFINED = 3.0
 # Places that are tried, as shares of their range.
-PLACES = np.linspace(-1.0, 1.0, 101)
+SHARES = np.linspace(-1.0, 1.0, 101)
 # A velocity below this, in units of the start, is that of a mass at rest.
 AT_REST = 0.05
 # A test stands out if its misfit, over the median of all tests, is so many standard deviations of noise too
-# large. At most this share of the tests can stand out: where most are wrong, the model is.
+# large. At most this share of the tests can stand out: where most are wrong, the model is. If the median says
+# so, at FAR times the noise, tests differ anyway: then one that stands out has FARTHER times the median.
 DEVIATIONS, LARGEST_SHARE = 4.0, 1.0 / 3.0
+FAR, FARTHER = 10.0, 3.0
 
 
 def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
     """Tests whose misfit (T,) is much larger than that of most, the worst first."""
-    over_median = chi2 / dof / max(float(np.median(chi2 / dof)), 1.0)
+    median = max(float(np.median(chi2 / dof)), 1.0)
+    over_median = chi2 / dof / median
     deviations = (over_median - 1.0) * np.sqrt(0.5 * dof)
+    clear = (deviations > DEVIATIONS) & (over_median > (FARTHER if median > FAR else 1.0))
     worst = np.argsort(-deviations)[: max(int(LARGEST_SHARE * dof.size), 1)]
-    return worst[deviations[worst] > DEVIATIONS]
+    return worst[clear[worst]]
 
 
-def everywhere(reach: float, start: np.ndarray) -> np.ndarray:
-    """Starts (n, 2) up to ``reach`` to either side, at rest or with the velocity of a start (2,)."""
-    velocity = start[1] if abs(start[1]) > AT_REST else 0.0
-    return np.column_stack([reach * PLACES, np.full_like(PLACES, velocity)])
+def places(reach: float, velocity: float) -> np.ndarray:
+    """Starts (n, 2) at places up to ``reach`` on either side; a small velocity is that of a mass at rest."""
+    moving = velocity if abs(velocity) > AT_REST else 0.0
+    return np.column_stack([reach * SHARES, np.full_like(SHARES, moving)])
 
 
 def best_start(
-    misfit: Callable[[np.ndarray], np.ndarray], reach: float, starts: Sequence[np.ndarray]
+    misfit: Callable[[np.ndarray], np.ndarray], starts: Sequence[np.ndarray], anywhere: np.ndarray
 ) -> np.ndarray:
-    """The start (2,) that fits best: one of some starts, or what is found from them.
+    """The start (2,) that fits best near some starts and near the best one of many others.
 
     Parameters
     ----------
     misfit : callable
         Squared misfits (n,) of starts (n, 2); inf where there is no response.
-    reach : float
-        Largest displacement, in units of the start.
     starts : sequence of ndarray, shape (2,) each
-        Around which it is looked for. The last one is what the record shows but for its zero.
+        Starts that are tried unless another one fits better.
+    anywhere : ndarray, shape (n, 2)
+        These others, at even distances.
     """
-    spacing = reach * (PLACES[1] - PLACES[0])
+    spacing = anywhere[1, 0] - anywhere[0, 0]
     wider = max(ceil(log(spacing / DISTANCES[0], REFINED)), 0)
     distances = (*(spacing / REFINED**i for i in range(1, wider + 1)), *DISTANCES)
-    anywhere = everywhere(reach, starts[-1])
-    found = misfit(anywhere)
-    near = [_descended(misfit, start, DISTANCES) for start in starts]
-    near.append(_descended(misfit, anywhere[np.argmin(found)], distances))
+    best = anywhere[np.argmin(misfit(anywhere))]
+    found = misfit(np.array([best, *starts]))
+    better = [start for start, own in zip(starts, found[1:], strict=True) if own <= found[0]]
+    near = [_descended(misfit, start, DISTANCES) for start in better]
+    if len(better) < len(starts):
+        near.append(_descended(misfit, best, distances))
     return near[np.argmin(misfit(np.array(near)))]
 
 

@@ -14,7 +14,7 @@ from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 
 # Natural periods of a window, of what is simulated before it so that the start of bristles and of wedges that
 # have lifted off is forgotten, and of the part of that whose noise of the input counts.
-WINDOW, LEAD, RECENT = 10.0, 2.0, 1.0
+WINDOW, LEAD, RECENT = 10.0, 1.5, 1.0
 # A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
 # friction lets go depends on how long it has stuck.
 STUCK = 0.05

@@ -26,7 +26,7 @@ from wedgesweep.diagnose.fit_data import Evaluator
 from wedgesweep.diagnose.model import TOLERANCE
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
 from wedgesweep.diagnose.sampled_data import NoStart, SampledData, best_of_each_test
-from wedgesweep.diagnose.transient.beyond_jumps import PLACES, best_start, everywhere, standing_out
+from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
@@ -42,8 +42,8 @@ MOST_BLOCKS = 12
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 # The same of each of BODIES, in their order.
 BODY_STARTS = START * len(BODIES)
-# Offsets of the start, over the largest displacement, that are tried beside PLACES if there are at most FEW
-# points.
+# Offsets of the start, over the largest displacement, that are tried beside all ``places`` if there are at
+# most FEW points.
 OFFSETS, FEW = (-0.1, -0.05, -0.02, 0.02, 0.05, 0.1), 3
 # Samples that are simulated at a time, at most: they take some hundred megabytes.
 MOST_TOGETHER = 4_000_000
@@ -199,13 +199,18 @@ class TransientData(SampledData):
         return np.column_stack([length, length * np.array([own.grid.omega for own in self.windows])])
 
     @cached_property
-    def _reach(self) -> np.ndarray:
-        """Largest displacement (T,) from where the model rests without friction, in units of the starts.
+    def _anywhere(self) -> np.ndarray:
+        """Starts (T, n, 2) at which a test might begin, as its record does not show its zero.
 
-        The record shows that from where the mass rests in the end, which may be somewhere else.
+        A mass may rest anywhere before the input moves it. A free motion begins with the recorded velocity,
+        and may end far from where the spring alone would end it.
         """
-        longest = max(own.length for own in self.windows)
-        return max(longest, self.units.length) / self._scale[:, 0]
+        longest, found = max(self.units.length, *(own.length for own in self.windows)), []
+        for own, (length, _), (_, velocity) in zip(
+            self.windows, self._scale, self.start()[0][:, :2], strict=True
+        ):
+            found.append(places(1.0, 0.0) if own.driven else places(longest / length, velocity))
+        return np.array(found)
 
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
@@ -285,10 +290,8 @@ class TransientData(SampledData):
         if len(points) <= FEW:
             first = np.arange(stated.shape[1]) == 0
             starts += [stated + offset * first for offset in OFFSETS]
-            anywhere = np.zeros((PLACES.size, *stated.shape))
-            for test, reach in enumerate(self._reach):
-                anywhere[:, test, : len(START)] = everywhere(reach, stated[test])
-            starts += list(anywhere)
+            unmoved = np.zeros((self.tests, stated.shape[1] - len(START)))
+            starts += [np.hstack([each, unmoved]) for each in self._anywhere.swapaxes(0, 1)]
         moved = [[replace(each, nuisance=start, warm=at_rest) for each in points] for start in starts]
         tried = [points, *moved]
         by_try = [model.evaluate_all(each) for each in tried]
@@ -310,7 +313,7 @@ class TransientData(SampledData):
             rows = np.array([test])
             misfit = partial(_misfits, model.on(self.subset(rows)), evaluation.point.subset(rows))
             starts = [each[test, : len(START)] for each in (found, stated)]
-            found[test, : len(START)] = best_start(misfit, self._reach[test], starts)
+            found[test, : len(START)] = best_start(misfit, starts, self._anywhere[test])
         return None if np.array_equal(found, evaluation.point.nuisance) else found
 
     def gained_by_other_nuisances(self, evaluation: Evaluation) -> float:
