@@ -68,8 +68,12 @@ def write(
     noise=(1e-6, 0.02),
     seed=0,
     more="",
+    deflected=0.0,
 ):
-    """Files of a bench that imposes motions and has some effects; returns the path of measured.toml."""
+    """Files of a bench that imposes motions and has some effects; returns the path of measured.toml.
+
+    ``deflected``: share of their largest deflection that bristles have where each record begins.
+    """
     rng = np.random.default_rng(seed)
     config = parse(model, "model")
     values = merge(config.effects, effects or {})
@@ -79,7 +83,7 @@ def write(
     (folder / "model.toml").write_text(model)
     for i, each in enumerate(motions):
         fine = motion_of(*each)
-        force = imposed_motion.forces(record, *(sign * fine), 1.0 / RATE / CELLS)[0]
+        force = imposed_motion.forces(record, *(sign * fine), 1.0 / RATE / CELLS, deflected)[0]
         n = force.size // CELLS
         table = np.column_stack(
             [
@@ -185,6 +189,17 @@ def test_an_effect_of_three_times_the_noise_is_found(tmp_path, effect):
     unit = 1e-3 if effect == "presliding" else 1.0
     (true,) = WEAK[effect].values()
     assert estimate["value"] * unit == pytest.approx(true, rel=0.05)
+
+
+@pytest.mark.parametrize("length", [3e-7, 5e-6, 3e-5])
+def test_bristles_are_found_whether_they_turn_over_within_a_sample_or_slowly(tmp_path, length):
+    # Around a reversal the motion goes 2e-7 m in a sample. Nobody knows how the bristles begin.
+    effects, motions = {"presliding": {"length": length}}, ((2e-4, 1.5, 10.0),)
+    path = write(tmp_path, WEDGE, effects, motions, (1e-9, 0.003), deflected=-0.9)
+    found = api.diagnose_measurement(read(path), effects=("presliding", "friction_level"), n_jobs=2)
+    assert found.verdict == "named"
+    assert [cause["effect"] for cause in found.causes] == ["presliding"]
+    assert found.causes[0]["parameters"]["length_mm"]["value"] == pytest.approx(1e3 * length, rel=0.02)
 
 
 def test_a_motion_that_is_no_faster_than_its_noise_is_refused(tmp_path):

@@ -9,8 +9,17 @@ from scipy.signal import lfilter
 from tests.command import invoke
 from wedgesweep import api, excitation
 from wedgesweep.config import parse
+from wedgesweep.diagnose.diagnosis import explain
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.search import Search, base_fit, from_shared_nuisances, single_fits
+from wedgesweep.diagnose.search import (
+    Search,
+    base_fit,
+    contenders,
+    far_off,
+    followed,
+    from_shared_nuisances,
+    single_fits,
+)
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.effects import EFFECTS, merge
 from wedgesweep.measured import MeasuredError, read
@@ -158,6 +167,22 @@ def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
     found = {each.effects: each for each in from_shared_nuisances(search, [stuck, other])}
     assert found[other.effects] is other
     assert found[damper.effects].fit.chi2 == pytest.approx(damper.fit.chi2, abs=0.1)
+
+
+def test_a_fit_that_is_far_off_waits_until_nothing_is_adequate(tmp_path):
+    data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})))
+    search, base = base_fit(Search.of(data, ("viscous_damping", "cubic_stiffness")))
+    search, (damper, spring), _ = single_fits(search, base.fit)
+    assert far_off(spring.fit)
+    assert not far_off(damper.fit)
+    assert contenders(search, [spring, damper]) == [damper]
+    assert contenders(search, [spring]) == [spring]
+    (again,) = followed(search, [spring])
+    assert again.fit.converged
+    assert again.fit.chi2 <= spring.fit.chi2
+    # Alone it is followed to its minimum.
+    (alone,) = explain(replace(search, effects=("cubic_stiffness",))).explanations
+    assert alone.fit.chi2 == pytest.approx(again.fit.chi2, rel=1e-3)
 
 
 def test_early_rounds_of_a_search_see_the_worst_window_of_each_few(tmp_path):

@@ -5,7 +5,7 @@ method, which is exact for a rate that is linear in its state, however stiff (Ho
 "Exponential integrators"). What moves freely between two ends moves exactly.
 """
 
-from math import expm1, inf, isnan, nan
+from math import expm1, isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -97,39 +97,44 @@ def share_jumps(force, shares):
 
 @compiled
 def _follow_all(cases, places, motion, turns, step, deflected, out):
-    shares = np.empty(turns.size)
     for k in range(cases.size):
-        p = cases[k]
-        y = already_moving(_first_state(motion[0, 0], deflected, p), p)
-        # Regularised friction does not jump where the velocity reverses.
-        jumps = 1.0 if p.friction.set_valued else nan
-        bristly = _has_bristles(p)
-        shares[:] = nan
-        # Whether bristles turn over in the interval before a sample, and the mean force of its later half.
-        turned, late, changed = False, nan, 0.0
-        for i in range(motion.shape[1]):
-            y = _placed(y, places[k, i], motion[0, i])
-            out[k, i] = _force(y, motion[1, i], step, p)
-            if i == turns.size:
-                break
-            before, ends = y, _Ends(places[k, i : i + 2], motion[:, i : i + 2])
-            reverses = not isnan(turns[i])
-            turning = bristly and (reverses or (turned and changed > FAST))
-            soon = bristly and i + 1 < turns.size and not isnan(turns[i + 1])
-            if turned or turning or soon:
-                y, early, later = _resolved(y, ends, turns[i], step, p)
-                if turned or turning:
-                    out[k, i] = 0.5 * (late + early)
-                late = later
-            else:
-                mean = _placed(y, _between(ends.place, 0.5), _between(ends.motion[0], 0.5))
-                shares[i] = jumps * turns[i] if reverses else share_before_jump(mean, step, p)
-                # States of effects see the mean motion between two samples.
-                y = moved_freely(mean, _advanced(mean, step, p), step, p)
-            # A reversal late in an interval shows in the next one.
-            changed = inf if reverses else _largest_change(before, y, p)
-            turned = turning
-        share_jumps(out[k], shares)
+        _follow(cases[k], places[k], motion, turns, step, deflected, out[k])
+
+
+@allocating
+def _follow(p, places, motion, turns, step, deflected, out):
+    """Write the forces (k,) of one case.
+
+    A force is averaged over its sample if bristles turn over in the interval before or after it. They may do
+    so in the interval of a reversal, in the next one, and as long as their deflection changes quickly.
+    """
+    shares = np.full(turns.size, nan)
+    # Regularised friction does not jump where the velocity reverses.
+    jumps = 1.0 if p.friction.set_valued else nan
+    bristly, going_on = _has_bristles(p), False
+    turned, late = False, nan  # in the interval before a sample, and the mean force of its later half
+    y = already_moving(_first_state(motion[0, 0], deflected, p), p)
+    for i in range(turns.size):
+        y, ends = _placed(y, places[i], motion[0, i]), _Ends(places[i : i + 2], motion[:, i : i + 2])
+        out[i] = _force(y, motion[1, i], step, p)
+        before, reverses = y, not isnan(turns[i])
+        turning = bristly and (reverses or going_on)
+        soon = bristly and i + 1 < turns.size and not isnan(turns[i + 1])
+        if turned or turning or soon:
+            y, early, later = _resolved(y, ends, turns[i], step, p)
+            if turned or turning:
+                out[i] = 0.5 * (late + early)
+            late = later
+        else:
+            # States of effects see the mean motion between two samples.
+            y = _placed(y, _between(ends.place, 0.5), _between(ends.motion[0], 0.5))
+            shares[i] = jumps * turns[i] if reverses else share_before_jump(y, step, p)
+            y = _moved(y, step, p)
+        going_on = turning and (reverses or _largest_change(before, y, p) > FAST)
+        turned = turning
+    last = turns.size
+    out[last] = _force(_placed(y, places[last], motion[0, last]), motion[1, last], step, p)
+    share_jumps(out, shares)
 
 
 @allocating
@@ -195,9 +200,9 @@ def _resolved(y, ends, turn, step, p):
             share = edges[piece] + (i + 0.5) * part
             acceleration = _between(ends.motion[1], share)
             y = _placed(y, _between(ends.place, share), _between(ends.motion[0], share))
-            y = _advanced(y, 0.5 * part * step, p)
+            y = _moved(y, 0.5 * part * step, p)
             force = driving_force(0.0, acceleration, y, initial_mode(0.0, y, p)[0], p)
-            y = _advanced(y, 0.5 * part * step, p)
+            y = _moved(y, 0.5 * part * step, p)
             if share < 0.5:
                 early += 2.0 * part * force
             else:
@@ -220,9 +225,15 @@ def _force(y, acceleration, step, p):
     return total / parts
 
 
+@inlined
+def _moved(y, step, p):
+    """The state vector after a step at a constant velocity of the mass."""
+    return moved_freely(y, _advanced(y, step, p), step, p)
+
+
 @inner
 def _advanced(y, step, p):
-    """The state vector with the effects' own states after a step."""
+    """The state vector with the effects' own states after a step, by their rates."""
     mode = initial_mode(0.0, y, p)[0]
     now, size = rate(0.0, y, mode, p)[0], scales(p)
     following = y
