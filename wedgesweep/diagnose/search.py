@@ -285,7 +285,7 @@ def contenders(search: Search, found: Sequence[Explanation]) -> list[Explanation
     All of the best ones if they are far off together.
     """
     best = sorted(found, key=penalised)[:REFITTED]
-    if not search.data.shares_nuisances or far_off(best[0].fit):
+    if not (best and search.data.shares_nuisances) or far_off(best[0].fit):
         return best
     return [each for each in best if not far_off(each.fit)]
 
