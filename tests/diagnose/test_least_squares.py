@@ -1,12 +1,14 @@
 """Fits of problems whose truth is known: chi-squared, intervals, and what each unknown takes up."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import AMPLITUDES, LAG, MODEL, drawn, searched
-from wedgesweep.diagnose.least_squares import _covariance, lm_step, minimise, tight_refit
+from wedgesweep.diagnose.evaluation import Point
+from wedgesweep.diagnose.least_squares import Step, _better, _covariance, lm_step, minimise, tight_refit
 from wedgesweep.diagnose.normal_equations import normal_equations
 
 
@@ -116,3 +118,19 @@ def test_an_uncertain_number_is_no_cause_within_its_spread():
     _, base, _ = searched(drawn(truth, uncertain={"friction_level": 0.05}))
     assert base.fit.p > 1e-3
     assert base.fit.x[0] == pytest.approx(1.06, abs=0.01)
+
+
+def test_a_test_that_a_step_leads_over_a_cliff_does_not_hold_up_the_others():
+    # The second test hardly shows its nuisance parameter, but jumps beyond 0.05.
+    def evaluate(point):
+        jumped = 1e4 if abs(point.nuisance[1, 0]) > 0.05 else 1.0
+        by_test = np.array([point.x[0] ** 2 + 50.0 * (point.nuisance[0, 0] - 0.1) ** 2, jumped])
+        return SimpleNamespace(point=point, chi2_by_test=by_test, chi2=by_test.sum())
+
+    model = SimpleNamespace(evaluate=evaluate)
+    here = evaluate(Point(np.array([10.0]), np.zeros((2, 1)), None))
+    found = _better(model, here, Step(Point(np.array([8.0]), np.full((2, 1), 0.1), None), 36.5, False))
+    assert found.point.x == [8.0]
+    assert found.point.nuisance.ravel() == pytest.approx([0.1, 0.0])
+    worse = Step(Point(np.array([11.0]), np.full((2, 1), 0.1), None), 36.5, False)
+    assert _better(model, here, worse) is None

@@ -269,6 +269,8 @@ def explain(search: Search) -> Explained:
             search, found = followed_beyond(search, base, found)
         if verdict.none_adequate(found):
             found = found + multistart(search, scans)
+        if search.data.shares_nuisances and verdict.none_adequate(found):
+            found = refit_best(search, found)
     found = from_shared_nuisances(search, best_of_each(found, penalised))
     search, base = refit_base(search, base, found)
     return with_renewed_covariance(Explained(search, base, found, scans))
