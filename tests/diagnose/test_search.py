@@ -153,7 +153,7 @@ def test_the_base_model_goes_on_from_where_an_extension_got(monkeypatch):
         alone.setattr("wedgesweep.diagnose.search.refit_without_influential_tests", lambda fit: fit)
         alone.setattr(
             "wedgesweep.diagnose.search._from_several",
-            lambda search, model, evaluations: minimise(model, evaluations[0]),
+            lambda search, model, evaluations: minimise(model, evaluations[0], iterations=1),
         )
         alone.setattr("wedgesweep.diagnose.search._nuisances_held", lambda model, evaluation: evaluation)
         short = base_fit(search).base

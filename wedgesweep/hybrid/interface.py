@@ -142,6 +142,11 @@ def clocks(p):
 
 
 @required
+def bristles(p):
+    """Which states are deflections of bristles as shares of the largest one, a vector of booleans."""
+
+
+@required
 def free(y, p):
     """Which states may take other values near y, a vector of booleans: not those that a contact holds."""
 

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from wedgesweep.compiled import allocating, compiled, inlined, inner
-from wedgesweep.effects.states import bristles
 from wedgesweep.hybrid.interface import (
     active,
     already_moving,
+    bristles,
     driving_force,
     initial_mode,
     moved_freely,

@@ -19,6 +19,7 @@ def implement_shared(owner: str) -> None:
         (interface.error_scales, states.error_scales),
         (interface.active, states.active),
         (interface.clocks, states.clocks),
+        (interface.bristles, states.bristles),
         (interface.cycle, excitation.cycle),
         (interface.repeats, repeats),
     ):

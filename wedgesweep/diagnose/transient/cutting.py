@@ -12,9 +12,9 @@ from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 
-# Natural periods of a window, of what is simulated before it so that the start of bristles and of wedges that
-# have lifted off is forgotten, and of the part of that whose noise of the input counts.
-WINDOW, LEAD, RECENT = 10.0, 1.5, 1.0
+# Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
+# An input keeps lifting wedges off, whose start is forgotten later; its noise counts for RECENT ones.
+WINDOW, LEAD, DRIVEN_LEAD, RECENT = 10.0, 1.0, 1.5, 1.0
 # A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
 # friction lets go depends on how long it has stuck.
 STUCK = 0.05
@@ -80,14 +80,15 @@ def cuts(samples: int, period: float, skipped: int, fewest: int) -> list[Cut]:
         Number of windows to make at least, as far as each has SHORTEST natural periods.
     """
     compared = samples - 2 * skipped
+    lead = ceil((DRIVEN_LEAD if skipped else LEAD) * period)
     # The lead of the first window comes after what is skipped.
-    lead = min(ceil(LEAD * period), int(LEAD_SHARE * compared)) if skipped else 0
-    compared -= lead
+    first_lead = min(lead, int(LEAD_SHARE * compared)) if skipped else 0
+    compared -= first_lead
     total = compared / period
     count = max(round(total / WINDOW), min(fewest, floor(total / SHORTEST)), 1)
     inside = compared // count
-    firsts = [skipped + lead + place * inside for place in range(count)]
-    return [Cut(first, inside, min(ceil(LEAD * period), first - skipped)) for first in firsts]
+    firsts = [skipped + first_lead + place * inside for place in range(count)]
+    return [Cut(first, inside, min(lead, first - skipped)) for first in firsts]
 
 
 def _from_last_slip(cut: Cut, motion: np.ndarray, period: float, skipped: int) -> Cut:
