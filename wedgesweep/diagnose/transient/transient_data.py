@@ -205,12 +205,14 @@ class TransientData(SampledData):
         A mass may rest anywhere before the input moves it. A free motion begins with the recorded velocity,
         and may end far from where the spring alone would end it.
         """
-        longest, found = max(self.units.length, *(own.length for own in self.windows)), []
-        for own, (length, _), (_, velocity) in zip(
-            self.windows, self._scale, self.start()[0][:, :2], strict=True
-        ):
-            found.append(places(1.0, 0.0) if own.driven else places(longest / length, velocity))
-        return np.array(found)
+        longest = max(self.units.length, *(own.length for own in self.windows))
+        velocities = self.start()[0][:, 1]
+        return np.array(
+            [
+                places(1.0, 0.0) if own.driven else places(longest / own.length, velocity)
+                for own, velocity in zip(self.windows, velocities, strict=True)
+            ]
+        )
 
     def starts(self, point: Point) -> np.ndarray:
         """Displacement (m) and velocity (m/s) at the first sample of each test, (T, 2)."""
