@@ -48,18 +48,22 @@ def test_a_jump_at_a_turn_counts_for_its_share_of_the_interval():
         assert force.sum() == pytest.approx(expected, abs=1e-9)
 
 
+def coarse_and_mean(record, fine, coarse=6e-3, samples=400):
+    """Displacements and forces at coarse samples, and the means over these of forces at fine ones."""
+    step = coarse / fine
+    every = np.array(sine(5.5e-3, 12.2, samples * fine, step))
+    mean = imposed_motion.forces(record, *every, step)[0].reshape(samples, fine).mean(axis=1)
+    middle = sine(5.5e-3, 12.2, samples, coarse, phase=0.1 + 12.2 * 0.5 * (coarse - step))
+    return middle[0], imposed_motion.forces(record, *middle, coarse)[0], mean
+
+
 @pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
 def test_friction_that_runs_through_its_ramp_within_a_sample_counts_by_its_mean(law):
     friction = {"dynamic": 0.3, "static": 0.36, "threshold_velocity": 2e-3}
     record = oscillator.record(law, 0.0, 10.0, {**OSCILLATOR, "damping": 0.0}, friction)
-    fine, coarse, samples = 64, 6e-3, 400
     # A turn lasts for about a sample: the velocity changes by 5 mm/s in it.
-    step = coarse / fine
-    every = np.array(sine(5.5e-3, 12.2, samples * fine, step))
-    exact = imposed_motion.forces(record, *every, step)[0].reshape(samples, fine).mean(axis=1)
-    middle = sine(5.5e-3, 12.2, samples, coarse, phase=0.1 + 12.2 * 0.5 * (coarse - step))
-    force = imposed_motion.forces(record, *middle, coarse)[0]
-    assert force == pytest.approx(exact, abs=0.02 * 3.6)
+    _, force, mean = coarse_and_mean(record, 64)
+    assert force == pytest.approx(mean, abs=0.02 * 3.6)
 
 
 def test_bristles_follow_a_constant_velocity_as_their_closed_form():
@@ -77,16 +81,10 @@ def test_bristles_follow_a_constant_velocity_as_their_closed_form():
 def test_bristles_that_turn_over_within_samples_count_by_their_mean(length):
     # Around a turn the mass moves by 2e-5 m in a sample.
     record = oscillator.record("coulomb", 0.0, 10.0, OSCILLATOR, FRICTION, {"presliding": {"length": length}})
-    fine, coarse, samples = 256, 6e-3, 400
-    step = coarse / fine
-    every = np.array(sine(5.5e-3, 12.2, samples * fine, step))
-    exact = imposed_motion.forces(record, *every, step)[0].reshape(samples, fine).mean(axis=1)
-    middle = sine(5.5e-3, 12.2, samples, coarse, phase=0.1 + 12.2 * 0.5 * (coarse - step))
-    force = imposed_motion.forces(record, *middle, coarse)[0]
+    x, force, mean = coarse_and_mean(record, 256)
     # Bristles start half a sample late.
-    moved = np.abs(middle[0] - middle[0][0]) > 10.0 * length
-    begun = np.maximum.accumulate(moved)
-    assert force[begun] == pytest.approx(exact[begun], abs=0.01 * 3.0)
+    begun = np.maximum.accumulate(np.abs(x - x[0]) > 10.0 * length)
+    assert force[begun] == pytest.approx(mean[begun], abs=0.01 * 3.0)
 
 
 def test_stiff_bristles_do_not_overflow():
