@@ -8,7 +8,10 @@ import pytest
 from tests.command import invoke
 from tests.diagnose import test_transients
 from wedgesweep import api
+from wedgesweep.config import parse
 from wedgesweep.measured import read
+from wedgesweep.synthesize.plan import PlannedTest
+from wedgesweep.synthesize.transients import transient
 
 RIG = test_transients.OSCILLATOR
 HIDDEN = "[effects.viscous_damping]\ncoefficient_N_s_per_m = 3.0\n"
@@ -130,3 +133,18 @@ def test_a_test_in_which_a_wedge_locks_is_refused(tmp_path, plan, message):
     assert message in found
     assert "Traceback" not in found
     assert not out.exists()
+
+
+def test_the_lag_of_a_velocity_channel_is_that_of_the_motion_between_the_samples_too():
+    # A mass on a spring, released at rest; the lag, tau y' = v - y from y = 0, is as long as a sample.
+    omega, travel, rate, lag = 250.0**0.5, 0.01, 50.0, 0.02
+    model = test_transients.OSCILLATOR.replace("damping_N_s_per_m = 1.0", "damping_N_s_per_m = 0.0")
+    config = parse(model.replace("normal_force_N = 1.0", "normal_force_N = 0.0"), "model")
+    test = PlannedTest(0.0, 0.0, "mm", 0.0, True, "transient", "release", 2.0, None, 1e3 * travel)
+    effects = {"velocity_lag": {"time": lag}}
+    found = transient(config, "coulomb", effects, test, rate, np.random.default_rng(0))
+    t = np.arange(found.velocity.size) / rate
+    seen = np.sin(omega * t) - omega * lag * (np.cos(omega * t) - np.exp(-t / lag))
+    expected = -travel * omega * seen / (1.0 + (omega * lag) ** 2)
+    assert found.displacement == pytest.approx(travel * np.cos(omega * t), abs=1e-6 * travel)
+    assert found.velocity == pytest.approx(expected, abs=1e-5 * travel * omega)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import pi
+from math import ceil, pi
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from wedgesweep.config import Config
 from wedgesweep.sampled_input import from_samples, set_sampled
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import CaseError, TimedWindow
-from wedgesweep.synthesize.motion import RTOL, TIME_LIMIT, NoMotion, lagged
+from wedgesweep.synthesize.motion import LAG_STEPS_PER_PERIOD, RTOL, TIME_LIMIT, NoMotion, lagged
 from wedgesweep.synthesize.plan import PlannedTest
 
 RELEASE, SWEEP, RANDOM, BUMP = "release", "sweep", "random", "bump"
@@ -72,16 +72,17 @@ def transient(
         given = factor * input_of(test, fine, random)
         sampled = from_samples(given, float(fine[1]), "force" if config.forced else "displacement")
         set_sampled(record, sampled, factor * test.amplitude, omega, test.duration_s)
-    period = test.duration_s
-    window = TimedWindow(2.0 * pi / period, 0, 1, 0, np.arange(count) / sampling_hz)
+    lag = effects.get("velocity_lag", {}).get("time", 0.0)
+    finer = ceil(LAG_STEPS_PER_PERIOD * omega / (2.0 * pi * sampling_hz)) if lag > 0.0 else 1
+    step = 1.0 / (sampling_hz * finer)
+    window = TimedWindow(2.0 * pi / test.duration_s, 0, 1, 0, step * np.arange(count * finer))
     start = (sign * 1e-3 * test.release_mm, sign * 1e-3 * test.release_mm_per_s)
     try:
         samples = radau.solve(record, window, RTOL, TIME_LIMIT, start=start).samples
     except CaseError as error:
         raise NoMotion(str(error)) from error
-    lag = effects.get("velocity_lag", {}).get("time", 0.0)
-    displacement, velocity = -samples.x, -samples.velocity
-    velocity = lagged(velocity, 1.0 / sampling_hz, lag) if lag > 0.0 else velocity
+    velocity = lagged(-samples.velocity, step, lag) if lag > 0.0 else -samples.velocity
     gain = effects.get("displacement_gain", {}).get("scale", 1.0)
     recorded = None if given is None else given[: count * FINER : FINER]
-    return Transient(gain * displacement, velocity, -samples.acceleration, recorded)
+    x, acceleration = samples.x[::finer], samples.acceleration[::finer]
+    return Transient(-gain * x, velocity[::finer], -acceleration, recorded)
