@@ -161,7 +161,7 @@ def test_coverage_allows_for_full_turns_of_angles():
     [
         (97, RECORDS, IDEAL),
         (97, RIGS_RECORDS, RIGS),
-        (101, TIME_RECORDS, TIME_KINDS),
+        (107, TIME_RECORDS, TIME_KINDS),
     ],
     ids=["bench", "rigs", "time"],
 )
