@@ -185,6 +185,12 @@ def test_a_fit_that_is_far_off_waits_until_nothing_is_adequate(tmp_path):
     assert alone.fit.chi2 == pytest.approx(again.fit.chi2, rel=1e-3)
 
 
+def test_without_a_candidate_the_base_model_is_all_there_is(tmp_path):
+    path = write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})
+    found = diagnosed(path, ["cross_slip"])  # of a sine as the input
+    assert (found.verdict, found.causes) == ("none-of-mine", [])
+
+
 def test_early_rounds_of_a_search_see_the_worst_window_of_each_few(tmp_path):
     starts = [(0.01, 0.0), (0.012, 0.0)]
     data = transient_data(read(write(tmp_path, starts=starts, samples=18_000, noise=1e-4)))

@@ -247,12 +247,13 @@ def explain(search: Search) -> Explained:
     search.progress("base model")
     search, base = base_fit(search)
     search, found, scans = single_fits(search, base.fit)
-    if search.data.shares_nuisances and verdict.none_adequate(found):
+    sharing = search.data.shares_nuisances
+    if sharing and verdict.none_adequate(found):
         found = followed(search, found)
     search, better = refit_base(search, base, found)
-    # Where explanations try each other's nuisance parameters, one that is adequate leads the others.
-    led = search.data.shares_nuisances and not verdict.none_adequate(found)
-    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2 and not led:
+    # An adequate explanation hands its nuisance parameters on to the others, which need no better base then.
+    handed_on = sharing and not verdict.none_adequate(found)
+    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2 and not handed_on:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
     found = from_shared_nuisances(search, from_special_cases(search, found))
@@ -269,7 +270,7 @@ def explain(search: Search) -> Explained:
             search, found = followed_beyond(search, base, found)
         if verdict.none_adequate(found):
             found = found + multistart(search, scans)
-        if search.data.shares_nuisances and verdict.none_adequate(found):
+        if sharing and verdict.none_adequate(found):
             found = refit_best(search, found)
     found = from_shared_nuisances(search, best_of_each(found, penalised))
     search, base = refit_base(search, base, found)

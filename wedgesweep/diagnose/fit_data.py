@@ -114,7 +114,10 @@ class FitData(Protocol):
 
     @property
     def shares_nuisances(self) -> bool:
-        """Whether fits of different effects may take nuisance parameters from each other."""
+        """Whether fits of different effects may take nuisance parameters from each other.
+
+        What one of them finds then serves the others: those that are far off can wait.
+        """
         return False
 
     @property

@@ -21,8 +21,9 @@ DAMPING, LEAST_DAMPING, MOST_DAMPING, UP, DOWN = 1e-3, 1e-9, 1e8, 8.0, 8.0
 UNDETERMINED = 1e-12
 # Largest step of one iteration, in scales of the parameters.
 MAX_STEP = 3.0
-# At most this share of the tests stays where it is on a step.
-FEW_TESTS = 0.25
+# Largest share of the tests whose nuisance parameters a step may leave where they are, and the least share of
+# the predicted gain that the other tests must make then.
+FEW_TESTS, LEAST_GAIN = 0.25, 0.5
 # A parameter hardly shows if its largest step changes chi-squared by less than this.
 UNNOTICED = 1.0
 
@@ -66,16 +67,16 @@ def minimise(model: Model, start: Evaluation, iterations: int = ITERATIONS) -> F
 
 
 def _better(model: Model, evaluation: Evaluation, step: Step) -> Evaluation | None:
-    """The evaluation after a step if it fits better, also if it does without some of the tests.
+    """The evaluation after a step, or after that of most tests, if it fits better; else None.
 
-    Nuisance parameters that a test hardly shows take long steps, on which its response may jump: those of a
-    few tests stay where they are if the others gain what was predicted.
+    Nuisance parameters that a test hardly shows take long steps, on which its response may jump. If a few
+    tests fit worse, and the others gain half of what was predicted, those of the few stay where they are.
     """
     tried = model.evaluate(step.point)
     change = tried.chi2_by_test - evaluation.chi2_by_test
     jumped = change > 0.0
     few = 0 < jumped.sum() <= max(FEW_TESTS * jumped.size, 1)
-    if tried.chi2 >= evaluation.chi2 and few and -change[~jumped].sum() > 0.5 * step.predicted:
+    if tried.chi2 >= evaluation.chi2 and few and -change[~jumped].sum() > LEAST_GAIN * step.predicted:
         kept = np.where(jumped[:, None], evaluation.point.nuisance, step.point.nuisance)
         tried = model.evaluate(replace(step.point, nuisance=kept))
     return tried if tried.chi2 < evaluation.chi2 else None

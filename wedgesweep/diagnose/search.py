@@ -319,7 +319,7 @@ def from_shared_nuisances(search: Search, found: Sequence[Explanation]) -> list[
 
     A single start that a fit cannot leave may decide between two explanations.
     """
-    if not search.data.shares_nuisances:
+    if not (found and search.data.shares_nuisances):
         return list(found)
     leading = contenders(search, found)
     least = np.min([each.fit.evaluation.chi2_by_test for each in leading], axis=0)

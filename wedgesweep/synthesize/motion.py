@@ -79,7 +79,7 @@ def steady(
     """
     period = 2.0 * pi / float(record["input"]["omega"][0])
     lag = effects.get("velocity_lag", {}).get("time", 0.0)
-    finer = ceil(clock.step / period * LAG_STEPS_PER_PERIOD) if lag > 0.0 else 1
+    finer = lag_steps(clock.step, period, lag)
     ahead = ceil(LAG_MEMORY * lag / clock.step) * finer
     fine = clock.step / finer
     # Shifted by whole periods, so that the window also covers the times before the first sample.
@@ -119,6 +119,11 @@ def _steady_state(record: np.ndarray) -> Sequence[float]:
     if found.outcome[0] != periodic.OK or found.warm.period[0] != 1:
         return (0.0, 0.0)
     return found.warm.state[0, : len(scales(compact(record))[0])].tolist()
+
+
+def lag_steps(step: float, period: float, lag: float) -> int:
+    """Steps of a sample (s) in which a lag (s) is integrated, beside a motion with a period (s)."""
+    return ceil(step / period * LAG_STEPS_PER_PERIOD) if lag > 0.0 else 1
 
 
 def lagged(signal: np.ndarray, step: float, lag: float) -> np.ndarray:

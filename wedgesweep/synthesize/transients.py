@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import ceil, pi
+from math import pi
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from wedgesweep.config import Config
 from wedgesweep.sampled_input import from_samples, set_sampled
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import CaseError, TimedWindow
-from wedgesweep.synthesize.motion import LAG_STEPS_PER_PERIOD, RTOL, TIME_LIMIT, NoMotion, lagged
+from wedgesweep.synthesize.motion import RTOL, TIME_LIMIT, NoMotion, lag_steps, lagged
 from wedgesweep.synthesize.plan import PlannedTest
 
 RELEASE, SWEEP, RANDOM, BUMP = "release", "sweep", "random", "bump"
@@ -73,7 +73,7 @@ def transient(
         sampled = from_samples(given, float(fine[1]), "force" if config.forced else "displacement")
         set_sampled(record, sampled, factor * test.amplitude, omega, test.duration_s)
     lag = effects.get("velocity_lag", {}).get("time", 0.0)
-    finer = ceil(LAG_STEPS_PER_PERIOD * omega / (2.0 * pi * sampling_hz)) if lag > 0.0 else 1
+    finer = lag_steps(1.0 / sampling_hz, 2.0 * pi / omega, lag)
     step = 1.0 / (sampling_hz * finer)
     window = TimedWindow(2.0 * pi / test.duration_s, 0, 1, 0, step * np.arange(count * finer))
     start = (sign * 1e-3 * test.release_mm, sign * 1e-3 * test.release_mm_per_s)

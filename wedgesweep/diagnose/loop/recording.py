@@ -47,11 +47,11 @@ class Recording:
 
     ``model``: the base model with the numbers of the test; ``noise_of_displacement`` (m); ``places`` (k,):
     samples of the motion at which the ``force`` (k,) is compared; ``spectrum`` of its noise there, beside
-    what noise of the motion has ``passed_on`` (L, k), see ``motion_noise.covariance``, and the error (k,) (N)
-    that comes from the unknown state of bristles at the ``start``; ``known`` (k,):
+    what noise of the motion has ``passed_on`` (L, k), see ``motion_noise.covariance``; ``known`` (k,):
     whether friction is, which it is not where the mass may rest; ``blocks``: slices of the k samples, whole
     cycles each; ``white`` (N): noise of the force at the places as frequencies above the filter show it;
-    ``differences``: what repeats leave of the force at the places.
+    ``differences``: what repeats leave of the force at the places; ``error_of_start`` (k,) (N): by bristles
+    whose deflection at the start of the record is not known, None without bristles.
     """
 
     name: str
@@ -68,7 +68,7 @@ class Recording:
     differences: tuple[np.ndarray, ...] = ()
     spectrum: NoiseSpectrum = NO_NOISE
     passed_on: np.ndarray | None = None
-    start: np.ndarray | None = None
+    error_of_start: np.ndarray | None = None
 
     @property
     def noise(self) -> float:
@@ -84,7 +84,9 @@ class Recording:
         """Covariance (N^2) of some compared forces (r,) with one another, (r, r)."""
         distance = np.abs(rows[:, None] - rows)
         found = self.spectrum.covariance(distance) + motion_noise.between(self._passed_on, rows)
-        return found if self.start is None else found + np.outer(self.start[rows], self.start[rows])
+        if self.error_of_start is None:
+            return found
+        return found + np.outer(self.error_of_start[rows], self.error_of_start[rows])
 
     @cached_property
     def decorrelated(self) -> tuple[Decorrelation, ...]:
@@ -117,12 +119,13 @@ class Recording:
         )
 
     def with_noise_of_motion(self, values: Values, zeros: np.ndarray) -> Self:
-        """The test with the noise that the force of a scenario has by that of the motion."""
+        """The test with the errors of the force of a scenario: by noise of the motion, and by its start."""
         derivatives = self._derivatives(values, zeros[None])
         passed_on = motion_noise.covariance(
             self.low_pass, self.places, self.noise_of_displacement, derivatives
         )
-        return replace(self, passed_on=passed_on, start=self._error_of_start(values, zeros[None]))
+        error = self._error_of_start(values, zeros[None])
+        return replace(self, passed_on=passed_on, error_of_start=error)
 
     def _error_of_start(self, values: Values, zeros: np.ndarray) -> np.ndarray | None:
         """Error (k,) (N) of compared forces by a standard deviation of bristles' deflection at the start.

@@ -16,17 +16,19 @@ import numpy as np
 # Distances, in units of the start, at which other starts are tried; numbers of directions, and of moves at
 # each distance.
 DISTANCES, DIRECTIONS, MOVES = (3e-2, 1e-2, 3e-3, 1e-3, 3e-4), 24, 4
-# Ratio of the larger distances that come first around the best of places that are farther apart.
+# Places may be farther apart than that: around the best of them larger distances come first, each so many
+# times the next one.
 REFINED = 3.0
 # Places that are tried, as shares of their range.
 SHARES = np.linspace(-1.0, 1.0, 101)
 # A velocity below this, in units of the start, is that of a mass at rest.
 AT_REST = 0.05
 # A test stands out if its misfit, over the median of all tests, is so many standard deviations of noise too
-# large. At most this share of the tests can stand out: where most are wrong, the model is. If the median says
-# so, at FAR times the noise, tests differ anyway: then one that stands out has FARTHER times the median.
+# large. At most this share of the tests can stand out: where most are wrong, the model is.
 DEVIATIONS, LARGEST_SHARE = 4.0, 1.0 / 3.0
-FAR, FARTHER = 10.0, 3.0
+# Where the median is so many times the squared noise the model is wrong, and tests differ anyway: then a test
+# stands out if it has CLEARLY times the median.
+WRONG, CLEARLY = 10.0, 3.0
 
 
 def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
@@ -34,7 +36,7 @@ def standing_out(chi2: np.ndarray, dof: np.ndarray) -> np.ndarray:
     median = max(float(np.median(chi2 / dof)), 1.0)
     over_median = chi2 / dof / median
     deviations = (over_median - 1.0) * np.sqrt(0.5 * dof)
-    clear = (deviations > DEVIATIONS) & (over_median > (FARTHER if median > FAR else 1.0))
+    clear = (deviations > DEVIATIONS) & (over_median > (CLEARLY if median > WRONG else 1.0))
     worst = np.argsort(-deviations)[: max(int(LARGEST_SHARE * dof.size), 1)]
     return worst[clear[worst]]
 
@@ -62,22 +64,27 @@ def best_start(
     spacing = anywhere[1, 0] - anywhere[0, 0]
     wider = max(ceil(log(spacing / DISTANCES[0], REFINED)), 0)
     distances = (*(spacing / REFINED**i for i in range(1, wider + 1)), *DISTANCES)
-    best = anywhere[np.argmin(misfit(anywhere))]
-    found = misfit(np.array([best, *starts]))
-    better = [start for start, own in zip(starts, found[1:], strict=True) if own <= found[0]]
-    near = [_descended(misfit, start, DISTANCES) for start in better]
-    if len(better) < len(starts):
-        near.append(_descended(misfit, best, distances))
-    return near[np.argmin(misfit(np.array(near)))]
+    near, elsewhere = misfit(np.array(starts)), misfit(anywhere)
+    least = float(elsewhere.min())
+    found = [
+        _descended(misfit, start, float(own), DISTANCES)
+        for start, own in zip(starts, near, strict=True)
+        if own <= least
+    ]
+    if (near > least).any():
+        found.append(_descended(misfit, anywhere[np.argmin(elsewhere)], least, distances))
+    return min(found, key=lambda each: each[1])[0]
 
 
 def _descended(
-    misfit: Callable[[np.ndarray], np.ndarray], start: np.ndarray, distances: Sequence[float]
-) -> np.ndarray:
-    """The start (2,) that moves over smaller and smaller distances lead to, as long as they fit better."""
+    misfit: Callable[[np.ndarray], np.ndarray], start: np.ndarray, least: float, distances: Sequence[float]
+) -> tuple[np.ndarray, float]:
+    """The start (2,) that moves over smaller and smaller distances lead to, as long as they fit better.
+
+    With its misfit; ``least``: that of the first start.
+    """
     angle = 2.0 * np.pi / DIRECTIONS * np.arange(DIRECTIONS)
-    around = np.column_stack([np.cos(angle), np.sin(angle)])
-    best, least = start, float(misfit(start[None])[0])
+    around, best = np.column_stack([np.cos(angle), np.sin(angle)]), start
     for distance in distances:
         for _ in range(MOVES):
             tried = best + distance * around
@@ -85,4 +92,4 @@ def _descended(
             if found.min() >= least:
                 break
             best, least = tried[np.argmin(found)], float(found.min())
-    return best
+    return best, least

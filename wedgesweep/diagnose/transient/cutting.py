@@ -13,8 +13,10 @@ from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
-# An input keeps lifting wedges off, whose start is forgotten later; its noise counts for RECENT ones.
-WINDOW, LEAD, DRIVEN_LEAD, RECENT = 10.0, 1.0, 1.5, 1.0
+WINDOW, LEAD = 10.0, 1.0
+# The same under an input, which keeps lifting wedges off: they forget their start later. Of these periods the
+# last RECENT ones count for the noise of the input.
+DRIVEN_LEAD, RECENT = 1.5, 1.0
 # A motion whose peak-to-peak over a natural period is below this share of that of its record may stick: when
 # friction lets go depends on how long it has stuck.
 STUCK = 0.05

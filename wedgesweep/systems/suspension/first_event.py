@@ -165,7 +165,7 @@ def _first_zero(function, before, after, span, from_zero):
     if from_zero or before.value <= 0.0:
         return zero_after_start(function, bracket, 1e-12 / omega, ROUNDING / omega)
     near = crossing(before, after, span)
-    if function.which == SLIP and value == after.value:
+    if function.which == SLIP and high == span:
         time, close = _end_of_slip(function, near)
         if close:
             return time

@@ -113,9 +113,15 @@ class Phase(NamedTuple):
 
 
 @inlined
-def phase_of(input_phase, x, velocity, oscillator, p):
-    """Phase of a state; ``input_phase``: cosine and sine of that of the input."""
-    c, s = input_phase
+def input_turn(t, p):
+    """Cosine and sine of the phase of the input."""
+    return cosine(p.input.omega * t), sine(p.input.omega * t)
+
+
+@inlined
+def phase_of(turn, x, velocity, oscillator, p):
+    """Phase of a state; ``turn``: ``input_turn`` at its time."""
+    c, s = turn
     free = x - oscillator.centre - oscillator.forced * s
     quadrature = (velocity - oscillator.forced * p.input.omega * c) / oscillator.frequency
     return Phase(c, s, free, quadrature)
@@ -124,8 +130,7 @@ def phase_of(input_phase, x, velocity, oscillator, p):
 @inlined
 def phase_at(t, x, velocity, oscillator, p):
     """Phase of a state at time t."""
-    input_phase = cosine(p.input.omega * t), sine(p.input.omega * t)
-    return phase_of(input_phase, x, velocity, oscillator, p)
+    return phase_of(input_turn(t, p), x, velocity, oscillator, p)
 
 
 @inlined

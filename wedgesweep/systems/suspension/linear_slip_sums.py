@@ -158,7 +158,7 @@ def _add_integrals(start, end, duration, oscillator, mode, recorder, p):
 
 @inner
 def record_slip(state, start, end, oscillator, recorder, p):
-    """Record what ``slip_to_event`` has followed, from a state at the phase ``start`` to a time (s)."""
+    """Record what ``slip_to_event`` has followed: from a state, whose phase is ``start``, to ``end`` (s)."""
     t, mode = state.t, state.mode
     if end > t:
         last = _add_extremes(start, end - t, oscillator, recorder, p)

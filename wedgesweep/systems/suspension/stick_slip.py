@@ -18,6 +18,7 @@ from wedgesweep.systems.suspension.linear_slip import (
     LinearOscillator,
     acceleration_at,
     base_acceleration,
+    input_turn,
     linear_oscillator,
     motion,
     phase_of,
@@ -27,7 +28,6 @@ from wedgesweep.systems.suspension.linear_slip_sums import record_slip
 from wedgesweep.systems.suspension.modes import COLUMN, ContactMode, slipping, stuck
 from wedgesweep.systems.suspension.newton import ROUNDING
 from wedgesweep.systems.suspension.set_valued import LOOK_AHEAD
-from wedgesweep.trigonometry import cosine, sine
 
 # Modes after which the integrator checks the number of events.
 MOST_MODES = 1000
@@ -103,12 +103,6 @@ def _breakaway_time(state, stop, up, down, p):
     return breakaway_time(state, stop, p)
 
 
-@inlined
-def _input_phase(t, p):
-    """Cosine and sine of the phase of the input."""
-    return cosine(p.input.omega * t), sine(p.input.omega * t)
-
-
 @inner
 def _stick(state, stop, up, down, p, keeping, recorder):
     """Wait for breakaway or ``stop``: the time, and the event or NO_EVENT."""
@@ -137,20 +131,20 @@ def stick_slip(state, stop, p, keeping, recorder, counts):
     up, down = _direction(1, state.y, segment, p), _direction(-1, state.y, segment, p)
     if not (_linear(up) and _linear(down)):
         return False, state, NO_EVENT
-    input_phase = _input_phase(state.t, p)
+    turn = input_turn(state.t, p)
     for _ in range(MOST_MODES):
         x, velocity = state.y
         if stuck(state.mode, p):
             t, event = _stick(state, stop, up, down, p, keeping, recorder)
             if event // 2 == COLUMN:
                 mode, certain = _after_breakaway(t, x, event, up, down, p)
-            input_phase = _input_phase(t, p)
+            turn = input_turn(t, p)
         else:
             oscillator = up.slip if state.mode.column > 0 else down.slip
-            phase = phase_of(input_phase, x, velocity, oscillator, p)
+            phase = phase_of(turn, x, velocity, oscillator, p)
             t, phase, event = _slip(state, phase, stop, oscillator, p, keeping, recorder)
             x, velocity = motion(phase, oscillator, p)
-            input_phase = phase.cosine, phase.sine
+            turn = phase.cosine, phase.sine
             if event // 2 == COLUMN:
                 mode, certain = _after_slip(x, base_acceleration(phase, p), up, down, p)
         if event // 2 != COLUMN or not certain:
