@@ -7,8 +7,8 @@ from wedgesweep import friction
 from wedgesweep.compiled import compiled
 from wedgesweep.effects import states
 from wedgesweep.hybrid.state import NO_EVENT, State
+from wedgesweep.hybrid.step import dense_output
 from wedgesweep.solvers import explicit, implicit, period_detection
-from wedgesweep.solvers.step import dense_output
 from wedgesweep.systems.suspension import (
     filippov,
     first_event,

@@ -1,9 +1,10 @@
 """Friction laws: the signed coefficient of a face as a function of its slip velocity.
 
 A law is a file of its own with two smooth functions and their ``bound``: ``static`` is the coefficient at the
-end of the ramp around v = 0, or at which set-valued friction lets go, ``sliding`` the one beyond. It has
-three branches: -1 and 1, sliding backward and forward, and 0, the ramp, or sticking under a set-valued law.
-The contact mode says which branch holds, so that no integrator ever steps across a corner.
+end of the ramp around v = 0, or at which set-valued friction lets go, ``sliding`` the one beyond. Its
+``exponent`` is that of ``sliding`` as a power of the speed: 0 if it is constant, NaN if it is no power. A law
+has three branches: -1 and 1, sliding backward and forward, and 0, the ramp, or sticking under a set-valued
+law. The contact mode says which branch holds, so that no integrator ever steps across a corner.
 """
 
 from collections.abc import Callable, Mapping
@@ -64,10 +65,10 @@ class _Law:
 
     @staticmethod
     @_of_the_law
-    def constant(p): ...
+    def exponent(p): ...
 
 
-_static, _sliding, constant = _Law.static, _Law.sliding, _Law.constant
+_static, _sliding, exponent = _Law.static, _Law.sliding, _Law.exponent
 
 
 @inlined

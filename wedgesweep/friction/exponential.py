@@ -33,9 +33,9 @@ def sliding(speed, p):
 
 
 @inlined
-def constant(p):
-    """Whether ``sliding`` does not depend on the speed."""
-    return False
+def exponent(p):
+    """Exponent of ``sliding`` as a power of the speed."""
+    return p.friction.exponent
 
 
 def bound(p: np.void) -> float:

@@ -3,6 +3,8 @@
 It is set-valued at rest. For oscillators only. v_t is the velocity at which it has fallen to half.
 """
 
+from math import nan
+
 import numpy as np
 
 from wedgesweep.compiled import inlined
@@ -27,9 +29,9 @@ def sliding(speed, p):
 
 
 @inlined
-def constant(p):
-    """Whether ``sliding`` does not depend on the speed."""
-    return False
+def exponent(p):
+    """``sliding`` is no power of the speed."""
+    return nan
 
 
 def bound(p: np.void) -> float:

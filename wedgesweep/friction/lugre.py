@@ -5,7 +5,7 @@ and the viscous part sigma_2 are keys of [oscillator]. There is no true sticking
 stuck.
 """
 
-from math import exp
+from math import exp, nan
 
 import numpy as np
 
@@ -41,9 +41,9 @@ def sliding(speed, p):
 
 
 @inlined
-def constant(p):
-    """Whether ``sliding`` does not depend on the speed."""
-    return False
+def exponent(p):
+    """``sliding`` is no power of the speed."""
+    return nan
 
 
 def bound(p: np.void) -> float:

@@ -24,9 +24,9 @@ def sliding(speed, p):
 
 
 @inlined
-def constant(p):
-    """Whether ``sliding`` does not depend on the speed."""
-    return True
+def exponent(p):
+    """``sliding`` does not depend on the speed."""
+    return 0.0
 
 
 def bound(p: np.void) -> float:

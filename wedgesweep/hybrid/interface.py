@@ -186,11 +186,11 @@ def expected_event(forces, t, y, mode, p):
 
 
 @optional
-def closed_form(state, stop, p, keeping, recorder, counts):
-    """Follow a mode that has a closed form to its event or ``stop``, or several modes, one after the other.
+def follow(state, stop, p, keeping, recorder, work):
+    """Follow a mode by a method of the system's own to its event or ``stop``, or several, one by one.
 
-    Returns whether it has one, the state reached, and the event, NO_EVENT or HANDED_OVER; ``counts[2]``
-    counts the events passed.
+    Returns whether it has one, the state reached, and the event, NO_EVENT, FAILED or HANDED_OVER. ``work``:
+    tolerance and counts of the run (``integrate.Workspace``), among them that of the events passed.
     """
     return False, state, NO_EVENT
 

@@ -6,6 +6,7 @@ dense output of a step, along a closed form, and of a system at rest.
 """
 
 from collections.abc import Callable
+from math import inf
 from typing import NamedTuple, TypeVar
 
 from numba.core import types
@@ -18,6 +19,9 @@ MOST_ITERATIONS = 100
 # A change of the place, as a share of the first bracket, after which only rounding errors are left: of the
 # secant method, and of Newton's, which squares the error.
 LAST_CHANGE, LAST_CHANGE_BY_SLOPE = 1e-10, 1e-7
+# Of ``first_zero``: error of the place as a share of its unit, that of a minimum as a share of the interval,
+# and the distance from a start that is a zero in which no other one is sought.
+ROUNDING, GRAZING, NEAREST = 1e-15, 1e-9, 1e-12
 
 Function = TypeVar("Function", bound=Callable)
 _FUNCTIONS: dict[type, Callable] = {}
@@ -61,6 +65,26 @@ class Sample(NamedTuple):
 
     value: float
     slope: float
+
+
+@inlined
+def sample(place, context):
+    """The function of a context at a place."""
+    return Sample(*_value(place, context))
+
+
+@inlined
+def may_graze(before, after, span):
+    """Whether a function may be negative between two positive samples.
+
+    It may if its tangents meet near zero or below: between samples this close a function with a minimum is
+    convex, and lies above its tangents.
+    """
+    falling, rising = before.slope, after.slope
+    if not falling < 0.0 < rising:
+        return False
+    lowest = (rising * before.value - falling * after.value + falling * rising * span) / (rising - falling)
+    return lowest < 0.1 * before.value
 
 
 @inlined
@@ -167,3 +191,21 @@ def minimum(context, low, high, close):
             right = low + GOLDEN * (high - low)
             at_right = _value(right, context)[0]
     return 0.5 * (low + high)
+
+
+@inner
+def first_zero(context, low, span, before, after, from_zero, unit):
+    """Place at which a function is first zero between two samples ``span`` apart; inf: nowhere.
+
+    ``low``: place of the first one. ``from_zero``: the function is zero there. ``unit``: of places.
+    """
+    high, value = low + span, after.value
+    if value > 0.0 and not from_zero and may_graze(before, after, span):
+        high = minimum(context, low, high, GRAZING * span)
+        value = _value(high, context)[0]
+    if value > 0.0:
+        return inf
+    bracket = Bracket(low, before.value, high, value)
+    if from_zero or before.value <= 0.0:
+        return zero_after_start(context, bracket, NEAREST * unit, ROUNDING * unit)
+    return zero_near(context, bracket, low + crossing(before, after, span), ROUNDING * unit)

@@ -6,8 +6,8 @@ of the tableau are left out: each weight belongs to the stage at the same place 
 
 from wedgesweep.compiled import inlined
 from wedgesweep.hybrid.interface import rate
+from wedgesweep.hybrid.step import over_tolerance, with_dense_output
 from wedgesweep.hybrid.vectors import combination, weighted
-from wedgesweep.solvers.step import over_tolerance, with_dense_output
 
 STAGES = 7
 ORDER = 5

@@ -9,9 +9,9 @@ import numpy as np
 
 from wedgesweep.compiled import allocating
 from wedgesweep.hybrid.interface import active, fastest, growth, perturbation, rate, stiff_error
+from wedgesweep.hybrid.step import dense_output, over_tolerance, with_dense_output
 from wedgesweep.hybrid.vectors import combination, replaced, store, vector
 from wedgesweep.solvers.linear_algebra import inverted, places_of
-from wedgesweep.solvers.step import dense_output, over_tolerance, with_dense_output
 
 STAGES = 6
 ORDER = 4

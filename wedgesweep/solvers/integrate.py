@@ -1,4 +1,4 @@
-"""A run from one event to the next: closed form where the system has one, Runge-Kutta steps elsewhere.
+"""A run from one event to the next: by the system's own method where it has one, else by Runge-Kutta steps.
 
 After each step the event functions are known at its start, middle and end. Where one may have been zero in
 between, its minimum is sought. An event is located on the step's dense output, roughly at first. Then the
@@ -16,17 +16,16 @@ import numpy as np
 from wedgesweep.compiled import by_record, inlined, inner
 from wedgesweep.hybrid.accumulators import add_impact
 from wedgesweep.hybrid.interface import (
-    closed_form,
     event,
     event_count,
     events,
     expected_event,
     fastest,
+    follow,
     holds,
     initial_mode,
     leaves,
     never_locks,
-    observed,
     opened,
     outruns,
     provided,
@@ -36,11 +35,11 @@ from wedgesweep.hybrid.interface import (
     transition,
     well_posed,
 )
-from wedgesweep.hybrid.recorder import NODES, WEIGHTS, first_sample, record_node, record_sample
+from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
+from wedgesweep.hybrid.step import MOST_STEPS, SHORTEST, dense_output
 from wedgesweep.solvers import explicit, implicit
-from wedgesweep.solvers.step import dense_output, dense_slope
 
 EVENTS_PER_PERIOD = 1000
 # Room for event functions.
@@ -53,17 +52,13 @@ LEAST_STEPS, LEAST_STEPS_HELD = 12, 64
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 # At an error below this share of the tolerance, which is less than SAFETY**5, the next step is longer.
 NOT_GROWING = 0.5
-# Shortest step, as a share of a period of the fastest input; a mode that needs a shorter one has failed.
-SHORTEST = 1e-13
-# A mode that needs more steps than this per period of the fastest input will not end.
-MOST_STEPS = 100_000
-# Nor does a window of more periods of the fastest input than this end in a reasonable time.
+# A window of more periods of the fastest input than this does not end in a reasonable time.
 LONGEST_WINDOW = 1_000_000
 # A minimum is looked for where the parabola through three values falls below this share of the least.
 SUSPECT = 0.3
-# Errors of places in a step: of an event, of a minimum, of an extreme; and the phase (rad) after an event in
-# which no other one is sought.
-PLACE_OF_EVENT, PLACE_OF_MINIMUM, PLACE_OF_EXTREME, UNSEEN = 1e-14, 1e-6, 1e-9, 1e-13
+# Errors of places in a step: of an event, of a minimum; and the phase (rad) after an event in which no other
+# one is sought.
+PLACE_OF_EVENT, PLACE_OF_MINIMUM, UNSEEN = 1e-14, 1e-6, 1e-13
 # Error of the place of an event that a repeated step will locate, and how far beyond it that step goes, as a
 # share of the first one.
 ROUGHLY, PAST_EVENT = 1e-3, 2e-2
@@ -174,75 +169,6 @@ def first_event(step, mode, last_event, forces, close, p, work):
         if share <= 1.0 and (first < 0 or share < earliest):
             earliest, first = share, number
     return earliest, first
-
-
-class _Velocity(NamedTuple):
-    """Observed velocity on a step, times a sign."""
-
-    sign: float
-    step: Any
-    p: Any
-
-
-class _Acceleration(NamedTuple):
-    """Derivative of the observed velocity by the share of a step, times a sign."""
-
-    sign: float
-    step: Any
-    p: Any
-
-
-@searched(_Velocity)
-@inner
-def _velocity(share, context):
-    step, p = context.step, context.p
-    velocity = observed(dense_output(share, step), p)[1]
-    return context.sign * velocity, context.sign * observed(dense_slope(share, step), p)[1]
-
-
-@searched(_Acceleration)
-@inner
-def _acceleration(share, context):
-    return context.sign * observed(dense_slope(share, context.step), context.p)[1], nan
-
-
-@inner
-def _record_extremes(share, step, mode, recorder, p):
-    """Record the extremes of displacement and velocity in a step up to a share of it."""
-    first, last = _velocity(0.0, _Velocity(1.0, step, p))[0], _velocity(share, _Velocity(1.0, step, p))[0]
-    if first * last < 0.0:
-        turning = _Velocity(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(turning, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
-        record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
-    upward = _Acceleration(1.0, step, p)
-    first, last = _acceleration(0.0, upward)[0], _acceleration(share, upward)[0]
-    if first * last < 0.0:
-        peak = _Acceleration(1.0 if first > 0.0 else -1.0, step, p)
-        there = zero(peak, Bracket(0.0, abs(first), share, -abs(last)), PLACE_OF_EXTREME)
-        record_node(step.t + there * step.h, dense_output(there, step), 0.0, mode, recorder, p)
-
-
-@inner
-def _add_step(step, share, mode, recorder, p):
-    """Add a step up to a share of it to the sums."""
-    t, h, end = step.t, step.h, dense_output(share, step)
-    record_node(t, step.start, 0.0, mode, recorder, p)
-    for node in range(len(NODES)):
-        there = share * NODES[node]
-        record_node(t + there * h, dense_output(there, step), share * h * WEIGHTS[node], mode, recorder, p)
-    record_node(t + share * h, end, 0.0, mode, recorder, p)
-    _record_extremes(share, step, mode, recorder, p)
-
-
-@inner
-def record_step(step, share, mode, recorder, p):
-    """Record a step up to a share of it."""
-    if recorder.summed:
-        _add_step(step, share, mode, recorder, p)
-    t, h = step.t, step.h
-    for i in range(first_sample(t, recorder), first_sample(t + share * h, recorder)):
-        place = (recorder.start + i * recorder.step - t) / h
-        record_sample(i, dense_output(place, step), mode, recorder, p)
 
 
 def _implicit_step(t, h, y, k1, mode, p, rtol):
@@ -365,7 +291,7 @@ def integrate(state, keep_from, stop, p, recorder, work):
             return HANDED_OVER, state
         keeping = state.t >= keep_from
         end = stop if keeping else keep_from
-        done, state, number = closed_form(state, end, p, keeping, recorder, work.counts)
+        done, state, number = follow(state, end, p, keeping, recorder, work)
         if not done:
             state, number = _integrate_mode(state, end, p, keeping, recorder, work)
         if number == NO_EVENT and work.counts[2] <= limit:

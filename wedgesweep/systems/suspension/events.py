@@ -108,7 +108,7 @@ def _time_to_end(slip, rate, branch, threshold, p):
     It is inf as well on a sliding branch whose coefficient depends on velocity: a step that aims at the end
     of the branch has stages beyond it, where the coefficient would grow fast.
     """
-    if branch != 0 and not friction.constant(p):
+    if branch != 0 and friction.exponent(p) != 0.0:
         return inf
     if branch == 0:
         return (threshold - slip if rate > 0.0 else -threshold - slip) / rate if rate != 0.0 else inf

@@ -9,15 +9,7 @@ from math import inf, pi, sqrt
 from typing import Any, NamedTuple
 
 from wedgesweep.compiled import inlined, inner
-from wedgesweep.hybrid.search import (
-    Bracket,
-    Sample,
-    crossing,
-    minimum,
-    searched,
-    zero_after_start,
-    zero_near,
-)
+from wedgesweep.hybrid.search import Sample, crossing, first_zero, may_graze, searched
 from wedgesweep.hybrid.state import NO_EVENT
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.linear_slip import (
@@ -38,8 +30,6 @@ from wedgesweep.systems.suspension.linear_slip import (
 SCAN = 16
 # The event functions of an oscillator: slip velocity, and the normal forces on column and bolster.
 SLIP, COLUMN_FORCE, BOLSTER_FORCE = 0, 1, 2
-# Error of an event's phase (rad), and of that of a minimum as a share of the interval.
-ROUNDING, GRAZING = 1e-15, 1e-9
 # Phase (rad) from which a series of order 3 leads to an event within rounding error.
 CONVERGED = 2e-4
 
@@ -123,20 +113,6 @@ def _forces_may_vanish(phase, oscillator, mode, p):
 
 
 @inlined
-def _may_graze(before, after, span):
-    """Whether an event function may be negative between two positive samples.
-
-    It may if its tangents meet near zero or below: between samples this close a function with a minimum is
-    convex, and lies above its tangents.
-    """
-    falling, rising = before.slope, after.slope
-    if not falling < 0.0 < rising:
-        return False
-    lowest = (rising * before.value - falling * after.value + falling * rising * span) / (rising - falling)
-    return lowest < 0.1 * before.value
-
-
-@inlined
 def _end_of_slip(function, near):
     """Time at which slip ends, from a time near it, and whether that is within rounding error.
 
@@ -154,22 +130,12 @@ def _end_of_slip(function, near):
 
 @inner
 def _first_zero(function, before, after, span, from_zero):
-    """Time at which an event function is first zero in an interval between two samples; inf: nowhere."""
-    omega, high, value = function.p.input.omega, span, after.value
-    if value > 0.0 and not from_zero and _may_graze(before, after, span):
-        high = minimum(function, 0.0, span, GRAZING * span)
-        value = _value(high, function)[0]
-    if value > 0.0:
-        return inf
-    bracket = Bracket(0.0, before.value, high, value)
-    if from_zero or before.value <= 0.0:
-        return zero_after_start(function, bracket, 1e-12 / omega, ROUNDING / omega)
-    near = crossing(before, after, span)
-    if function.which == SLIP and high == span:
-        time, close = _end_of_slip(function, near)
+    """As ``search.first_zero``."""
+    if function.which == SLIP and after.value <= 0.0 < before.value and not from_zero:
+        time, close = _end_of_slip(function, crossing(before, after, span))
         if close:
             return time
-    return zero_near(function, bracket, near, ROUNDING / omega)
+    return first_zero(function, 0.0, span, before, after, from_zero, 1.0 / function.p.input.omega)
 
 
 @inlined
@@ -179,7 +145,7 @@ def _earlier(found, function, later, span, at_zero):
     ``at_zero``: the event function that begins at zero.
     """
     before, after = _sample(function, function.phase), _sample(function, later)
-    if after.value > 0.0 and not _may_graze(before, after, span):
+    if after.value > 0.0 and not may_graze(before, after, span):
         return found
     time = _first_zero(function, before, after, span, function.which == at_zero)
     return (time, function.which) if time < found[0] else found

@@ -10,8 +10,8 @@ from wedgesweep.hybrid.interface import implement
 from wedgesweep.hybrid.vectors import replaced
 from wedgesweep.systems.shared import implement_shared
 from wedgesweep.systems.suspension import (  # noqa: F401
-    closed_form,
     events,
+    follow,
     sampled_breakaway,
     stiffness,
     transitions,

@@ -62,7 +62,7 @@ def _constant_friction(mode, p):
         return True
     bolster = abs(mode.bolster) == 1 or p.geometry.bolster_ratio == 0.0
     guide = abs(mode.guide) == 1 or not guide_friction.acts(p)
-    return friction.constant(p) and abs(mode.column) == 1 and bolster and guide
+    return friction.exponent(p) == 0.0 and abs(mode.column) == 1 and bolster and guide
 
 
 @inner

@@ -89,7 +89,7 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, ...]:
     go_with_opening = [*plain, *(name for name in names if name in lift_off.GO_WITH)]
     all_but_opening = [name for name in names if name != lift_off.NAME]
     opens = records.effect_parts([lift_off.NAME])
-    # Records with ``base`` have a closed form (closed_form.py); those with a series have none.
+    # Records with ``base`` have faster methods (follow.py); those with a series have none.
     part, base = (records.SERIES, []) if series else ([], [("base", np.int64)])
     return (
         _dtype(base + TURNS + part, plain),

@@ -6,7 +6,7 @@ These are constant while nothing but the base moves and both faces carry load (b
 from wedgesweep import sampled_input
 from wedgesweep.compiled import inner, term
 from wedgesweep.effects import states, stray_vibration
-from wedgesweep.hybrid.interface import closed_form, implement
+from wedgesweep.hybrid.interface import follow, implement
 from wedgesweep.hybrid.recorder import record_constant
 from wedgesweep.hybrid.state import NO_EVENT, State
 from wedgesweep.systems.suspension.breakaway import DOWN, UP, breakaway_range
@@ -24,9 +24,9 @@ def _waits_for_input(state, p):
     return rests
 
 
-@implement(closed_form, "suspension")
+@implement(follow, "suspension")
 @term("series", off="(False, state, NO_EVENT)", NO_EVENT=NO_EVENT)
-def follow_stuck(state, stop, p, keeping, recorder, counts):
+def follow_stuck(state, stop, p, keeping, recorder, work):
     """See the interface: follows a bolster that sticks under a sampled input."""
     if not _waits_for_input(state, p):
         return False, state, NO_EVENT

@@ -435,9 +435,9 @@ def normal_forces(t, y, mode, p):
     return column, bolster
 
 
-@implement(interface.closed_form, UNILATERAL)
+@implement(interface.follow, UNILATERAL)
 @inlined
-def closed_form(state, stop, p, keeping, recorder, counts):
+def follow(state, stop, p, keeping, recorder, work):
     """There is none, unlike for the bilateral joints whose records these extend."""
     return False, state, NO_EVENT
 

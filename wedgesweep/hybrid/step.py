@@ -9,6 +9,9 @@ from wedgesweep.hybrid.vectors import combination, weighted
 
 # Share of a state's natural size, times rtol, that an error may always have.
 ABSOLUTE = 1e-2
+# Shortest step, as a share of a period of the fastest input; a mode that needs a shorter one has failed. One
+# that needs more steps than MOST_STEPS per period will not end.
+SHORTEST, MOST_STEPS = 1e-13, 100_000
 
 
 class Step(NamedTuple):
@@ -36,6 +39,15 @@ def with_dense_output(t, h, start, end, start_rate, end_rate, quartic):
     bend = combination(1.0, (h, -1.0), (start_rate, rise))
     turn = combination(1.0, (1.0, -h, -1.0), (rise, end_rate, bend))
     return Step(t, h, start, end, start_rate, end_rate, rise, bend, turn, quartic)
+
+
+@inlined
+def step_through(t, h, start, middle, end, start_rate, end_rate):
+    """A step whose dense output also meets the state in its middle."""
+    step = with_dense_output(t, h, start, end, start_rate, end_rate, start)
+    weights = (16.0, -16.0, -8.0, -4.0, -2.0)
+    quartic = combination(1.0, weights, (middle, start, step.rise, step.bend, step.turn))
+    return Step(t, h, start, end, start_rate, end_rate, step.rise, step.bend, step.turn, quartic)
 
 
 @inlined

@@ -1,0 +1,183 @@
+"""Slip under friction that depends on velocity, as power series: against Newton's equations."""
+
+from math import inf, pi
+
+import numpy as np
+import pytest
+
+from tests.physics.cases import OMEGA_N
+from wedgesweep import friction
+from wedgesweep.compiled import compiled
+from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
+from wedgesweep.hybrid.search import Sample
+from wedgesweep.systems.suspension import events as events_of
+from wedgesweep.systems.suspension import newton, parameters, rational, regularised_slip, series_events
+from wedgesweep.systems.suspension.modes import ContactMode
+from wedgesweep.systems.suspension.power_series import ORDER
+
+AMPLITUDE, OMEGA = 0.4e-3, 0.7 * OMEGA_N
+# Branches of column and bolster face, and a z' (in units of v_t) at which they hold.
+MODES = [((0, 0), 0.4), ((0, 0), -0.9), ((1, 0), 3.0), ((-1, 0), -5.0), ((1, -1), 40.0), ((-1, 1), -90.0)]
+LAWS = ["static-dynamic", "exponential"]
+
+
+def case(law="static-dynamic", column_angle_deg=2.5, **suspension):
+    values = {"column_angle": column_angle_deg * pi / 180.0, **suspension}
+    return parameters.compact(parameters.record(law, AMPLITUDE, OMEGA, values))
+
+
+def mode_of(branches, signs=(1, 1)):
+    return ContactMode(*branches, 0, *signs, 0, 0, 1 if branches[0] == 0 else 0)
+
+
+@compiled
+def values_and_slopes(coefficients, s):
+    """Value, slope and bound of the change of a polynomial."""
+    return polynomial(coefficients, s), slope(coefficients, s), largest_change(coefficients, s)
+
+
+def test_polynomials_are_those_of_numpy():
+    generator = np.random.default_rng(0)
+    for terms in (2, 5, 8):
+        c = generator.normal(size=terms)
+        exact = np.polynomial.Polynomial(c)
+        for s in (0.0, 0.3, 1.7):
+            value, rate, change = values_and_slopes(tuple(c.tolist()), s)
+            assert value == pytest.approx(exact(s), rel=1e-13)
+            assert rate == pytest.approx(exact.deriv()(s), rel=1e-13)
+            assert np.abs(exact(np.linspace(0.0, s, 101)) - c[0]).max() <= change * (1.0 + 1e-13)
+
+
+@compiled
+def both_forces(x, u2, column_mu, bolster_mu, mode, cases):
+    """Newton's forces under two coefficients of friction, then those of the rational functions."""
+    p = cases[0]
+    load = newton.loads(0.0, (x, 0.0), mode, p)
+    load = newton.Loads(load.tangential, load.normal, load.vertical, 0.0, 0.0, u2)
+    exact = newton.reactions(load, newton.Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[0]
+    forces = rational.rational_forces(mode, p)
+    samples = Sample(x, 0.0), Sample(u2, 0.0), Sample(column_mu, 0.0), Sample(bolster_mu, 0.0)
+    found = (
+        rational.rational(forces.acceleration, forces.determinant, *samples).value,
+        rational.rational(forces.column, forces.determinant, *samples).value,
+        rational.rational(forces.bolster, forces.determinant, *samples).value,
+    )
+    return (exact.acceleration, exact.column, exact.bolster), found, forces.loaded
+
+
+def test_rational_forces_are_newtons():
+    generator = np.random.default_rng(1)
+    for angle in (-8.0, 0.0, 2.5, 6.0):
+        cases = case(column_angle_deg=angle, wedge_preload=2.0)
+        for _ in range(20):
+            x, u2 = generator.uniform(-2e-3, 2e-3), generator.uniform(-20.0, 20.0)
+            coefficients = generator.uniform(-0.4, 0.4, 2)
+            exact, found, _ = both_forces(x, u2, *coefficients, mode_of((0, 0)), cases)
+            assert found == pytest.approx(exact, rel=1e-11)
+
+
+def test_up_to_some_displacement_both_faces_surely_carry_load():
+    cases, generator = case(), np.random.default_rng(2)
+    most_mu, most_u2 = cases["friction"]["mu_s"][0], AMPLITUDE * OMEGA**2
+    loaded = both_forces(0.0, 0.0, 0.0, 0.0, mode_of((0, 0)), cases)[2]
+    assert 0.0 < loaded < inf
+
+    def least_force(x, u2, column_mu, bolster_mu):
+        return min(both_forces(x, u2, column_mu, bolster_mu, mode_of((0, 0)), cases)[0][1:])
+
+    inside = generator.uniform(-1.0, 1.0, (200, 4)) * [loaded, most_u2, most_mu, most_mu]
+    assert min(least_force(*each) for each in inside) > 0.0
+    corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 4), axis=-1).reshape(-1, 4)
+    corners *= [loaded, most_u2, most_mu, most_mu]
+    assert min(least_force(*each) for each in corners) == pytest.approx(0.0, abs=1e-9)
+
+
+@compiled
+def expanded(t, y, mode, cases):
+    """Series of a motion: x, z', u'' and both coefficients of friction."""
+    p = cases[0]
+    return regularised_slip._expanded(t, y, mode, rational.rational_forces(mode, p), p)
+
+
+@compiled
+def acceleration(t, y, mode, cases):
+    """Newton's z'' (m/s^2)."""
+    return newton.forces(t, y, mode, cases[0]).acceleration
+
+
+def start(cases, velocity):
+    return 1e-4, velocity * float(cases["friction"]["v_t"][0])
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("branches", "velocity"), MODES)
+def test_a_series_solves_newtons_equations(law, branches, velocity):
+    """What is left of them falls with the power of time that the series leaves out."""
+    cases = case(law)
+    mode, y, t = mode_of(branches), start(cases, velocity), 0.013
+    series = expanded(t, y, mode, cases)
+    assert len(series.velocity) == ORDER + 1
+    assert (series.x[0], series.velocity[0], series.x[1]) == (*y, y[1])
+    # A time in which the velocity changes by a good part.
+    step, left = 0.15 * min(abs(y[1] / series.velocity[1]), 1.0 / OMEGA), []
+    for s in (step, 0.5 * step):
+        x, v = (np.polynomial.Polynomial(each)(s) for each in (series.x, series.velocity))
+        newtons = acceleration(t + s, (float(x), float(v)), mode, cases)
+        left.append(abs(np.polynomial.Polynomial(series.velocity).deriv()(s) - newtons))
+    assert left[0] < 1e-4 * abs(series.velocity[1])
+    rounding = 1e-12 * OMEGA**2 * abs(y[0])
+    assert left[1] < left[0] / (0.6 * 2.0**ORDER) + rounding
+
+
+@pytest.mark.parametrize("signs", [(-1, 1), (1, -1), (-1, -1)])
+def test_friction_acts_with_the_size_of_a_normal_force_that_pulls(signs):
+    cases = case()
+    mode, y = mode_of((1, 0), signs), start(cases, 3.0)
+    assert expanded(0.01, y, mode, cases).velocity[1] == pytest.approx(
+        acceleration(0.01, y, mode, cases), rel=1e-12
+    )
+
+
+@compiled
+def ends(mode, cases):
+    """Ends of a mode."""
+    return series_events.ends_of(mode, cases[0])
+
+
+@compiled
+def write_events(y, mode, cases, out):
+    """Event functions of a state."""
+    events_of.events(newton.forces(0.0, y, mode, cases[0]), 0.0, y, mode, cases[0], out)
+
+
+@pytest.mark.parametrize("angle", [-6.0, 0.0, 2.5])
+@pytest.mark.parametrize("branches", [(0, 0), (1, 0), (-1, 0), (1, -1), (-1, 1), (1, 1), (-1, -1)])
+def test_a_mode_ends_where_its_event_functions_say(branches, angle):
+    cases, mode, out = case(column_angle_deg=angle), mode_of(branches), np.empty(events_of.EVENTS)
+    found = ends(mode, cases)
+    for end, event, side in ((found.low, found.low_event, -1.0), (found.high, found.high_event, 1.0)):
+        if not np.isfinite(end):
+            assert event < 0
+            continue
+        for outward, holds in ((-1e-6, True), (1e-6, False)):
+            write_events((0.0, end + side * outward * abs(end)), mode, cases, out)
+            assert (out[event] > 0.0) == holds
+    # Where faces end their branches at several velocities, the first one counts.
+    if np.isfinite(found.low) and np.isfinite(found.high) and found.low < found.high:
+        write_events((0.0, 0.5 * (found.low + found.high)), mode, cases, out)
+        assert out[:4].min() > 0.0
+
+
+def test_a_law_that_is_no_power_of_speed_has_no_series_beyond_its_ramp():
+    assert np.isnan(exponent_of(case("static-dynamic"), "hyperbolic"))
+    assert exponent_of(case("exponential"), "exponential") == pytest.approx(-0.1)
+
+
+@compiled
+def _exponent(cases):
+    return friction.exponent(cases[0])
+
+
+def exponent_of(cases, law):
+    cases["friction"]["law"] = friction.code(law)
+    return _exponent(cases)

@@ -1,0 +1,147 @@
+"""Follows the modes of a regularised law in the base model, one after the other.
+
+Slip under constant friction is a linear oscillator. Where friction depends on velocity, on the ramp or beyond
+it, power series (power_series.py) make the steps. They go on beyond the end of a branch of friction, so that
+no step has to be repeated there.
+"""
+
+from math import isfinite, pi
+
+from wedgesweep import excitation, friction
+from wedgesweep.compiled import inlined, inner
+from wedgesweep.effects import guide_friction
+from wedgesweep.hybrid.interface import error_scales, transition
+from wedgesweep.hybrid.polynomials import polynomial, slope
+from wedgesweep.hybrid.recorded_step import record_step
+from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
+from wedgesweep.hybrid.step import ABSOLUTE, MOST_STEPS, SHORTEST, step_through
+from wedgesweep.systems.suspension.events import COLUMN_NORMAL
+from wedgesweep.systems.suspension.first_event import slip_to_event
+from wedgesweep.systems.suspension.linear_slip import linear_oscillator, motion, phase_at
+from wedgesweep.systems.suspension.linear_slip_sums import record_slip
+from wedgesweep.systems.suspension.modes import HELD
+from wedgesweep.systems.suspension.power_series import ORDER, Face, expand, expand_powers
+from wedgesweep.systems.suspension.rational import rational_forces
+from wedgesweep.systems.suspension.series_events import ends_of, first_event
+
+# Modes after which the integrator checks the number of events.
+MOST_MODES = 1000
+# Least number of steps per period of the input; and while they are recorded, so that each has one extreme.
+LEAST_STEPS, LEAST_STEPS_RECORDED = 6, 12
+# The last term of a series, and a share of the one before it, limit a step, which is shorter by a factor.
+LAST_BUT_ONE, SAFETY = 0.1, 0.8
+
+
+@inlined
+def _face(ratio, branch, sign, y, mode, p):
+    """Friction of a face whose slip velocity is ratio z'."""
+    if branch == 0:
+        return Face(sign * ratio * friction.static(mode.clock, y, p) / p.friction.v_t, 0.0)
+    return Face(0.0, sign * branch * friction.sliding(abs(ratio * y[1]), p))
+
+
+@inlined
+def _expanded(t, y, mode, forces, p):
+    """The motion from a state on."""
+    g, omega = p.geometry, p.input.omega
+    column = _face(g.column_ratio, mode.column, mode.column_sign, y, mode, p)
+    bolster = _face(g.bolster_ratio, mode.bolster, mode.bolster_sign, y, mode, p)
+    u2, exponent = excitation.acceleration(t, p), friction.exponent(p)
+    u3 = -(omega**2) * excitation.velocity(t, p)
+    if (mode.column == 0 and mode.bolster == 0) or exponent == 0.0:
+        return expand(y[0], y[1], u2, u3, omega**2, column, bolster, exponent, forces)
+    return expand_powers(y[0], y[1], u2, u3, omega**2, column, bolster, exponent, forces)
+
+
+@inlined
+def _length(series, longest, rtol, p):
+    """Length (s) of a step, at most ``longest``, whose last term is within the tolerance."""
+    scales, v = error_scales(p), series.velocity
+    last = (abs(v[ORDER]) * longest + LAST_BUT_ONE * abs(v[ORDER - 1])) * longest ** (ORDER - 1)
+    of_x = last * longest / (ORDER + 1) / (abs(series.x[0]) + ABSOLUTE * scales[0])
+    error = max(of_x, last / (abs(v[0]) + ABSOLUTE * scales[1])) / rtol
+    return longest if error <= 1.0 else SAFETY * longest * error ** (-1.0 / ORDER)
+
+
+@inlined
+def _state_at(s, series):
+    return polynomial(series.x, s), polynomial(series.velocity, s)
+
+
+@inlined
+def _record(t, h, share, series, mode, recorder, p):
+    """Record a share of a step."""
+    x, v = series.x, series.velocity
+    end = _state_at(h, series)
+    rates = (x[1], v[1]), (end[1], slope(v, h))
+    step = step_through(t, h, (x[0], v[0]), _state_at(0.5 * h, series), end, *rates)
+    record_step(step, share, mode, recorder, p)
+
+
+@inlined
+def _follow_series(state, stop, forces, p, keeping, recorder, work):
+    """Follow a mode to its event or ``stop``: the state there, and the event, NO_EVENT or FAILED."""
+    t, y, mode, last_event, h = state
+    period, ends = 2.0 * pi / p.input.omega, ends_of(mode, p)
+    longest = period / (LEAST_STEPS_RECORDED if keeping else LEAST_STEPS)
+    most_steps = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
+    while t < stop:
+        series = _expanded(t, y, mode, forces, p)
+        h = _length(series, longest, work.rtol, p)
+        taken = min(h, stop - t)
+        work.counts[0] += 1
+        work.counts[1] += 1
+        if not h >= SHORTEST * period or work.counts[1] > most_steps:
+            return State(t, y, mode, last_event, h), FAILED
+        time, event = first_event(series, taken, last_event, ends, forces, mode, p)
+        time = min(time, taken)
+        if keeping:
+            _record(t, taken, time / taken, series, mode, recorder, p)
+        y = _state_at(time, series)
+        if event >= 0:
+            return State(t + time, y, mode, last_event, h), event
+        t, last_event = stop if taken == stop - t else t + taken, NO_EVENT
+    return State(stop, y, mode, last_event, h), NO_EVENT
+
+
+@inlined
+def follow_linear(state, stop, p, keeping, recorder):
+    """Follow slip under constant friction: whether it is linear, the state reached, the event or NO_EVENT."""
+    oscillator = linear_oscillator(state.y, state.mode, p)
+    if not oscillator.linear:
+        return False, state, NO_EVENT
+    phase = phase_at(state.t, state.y[0], state.y[1], oscillator, p)
+    end = slip_to_event(state, phase, stop, oscillator, p)
+    if keeping:
+        record_slip(state, phase, end.t, oscillator, recorder, p)
+    y = motion(end.phase, oscillator, p)
+    return True, State(end.t, y, state.mode, state.last_event, state.step), end.event
+
+
+@inlined
+def _has_series(mode, p):
+    """Whether a power series follows a mode: friction of the faces is linear in z', or a power of it."""
+    if abs(mode.column) == HELD or abs(mode.bolster) == HELD or guide_friction.acts(p):
+        return False
+    return (mode.column == 0 and mode.bolster == 0) or isfinite(friction.exponent(p))
+
+
+@inner
+def follow_regularised(state, stop, p, keeping, recorder, work):
+    """Follow modes to an event that the integrator has to see, or to ``stop``; see the interface."""
+    if not p.geometry.always_well_posed:
+        return False, state, NO_EVENT
+    forces = rational_forces(state.mode, p)
+    for _ in range(MOST_MODES):
+        done, state, event = follow_linear(state, stop, p, keeping, recorder)
+        if not done and _has_series(state.mode, p):
+            done = True
+            state, event = _follow_series(state, stop, forces, p, keeping, recorder, work)
+        if not done or event < 0 or event >= COLUMN_NORMAL or p.geometry.opens:
+            return done, state, event
+        y, mode, certain = transition(state.t, state.y, state.mode, event, p)
+        if not certain:
+            return True, state, event
+        work.counts[2] += 1
+        state = State(state.t, y, mode, event, state.step)
+    return True, state, NO_EVENT
