@@ -23,11 +23,13 @@ settle_periods = 3
 kept_periods = 2
 samples_per_period = 32
 """
+STEADY = SWEEP.replace("settle_periods = 3", 'method = "event-driven"\nsettle = "steady"')
 EFFECT = "[effects.viscous_damping]\ncoefficient_N_s_per_m = 1.0\n"
 RUN = ("run", "sweep.toml", "-o", "out.nc", "--fresh", "--n-jobs", "1", "--solver")
 # Name: config and command.
 COMMANDS = {
     "run, event-driven": (SWEEP, (*RUN, "event-driven")),
+    "run, event-driven, steady": (STEADY, (*RUN, "event-driven")),
     "run, event-driven, an effect": (SWEEP + EFFECT, (*RUN, "event-driven")),
     "run, radau": (SWEEP, (*RUN, "radau")),
     "diagnose": (

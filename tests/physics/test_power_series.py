@@ -9,9 +9,15 @@ from tests.physics.cases import OMEGA_N
 from wedgesweep import friction
 from wedgesweep.compiled import compiled
 from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
-from wedgesweep.hybrid.search import Sample
 from wedgesweep.systems.suspension import events as events_of
-from wedgesweep.systems.suspension import newton, parameters, rational, regularised_slip, series_events
+from wedgesweep.systems.suspension import (
+    newton,
+    parameters,
+    power_series,
+    rational,
+    regularised_slip,
+    series_events,
+)
 from wedgesweep.systems.suspension.modes import ContactMode
 from wedgesweep.systems.suspension.power_series import ORDER
 
@@ -26,8 +32,8 @@ def case(law="static-dynamic", column_angle_deg=2.5, **suspension):
     return parameters.compact(parameters.record(law, AMPLITUDE, OMEGA, values))
 
 
-def mode_of(branches, signs=(1, 1)):
-    return ContactMode(*branches, 0, *signs, 0, 0, 1 if branches[0] == 0 else 0)
+def mode_of(branches):
+    return ContactMode(*branches, 0, 1, 1, 0, 0, 1 if branches[0] == 0 else 0)
 
 
 @compiled
@@ -49,54 +55,72 @@ def test_polynomials_are_those_of_numpy():
 
 
 @compiled
-def both_forces(x, u2, column_mu, bolster_mu, mode, cases):
-    """Newton's forces under two coefficients of friction, then those of the rational functions."""
-    p = cases[0]
+def newtons_forces(x, u2, column_mu, bolster_mu, cases):
+    """Newton's forces under two coefficients of friction."""
+    p, mode = cases[0], mode_while_closed()
     load = newton.loads(0.0, (x, 0.0), mode, p)
     load = newton.Loads(load.tangential, load.normal, load.vertical, 0.0, 0.0, u2)
-    exact = newton.reactions(load, newton.Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[0]
-    forces = rational.rational_forces(mode, p)
-    samples = Sample(x, 0.0), Sample(u2, 0.0), Sample(column_mu, 0.0), Sample(bolster_mu, 0.0)
-    found = (
-        rational.rational(forces.acceleration, forces.determinant, *samples).value,
-        rational.rational(forces.column, forces.determinant, *samples).value,
-        rational.rational(forces.bolster, forces.determinant, *samples).value,
-    )
-    return (exact.acceleration, exact.column, exact.bolster), found, forces.loaded
+    return newton.reactions(load, newton.Coefficients(column_mu, bolster_mu, 0.0, 0.0), p)[0]
 
 
-def test_rational_forces_are_newtons():
+@compiled
+def mode_while_closed():
+    return ContactMode(0, 0, 0, 1, 1, 0, 0, 1)
+
+
+@compiled
+def rational_acceleration(cases):
+    return rational.rational_acceleration(mode_while_closed(), cases[0])
+
+
+def value(bilinear, column_mu, bolster_mu):
+    mixed = bilinear.both * column_mu * bolster_mu
+    return bilinear.constant + bilinear.column * column_mu + bilinear.bolster * bolster_mu + mixed
+
+
+def test_the_acceleration_is_a_rational_function_of_both_coefficients():
     generator = np.random.default_rng(1)
     for angle in (-8.0, 0.0, 2.5, 6.0):
         cases = case(column_angle_deg=angle, wedge_preload=2.0)
+        forces = rational_acceleration(cases)
         for _ in range(20):
             x, u2 = generator.uniform(-2e-3, 2e-3), generator.uniform(-20.0, 20.0)
-            coefficients = generator.uniform(-0.4, 0.4, 2)
-            exact, found, _ = both_forces(x, u2, *coefficients, mode_of((0, 0)), cases)
-            assert found == pytest.approx(exact, rel=1e-11)
+            mu = generator.uniform(-0.4, 0.4, 2)
+            over = value(forces.at_rest, *mu) + value(forces.by_x, *mu) * x + value(forces.by_u, *mu) * u2
+            exact = newtons_forces(x, u2, *mu, cases).acceleration
+            assert over / value(forces.determinant, *mu) == pytest.approx(exact, rel=1e-11)
 
 
 def test_up_to_some_displacement_both_faces_surely_carry_load():
     cases, generator = case(), np.random.default_rng(2)
-    most_mu, most_u2 = cases["friction"]["mu_s"][0], AMPLITUDE * OMEGA**2
-    loaded = both_forces(0.0, 0.0, 0.0, 0.0, mode_of((0, 0)), cases)[2]
-    assert 0.0 < loaded < inf
+    limits = [
+        rational_acceleration(cases).loaded,
+        AMPLITUDE * OMEGA**2,
+        *(2 * [cases["friction"]["mu_s"][0]]),
+    ]
+    assert 0.0 < limits[0] < inf
 
-    def least_force(x, u2, column_mu, bolster_mu):
-        return min(both_forces(x, u2, column_mu, bolster_mu, mode_of((0, 0)), cases)[0][1:])
+    def least_force(share):
+        now = newtons_forces(*(share * limits), cases)
+        return min(now.column, now.bolster)
 
-    inside = generator.uniform(-1.0, 1.0, (200, 4)) * [loaded, most_u2, most_mu, most_mu]
-    assert min(least_force(*each) for each in inside) > 0.0
+    assert min(map(least_force, generator.uniform(-1.0, 1.0, (200, 4)))) > 0.0
     corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 4), axis=-1).reshape(-1, 4)
-    corners *= [loaded, most_u2, most_mu, most_mu]
-    assert min(least_force(*each) for each in corners) == pytest.approx(0.0, abs=1e-9)
+    assert min(map(least_force, corners)) == pytest.approx(0.0, abs=1e-9)
 
 
 @compiled
 def expanded(t, y, mode, cases):
-    """Series of a motion: x, z', u'' and both coefficients of friction."""
+    """Series of a motion."""
     p = cases[0]
-    return regularised_slip._expanded(t, y, mode, rational.rational_forces(mode, p), p)
+    return regularised_slip._expanded(t, y, mode, rational.rational_acceleration(mode, p), p)
+
+
+@compiled
+def motion_of(t, y, mode, cases):
+    """What a series begins with."""
+    p = cases[0]
+    return regularised_slip._motion(t, y, mode, rational.rational_acceleration(mode, p), p)
 
 
 @compiled
@@ -129,13 +153,12 @@ def test_a_series_solves_newtons_equations(law, branches, velocity):
     assert left[1] < left[0] / (0.6 * 2.0**ORDER) + rounding
 
 
-@pytest.mark.parametrize("signs", [(-1, 1), (1, -1), (-1, -1)])
-def test_friction_acts_with_the_size_of_a_normal_force_that_pulls(signs):
-    cases = case()
-    mode, y = mode_of((1, 0), signs), start(cases, 3.0)
-    assert expanded(0.01, y, mode, cases).velocity[1] == pytest.approx(
-        acceleration(0.01, y, mode, cases), rel=1e-12
-    )
+def test_beside_numba_the_same_code_runs_on_plain_numbers():
+    cases = case("exponential")
+    mode, y = mode_of((1, 0)), start(cases, 3.0)
+    motion = motion_of(0.01, y, mode, cases)
+    there, here = expanded(0.01, y, mode, cases), power_series.expanded(motion, powers=True)
+    assert np.concatenate(there) == pytest.approx(np.concatenate(here), rel=1e-12)
 
 
 @compiled

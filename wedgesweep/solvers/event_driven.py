@@ -125,51 +125,68 @@ def run_batch(
         settings.periods + LONGEST_PERIOD,
         forces=bool(batch.waveforms.size),
     )
-    _run_all(prepared(compact(parameters)), parameters, settle_periods, settings, room, batch)
+    # One of two loops: code of the other one need not be compiled.
+    run = _run_to_steady_state if settings.steady else _run_given_periods
+    run(prepared(compact(parameters)), parameters, settle_periods, settings, room, batch)
 
 
 @allocating
-def _settled(y, near, settle_periods, settings, search):
-    """Settle the case of a search; y is replaced by the state reached.
+def _started(cases, i, settings, room, batch):
+    """Search and start of a case, and the period of the response that lies close to it (0: unknown)."""
+    # The kept periods are run after the search.
+    search = shooting(cases, i, (settings.tolerance, settings.max_periods), room, False)
+    y, near = np.zeros(search.size.size), 0
+    if settings.continuation and i > 0 and batch.outcome[i - 1] == OK:
+        copy(batch.state[i - 1], y)
+        near = batch.period[i - 1]
+    room.work.counts[:] = 0
+    room.reached[0] = 0.0
+    return search, y, near
 
-    ``near``: period of the response that y lies close to, 0 if unknown. Returns the outcome, the period of
-    the response (-1: not looked for) and the periods run.
+
+@allocating
+def _keep(i, y, found, parameters, settings, search, batch):
+    """Run the kept periods of a case from y on and write its results.
+
+    ``found``: outcome so far, period of the response in periods of the input (-1: not known), periods run.
     """
-    if settings.steady:
-        unknown = np.empty((y.size, y.size))
-        unknown[:] = np.nan
-        found = settle(y, near, unknown, search)
-        return found.outcome, found.period, found.run
-    outcome = OK
-    if settle_periods > 0:
-        outcome = run_map(0, settle_periods, y, False, search)
-    return outcome, -1, settle_periods
+    outcome, period, settled = found
+    room = search.memory
+    batch.period[i], batch.settled[i] = period, settled
+    # A response of a longer period is kept for whole periods of its own.
+    periods = max(period, 1) * ((settings.periods - 1) // max(period, 1) + 1)
+    if outcome == OK:
+        clear(room.sums)
+        outcome = run_map(settled, periods, y, True, search)
+    batch.outcome[i], batch.time[i] = outcome, room.reached[0]
+    copy(y, batch.state[i, : y.size])
+    copy(room.work.counts, batch.statistics[i])
+    if outcome == OK:
+        _reduce(i, parameters[i], periods, room, batch)
 
 
 @compiled
-def _run_all(cases, parameters, settle_periods, settings, room, batch):
+def _run_given_periods(cases, parameters, settle_periods, settings, room, batch):
+    """Each case settles for its own number of periods."""
     room, batch = borrowed(room), borrowed(batch)
     for i in range(parameters.size):
-        # The kept periods are run after the search.
-        search = shooting(cases, i, (settings.tolerance, settings.max_periods), room, False)
-        y, near = np.zeros(search.size.size), 0
-        if settings.continuation and i > 0 and batch.outcome[i - 1] == OK:
-            copy(batch.state[i - 1], y)
-            near = batch.period[i - 1]
-        room.work.counts[:] = 0
-        room.reached[0] = 0.0
-        outcome, period, settled = _settled(y, near, settle_periods[i], settings, search)
-        batch.period[i], batch.settled[i] = period, settled
-        # A response of a longer period is kept for whole periods of its own.
-        periods = max(period, 1) * ((settings.periods - 1) // max(period, 1) + 1)
-        if outcome == OK:
-            clear(room.sums)
-            outcome = run_map(settled, periods, y, True, search)
-        batch.outcome[i], batch.time[i] = outcome, room.reached[0]
-        copy(y, batch.state[i, : y.size])
-        copy(room.work.counts, batch.statistics[i])
-        if outcome == OK:
-            _reduce(i, parameters[i], periods, room, batch)
+        search, y, _ = _started(cases, i, settings, room, batch)
+        outcome = OK
+        if settle_periods[i] > 0:
+            outcome = run_map(0, settle_periods[i], y, False, search)
+        _keep(i, y, (outcome, -1, settle_periods[i]), parameters, settings, search, batch)
+
+
+@compiled
+def _run_to_steady_state(cases, parameters, settle_periods, settings, room, batch):
+    """Each case settles until its response repeats."""
+    room, batch = borrowed(room), borrowed(batch)
+    for i in range(parameters.size):
+        search, y, near = _started(cases, i, settings, room, batch)
+        unknown = np.empty((y.size, y.size))
+        unknown[:] = np.nan
+        found = settle(y, near, unknown, search)
+        _keep(i, y, (found.outcome, found.period, found.run), parameters, settings, search, batch)
 
 
 @allocating

@@ -56,7 +56,7 @@ def _threshold(mode, p):
 
 
 @inlined
-def _constant_friction(mode, p):
+def constant_friction(mode, p):
     """Whether no coefficient of friction depends on velocity in a mode."""
     if p.friction.set_valued:
         return True
@@ -68,7 +68,7 @@ def _constant_friction(mode, p):
 @inner
 def linear_oscillator(y, mode, p):
     """Closed form of a mode; ``linear`` is False if friction is not constant, or near resonance."""
-    if not (p.geometry.always_well_posed and _constant_friction(mode, p)):
+    if not (p.geometry.always_well_posed and constant_friction(mode, p)):
         return LinearOscillator(False, inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
     s, g, omega = p.suspension, p.geometry, p.input.omega
     column_mu, bolster_mu = coefficients(0.0, y, mode, p)

@@ -1,23 +1,19 @@
 """The motion of the base model as a power series in time, while friction is linear in z' or a power of it.
 
-Each coefficient follows from those before it, by products of series, mu_c = c_0 + c_1 s + c_2 s^2 + ..., in
-(see rational.py)
+Each coefficient follows from those before it, by products of series like mu_c = c_0 + c_1 s + c_2 s^2 + ...
 
-    z'' D = L_00 + L_10 mu_c + L_01 mu_b + L_11 mu_c mu_b,    L = at_rest + by_x x + by_u u''
+    z'' (D_0 + D_1 mu_b) = A_0 + A_1 mu_b,    A_0, A_1, D_0 and D_1 linear in mu_c (rational.py)
 
 For the method see Jorba and Zou (2005), A software package for the numerical integration of ODEs by means of
-high-order Taylor methods. Its arithmetic is written out in straight lines: loops take twice the time.
+high-order Taylor methods.
 """
 
-from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
-from wedgesweep.compiled import contracted
+from wedgesweep.traced import traced
 
 # Order of the series of z'. A higher one takes longer steps, each of which takes longer.
 ORDER = 7
-# The terms of a Bilinear, as the ends of names.
-_TERMS = {"00": "constant", "10": "column", "01": "bolster", "11": "both"}
 
 
 class Face(NamedTuple):
@@ -27,78 +23,109 @@ class Face(NamedTuple):
     power: float
 
 
+class Motion(NamedTuple):
+    """What a series begins with.
+
+    Displacement (m), velocity (m/s), base acceleration (m/s^2) and its rate, squared angular frequency of the
+    input, friction of both faces, the exponent of powers, and ``rational.RationalAcceleration``.
+    """
+
+    x: float
+    velocity: float
+    u2: float
+    u3: float
+    square: float
+    column: Face
+    bolster: Face
+    exponent: float
+    forces: Any
+
+
 class Series(NamedTuple):
-    """Coefficients of x, z', u'' and both coefficients of friction, by powers of time (s)."""
+    """Coefficients of x and z' by powers of time (s), shape (ORDER + 1,)."""
 
     x: Any
     velocity: Any
-    u2: Any
-    column_mu: Any
-    bolster_mu: Any
 
 
-def _product(one: str, other: str, k: int, first: int = 0) -> str:
+def _product(one: list, other: list, k: int, first: int = 0) -> Any:
     """Coefficient k of the product of two series, from the term ``first`` of one on."""
-    return "(" + " + ".join(f"{one}{i} * {other}{k - i}" for i in range(first, k + 1)) + ")"
+    total = one[first] * other[k - first]
+    for i in range(first + 1, k + 1):
+        total = total + one[i] * other[k - i]
+    return total
 
 
-def _friction(k: int, powers: bool) -> list[str]:
-    """Coefficient k of both coefficients of friction."""
-    lines = []
-    if powers and k == 0:
-        lines = ["m0, inverse_v = 1.0, 1.0 / v0"]
-    elif powers:
-        # m = (v/v_0)^e, of which v m' = e m v'
-        terms = (f"(exponent * {i} - {k - i}) * v{i} * m{k - i}" for i in range(1, k + 1))
-        lines = [f"m{k} = {1 / k} * inverse_v * ({' + '.join(terms)})"]
-    for face in ("column", "bolster"):
-        power = f" + {face}.power * m{k}" if powers else f" + {face}.power" if k == 0 else ""
-        lines.append(f"{face}{k} = {face}.slope * v{k}{power}")
-    return lines
+def _next_power(m: list, v: list, exponent: Any) -> Any:
+    """The next coefficient of m = (v/v_0)^e, of which v m' = e m v'."""
+    k = len(m)
+    terms = [(exponent * i - (k - i)) * v[i] * m[k - i] for i in range(1, k + 1)]
+    return sum(terms[1:], terms[0]) / (k * v[0])
 
 
-def _acceleration(k: int) -> list[str]:
-    """Coefficient k of z''."""
-    lines = [f"both{k} = {_product('column', 'bolster', k)}"]
-    constant = " + d_00" if k == 0 else ""
-    lines.append(f"d{k} = d_10 * column{k} + d_01 * bolster{k} + d_11 * both{k}{constant}")
-    for term in _TERMS:
-        at_rest = f" + at_rest_{term}" if k == 0 else ""
-        lines.append(f"l{term}_{k} = by_x_{term} * x{k} + by_u_{term} * u{k}{at_rest}")
-    products = [_product(*each, k) for each in (("l10_", "column"), ("l01_", "bolster"), ("l11_", "both"))]
-    total = " + ".join([f"l00_{k}", *products])
-    if k == 0:
-        return [*lines, "inverse = 1.0 / d0", f"a0 = inverse * ({total})"]
-    return [*lines, f"a{k} = inverse * ({total} - {_product('d', 'a', k, 1)})"]
+class _Acceleration:
+    """The series of z'' and of all that it needs."""
+
+    def __init__(self, forces: Any) -> None:
+        self.forces = forces
+        self.column_mu: list = []
+        self.bolster_mu: list = []
+        self.loads: tuple[list, ...] = [], [], [], []
+        self.a1: list = []
+        self.d1: list = []
+        self.d: list = []
+        self.a: list = []
+
+    def append(self, x: Any, u2: Any, column_mu: Any, bolster_mu: Any) -> Any:
+        """The next coefficient, from those of x, u'' and both coefficients of friction."""
+        forces, k = self.forces, len(self.a)
+        self.column_mu.append(column_mu)
+        self.bolster_mu.append(bolster_mu)
+        for i, load in enumerate(self.loads):
+            acting = forces.by_x[i] * x + forces.by_u[i] * u2
+            load.append(acting + forces.at_rest[i] if k == 0 else acting)
+        constant, column, bolster, both = self.loads
+        self.a1.append(bolster[k] + _product(self.column_mu, both, k))
+        d0, d1 = forces.determinant.column * column_mu, forces.determinant.both * column_mu
+        if k == 0:
+            d0, d1 = d0 + forces.determinant.constant, d1 + forces.determinant.bolster
+        self.d1.append(d1)
+        self.d.append(d0 + _product(self.d1, self.bolster_mu, k))
+        total = constant[k] + _product(self.column_mu, column, k) + _product(self.bolster_mu, self.a1, k)
+        if k == 0:
+            self.inverse = 1.0 / self.d[0]
+        else:
+            total = total - _product(self.d, self.a, k, 1)
+        self.a.append(self.inverse * total)
+        return self.a[k]
 
 
-def _lines(powers: bool) -> list[str]:
-    """The body of ``expand``, or with ``powers`` of ``expand_powers``."""
-    parts = {"d": "determinant"} | {part: f"acceleration.{part}" for part in ("at_rest", "by_x", "by_u")}
-    lines = [
-        f"{name}_{term} = forces.{path}.{of}" for name, path in parts.items() for term, of in _TERMS.items()
-    ]
+def expanded(motion: Motion, powers: bool) -> Series:
+    """The series of a motion, of numbers or symbols; with ``powers`` beyond a constant and a slope."""
+    x, v, u2, m = [motion.x], [motion.velocity], [motion.u2, motion.u3], [1.0]
+    acceleration = _Acceleration(motion.forces)
     for k in range(ORDER):
         if k > 1:
-            lines.append(f"u{k} = {-1 / (k * (k - 1))} * square * u{k - 2}")
-        lines += _friction(k, powers) + _acceleration(k)
-        lines += [f"v{k + 1} = {1 / (k + 1)} * a{k}", f"x{k + 1} = {1 / (k + 1)} * v{k}"]
-    counts = {"x": ORDER + 1, "v": ORDER + 1, "u": ORDER, "column": ORDER, "bolster": ORDER}
-    rows = (f"({', '.join(f'{name}{k}' for k in range(count))})" for name, count in counts.items())
-    return [*lines, f"return Series({', '.join(rows)})"]
+            u2.append(motion.square * u2[k - 2] * (-1.0 / (k * (k - 1))))
+        if powers and k > 0:
+            m.append(_next_power(m, v, motion.exponent))
+        both = []
+        for face in (motion.column, motion.bolster):
+            mu = face.slope * v[k]
+            both.append(mu + face.power * m[k] if k < len(m) else mu)
+        a = acceleration.append(x[k], u2[k], *both)
+        v.append(a * (1.0 / (k + 1)))
+        x.append(v[k] * (1.0 / (k + 1)))
+    return Series(tuple(x), tuple(v))
 
 
-def _written(powers: bool) -> Callable:
-    """A compiled function that expands a motion.
-
-    Its arguments: displacement (m), velocity (m/s), the base acceleration and its rate, the input's squared
-    angular frequency, the ``Face`` of column and bolster, the exponent, and the ``RationalForces``.
-    """
-    head = "def expand(x0, v0, u0, u1, square, column, bolster, exponent, forces):"
-    scope: dict[str, Any] = {"Series": Series}
-    exec("\n    ".join([head, *_lines(powers)]), scope)
-    return cast(Callable, contracted(scope["expand"]))
+@traced
+def expand(motion: Motion) -> Series:
+    """The series of a motion under coefficients of friction that are linear in velocity, or constant."""
+    return expanded(motion, powers=False)
 
 
-# Where no coefficient of friction is a power of velocity, other than a constant, and where one may be.
-expand, expand_powers = _written(powers=False), _written(powers=True)
+@traced
+def expand_powers(motion: Motion) -> Series:
+    """The series of a motion under coefficients of friction that are powers of velocity, or linear in it."""
+    return expanded(motion, powers=True)

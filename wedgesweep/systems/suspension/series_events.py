@@ -1,19 +1,14 @@
-"""The first event of a motion that is a power series: all event functions follow from polynomials then.
-
-The velocity leaves a branch of friction of one of the faces, or a normal force vanishes.
-"""
+"""Where a motion that is a power series ends its mode: the velocity leaves a branch of friction of a face."""
 
 from math import inf
 from typing import Any, NamedTuple
 
 from wedgesweep import friction
-from wedgesweep.compiled import inlined
+from wedgesweep.compiled import inlined, inner
 from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
-from wedgesweep.hybrid.search import Sample, first_zero, may_graze, sample, searched
+from wedgesweep.hybrid.search import first_zero, may_graze, sample, searched
 from wedgesweep.hybrid.state import NO_EVENT
-from wedgesweep.systems.suspension.events import BOLSTER_NORMAL, COLUMN_NORMAL
 from wedgesweep.systems.suspension.modes import BOLSTER, COLUMN
-from wedgesweep.systems.suspension.rational import rational
 
 # Intervals of a step that are scanned for events.
 SCANNED = 4
@@ -63,66 +58,37 @@ class _Velocity(NamedTuple):
 
 @searched(_Velocity)
 @inlined
-def _above(time, velocity):
+def _inside(time, velocity):
     value = polynomial(velocity.coefficients, time) - velocity.bound
     return velocity.sign * value, velocity.sign * slope(velocity.coefficients, time)
 
 
-class _NormalForce(NamedTuple):
-    """A normal force (N) of a series, times a sign."""
-
-    sign: int
-    numerator: Any
-    determinant: Any
-    series: Any
-
-
-@inlined
-def _at(time, coefficients):
-    return Sample(polynomial(coefficients, time), slope(coefficients, time))
-
-
-@searched(_NormalForce)
-@inlined
-def _force(time, force):
-    series = force.series
-    x, u2 = _at(time, series.x), _at(time, series.u2)
-    column, bolster = _at(time, series.column_mu), _at(time, series.bolster_mu)
-    found = rational(force.numerator, force.determinant, x, u2, column, bolster)
-    return force.sign * found.value, force.sign * found.slope
-
-
-@inlined
-def _earlier(found, context, h, from_zero, event, p):
-    """The first event so far in a step, its time (s) and number, or another one if it is earlier."""
-    span, before = h / SCANNED, sample(0.0, context)
+@inner
+def _time_to_end(velocity, h, from_zero, p):
+    """Time (s) in a step at which the velocity first reaches the bound; inf: it does not."""
+    span, before = h / SCANNED, sample(0.0, velocity)
     for i in range(SCANNED):
-        after = sample((i + 1) * span, context)
+        after = sample((i + 1) * span, velocity)
         if after.value <= 0.0 or may_graze(before, after, span):
             at_zero = from_zero and i == 0
-            time = first_zero(context, i * span, span, before, after, at_zero, 1.0 / p.input.omega)
+            time = first_zero(velocity, i * span, span, before, after, at_zero, 1.0 / p.input.omega)
             if time < inf:
-                return (time, event) if time < found[0] else found
+                return time
         before = after
-    return found
+    return inf
 
 
 @inlined
-def first_event(series, h, last_event, ends, forces, mode, p):
-    """Time (s) and number of the first event in a step h (s); (inf, NO_EVENT) if there is none."""
-    v, change, found = series.velocity, largest_change(series.velocity, h), (inf, NO_EVENT)
-    # An event of the same face may have led to the mode.
-    pair = last_event // 2
-    if not v[0] - change > ends.low:
-        low = _Velocity(ends.low, 1.0, v)
-        found = _earlier(found, low, h, pair == ends.low_event // 2, ends.low_event, p)
-    if not v[0] + change < ends.high:
-        high = _Velocity(ends.high, -1.0, v)
-        found = _earlier(found, high, h, pair == ends.high_event // 2, ends.high_event, p)
-    pull = mode.column_sign < 0 or mode.bolster_sign < 0
-    if pull or not abs(series.x[0]) + largest_change(series.x, h) < forces.loaded:
-        column = _NormalForce(mode.column_sign, forces.column, forces.determinant, series)
-        found = _earlier(found, column, h, last_event == COLUMN_NORMAL, COLUMN_NORMAL, p)
-        bolster = _NormalForce(mode.bolster_sign, forces.bolster, forces.determinant, series)
-        found = _earlier(found, bolster, h, last_event == BOLSTER_NORMAL, BOLSTER_NORMAL, p)
-    return found
+def first_event(velocity, h, last_event, ends, p):
+    """Time (s) and number of the first event in a step h (s); (inf, NO_EVENT) if there is none.
+
+    ``velocity``: coefficients of z'. An event of the same face may have led to the mode.
+    """
+    change, pair, found = largest_change(velocity, h), last_event // 2, (inf, NO_EVENT)
+    if not velocity[0] - change > ends.low:
+        time = _time_to_end(_Velocity(ends.low, 1.0, velocity), h, pair == ends.low_event // 2, p)
+        found = time, ends.low_event
+    if not velocity[0] + change < ends.high:
+        time = _time_to_end(_Velocity(ends.high, -1.0, velocity), h, pair == ends.high_event // 2, p)
+        found = (time, ends.high_event) if time < found[0] else found
+    return found if found[0] < inf else (inf, NO_EVENT)

@@ -154,7 +154,7 @@ def cross_discontinuity(t, y, mode, place, p):
     return found, certain
 
 
-@inner
+@inlined
 def _transition(t, y, mode, place, p):
     if place in (COLUMN_NORMAL, BOLSTER_NORMAL):
         found, certain = _after_zero_force(t, y, mode, p)
@@ -179,7 +179,7 @@ def _transition(t, y, mode, place, p):
     return y, found, certain
 
 
-@inner
+@inlined
 def transition(t, y, mode, place, p):
     """State and mode after an event, and whether they are unique (if not: locked).
 
