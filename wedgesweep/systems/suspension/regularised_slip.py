@@ -10,7 +10,7 @@ from math import isfinite, pi, sqrt
 from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
-from wedgesweep.hybrid.interface import error_scales, transition
+from wedgesweep.hybrid.interface import error_scales, leaves, transition
 from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
@@ -119,13 +119,13 @@ def _follow_series(state, stop, forces, p, keeping, recorder, work):
     while t < stop:
         series = _expanded(t, y, mode, forces, p)
         h = _length(series, longest, work.rtol, p)
-        taken = min(h, stop - t)
-        if _may_unload(t, taken, series, forces, mode, p):
-            return False, State(t, y, mode, last_event, h), NO_EVENT
         work.counts[0] += 1
         work.counts[1] += 1
         if not h >= SHORTEST * period or work.counts[1] > most_steps:
             return True, State(t, y, mode, last_event, h), FAILED
+        taken = min(h, stop - t)
+        if _may_unload(t, taken, series, forces, mode, p):
+            return False, State(t, y, mode, last_event, h), NO_EVENT
         time, event = first_event(series.velocity, taken, last_event, ends, p)
         time = min(time, taken)
         if keeping:
@@ -173,11 +173,13 @@ def follow_regularised(state, stop, p, keeping, recorder, work):
             done, state, event = follow_linear(state, stop, p, keeping, recorder)
         if not done and _has_series(state.mode, p):
             done, state, event = _follow_series(state, stop, forces, p, keeping, recorder, work)
-        if not done or event < 0 or event >= COLUMN_NORMAL or p.geometry.opens:
+        if not done or event < 0 or event >= COLUMN_NORMAL:
             return done, state, event
         y, mode, certain = transition(state.t, state.y, state.mode, event, p)
         if not certain:
             return True, state, event
         work.counts[2] += 1
         state = State(state.t, y, mode, event, state.step)
+        if leaves(y, mode, p):
+            break
     return True, state, NO_EVENT
