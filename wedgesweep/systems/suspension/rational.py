@@ -11,6 +11,9 @@ from wedgesweep import friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.systems.suspension.newton import Coefficients, Loads, loads, reactions
 
+# Coefficients of friction that are tried where there is no friction.
+LEAST = 1e-3
+
 
 class Bilinear(NamedTuple):
     """A function of both coefficients: constant + column mu_c + bolster mu_b + both mu_c mu_b."""
@@ -76,7 +79,8 @@ def _loaded(at_rest, by_x, by_u, most_u):
 def rational_acceleration(mode, p):
     """``RationalAcceleration`` of a case without friction of the guide, which would depend on the mode."""
     s, g = p.suspension, p.geometry
-    size = max(friction.static(mode.clock, (0.0, 0.0), p), friction.sliding(p.friction.v_t, p))
+    most = max(friction.static(mode.clock, (0.0, 0.0), p), friction.sliding(p.friction.v_t, p))
+    size = max(most, LEAST)
     wedge = -s.wedge_spring * g.column_ratio * g.cos_column
     moved = Loads(wedge * g.cos_column, wedge * g.sin_column, -s.bolster_spring, 0.0, 0.0, 0.0)
     at_rest = _at_corners(loads(0.0, (0.0, 0.0), mode, p), size, p)
