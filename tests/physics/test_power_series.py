@@ -8,6 +8,7 @@ import pytest
 from tests.physics.cases import OMEGA_N
 from wedgesweep import friction
 from wedgesweep.compiled import compiled
+from wedgesweep.hybrid import step
 from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
 from wedgesweep.systems.suspension import events as events_of
 from wedgesweep.systems.suspension import (
@@ -144,8 +145,8 @@ def test_a_series_solves_newtons_equations(law, branches, velocity):
     assert len(series.velocity) == ORDER + 1
     assert (series.x[0], series.velocity[0], series.x[1]) == (*y, y[1])
     # A time in which the velocity changes by a good part.
-    step, left = 0.15 * min(abs(y[1] / series.velocity[1]), 1.0 / OMEGA), []
-    for s in (step, 0.5 * step):
+    span, left = 0.15 * min(abs(y[1] / series.velocity[1]), 1.0 / OMEGA), []
+    for s in (span, 0.5 * span):
         x, v = (np.polynomial.Polynomial(each)(s) for each in (series.x, series.velocity))
         newtons = acceleration(t + s, (float(x), float(v)), mode, cases)
         left.append(abs(np.polynomial.Polynomial(series.velocity).deriv()(s) - newtons))
@@ -205,3 +206,20 @@ def _exponent(cases):
 def exponent_of(cases, law):
     cases["friction"]["law"] = friction.code(law)
     return _exponent(cases)
+
+
+@compiled
+def states_of_a_step(share, h, states, rates):
+    """State and its derivative by the share of a step through three states."""
+    start, middle, end = states
+    made = step.step_through(0.0, h, start, middle, end, rates[0], rates[1])
+    return step.dense_output(share, made), step.dense_slope(share, made)
+
+
+def test_the_dense_output_of_a_step_meets_its_states_and_rates():
+    h, rates = 0.3, ((1.0, -2.0), (0.5, 4.0))
+    states = (1.0, 2.0), (1.7, -0.4), (1.2, 3.0)
+    for share, state in zip((0.0, 0.5, 1.0), states, strict=True):
+        assert states_of_a_step(share, h, states, rates)[0] == pytest.approx(state, rel=1e-14)
+    for share, rate in ((0.0, rates[0]), (1.0, rates[1])):
+        assert states_of_a_step(share, h, states, rates)[1] == pytest.approx(np.multiply(h, rate), rel=1e-13)

@@ -31,8 +31,9 @@ MOST_MODES = 1000
 LEAST_STEPS, LEAST_STEPS_RECORDED = 6, 12
 # The last term of a series, and a share of the one before it, limit a step, which is shorter by a factor.
 LAST_BUT_ONE, SAFETY = 0.1, 0.8
-# Normal forces stay above zero if three of them in a step do by this share of how much they bend.
-BEND = 0.5
+# A normal force stays positive in a step if its values at start, middle and end exceed this share of their
+# second difference: a parabola stays above the least of them less a quarter of that share.
+SECOND_DIFFERENCE = 0.5
 
 
 @inlined
@@ -103,7 +104,7 @@ def _may_unload(t, h, series, forces, mode, p):
     before = _smaller_force(t, _state_at(0.0, series), mode, p)
     middle = _smaller_force(t + 0.5 * h, _state_at(0.5 * h, series), mode, p)
     after = _smaller_force(t + h, _state_at(h, series), mode, p)
-    return not min(before, middle, after) > BEND * abs(before - 2.0 * middle + after)
+    return not min(before, middle, after) > SECOND_DIFFERENCE * abs(before - 2.0 * middle + after)
 
 
 @inlined
