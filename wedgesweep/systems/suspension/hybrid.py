@@ -41,6 +41,13 @@ for _declared, _written in (
 implement_shared(SUSPENSION)
 
 
+@implement(interface.rate, "base")
+@inner
+def base_rate(t, y, mode, p):
+    """As ``transitions.rate``, but not copied into each stage of a step: the base model takes few of these."""
+    return transitions.rate(t, y, mode, p)
+
+
 @implement(interface.event_count, "base")
 @inlined
 def base_event_count(p):
