@@ -1,5 +1,7 @@
 """The event-driven solver: closed forms to near rounding error, and the same answers as Radau."""
 
+from math import inf
+
 import numpy as np
 import pytest
 
@@ -164,6 +166,16 @@ def test_agrees_with_radau():
         ours = respond(record, settle_periods=5, rtol=1e-9).numbers["amplitude_ratio"]
         radaus = respond(record, settle_periods=5, rtol=1e-8, solve=radau.solve)
         assert ours == pytest.approx(radaus.numbers["amplitude_ratio"], abs=1e-5)
+
+
+@pytest.mark.parametrize("law", ["static-dynamic", "exponential"])
+@pytest.mark.parametrize("amplitude", [0.03e-3, 0.2e-3])
+def test_samples_within_steps_are_as_accurate_as_their_ends(law, amplitude):
+    """A polynomial of order 4 through both ends and the middle made errors of 1e-6, at any tolerance."""
+    record, window = parameters.record(law, amplitude, 0.9 * OMEGA_N), Window(0.9 * OMEGA_N, 10, 2, 100)
+    found, exact = (event_driven.solve(record, window, rtol, inf).samples for rtol in (1e-9, 1e-12))
+    assert np.abs(found.x - exact.x).max() < 1e-7 * np.ptp(exact.x)
+    assert np.abs(found.velocity - exact.velocity).max() < 1e-7 * np.ptp(exact.velocity)
 
 
 @pytest.mark.parametrize("law", ["static-dynamic", "exponential"])

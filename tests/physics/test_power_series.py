@@ -209,17 +209,16 @@ def exponent_of(cases, law):
 
 
 @compiled
-def states_of_a_step(share, h, states, rates):
-    """State and its derivative by the share of a step through three states."""
-    start, middle, end = states
-    made = step.step_through(0.0, h, start, middle, end, rates[0], rates[1])
+def states_in_a_step(share, h, coefficients):
+    """State, and its derivative by the share of a step."""
+    made = step.SeriesStep(0.0, h, (coefficients[0][0], coefficients[1][0]), coefficients)
     return step.dense_output(share, made), step.dense_slope(share, made)
 
 
-def test_the_dense_output_of_a_step_meets_its_states_and_rates():
-    h, rates = 0.3, ((1.0, -2.0), (0.5, 4.0))
-    states = (1.0, 2.0), (1.7, -0.4), (1.2, 3.0)
-    for share, state in zip((0.0, 0.5, 1.0), states, strict=True):
-        assert states_of_a_step(share, h, states, rates)[0] == pytest.approx(state, rel=1e-14)
-    for share, rate in ((0.0, rates[0]), (1.0, rates[1])):
-        assert states_of_a_step(share, h, states, rates)[1] == pytest.approx(np.multiply(h, rate), rel=1e-13)
+def test_states_in_a_step_are_those_of_its_series():
+    h, coefficients = 0.3, ((1.0, -2.0, 0.5), (3.0, 4.0, -1.0))
+    exact = [np.polynomial.Polynomial(each) for each in coefficients]
+    for share in (0.0, 0.4, 1.0):
+        state, rate = states_in_a_step(share, h, coefficients)
+        assert state == pytest.approx([each(share * h) for each in exact], rel=1e-14)
+        assert rate == pytest.approx([h * each.deriv()(share * h) for each in exact], rel=1e-14)

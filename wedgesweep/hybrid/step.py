@@ -3,8 +3,11 @@
 from math import sqrt
 from typing import Any, NamedTuple
 
-from wedgesweep.compiled import inlined
+from numba.extending import overload
+
+from wedgesweep.compiled import INNER, forward, inlined
 from wedgesweep.hybrid.interface import error_scales
+from wedgesweep.hybrid.polynomials import polynomial, slope
 from wedgesweep.hybrid.vectors import combination, weighted
 
 # Share of a state's natural size, times rtol, that an error may always have.
@@ -42,17 +45,7 @@ def with_dense_output(t, h, start, end, start_rate, end_rate, quartic):
 
 
 @inlined
-def step_through(t, h, start, middle, end, start_rate, end_rate):
-    """A step whose dense output also meets the state in its middle."""
-    step = with_dense_output(t, h, start, end, start_rate, end_rate, start)
-    weights = (16.0, -16.0, -8.0, -4.0, -2.0)
-    quartic = combination(1.0, weights, (middle, start, step.rise, step.bend, step.turn))
-    return Step(t, h, start, end, start_rate, end_rate, step.rise, step.bend, step.turn, quartic)
-
-
-@inlined
-def dense_output(share, step):
-    """State at a share of a step."""
+def _quartic_output(share, step):
     rest = 1.0 - share
     mixed = share * rest
     weights = (share, mixed, share * mixed, mixed * mixed)
@@ -60,11 +53,55 @@ def dense_output(share, step):
 
 
 @inlined
-def dense_slope(share, step):
-    """Derivative of ``dense_output`` by the share."""
+def _quartic_slope(share, step):
     rest = 1.0 - share
     weights = (1.0, rest - share, share * (2.0 - 3.0 * share), 2.0 * share * rest * (rest - share))
     return combination(1.0, weights, (step.rise, step.bend, step.turn, step.quartic))
+
+
+class SeriesStep(NamedTuple):
+    """A step from t, h (s) long, from a state ``start``: both states are polynomials in time."""
+
+    t: float
+    h: float
+    start: Any
+    coefficients: Any
+
+
+@inlined
+def _series_output(share, step):
+    x, velocity = step.coefficients
+    return polynomial(x, share * step.h), polynomial(velocity, share * step.h)
+
+
+@inlined
+def _series_slope(share, step):
+    x, velocity = step.coefficients
+    return step.h * slope(x, share * step.h), step.h * slope(velocity, share * step.h)
+
+
+_OUTPUT = {Step: _quartic_output, SeriesStep: _series_output}
+_SLOPE = {Step: _quartic_slope, SeriesStep: _series_slope}
+
+
+def dense_output(share, step):
+    """State at a share of a step."""
+    raise NotImplementedError
+
+
+@overload(dense_output, jit_options=INNER | {"forceinline": True})
+def _dense_output(share, step):
+    return forward(("share", "step"), _OUTPUT[step.instance_class])
+
+
+def dense_slope(share, step):
+    """Derivative of ``dense_output`` by the share."""
+    raise NotImplementedError
+
+
+@overload(dense_slope, jit_options=INNER | {"forceinline": True})
+def _dense_slope(share, step):
+    return forward(("share", "step"), _SLOPE[step.instance_class])
 
 
 @inlined

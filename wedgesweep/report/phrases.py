@@ -13,6 +13,8 @@ from wedgesweep.quantity import Quantity
 
 NOISE = "noise"
 INTERVAL = f"95{NO_BREAK}% interval"
+# What a record is compared in, by the kind of the tests; a steady test is compared as a whole.
+PARTS = {"transient": "window", "loop": "block", "mixed": "record part"}
 
 
 class Rounded(NamedTuple):
@@ -135,10 +137,20 @@ def error_of(result: DiagnosisResult, model: str) -> str:
     return number(None if q is None or dof <= 0 else sqrt(q / dof))
 
 
+def _compared(result: DiagnosisResult) -> tuple[int, str]:
+    """How many parts of the records a diagnosis compares, and what one of them is called."""
+    return result.data.sizes["test"], PARTS.get(result.document.get("kind", "steady"), "test")
+
+
+def compared(result: DiagnosisResult) -> str:
+    """What a diagnosis compares: 1 test, 12 tests, 12 windows."""
+    return formatting.counted(*_compared(result))
+
+
 def these_tests(result: DiagnosisResult) -> str:
-    """The tests of a diagnosis, at the beginning of a clause: this test, these 12 tests."""
-    count = result.data.sizes["test"]
-    return "this test" if count == 1 else f"these {count} tests"
+    """What a diagnosis compares, at the beginning of a clause: this test, these 12 tests."""
+    count, name = _compared(result)
+    return f"this {name}" if count == 1 else f"these {count} {name}s"
 
 
 class Separated(NamedTuple):

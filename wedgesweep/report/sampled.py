@@ -48,10 +48,10 @@ NOISE = {
     "in the model is such a function; anything else counts as noise.",
 }
 COMPARED = {
-    "loop": "The motion is imposed, and the force is compared in {tests} of whole cycles, below the cut-off "
+    "loop": "The motion is imposed, and the force is compared in {parts} of whole cycles, below the cut-off "
     "of a low-pass filter. With the zero of the force fitted",
-    "transient": "The motion of {tests} is compared in time, under the recorded input where there is one. "
-    "With the start of each and the zero of the displacement fitted",
+    "transient": "The motion in {parts} of the records is compared in time, under the recorded input where "
+    "there is one. With the start of each and the zero of the displacement fitted",
 }
 
 
@@ -90,6 +90,5 @@ def _row(test: Mapping[str, Any], keys: Sequence[str], models: tuple[str, ...]) 
 
 
 def _overall(result: DiagnosisResult, kind: str) -> str:
-    tests = formatting.counted(result.data.sizes["test"], "block" if kind == "loop" else "test")
-    error = phrases.error_of(result, "base")
-    return f"{COMPARED[kind].format(tests=tests)}, the base model leaves an error of {error} times the noise."
+    error, parts = phrases.error_of(result, "base"), phrases.compared(result)
+    return f"{COMPARED[kind].format(parts=parts)}, the base model leaves an error of {error} times the noise."

@@ -58,7 +58,7 @@ def _never_tried(result: DiagnosisResult) -> str:
 
 
 def _nothing_missing(result: DiagnosisResult) -> str:
-    tests = formatting.counted(result.data.sizes["test"], "test")
+    tests = phrases.compared(result)
     p = phrases.p_value(result.document["misfit"]["p_base"])
     return (
         f"Nothing is missing: over {tests} the error of the simulation is {_error(result, 'base')}, which "

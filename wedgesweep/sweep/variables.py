@@ -58,7 +58,7 @@ VARIABLES = (
     Variable("settled_periods", "1", "forcing periods run before the kept ones", dtype="i8"),
     Variable("status", "1", "outcome of the case", dtype="i1"),
     Variable("message", "", "reason of a failure, empty otherwise", dtype="str"),
-    Variable("rate_evaluations", "1", "calls of the right-hand side", dtype="i8"),
+    Variable("rate_evaluations", "1", "calls of the right-hand side; power series count as one", dtype="i8"),
     Variable("steps", "1", "steps of the integrator", dtype="i8"),
     Variable("switches", "1", "located switches between slip branches", dtype="i8"),
     Variable("wall_time", "s", "wall time of the case"),

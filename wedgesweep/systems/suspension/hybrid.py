@@ -44,7 +44,7 @@ implement_shared(SUSPENSION)
 @implement(interface.rate, "base")
 @inner
 def base_rate(t, y, mode, p):
-    """As ``transitions.rate``, but not copied into each stage of a step: the base model takes few of these."""
+    """As ``transitions.rate``, in one copy for all stages of a step: the base model takes few such steps."""
     return transitions.rate(t, y, mode, p)
 
 

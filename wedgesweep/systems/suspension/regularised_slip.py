@@ -11,10 +11,10 @@ from wedgesweep import excitation, friction
 from wedgesweep.compiled import inlined, inner
 from wedgesweep.effects import guide_friction
 from wedgesweep.hybrid.interface import error_scales, leaves, transition
-from wedgesweep.hybrid.polynomials import largest_change, polynomial, slope
+from wedgesweep.hybrid.polynomials import largest_change, polynomial
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
-from wedgesweep.hybrid.step import ABSOLUTE, MOST_STEPS, SHORTEST, step_through
+from wedgesweep.hybrid.step import ABSOLUTE, MOST_STEPS, SHORTEST, SeriesStep
 from wedgesweep.systems.suspension import linear_slip, newton
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.first_event import slip_to_event
@@ -79,16 +79,6 @@ def _state_at(s, series):
     return polynomial(series.x, s), polynomial(series.velocity, s)
 
 
-@inlined
-def _record(t, h, share, series, mode, recorder, p):
-    """Record a share of a step."""
-    x, v = series.x, series.velocity
-    end = _state_at(h, series)
-    rates = (x[1], v[1]), (end[1], slope(v, h))
-    step = step_through(t, h, (x[0], v[0]), _state_at(0.5 * h, series), end, *rates)
-    record_step(step, share, mode, recorder, p)
-
-
 @inner
 def _smaller_force(t, y, mode, p):
     """The smaller one of both normal forces (N)."""
@@ -130,7 +120,8 @@ def _follow_series(state, stop, forces, p, keeping, recorder, work):
         time, event = first_event(series.velocity, taken, last_event, ends, p)
         time = min(time, taken)
         if keeping:
-            _record(t, taken, time / taken, series, mode, recorder, p)
+            step = SeriesStep(t, taken, y, (series.x, series.velocity))
+            record_step(step, time / taken, mode, recorder, p)
         y = _state_at(time, series)
         if event >= 0:
             return True, State(t + time, y, mode, last_event, h), event
