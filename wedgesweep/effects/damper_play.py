@@ -37,7 +37,7 @@ EFFECT = Effect(
             0.0,
             "play either way from the middle",
             minimum=0.0,
-            search=(1e-4, 1.0),
+            search=(1e-5, 1.0),
             logarithmic=True,
         ),
     ),
