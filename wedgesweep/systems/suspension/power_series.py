@@ -48,19 +48,20 @@ class Series(NamedTuple):
     velocity: Any
 
 
+def _total(terms: list) -> Any:
+    """Their sum, without the zero with which ``sum`` begins by default."""
+    return sum(terms[1:], terms[0])
+
+
 def _product(one: list, other: list, k: int, first: int = 0) -> Any:
     """Coefficient k of the product of two series, from the term ``first`` of one on."""
-    total = one[first] * other[k - first]
-    for i in range(first + 1, k + 1):
-        total = total + one[i] * other[k - i]
-    return total
+    return _total([one[i] * other[k - i] for i in range(first, k + 1)])
 
 
 def _next_power(m: list, v: list, exponent: Any) -> Any:
     """The next coefficient of m = (v/v_0)^e, of which v m' = e m v'."""
     k = len(m)
-    terms = [(exponent * i - (k - i)) * v[i] * m[k - i] for i in range(1, k + 1)]
-    return sum(terms[1:], terms[0]) / (k * v[0])
+    return _total([(exponent * i - (k - i)) * v[i] * m[k - i] for i in range(1, k + 1)]) / (k * v[0])
 
 
 class _Acceleration:
