@@ -112,7 +112,7 @@ TESTS = [(2.0, 1.5), (3.0, 0.9), (4.5, 2.5)]
 MOSTLY_SLIGHT = [(2.0, 6.0), (8.0, 0.6), (10.0, 0.6), (12.0, 0.8)]
 
 
-def tests_toml(tests):
+def toml_of(tests):
     return "".join(f"[[test]]\nfrequency_hz = {hertz}\namplitude_N = {force}\n" for hertz, force in tests)
 
 
@@ -134,7 +134,7 @@ def test_what_is_hidden_under_a_force_is_found(tmp_path, monkeypatch, effect, hi
     true = model("ground", "force", friction=0.4).document
     true["effects"] = {effect: hidden}
     (tmp_path / "true.toml").write_text(config.from_document(true).to_toml())
-    (tmp_path / "tests.toml").write_text(tests_toml(tests))
+    (tmp_path / "tests.toml").write_text(toml_of(tests))
     options = ["--record-input", "force"] if recorded else []
     invoke("synthesize", "true.toml", "--tests", "tests.toml", "--n-jobs", 1, "-o", "made", *options)
     assert ("recorded" if recorded else f"{tests[0][1]:g} +- 0.1 %") in invoke("check", "made/measured.toml")
