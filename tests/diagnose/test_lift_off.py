@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import MODEL, drawn
+from tests.diagnose.synthetic import MODEL, drawn, searched
 from wedgesweep import config
 from wedgesweep.diagnose import score_test, verdict
 from wedgesweep.diagnose.diagnosis import explain, refit_cause
@@ -39,6 +39,27 @@ def test_it_is_named_with_its_restitution(law, restitution):
     low, high = parameters(finding.best.fit)[NAME]["restitution"]["ci95"]
     assert low <= restitution <= high
     assert high - low < 0.5
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.2])
+def test_its_fit_finds_uncertain_numbers_of_its_own(restitution):
+    """Fitted without it, friction and stiffness end at other values than those which it needs."""
+    bench = (
+        np.array([4.819, 4.819, 7.649, 7.649, 10.691, 19.749, 19.749, 23.005]),
+        1e-3 * np.array([6.451, 30.48, 2.315, 8.188, 1.955, 0.3441, 0.9419, 0.313]),
+    )
+    own = {"friction_level": 1.06, "wedge_stiffness": 1.02, "bolster_mass": 0.99}
+    data = drawn(
+        {NAME: {"restitution": restitution}} | {name: {"scale": scale} for name, scale in own.items()},
+        bench=bench,
+        law="exponential",
+        model=MODEL.replace("static-dynamic", "exponential") + "[suspension]\ncolumn_angle_deg = 4.0\n",
+        std=0.001,
+        uncertain={"friction_level": 0.06, "wedge_stiffness": 0.02, "bolster_mass": 0.01},
+    )
+    _, _, (found,) = searched(data, NAME)
+    assert found.fit.chi2 < 1.2 * data.dof.sum()
+    assert found.fit.values[NAME]["restitution"] == pytest.approx(restitution, abs=0.05)
 
 
 def test_a_bench_whose_joints_hold_misses_nothing_though_they_pull():

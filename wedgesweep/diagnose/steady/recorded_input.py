@@ -25,8 +25,9 @@ from wedgesweep.diagnose.steady.spectra import Spectrum
 
 # Effects of sensors: the number that is set, and its value without the effect.
 SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
-# A harmonic counts by the share of its square that exceeds this many times its noise.
-ABOVE_NOISE = 2.0
+# Squares of harmonics over the mean square of their noise. Below the first they count as noise, of which one in 55
+# is larger; above the second, which one in 160,000 exceeds, they do not.
+DOUBTFUL, CERTAIN = 4.0, 12.0
 # The finite-difference step of a coefficient is its standard deviation, but at least this share of the
 # fundamental over its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
@@ -36,10 +37,10 @@ class InputHarmonics(NamedTuple):
     """Recorded inputs of T tests.
 
     ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, t from the first sample, without
-    what may be noise; or a force in N of the same form. ``variance`` (T, N): of what remains unknown of each
-    of these numbers. ``conversion`` (T, C, N): factor by which each was added to a channel to convert that to
-    the motion that is simulated. ``shared`` (T, C, H), complex: covariance of the noise of channels and
-    input, over both standard deviations.
+    harmonics that may be noise; or a force in N of the same form. ``variance`` (T, N): of each of these
+    numbers. ``conversion`` (T, C, N): factor by which each was added to a channel to convert that to the motion
+    that is simulated. ``shared`` (T, C, H), complex: covariance of the noise of channels and input, over both
+    standard deviations.
     """
 
     displacement: np.ndarray
@@ -72,15 +73,16 @@ class InputHarmonics(NamedTuple):
 
 
 def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Harmonics (N,) of an input without what may be noise, and the variance of what remains unknown.
+    """Harmonics (N,) of an input that stand out of their noise, others 0, and the variances of all.
 
-    A harmonic that does not stand out of its noise is left out: its acceleration would be large, and nothing
-    but noise.
+    What may be noise is no part of the input: its acceleration would be large, and a test in which friction
+    nearly holds may depend so much on it that the response is not linear in it. A doubtful harmonic counts as
+    an error of its own size.
     """
     power = np.abs(measured) ** 2
-    share = 1.0 - ABOVE_NOISE * variance / np.maximum(power, ABOVE_NOISE * variance + 1e-300)
-    share[0] = 1.0
-    return share * measured, share * variance
+    certain, possible = power > CERTAIN * variance, power > DOUBTFUL * variance
+    certain[0] = True
+    return np.where(certain, measured, 0.0), np.where(certain, variance, np.where(possible, power, 0.0))
 
 
 @dataclass(frozen=True)
