@@ -25,8 +25,8 @@ from wedgesweep.diagnose.steady.spectra import Spectrum
 
 # Effects of sensors: the number that is set, and its value without the effect.
 SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
-# Squares of harmonics over the mean square of their noise. Below the first they count as noise, of which one in 55
-# is larger; above the second, which one in 160,000 exceeds, they do not.
+# Squares of harmonics over the mean square of their noise. Below the first, which one of 55 exceeds by noise
+# alone, they count as noise; above the second, which one of 160,000 exceeds, they do not.
 DOUBTFUL, CERTAIN = 4.0, 12.0
 # The finite-difference step of a coefficient is its standard deviation, but at least this share of the
 # fundamental over its order: the error of simulations would hide smaller steps.
@@ -38,9 +38,9 @@ class InputHarmonics(NamedTuple):
 
     ``displacement`` (T, N), complex: u = Re sum_h U_h exp(i h omega t) in m, t from the first sample, without
     harmonics that may be noise; or a force in N of the same form. ``variance`` (T, N): of each of these
-    numbers. ``conversion`` (T, C, N): factor by which each was added to a channel to convert that to the motion
-    that is simulated. ``shared`` (T, C, H), complex: covariance of the noise of channels and input, over both
-    standard deviations.
+    numbers. ``conversion`` (T, C, N): factor by which each was added to a channel to convert that to the
+    motion that is simulated. ``shared`` (T, C, H), complex: covariance of the noise of channels and input,
+    over both standard deviations.
     """
 
     displacement: np.ndarray
