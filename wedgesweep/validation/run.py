@@ -34,9 +34,10 @@ DATA, RESULT = "data", "diagnosis"
 ADDED_SPREAD = 0.01
 # Periods after which a response counts as steady; close to breakaway it takes long.
 SETTLE_PERIODS = 400
-# Where the bolster sticks, the input is raised by this factor, at most so many times.
+# Where the bolster sticks, or moves without getting steady, the input is raised by this factor, at most so many
+# times. What ``synthesize`` and ``check`` say of such a test:
 RAISE, RAISES = 1.1, 8
-STICKS = re.compile(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)")
+REFUSED = re.compile(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)|test-(\d+)\.csv: not steady")
 
 
 class CommandError(Exception):
@@ -199,7 +200,7 @@ def gain_in_truth(draft: Draft, causes: list[dict[str, Any]]) -> float | None:
 
 
 def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory: Path) -> None:
-    """Make the data. As on a test bench, a test in which the bolster sticks gets more input."""
+    """Make the data. As on a test bench, a test that sticks or does not get steady gets more input."""
     true = draft.true_system
     (directory / "true.toml").write_text(toml.dumps(true.document()))
     options = ["--noise", draft.noise, "--level", LEVEL, "--seed", seed, "--n-jobs", 1]
@@ -216,14 +217,16 @@ def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory:
             for test, spread in zip(draft.tests, spreads, strict=True)
         ]
         (directory / "tests.toml").write_text(toml.dumps({"uncertain": uncertain, "test": tests}))
+        rmtree(directory / DATA, ignore_errors=True)
         try:
             wedgesweep("synthesize", *files, *options)
+            wedgesweep("check", directory / DATA / "measured.toml")
             break
         except CommandError as error:
-            sticking = [int(number) for number in STICKS.findall(str(error))]
-            if not sticking or attempt == RAISES - 1:
+            refused = [int(number) for each in REFUSED.findall(str(error)) for number in each if number]
+            if not refused or attempt == RAISES - 1:
                 raise
-        for i in sticking:
+        for i in refused:
             amplitude = round(RAISE * draft.tests[i].amplitude, 6)
             draft.tests[i] = draft.tests[i]._replace(amplitude=amplitude)
     if draft.errors:
