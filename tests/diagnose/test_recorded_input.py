@@ -163,8 +163,8 @@ def test_a_harmonic_within_its_noise_is_left_out():
     """A doubtful one counts as an error of its own size; the fundamental is always there."""
     measured = np.array([0.01, 0.3, 0.02 + 0.02j, 0.015])
     kept, variance = without_noise(measured, np.full(4, 1e-4))
-    np.testing.assert_array_equal(kept, [0.01, 0.3, 0.0, 0.0])
-    np.testing.assert_allclose(variance, [1e-4, 1e-4, 8e-4, 0.0])
+    np.testing.assert_allclose(kept, [0.01, 0.3, 0.0, 0.0], rtol=0.01)
+    np.testing.assert_allclose(variance, [1e-4, 1e-4, 8e-4, 0.0], rtol=0.01)
 
 
 def test_of_noise_alone_hardly_any_measurement_shows_a_harmonic():

@@ -34,8 +34,8 @@ DATA, RESULT = "data", "diagnosis"
 ADDED_SPREAD = 0.01
 # Periods after which a response counts as steady; close to breakaway it takes long.
 SETTLE_PERIODS = 400
-# Where the bolster sticks, or moves without getting steady, the input is raised by this factor, at most so many
-# times. What ``synthesize`` and ``check`` say of such a test:
+# Where the bolster sticks, or moves without getting steady, the input is raised by this factor, at most so
+# many times. What ``synthesize`` and ``check`` say of such a test:
 RAISE, RAISES = 1.1, 8
 REFUSED = re.compile(r"test\[(\d+)\] \(.*: .*(?:sticks|progress)|test-(\d+)\.csv: not steady")
 

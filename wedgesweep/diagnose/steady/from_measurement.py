@@ -147,10 +147,11 @@ def _read_test(
         [noise_coherence(test.time, np.array([test.input, each]), frequency) for each in signals]
     )[: len(found.mean)]
     found, conversion = _as_motion(found, named, [share for _, share in motions], displacement)
-    # The noise is that of channels and input as recorded, and turns as their harmonics are converted. That of
-    # harmonics that are left out is no error of the input.
+    # The noise is that of channels and input as recorded, and turns as their harmonics are converted. Of that
+    # of the input a harmonic keeps the share that it counts by, and none if it is left out.
     turn = _direction(motion_factor(recorded, quantity))
-    kept = displacement != 0.0
+    noise = np.maximum(input_harmonics(recorded, quantity)[1], 1e-300)
+    kept = np.where(displacement != 0.0, np.sqrt(variance / noise), 0.0)
     channel_turns = np.array([_direction(_slot_factor(found, each)) for each in named])[: len(found.mean)]
     shared = coherence[:, None] * channel_turns * (turn.conj() * kept)[None]
     return found, InputHarmonics(displacement[None], variance[None], conversion[None], shared[None])

@@ -28,6 +28,8 @@ SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
 # Squares of harmonics over the mean square of their noise. Below the first, which one of 55 exceeds by noise
 # alone, they count as noise; above the second, which one of 160,000 exceeds, they do not.
 DOUBTFUL, CERTAIN = 4.0, 12.0
+# A harmonic counts by the share of its square that exceeds this many times its noise.
+ABOVE_NOISE = 2.0
 # The finite-difference step of a coefficient is its standard deviation, but at least this share of the
 # fundamental over its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
@@ -82,7 +84,9 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
     power = np.abs(measured) ** 2
     certain, possible = power > CERTAIN * variance, power > DOUBTFUL * variance
     certain[0] = True
-    return np.where(certain, measured, 0.0), np.where(certain, variance, np.where(possible, power, 0.0))
+    share = np.where(certain, 1.0 - ABOVE_NOISE * variance / np.maximum(power, 1e-300), 0.0)
+    share[0] = 1.0
+    return share * measured, np.where(certain, share * variance, np.where(possible, power, 0.0))
 
 
 @dataclass(frozen=True)
