@@ -249,6 +249,22 @@ def test_one_gain_of_the_input_serves_all_tests(of):
     np.testing.assert_allclose(fitted, AMPLITUDES, rtol=0.02)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_noise_that_input_and_response_share_counts_with_its_sign(sign):
+    """One noise in both channels, as from a common supply."""
+    rng, ratios = np.random.default_rng(0), []
+    for seed in range(6):
+        own = measurement(seed, CAUSE, noise=0.01)
+        tests = []
+        for each in own.tests:
+            common = 0.02 * rng.normal(size=each.time.size)
+            shown = each.displacement + sign * common * each.displacement.std()
+            tests.append(replace(each, displacement=shown, input=each.input + common * each.input.std()))
+        q, dof = misfit(harmonic_data(replace(own, tests=tuple(tests))), CAUSE)
+        ratios.append(q / dof)
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.1)
+
+
 def test_a_model_error_has_no_part_in_the_noise_that_input_and_response_share():
     data = harmonic_data(measurement(0, CAUSE, noise=0.005))
     shared = np.full_like(data.recorded.shared, 0.9)

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.measured.test_steadiness import UNSTEADY, only_fault, written
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation import hiding, judge, ranges, response, rigs, sets, strength
+from wedgesweep.validation import hiding, judge, ranges, response, rigs, run, sets, strength
 from wedgesweep.validation.__main__ import main
 from wedgesweep.validation.shares import Share
 from wedgesweep.validation.time_records import TIME_KINDS
@@ -154,6 +155,14 @@ def test_coverage_allows_for_full_turns_of_angles():
         ("cross_slip.velocity_mm_per_s", False),
         ("cross_slip.phase_deg", True),
     ]
+
+
+def test_a_test_that_check_refuses_as_not_steady_gets_more_input(tmp_path):
+    """It is recognised by the message of the reader."""
+    ring_down, _ = UNSTEADY["ring-down"]
+    _, _, told = only_fault(written(tmp_path, ring_down)).partition(".csv")
+    (found,) = run.REFUSED.finditer(f"made/test-07.csv{told}")
+    assert int(found[2]) == 7
 
 
 @pytest.mark.parametrize(

@@ -223,7 +223,7 @@ def _synthesize(draft: Draft, spreads: list[float | None], seed: int, directory:
             wedgesweep("check", directory / DATA / "measured.toml")
             break
         except CommandError as error:
-            refused = [int(number) for each in REFUSED.findall(str(error)) for number in each if number]
+            refused = [int(each[1] or each[2]) for each in REFUSED.finditer(str(error))]
             if not refused or attempt == RAISES - 1:
                 raise
         for i in refused:

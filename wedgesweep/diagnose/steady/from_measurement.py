@@ -142,7 +142,8 @@ def _read_test(
     assert test.input is not None
     found = fitted(test.time, signals, frequency)
     recorded = fitted(test.time, test.input[None], frequency)
-    displacement, variance = without_noise(*input_harmonics(recorded, quantity))
+    measured, noise = input_harmonics(recorded, quantity)
+    displacement, variance = without_noise(measured, noise)
     coherence = np.array(
         [noise_coherence(test.time, np.array([test.input, each]), frequency) for each in signals]
     )[: len(found.mean)]
@@ -150,8 +151,7 @@ def _read_test(
     # The noise is that of channels and input as recorded, and turns as their harmonics are converted. Of that
     # of the input a harmonic keeps the share that it counts by, and none if it is left out.
     turn = _direction(motion_factor(recorded, quantity))
-    noise = np.maximum(input_harmonics(recorded, quantity)[1], 1e-300)
-    kept = np.where(displacement != 0.0, np.sqrt(variance / noise), 0.0)
+    kept = np.where(displacement != 0.0, np.sqrt(variance / np.maximum(noise, 1e-300)), 0.0)
     channel_turns = np.array([_direction(_slot_factor(found, each)) for each in named])[: len(found.mean)]
     shared = coherence[:, None] * channel_turns * (turn.conj() * kept)[None]
     return found, InputHarmonics(displacement[None], variance[None], conversion[None], shared[None])

@@ -82,11 +82,11 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
     an error of its own size.
     """
     power = np.abs(measured) ** 2
-    certain, possible = power > CERTAIN * variance, power > DOUBTFUL * variance
-    certain[0] = True
-    share = np.where(certain, 1.0 - ABOVE_NOISE * variance / np.maximum(power, 1e-300), 0.0)
+    above_noise = 1.0 - ABOVE_NOISE * variance / np.maximum(power, 1e-300)
+    share = np.where(power > CERTAIN * variance, above_noise, 0.0)
     share[0] = 1.0
-    return share * measured, np.where(certain, share * variance, np.where(possible, power, 0.0))
+    error = np.where(power > DOUBTFUL * variance, power, 0.0)
+    return share * measured, np.where(share > 0.0, share * variance, error)
 
 
 @dataclass(frozen=True)
