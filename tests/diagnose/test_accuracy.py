@@ -7,6 +7,7 @@ import pytest
 
 from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from wedgesweep.diagnose import accuracy, ladder
+from wedgesweep.diagnose.cross_validation import Predictor
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Model
@@ -117,7 +118,7 @@ def test_a_fit_is_repeated_where_the_model_error_has_its_weight():
 
 def test_the_true_effect_leads_the_ladder():
     search, base, singles = searched(drawn(LAG), "displacement_gain", "velocity_lag")
-    none, one = ladder.ladder(search, base, singles)
+    none, one = ladder.ladder(search, base, singles, Predictor(search.each))
     assert (none.best.effects, one.best.effects) == ((), ("velocity_lag",))
     assert (one.best.accuracy, one.distinct) == (0.0, np.inf)
     assert one.rivals[0].accuracy <= none.best.accuracy * 1.001
@@ -128,7 +129,7 @@ def test_the_true_effect_leads_the_ladder():
 def test_a_cause_leads_though_the_model_is_nowhere_right_to_within_the_noise():
     data = drawn({**LAG, "displacement_gain": {"scale": 1.004}}, std=1e-4, level=0.005)
     search, base, singles = searched(data, "guide_friction", "velocity_lag", "bolster_mass")
-    none, one = ladder.ladder(search, base, singles)
+    none, one = ladder.ladder(search, base, singles, Predictor(search.each))
     assert one.best.effects == ("velocity_lag",)
     assert 0.001 < one.best.accuracy < 0.006
     assert none.best.accuracy > 5.0 * one.best.accuracy
@@ -146,5 +147,5 @@ def test_explanations_on_copies_of_the_data_are_rated(monkeypatch):
     copies = [
         replace(fit, model=replace(fit.model, data=data)) for fit, data in zip(fits, copied, strict=True)
     ]
-    _, one = ladder.ladder(search, base, [search.explanation(fit) for fit in copies])
+    _, one = ladder.ladder(search, base, [search.explanation(fit) for fit in copies], Predictor(search.each))
     assert [each.effects for each in one.rated] == [("velocity_lag",), ("displacement_gain",)]

@@ -5,7 +5,7 @@ import pytest
 
 from tests.diagnose.synthetic import LAG, base_of, drawn, searched
 from wedgesweep.diagnose import accuracy, cross_validation
-from wedgesweep.diagnose.cross_validation import Gain, HeldOut
+from wedgesweep.diagnose.cross_validation import Gain, HeldOut, Predictor
 from wedgesweep.diagnose.steady import harmonic_data
 
 
@@ -15,7 +15,7 @@ def serial(function, items):
 
 def test_gain_on_held_out_tests_reaches_the_noise():
     _, base, (lag,) = searched(drawn(LAG), "velocity_lag")
-    measured = cross_validation.cross_validate(base.fit, lag.fit, serial)
+    measured = cross_validation.cross_validate(base.fit, lag.fit, Predictor(serial))
     assert {each.scheme for each in measured.held_out} == {"frequency", "amplitude"}
     assert measured.excess_removed > 0.95
     assert measured.interval is None  # six tests are too few for one
@@ -45,7 +45,7 @@ def test_what_a_test_tells_of_its_own_amplitude_is_not_left_as_noise():
 
 def test_retuning_alone_gains_nothing():
     _, base, (lag,) = searched(drawn(), "velocity_lag")
-    measured = cross_validation.cross_validate(base.fit, lag.fit, serial)
+    measured = cross_validation.cross_validate(base.fit, lag.fit, Predictor(serial))
     base_square, extended, noise = measured.mean_squares()
     assert extended == pytest.approx(base_square, rel=0.02)
     assert base_square == pytest.approx(noise, rel=0.2)
@@ -57,22 +57,32 @@ def test_a_cause_that_only_the_test_left_out_shows_predicts_nothing():
     _, base, (stop,) = searched(data, "end_stop")
     left = base.fit.evaluation.chi2_by_test - stop.fit.evaluation.chi2_by_test
     assert np.flatnonzero(left > 100.0).tolist() == [3]
-    measured = cross_validation.cross_validate(base.fit, stop.fit, serial)
+    measured = cross_validation.cross_validate(base.fit, stop.fit, Predictor(serial))
     assert measured.excess_removed == pytest.approx(0.0, abs=1e-3)
-    found, nothing = (cross_validation.held_out_accuracy(fit, serial) for fit in (stop.fit, base.fit))
+    found, nothing = (
+        cross_validation.held_out_accuracy(fit, Predictor(serial)) for fit in (stop.fit, base.fit)
+    )
     assert found == pytest.approx(nothing, rel=1e-2)
 
 
 def test_a_model_that_fits_nothing_predicts_as_accurately_as_it_explains():
     base = base_of(drawn(LAG, std=0.0))
     data, evaluation = base.model.data, base.evaluation
-    predicted = cross_validation.predictions(base, serial)
+    predicted = Predictor(serial)(base)
     assert np.bincount(np.concatenate([each.tests for each in predicted])).tolist() == [2] * 6
     # Each test is left out twice, and both times it is as it was; only start phases are eliminated.
     both = accuracy.of_responses([(data, evaluation)] * 2, 2 * base.dof)
-    found = cross_validation.held_out_accuracy(base, serial)
+    found = cross_validation.held_out_accuracy(base, Predictor(serial))
     assert found == pytest.approx(both, rel=1e-2)
     assert found == pytest.approx(accuracy.of_response(data, evaluation, base.dof), rel=0.05)
+
+
+def test_a_fit_is_predicted_once():
+    base, calls = base_of(drawn(LAG)), []
+    predict = Predictor(lambda function, items: calls.append(len(items)) or serial(function, items))
+    assert predict(base) is predict(base)
+    assert len(calls) == 1
+    assert predict(base_of(drawn(LAG))) is not predict(base)
 
 
 def test_tests_that_are_all_alike_are_left_out_one_by_one():
@@ -83,7 +93,7 @@ def test_tests_that_are_all_alike_are_left_out_one_by_one():
     ]
     single = drawn(tests=[2])
     assert cross_validation.held_out_groups(single) == []
-    assert cross_validation.held_out_accuracy(base_of(single), serial) is None
+    assert cross_validation.held_out_accuracy(base_of(single), Predictor(serial)) is None
 
 
 POINTS = 32

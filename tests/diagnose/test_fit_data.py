@@ -156,7 +156,8 @@ def test_the_cause_is_named(explained):
 
 def test_the_gain_and_the_scores_tell_the_same(explained):
     best = explained.explanations[0].fit
-    gain = cross_validation.cross_validate(explained.base.fit, best, explained.search.each)
+    predict = cross_validation.Predictor(explained.search.each)
+    gain = cross_validation.cross_validate(explained.base.fit, best, predict)
     assert gain.excess_removed > 0.95
     scores = score_test.scores(explained.search, explained.base.fit, explained.scans)
     assert all(each.testable for each in scores)

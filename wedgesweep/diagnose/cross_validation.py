@@ -135,21 +135,39 @@ class Gain:
         return [float(low), float(high)]
 
 
-def cross_validate(base: Fit, extended: Fit, each: Each) -> Gain:
+class Predictor:
+    """Predicts tests that are left out of fits; a fit that is asked for again is not predicted again."""
+
+    def __init__(self, each: Each) -> None:
+        """``each`` maps a function over a list, perhaps in threads."""
+        self._each, self._known = each, list[tuple[Fit, list[Prediction]]]()
+
+    def __call__(self, fit: Fit) -> list[Prediction]:
+        """Predictions of all groups of tests that can be left out of a fit."""
+        for known, predicted in self._known:
+            if known is fit:
+                return predicted
+        groups = held_out_groups(fit.model.data)
+        predicted = self._each(lambda group: _predicted(fit, *group), groups)
+        self._known.append((fit, predicted))
+        return predicted
+
+
+def cross_validate(base: Fit, extended: Fit, predict: Predictor) -> Gain:
     """Leave out groups of tests, fit the others, and predict those that were left out.
 
     Parameters
     ----------
     base, extended : Fit
         The two models to compare, fitted to all tests.
-    each : callable
-        Maps a function over a list.
+    predict : Predictor
+        Leaves groups of tests out of a fit.
     """
     local, observations = local_numbers(extended), base.model.data.observations
     both = [
         # Without its effects the extended model is the base model, however its nuisance parameters are found.
         (before, after if after.effects else before)
-        for before, after in zip(*(predictions(fit, each) for fit in (base, extended)), strict=True)
+        for before, after in zip(predict(base), predict(extended), strict=True)
     ]
     return Gain(
         tuple(
@@ -160,19 +178,14 @@ def cross_validate(base: Fit, extended: Fit, each: Each) -> Gain:
     )
 
 
-def held_out_accuracy(fit: Fit, each: Each) -> float | None:
+def held_out_accuracy(fit: Fit, predict: Predictor) -> float | None:
     """Accuracy of the predictions of tests that were left out of a fit; None if there are none."""
-    predicted = predictions(fit, each)
+    predicted = predict(fit)
     if not predicted:
         return None
     left = fit.model.data.observations - local_numbers(fit)
     dof = sum(left[one.tests].sum() for one in predicted)
     return accuracy.of_responses([(one.data, one.evaluation) for one in predicted], dof)
-
-
-def predictions(fit: Fit, each: Each) -> list[Prediction]:
-    """Predictions of all groups of tests that can be left out of a fit."""
-    return each(lambda group: _predicted(fit, *group), held_out_groups(fit.model.data))
 
 
 def held_out_groups(data: FitData) -> list[tuple[str, np.ndarray]]:

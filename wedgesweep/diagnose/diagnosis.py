@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
-from wedgesweep.diagnose import cross_validation, score_test, verdict, work
+from wedgesweep.diagnose import score_test, verdict, work
 from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.calibration import calibrate
-from wedgesweep.diagnose.cross_validation import Gain
+from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.ladder import Level, ladder
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise, tight_refit
@@ -133,9 +133,10 @@ def diagnose(
     finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
     progress("scores")
     scores = score_test.scores(search, base.fit, scans)
-    finding, gain = on_held_out_tests(search, base, finding)
+    predict = Predictor(search.each)
+    finding, gain = on_held_out_tests(search, base, finding, predict)
     progress("accuracy")
-    levels = ladder(search, base, explanations)
+    levels = ladder(search, base, explanations, predict)
     progress("next test")
     next_test = recommend(_undecided(finding, explanations, thresholds))
     return Diagnosis(
@@ -229,12 +230,14 @@ def _continued(search: Search, found: Sequence[Explanation], thresholds: Thresho
     )
 
 
-def on_held_out_tests(search: Search, base: Explanation, finding: Finding) -> tuple[Finding, Gain | None]:
+def on_held_out_tests(
+    search: Search, base: Explanation, finding: Finding, predict: Predictor
+) -> tuple[Finding, Gain | None]:
     """The finding after cross-validation, and the gain on held-out tests; None without an explanation."""
     if finding.best is None or search.data.tests < 2:
         return finding, None
     search.progress("held-out tests")
-    gain = cross_validation.cross_validate(base.fit, finding.best.fit, search.each)
+    gain = cross_validate(base.fit, finding.best.fit, predict)
     finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
     return finding, gain if finding.best is not None else None
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
-from wedgesweep.diagnose import accuracy, cross_validation, verdict
+from wedgesweep.diagnose import accuracy, verdict
+from wedgesweep.diagnose.cross_validation import Predictor, held_out_accuracy
 from wedgesweep.diagnose.explanation import Explanation
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.search import Search
@@ -59,7 +60,9 @@ class Level:
         return rival / best
 
 
-def ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
+def ladder(
+    search: Search, base: Explanation, explanations: Sequence[Explanation], predict: Predictor
+) -> tuple[Level, ...]:
     """Rate the base model and every eligible explanation: a level for each number of effects.
 
     The best one of each level also predicts tests that are left out of its fit.
@@ -67,7 +70,9 @@ def ladder(search: Search, base: Explanation, explanations: Sequence[Explanation
     allowed = [base, *filter(verdict.eligible, explanations)]
     rough = search.each(_rated_where_it_ended, allowed)
     sizes = sorted({len(each.effects) for each in rough})
-    return tuple(_level(search, [each for each in rough if len(each.effects) == size]) for size in sizes)
+    return tuple(
+        _level(search, [each for each in rough if len(each.effects) == size], predict) for size in sizes
+    )
 
 
 def _rated_where_it_ended(each: Explanation) -> Rated:
@@ -75,7 +80,7 @@ def _rated_where_it_ended(each: Explanation) -> Rated:
     return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
 
 
-def _level(search: Search, rough: Sequence[Rated]) -> Level:
+def _level(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
     """The explanations of one size, best first.
 
     The leading ones are refined; so is any other that would rank among the COMPARED best without it.
@@ -87,7 +92,7 @@ def _level(search: Search, rough: Sequence[Rated]) -> Level:
         waiting = waiting[len(chosen) :]
         chosen = _still_to_refine(waiting, done)
     order = sorted([*done, *waiting], key=_by_accuracy)
-    return Level((_with_held_out_accuracy(search, order[0]), *order[1:]))
+    return Level((_with_held_out_accuracy(order[0], predict), *order[1:]))
 
 
 def _still_to_refine(waiting: list[Rated], done: list[Rated]) -> list[Rated]:
@@ -98,10 +103,10 @@ def _still_to_refine(waiting: list[Rated], done: list[Rated]) -> list[Rated]:
     return [each for each in waiting[:REFINED] if _by_accuracy(each) < last]
 
 
-def _with_held_out_accuracy(search: Search, best: Rated) -> Rated:
+def _with_held_out_accuracy(best: Rated, predict: Predictor) -> Rated:
     if best.accuracy == inf:
         return best
-    return replace(best, held_out=cross_validation.held_out_accuracy(best.fit, search.each))
+    return replace(best, held_out=held_out_accuracy(best.fit, predict))
 
 
 def _refined(each: Rated) -> Rated:

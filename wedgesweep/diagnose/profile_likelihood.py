@@ -5,7 +5,7 @@ parameter look more certain than it is. So each parameter is held where its inte
 are fitted again, as MINUIT's MINOS does (James and Roos, 1975, Computer Physics Communications 10, 343).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
@@ -26,6 +26,9 @@ FURTHER = 3.0
 ITERATIONS = 10
 # Number of values at which the parameter of a switch is held, from the end by the curvature to the bound.
 VALUES = 6
+# No further value is tried once chi-squared has risen by so many times RISE. Other minima further away are no
+# part of the interval; the scan over the whole range has looked there (search.single_fit).
+FAR_BEYOND = 10.0
 # A fit whose chi-squared is lower by this much becomes the new centre, at most this many times.
 LOWER, RESTARTS = 0.5, 6
 
@@ -53,9 +56,14 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     sides = list(product(range(fit.model.size), (1.0, -1.0)))
     ends = np.full((fit.model.size, 2), TWO_SIDED)
     for _ in range(RESTARTS if fit.evaluation.found else 0):
-        found = each(lambda side, fit=fit: _profile_end(fit, *side), sides)
-        ends = np.reshape([one.end for one in found], ends.shape)
-        best = min((one.best for one in found), key=lambda one: one.chi2, default=fit)
+        # A lower minimum is mostly next to the fit: the near ends come first, as all others are moot then.
+        nearest = each(lambda side, fit=fit: _nearest(fit, *side), sides)
+        best = _lowest(fit, nearest)
+        if best is fit:
+            tries = [(*side, near) for side, near in zip(sides, nearest, strict=True)]
+            found = each(lambda one, fit=fit: _profile_end(fit, *one), tries)
+            ends = np.reshape([one.end for one in found], ends.shape)
+            best = _lowest(fit, [one.best for one in found])
         better = fit if best is fit else tight_refit(replace(best, model=fit.model))
         if better.chi2 > fit.chi2 - LOWER:
             break
@@ -64,23 +72,42 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     return replace(fit, covariance=wider[:, None] * fit.covariance * wider)
 
 
-def _profile_end(fit: Fit, parameter: int, side: float) -> ProfileEnd:
-    """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit.
+def _lowest(fit: Fit, others: Sequence[Fit]) -> Fit:
+    """The best of some fits, or ``fit`` if that is not markedly worse."""
+    best = min(others, key=lambda one: one.chi2, default=fit)
+    return best if best.chi2 < fit.chi2 - LOWER else fit
+
+
+def _furthest(fit: Fit, parameter: int, side: float) -> float:
+    """Distance of a parameter to its bound on one side, in standard deviations."""
+    bound = (fit.model.high if side > 0.0 else fit.model.low)[parameter]
+    return abs(bound - fit.x[parameter]) / np.sqrt(fit.covariance[parameter, parameter])
+
+
+def _nearest(fit: Fit, parameter: int, side: float) -> Fit:
+    """Fit with a parameter held where its interval ends by the curvature, or at its bound before that.
 
     ``side``: 1 for the upper end, -1 for the lower one.
     """
-    std = np.sqrt(fit.covariance[parameter, parameter])
+    return _held(fit, fit, parameter, side * min(TWO_SIDED, _furthest(fit, parameter, side)))
+
+
+def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> ProfileEnd:
+    """Move one parameter out until chi-squared has risen by about RISE, or is lower than at the fit.
+
+    ``nearest``: see ``_nearest``.
+    """
     bounds = fit.model.low[parameter], fit.model.high[parameter]
-    bound = bounds[1] if side > 0.0 else bounds[0]
-    furthest = abs(bound - fit.x[parameter]) / std
+    std = np.sqrt(fit.covariance[parameter, parameter])
+    furthest = _furthest(fit, parameter, side)
     if fit.x[parameter] in bounds and TWO_SIDED * std > bounds[1] - bounds[0]:
         return _end_by_bisection(fit, parameter, side, furthest)
     if fit.model.hypothesis.parameters[parameter].switches:
-        return _end_beyond_ridges(fit, parameter, side, furthest)
-    end, held = TWO_SIDED, fit
-    for _ in range(TRIES):
+        return _end_beyond_ridges(fit, parameter, side, furthest, nearest)
+    end, held = TWO_SIDED, nearest
+    for tries in range(TRIES):
         off = min(end, furthest)
-        held = _held(fit, held, parameter, fit.x[parameter] + side * off * std)
+        held = _held(fit, held, parameter, side * off) if tries else nearest
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(end, held)
@@ -96,10 +123,10 @@ def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) ->
 
     ``furthest``: distance to that bound in standard deviations; 0 if the parameter is at it.
     """
-    std, low, high = np.sqrt(fit.covariance[parameter, parameter]), 0.0, furthest
+    low, high = 0.0, furthest
     middle = high
     for _ in range(TRIES if furthest else 0):
-        held = _held(fit, fit, parameter, fit.x[parameter] + side * middle * std)
+        held = _held(fit, fit, parameter, side * middle)
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(middle, held)
@@ -110,31 +137,36 @@ def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) ->
     return ProfileEnd(high, fit)
 
 
-def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
+def _end_beyond_ridges(fit: Fit, parameter: int, side: float, furthest: float, nearest: Fit) -> ProfileEnd:
     """The end for the parameter of a switch: the first tried value beyond all that fit nearly as well.
 
     There chi-squared is rugged: impacts come and go, and several responses are equally steady.
+    ``nearest``: see ``_nearest``.
     """
     if furthest <= TWO_SIDED:
         return ProfileEnd(TWO_SIDED, fit)
-    std, end = np.sqrt(fit.covariance[parameter, parameter]), TWO_SIDED
+    end = TWO_SIDED
     values = np.geomspace(TWO_SIDED, furthest, VALUES)
     for value, beyond in zip(values, [*values[1:], furthest], strict=True):
-        held = _held(fit, fit, parameter, fit.x[parameter] + side * value * std)
+        held = nearest if value == values[0] else _held(fit, fit, parameter, side * value)
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(value, held)
+        if rise > FAR_BEYOND * RISE:
+            break
         if rise < RISE:
             end = beyond
     return ProfileEnd(float(end), fit)
 
 
-def _held(fit: Fit, start: Fit, parameter: int, value: float) -> Fit:
-    """Fit with one parameter held; the others start where the covariance of ``fit`` predicts them.
+def _held(fit: Fit, start: Fit, parameter: int, off: float) -> Fit:
+    """Fit with one parameter held so many standard deviations off where ``fit`` has it.
 
-    ``start``: the fit from which they are extrapolated.
+    The others begin where the covariance of ``fit`` predicts them, extrapolated from the fit ``start``.
     """
+    variance = fit.covariance[parameter, parameter]
+    value = fit.x[parameter] + off * np.sqrt(variance)
     model = fit.model.holding(parameter, value)
-    slope = fit.covariance[:, parameter] / fit.covariance[parameter, parameter]
+    slope = fit.covariance[:, parameter] / variance
     x = np.clip(start.x + slope * (value - start.x[parameter]), model.low, model.high)
     return minimise(model, model.evaluate(replace(start.point, x=x)), ITERATIONS)

@@ -34,7 +34,8 @@ class Round(NamedTuple):
 
 # Rounds from the starting points of an effect; the best fit of the last round is continued to its minimum.
 SCHEDULE = (Round(4, 3), Round(2, 4))
-# The same where some starting points are already fits, made beside a base model as stated (STATED_SCHEDULE).
+# The same where some starting points are already fits, made beside a base model as stated (STATED_SCHEDULE),
+# or have made a step (_with_own_numbers).
 NEARER_SCHEDULE = (Round(3, 3), Round(1, 5))
 # The same where the base model is not impossible: a cause can only be weak then, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)
@@ -58,7 +59,7 @@ SLIGHT, MARKED = 1.0, 9.0
 # that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
 # Effects with states or an iteration of their own take longest to fit, and begin first.
-SLOWEST = ("load_dependent_friction", "column_compliance", "fixture_resonance", "presliding")
+SLOWEST = ("lift_off", "load_dependent_friction", "column_compliance", "fixture_resonance", "presliding")
 
 # Evaluations of each effect over the range of its parameters, beside the base model.
 Scans = Mapping[str, Sequence[Evaluation]]
@@ -259,15 +260,17 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point) or bool(base.implausible)
+    own_numbers = bool(model.hypothesis.switches and data.uncertain)
     if implausible or data.brings_nuisances(effect) or model.hypothesis.switches:
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
         fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
-        if model.hypothesis.switches and data.uncertain:
+        if own_numbers:
             fresh = [_with_own_numbers(rough, each) for each in fresh]
         evaluations = evaluations + fresh
         if implausible:
             evaluations = evaluations + beside_stated(model, fresh)
-    schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else NEARER_SCHEDULE if implausible else SCHEDULE
+    nearer = NEARER_SCHEDULE if implausible or own_numbers else SCHEDULE
+    schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else nearer
     rows = data.representative(base.evaluation)
     limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum())
     fit = best_of(model, evaluations, schedule, limit, rows, waits=data.shares_nuisances)
