@@ -135,10 +135,7 @@ def compared(data: Path, output: Path) -> dict[str, dict[int, Compared]]:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("data", type=Path, help="folder of frame-250g.csv and frame-450g.csv")
-    parser.add_argument("-o", "--output", type=Path, default=Path("out/frame"))
-    options = parser.parse_args()
+    options = real_frame.parsed(argparse.ArgumentParser(description=__doc__))
     print("| fitted to | own | the other | stiffness, damping, friction, cubic stiffness |")
     for name, by_disc in compared(options.data, options.output).items():
         for grams, (frame, own, other) in by_disc.items():

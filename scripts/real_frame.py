@@ -284,12 +284,20 @@ def run(data: Path, output: Path) -> dict[int, Recording]:
     return recordings
 
 
-def main() -> None:
-    """Print what the diagnosis says."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def parsed(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """The folders of the recordings and of what is made of them; ends if a recording is missing."""
     parser.add_argument("data", type=Path, help="folder of frame-250g.csv and frame-450g.csv")
     parser.add_argument("-o", "--output", type=Path, default=Path("out/frame"))
     options = parser.parse_args()
+    for grams in DISCS:
+        if not (options.data / f"{AS_RECORDED}-{grams}g.csv").is_file():
+            parser.error(f"{options.data} is not the folder of the recordings: no {AS_RECORDED}-{grams}g.csv")
+    return options
+
+
+def main() -> None:
+    """Print what the diagnosis says."""
+    options = parsed(argparse.ArgumentParser(description=__doc__))
     found = run(options.data, options.output)
     for grams, each in found.items():
         print(f"disc of {grams} g")

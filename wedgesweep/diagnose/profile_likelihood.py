@@ -44,7 +44,8 @@ def profile_likelihood(fit: Fit, each: Callable[[Callable, list], list]) -> Fit:
     """The fit, or a better one found beside it, with a covariance as wide as its profile likelihood.
 
     Intervals never become narrower than by the curvature: a fit with a parameter held may stop short as well.
-    Only where a parameter is at a bound, and the curvature there tells nothing, does the profile alone count.
+    Only where the curvature tells nothing, and a parameter is at a bound or belongs to a switch, does the
+    profile alone count.
 
     Parameters
     ----------
@@ -100,9 +101,10 @@ def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> Profile
     bounds = fit.model.low[parameter], fit.model.high[parameter]
     std = np.sqrt(fit.covariance[parameter, parameter])
     furthest = _furthest(fit, parameter, side)
-    if fit.x[parameter] in bounds and TWO_SIDED * std > bounds[1] - bounds[0]:
+    switches = fit.model.hypothesis.parameters[parameter].switches
+    if TWO_SIDED * std > bounds[1] - bounds[0] and (switches or fit.x[parameter] in bounds):
         return _end_by_bisection(fit, parameter, side, furthest)
-    if fit.model.hypothesis.parameters[parameter].switches:
+    if switches:
         return _end_beyond_ridges(fit, parameter, side, furthest, nearest)
     end, held = TWO_SIDED, nearest
     for tries in range(TRIES):
@@ -119,7 +121,7 @@ def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> Profile
 
 
 def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
-    """The end for a parameter at a bound, by bisection between the fit and the bound on one side.
+    """The end where the curvature tells nothing, by bisection between the fit and the bound on one side.
 
     ``furthest``: distance to that bound in standard deviations; 0 if the parameter is at it.
     """
