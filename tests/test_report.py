@@ -173,6 +173,9 @@ def test_the_page_begins_with_what_is_missing_in_plain_words(written):
         assert "error on held-out tests, times the noise" in page.text
         base = result.document["ladder"][0]["accuracy"]
         assert plain(phrases.accuracy(base)) in page.text
+    nearly = result.document["ladder"][1]
+    row = f"explains all tests to {plain(phrases.accuracy(nearly['accuracy']))} "
+    assert (row in page.text) == (verdict == "none-of-mine")
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)

@@ -62,16 +62,22 @@ def levels_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
 
 def clauses(result: DiagnosisResult) -> list[str]:
     """What the best single effect explains, and the best pair where it is much better, as clauses."""
+    base = levels_of(result)[:1]
+    return [_clause(level, base[0], result.document) for level in noteworthy(result)]
+
+
+def noteworthy(result: DiagnosisResult) -> list[Mapping[str, Any]]:
+    """The level of the best single effect, and that of the best pair where it is much better."""
     levels = levels_of(result)
     if not levels:
         return []
     base, *better = levels
-    found: list[str] = []
+    found: list[Mapping[str, Any]] = []
     reached = base["accuracy"]
     for level in better:
         if level["accuracy"] is None or (found and level["accuracy"] * MUCH_BETTER > (reached or 0.0)):
             continue
-        found.append(_clause(level, base, result.document))
+        found.append(level)
         reached = level["accuracy"]
     return found
 

@@ -53,6 +53,6 @@ NOTHING_TO_MEASURE = {
     "strengthen the evidence, or show what else is wrong.",
     "tied": "No test within reach of the bench distinguishes the tied explanations.",
     "data-insufficient": "No single test was found that would distinguish the candidates.",
-    "none-of-mine": "No test can name an effect that is not among the candidates; the figures above show "
-    "what the models leave.",
+    "none-of-mine": "No test can name an effect that is not among the candidates; the figures show what "
+    "the models leave. With a model_error as large as its error, an explanation becomes a cause.",
 }

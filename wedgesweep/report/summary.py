@@ -1,6 +1,7 @@
 """The first lines of the page: what is missing in plain words, and the numbers that show it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
@@ -33,7 +34,7 @@ def lead(result: DiagnosisResult) -> str:
 
 
 def table(result: DiagnosisResult) -> Markup:
-    """Error before and after, gain on held-out tests, and the next step."""
+    """Error before and after, gain on held-out tests, what nearly explains the tests, and the next step."""
     models = ("base", "extended") if result.added else ("base",)
     head = ("", "before", "after" if result.document["causes"] else "best attempt")[: 1 + len(models)]
     allowed = phrases.allowed(result.document)
@@ -47,9 +48,19 @@ def table(result: DiagnosisResult) -> Markup:
         rows.append([f"error on held-out tests, times the {allowed}", *errors])
         removed = f"{formatting.percent(gain['excess_removed'])} of the excess over {allowed} is gone"
         rows.append(["gain on held-out tests", Spanning(f"{removed} ({phrases.interval(gain)})")])
+    if result.verdict == "none-of-mine":
+        rows += [_nearly(level, result) for level in ladder.noteworthy(result)]
     step = next_test.NOTHING_TO_MEASURE[result.verdict]
     rows.append(["next step", Spanning(step if test is None else phrases.next_test(test))])
     return html.table("Error of the model", head, rows)
+
+
+def _nearly(level: Mapping[str, Any], result: DiagnosisResult) -> Sequence[object]:
+    """What explains the tests to some share of the response, though not to the noise."""
+    meanings = phrases.meanings(level["effects"], result.document)
+    to = phrases.accuracy(level["accuracy"]) if level["accuracy"] else "within the noise"
+    cause = f"{meanings} ({phrases.combination(level['effects'])})"
+    return [f"explains all tests to {to}", Spanning(cause)]
 
 
 def _accuracies(result: DiagnosisResult) -> list[str]:
