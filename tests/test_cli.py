@@ -329,6 +329,12 @@ def test_case_prints_stores_and_draws(here):
     assert found["dissipated energy"] == [f"{ds['dissipated_energy'].item() * 1e3:.6g}", "mJ"]
 
 
+def test_case_that_sticks_has_no_phase(here):
+    told = invoke("case", "few.toml", "--law", "coulomb", "--beta", 0.02, "--amplitude", 0.01, "--quiet")
+    for words in (r"phase lag +– deg", r"minimum normal force +– N", r"mean displacement +0 mm"):
+        assert re.search(words, told)
+
+
 def test_case_agrees_with_the_sweep(here):
     run("few.toml")
     sweep = xr.load_dataset("few.nc").sel(friction_law="coulomb", beta=2.5, amplitude=0.0012)

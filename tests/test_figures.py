@@ -17,6 +17,7 @@ from wedgesweep.figures import (
     friction_laws,
     maps,
     response,
+    style,
     validity,
 )
 from wedgesweep.friction import LAWS
@@ -295,6 +296,13 @@ def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_thei
     )
     ratio = amplitude_ratio.frictionless_ratio(heavy, np.array([20.0]))
     assert ratio < amplitude_ratio.frictionless_ratio(dataset, np.array([20.0]))
+
+
+def test_a_logarithmic_axis_without_a_positive_number_is_drawn():
+    axis = Figure().add_subplot().yaxis
+    style.power_ticks(axis)
+    label = axis.get_major_formatter()
+    assert [label(value) for value in (0.0, 1e-3, 1e5)] == ["", "10⁻³", "10⁵"]
 
 
 def test_stick_map_cells_enclose_their_centres():

@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+import xarray as xr
 
 from tests import fixture_diagnosis, fixture_measured, small_sweep
 from tests.command import invoke
@@ -53,6 +54,45 @@ def test_a_pipe_or_device_is_refused_at_once(here, command, file):
         (here / file).unlink(missing_ok=True)
         os.mkfifo(here / file)
     assert f"{file}: not a regular file" in invoke(*command, code=2)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["init", "out.toml", "--force"],
+        ["schema", "-o", "out.toml"],
+        ["case", "small.toml", "--beta", "1", "--amplitude", "1", "-o", "out.toml"],
+        ["run", "small.toml", "-o", "out.toml"],
+        ["plot", "friction-laws", "made.nc", "-o", "out.toml"],
+    ],
+)
+def test_no_output_takes_the_place_of_a_pipe_or_device(here, command):
+    """As root, ``-o /dev/null`` would leave a plain file there."""
+    ending = {"init": "toml", "schema": "json", "case": "nc", "run": "nc", "plot": "png"}[command[0]]
+    command = [word.replace("out.toml", f"out.{ending}") for word in command]
+    invoke("run", "small.toml", "-o", "made.nc")
+    os.mkfifo(here / f"out.{ending}")
+    assert f"out.{ending}: not a regular file" in invoke(*command, code=2)
+    assert (here / f"out.{ending}").is_fifo()
+
+
+@pytest.mark.parametrize("command", [["init", "a\0b"], ["run", "small.toml", "-o", "a\0b.nc"]])
+def test_a_null_character_in_an_output(here, command):
+    assert "cannot hold a null character" in invoke(*command, code=2)
+
+
+def test_an_output_without_a_name(here):
+    with pytest.raises(IsADirectoryError), files.written(files.Path()):
+        pass
+
+
+def test_attributes_of_the_wrong_kind(here):
+    invoke("run", "small.toml", "-o", "made.nc")
+    whole = xr.load_dataset("made.nc")
+    for name, value in (("config", 3), ("omega_n", "x")):
+        whole.assign_attrs({name: value}).to_netcdf("other.nc")
+        said = invoke("plot", "friction-laws", "other.nc", code=2)
+        assert f"other.nc: not the dataset of a sweep: its attribute {name}" in said
 
 
 def test_a_null_character_in_a_path(here):

@@ -53,8 +53,13 @@ def json_object(text: str | bytes) -> dict[str, Any]:
 def written(path: Path) -> Iterator[Path]:
     """A temporary file beside ``path`` to write, which takes its place when it is complete.
 
-    What a killed process left behind is removed. Errors name ``path``.
+    What a killed process left behind is removed. Errors name ``path``; they are OSError. Nothing takes the
+    place of a device or pipe: /dev/null would be a plain file for every program from then on.
     """
+    if not path.name:
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists():
+        regular(path)
     _sweep(path)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:

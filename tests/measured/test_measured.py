@@ -409,6 +409,11 @@ NETCDF_FAULTS = {
         lambda file, test: test.setncattr("amplitude_mm", -0.1),
         "tests/0000: amplitude_mm: -0.1 is out",
     ),
+    "kind": (lambda file, test: test.setncattr("kind", np.array([1, 2])), "tests/0000: kind"),
+    "column": (
+        lambda file, test: test["displacement"].setncattr("of", np.array([1, 2])),
+        "displacement.of",
+    ),
     "repeat_of": (
         lambda file, test: test.setncattr("repeat_of", "other.csv"),
         'repeat_of: "other.csv" is not the file of an earlier test',

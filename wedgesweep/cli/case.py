@@ -1,5 +1,6 @@
 """case: solve one case; print its numbers, store its waveforms, draw its phase portrait."""
 
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -126,7 +127,9 @@ def _print_numbers(ds: "xr.Dataset") -> None:
         if variable.dims or variable.name in ("status", "message") or variable.name not in ds:
             continue
         factor, unit = DISPLAY_UNITS.get(variable.units, (1.0, variable.units))
-        number = f"{ds[variable.name].item() * factor:.6g}"
+        value = ds[variable.name].item() * factor
+        # Where nothing slips there is no phase and no normal force of slip.
+        number = f"{value + 0.0:.6g}" if isfinite(value) else formatting.NONE
         name = variable.name.replace("_", " ")
         click.echo(f"  {name:<21}{number:>12} {unit:<5} {ds[variable.name].attrs['long_name']}")
 

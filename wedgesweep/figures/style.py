@@ -86,10 +86,15 @@ def log_ticks(axis: Axis) -> None:
     (power_ticks if high > 100.0 * low else decimal_ticks)(axis)
 
 
+def _power_of_ten(value: float, _: int | None) -> str:
+    """Label of a tick; matplotlib also asks for that of 0, where an axis has no positive number."""
+    return formatting.power(round(np.log10(value))) if value > 0.0 else ""
+
+
 def power_ticks(axis: Axis, count: int = 6) -> None:
     """Put powers of ten, at most ``count`` of them, on a logarithmic axis."""
     axis.set_major_locator(LogLocator(numticks=count))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: formatting.power(round(np.log10(value)))))
+    axis.set_major_formatter(FuncFormatter(_power_of_ten))
     axis.set_minor_locator(NullLocator())
 
 

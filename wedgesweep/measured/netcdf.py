@@ -201,7 +201,7 @@ def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[st
     different = False
     for group in groups:
         own = _columns(group)
-        kind = getattr(group, "kind", STEADY)
+        kind = str(getattr(group, "kind", STEADY))
         known = found.setdefault(kind if kind in KINDS else STEADY, own)
         shared = {name: each for other in found.values() for name, each in other.items()}
         undriven = bool(getattr(group, "undriven", 0))
@@ -220,7 +220,7 @@ def _columns(group: Any) -> dict[str, dict[str, str]]:
     for name in (*UNITS, INPUT):
         if name in group.variables:
             own = group.variables[name]
-            more = {key: getattr(own, key) for key in ("of", "quantity") if hasattr(own, key)}
+            more = {key: str(getattr(own, key)) for key in ("of", "quantity") if hasattr(own, key)}
             found[name] = {"column": name, "unit": _unit(own)} | more
     return found
 

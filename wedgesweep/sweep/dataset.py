@@ -149,12 +149,16 @@ def read_sweep(path: Path) -> "xr.Dataset":
 
 def _faults(ds: "xr.Dataset") -> Iterator[str]:
     """What tells a dataset from that of a sweep: coordinates, dimensions, and the kinds of its variables."""
+    if not isinstance(ds.attrs.get("config", ""), str):
+        yield "its attribute config is no text"
     if "scale" in ds.coords:
         yield from (f"no coordinate {name}" for name in SCALED if name not in ds.coords)
         yield from (f"no variable {name}" for name in ("status", "message") if name not in ds)
         known = {variable.name: variable for variable in TRANSIENT}
         yield from _shape_faults(ds, known, SCALED, SCALED)
         return
+    if not isinstance(ds.attrs.get("omega_n"), float):
+        yield "its attribute omega_n is no number"
     yield from (f"no coordinate {name}" for name in (*GRID, "frequency") if name not in ds.coords)
     yield from (f"no variable {name}" for name in REQUIRED if name not in ds)
     if "beta" not in ds.coords:

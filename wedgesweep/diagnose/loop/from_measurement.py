@@ -5,6 +5,7 @@ import numpy as np
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.loop.recording import Recording, recording
+from wedgesweep.errors import InputError
 from wedgesweep.measured import Measurement, TestRecord
 
 
@@ -26,4 +27,8 @@ def _recording(measurement: Measurement, test: TestRecord, differences: list[np.
     assert test.force is not None
     model = measurement.model_of(test)
     signals = test.displacement, test.force
-    return recording(test.name, model, measurement.law, test.sampling_rate, signals, test.cutoff, differences)
+    given = test.name, model, measurement.law, test.sampling_rate, signals, test.cutoff, differences
+    try:
+        return recording(*given)
+    except InputError as error:
+        raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error

@@ -221,21 +221,26 @@ def recording(
     differences : sequence of ndarray
         What repeats of the test leave of its force (N), which is noise; without them it is what no smooth
         function of the motion explains.
+
+    Raises
+    ------
+    InputError
+        For a record that is too short, or hardly moves.
     """
     displacement, force = samples
     mass = moving_mass(model, law)
     noise = white_noise(displacement, rate)
     low_pass = LowPass(cutoff or highest_cutoff(noise, float(force.std()), mass, rate), rate)
-    own = motion(displacement, noise, low_pass)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
     if not places.size:
         problem = f"{displacement.size} samples are too few for a low-pass of {low_pass.cutoff:.3g} Hz"
-        raise InputError([f"{name}: {problem}; record for longer, or raise lowpass_hz"])
+        raise InputError([f"{problem}; record for longer, or raise lowpass_hz"])
+    own = motion(displacement, noise, low_pass)
     compared, known = low_pass(force)[places], ~at_rest(own, low_pass)[places]
     if known.sum() < FEWEST_KNOWN:
         problem = f"its motion is no faster than its noise ({1e3 * own.noise[1]:.3g} mm/s) for long"
-        raise InputError([f"{name}: {problem}; move it faster, or measure it with less noise"])
+        raise InputError([f"{problem}; move it faster, or measure it with less noise"])
     blocks = _blocks(own.velocity[places])
     white = low_pass.noise(white_noise(force, rate, jumps=True))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)

@@ -97,8 +97,8 @@ def draw(target: Target, result: DiagnosisResult) -> Panels:
         message = "no explanation has an accuracy; 'wedgesweep diagnose' of this version finds it"
         raise ValueError(message)
     lines = _lines(result)
-    shown = [size for row in rows for size in (row.accuracy, row.held_out) if size]
-    shown += [value for value, _ in lines.values()]
+    shown = [size for row in rows for size in (row.accuracy, row.held_out) if size and size > 0.0]
+    shown += [value for value, _ in lines.values() if value > 0.0]
     left, right = 0.5 * min(shown, default=1.0), 3.0 * max(shown, default=1.0)
     made = panels(target, 1, size=(6.2, 1.1 + 0.25 * (rows[-1].place + 1.0)), margin=(0.8, 0.8))
     ax = made.axes[0]

@@ -39,7 +39,8 @@ def _draw_tests(ax: Axes, result: DiagnosisResult, order: np.ndarray) -> None:
         ax.plot(ratio, places, label=name, **marks.dot(model))
     ratios = (result.data["q"].sel(model=list(result.models)) / result.data["dof"]).values
     ax.set_xscale("log")
-    ax.set_xlim(min(0.5, 0.7 * np.nanmin(ratios)), max(3.0, 1.6 * np.nanmax(ratios)))
+    ratios = ratios[ratios > 0.0]
+    ax.set_xlim(min(0.5, 0.7 * ratios.min(initial=1.0)), max(3.0, 1.6 * ratios.max(initial=1.0)))
     style.log_ticks(ax.xaxis)
     ax.set_xlabel("misfit per degree of freedom Q/dof [1]", fontsize=9)
 
