@@ -50,6 +50,38 @@ def workers(client):
     return set(client.run(os.getpid).values())
 
 
+def test_a_cluster_that_is_left_while_a_worker_starts(monkeypatch):
+    """Dask asserts then, on top of the signal that ended the run."""
+
+    class Starting:
+        def __init__(self, **options):
+            self.options = options
+
+        def __exit__(self, *error):
+            raise AssertionError
+
+    class Ready:
+        def __init__(self, cluster, **options):
+            assert isinstance(cluster, Starting)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            pass
+
+        def run(self, function, **options):
+            return {"worker": function()}
+
+        def ncores(self):
+            return {"worker": 1}
+
+    monkeypatch.setattr(distributed, "LocalCluster", Starting)
+    monkeypatch.setattr(distributed, "Client", Ready)
+    with pytest.raises(KeyboardInterrupt), clusters.dask(1, dict):
+        raise KeyboardInterrupt
+
+
 @pytest.mark.parametrize("method", ["radau", "event-driven"])
 def test_every_backend_gives_the_same_bits(tmp_path, monkeypatch, method):
     monkeypatch.chdir(tmp_path)

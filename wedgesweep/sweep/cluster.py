@@ -4,7 +4,7 @@ import importlib.util
 import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from joblib._dask import Batch, DaskDistributedBackend
@@ -49,7 +49,14 @@ def _local(opened: ExitStack, n_jobs: int) -> "Client":
 
     # Workers that die are told by the sweep; what Dask logs when a run is stopped early reads like faults.
     options = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.CRITICAL}
-    cluster = opened.enter_context(LocalCluster(n_workers=n_jobs, processes=True, **options))
+    cluster = LocalCluster(n_workers=n_jobs, processes=True, **options)
+
+    def leave(*error: Any) -> None:
+        # Dask asserts that no worker is just starting; such a worker ends with this process.
+        with suppress(AssertionError):
+            cluster.__exit__(*error)
+
+    opened.push(leave)
     return opened.enter_context(Client(cluster, set_as_default=False))
 
 
