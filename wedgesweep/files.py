@@ -26,6 +26,15 @@ def regular(path: Path) -> Path:
     return path
 
 
+def replaceable(path: Path) -> None:
+    """Raise OSError if a file cannot take this place.
+
+    No file may take that of a device or pipe: /dev/null would be a plain file for every program from then on.
+    """
+    if "\0" in str(path) or (path.exists() and not path.is_dir()):
+        regular(path)
+
+
 def read_bytes(path: Path) -> bytes:
     """Read a regular file."""
     return regular(path).read_bytes()
@@ -53,13 +62,11 @@ def json_object(text: str | bytes) -> dict[str, Any]:
 def written(path: Path) -> Iterator[Path]:
     """A temporary file beside ``path`` to write, which takes its place when it is complete.
 
-    What a killed process left behind is removed. Errors name ``path``; they are OSError. Nothing takes the
-    place of a device or pipe: /dev/null would be a plain file for every program from then on.
+    What a killed process left behind is removed. Errors name ``path``; they are OSError.
     """
     if not path.name:
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    if path.exists():
-        regular(path)
+    replaceable(path)
     _sweep(path)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:

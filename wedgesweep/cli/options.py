@@ -11,7 +11,7 @@ import click
 
 from wedgesweep.cli.failure import Failure
 from wedgesweep.endings import mismatch
-from wedgesweep.files import regular
+from wedgesweep.files import replaceable
 from wedgesweep.kinds import confusion
 
 CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
@@ -46,16 +46,13 @@ class OutputPath(click.Path):
         self.written = written
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        if "\0" in os.fsdecode(value):
-            self.fail("a path cannot hold a null character.", param, ctx)
+        try:
+            replaceable(Path(os.fsdecode(value)))
+        except OSError as error:
+            self.fail(f"{error.filename}: {error.strerror}.", param, ctx)
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         if self.allow_dash and path == STANDARD_OUTPUT:
             return path
-        if path.exists():
-            try:
-                regular(path)
-            except OSError as error:
-                self.fail(f"{path}: {error.strerror}.", param, ctx)
         if self.written and (problem := mismatch(path, self.written)):
             self.fail(problem, param, ctx)
         if not path.parent.is_dir():

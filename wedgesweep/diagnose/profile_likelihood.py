@@ -103,7 +103,7 @@ def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> Profile
     furthest = _furthest(fit, parameter, side)
     switches = fit.model.hypothesis.parameters[parameter].switches
     if TWO_SIDED * std > bounds[1] - bounds[0] and (switches or fit.x[parameter] in bounds):
-        return _end_by_bisection(fit, parameter, side, furthest)
+        return _end_by_bisection(fit, parameter, side, furthest, nearest)
     if switches:
         return _end_beyond_ridges(fit, parameter, side, furthest, nearest)
     end, held = TWO_SIDED, nearest
@@ -120,15 +120,16 @@ def _profile_end(fit: Fit, parameter: int, side: float, nearest: Fit) -> Profile
     return ProfileEnd(end, fit)
 
 
-def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float) -> ProfileEnd:
+def _end_by_bisection(fit: Fit, parameter: int, side: float, furthest: float, nearest: Fit) -> ProfileEnd:
     """The end where the curvature tells nothing, by bisection between the fit and the bound on one side.
 
-    ``furthest``: distance to that bound in standard deviations; 0 if the parameter is at it.
+    ``furthest``: distance to that bound in standard deviations; 0 if the parameter is at it. ``nearest``: the
+    fit there, as the bound comes before the end by the curvature.
     """
     low, high = 0.0, furthest
     middle = high
-    for _ in range(TRIES if furthest else 0):
-        held = _held(fit, fit, parameter, side * middle)
+    for tries in range(TRIES if furthest else 0):
+        held = _held(fit, fit, parameter, side * middle) if tries else nearest
         rise = held.chi2 - fit.chi2
         if rise < -LOWER:
             return ProfileEnd(middle, held)

@@ -62,8 +62,8 @@ def levels_of(result: DiagnosisResult) -> Sequence[Mapping[str, Any]]:
 
 def clauses(result: DiagnosisResult) -> list[str]:
     """What the best single effect explains, and the best pair where it is much better, as clauses."""
-    base = levels_of(result)[:1]
-    return [_clause(level, base[0], result.document) for level in noteworthy(result)]
+    levels = levels_of(result)
+    return [_clause(level, levels[0], result.document) for level in noteworthy(result)]
 
 
 def noteworthy(result: DiagnosisResult) -> list[Mapping[str, Any]]:

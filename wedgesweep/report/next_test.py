@@ -54,5 +54,5 @@ NOTHING_TO_MEASURE = {
     "tied": "No test within reach of the bench distinguishes the tied explanations.",
     "data-insufficient": "No single test was found that would distinguish the candidates.",
     "none-of-mine": "No test can name an effect that is not among the candidates; the figures show what "
-    "the models leave. With a model_error as large as its error, an explanation becomes a cause.",
+    "the models leave. If an error of that size is acceptable, declare it as model_error.",
 }
