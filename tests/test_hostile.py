@@ -81,6 +81,21 @@ def test_a_null_character_in_an_output(here, command):
     assert "cannot hold a null character" in invoke(*command, code=2)
 
 
+@pytest.mark.parametrize("command", [["init"], ["status"], ["run", "small.toml", "-o"]])
+def test_an_empty_path_is_not_the_current_directory(here, command):
+    assert "an empty path" in invoke(*command, "", code=2)
+
+
+@pytest.mark.parametrize("name", ["model.t", "one.c"])
+def test_a_name_longer_than_a_system_takes(here, name):
+    text = fixture_measured.MEASURED.replace(name, "a" * 5000 + name)
+    (here / "measured.toml").write_text(text)
+    told = invoke("check", "measured.toml", code=2)
+    assert "measured.toml: measurement." in told
+    assert "File name too long" in told
+    assert max(map(len, told.splitlines())) < 500
+
+
 def test_an_output_without_a_name(here):
     with pytest.raises(IsADirectoryError), files.written(files.Path()):
         pass

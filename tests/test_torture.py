@@ -76,6 +76,14 @@ def test_faults_are_seen(tmp_path, monkeypatch, fails, outcome):
     assert judge(["check", "c.toml"], limit).outcome == outcome
 
 
+@pytest.mark.parametrize("said", ["title: nan", "versions: numba inf", "-inf   20   0.3"])
+def test_a_name_is_no_number(tmp_path, monkeypatch, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c.toml").write_text(CONFIG)
+    monkeypatch.setattr("wedgesweep.cli.configs._grid", lambda _: f"\n{said}")
+    assert not judge(["check", "c.toml"]).fault
+
+
 def test_mutations_are_toml_that_is_read_or_refused():
     import tomllib
 

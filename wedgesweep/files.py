@@ -26,6 +26,15 @@ def regular(path: Path) -> Path:
     return path
 
 
+def missing(path: Path) -> str:
+    """Why nothing is found at a path; empty if something is there."""
+    try:
+        path.stat()
+    except OSError as error:
+        return error.strerror or str(error)
+    return ""
+
+
 def replaceable(path: Path) -> None:
     """Raise OSError if a file cannot take this place.
 

@@ -20,7 +20,8 @@ TRACEBACK, HANG, WARNING, NOT_FINITE, NAMELESS, CODE = FAULTS = (
 # Processor time (s) that an input may take.
 LIMIT = 20.0
 NUMBERLESS = re.compile(r"(?<![\w.'\"])[-+]?(?:nan|inf|infinity)(?![\w'\"])", re.IGNORECASE)
-TITLE = re.compile(r"^title: .*$", re.MULTILINE)
+# What an input calls itself: lines on its origin, and the first word of a row of a table.
+NAMES = re.compile(r"^(?:(?:title|started|model|versions|cannot be resumed): .*$|\S+)", re.MULTILINE)
 # What a message names: a file of the directory, or an option or argument of the command.
 OPTION = re.compile(r"--?\w|'?[A-Z_]{3,}'?|Usage:|argument")
 
@@ -66,7 +67,7 @@ def _outcome(result: Any, command: Sequence[str]) -> str:
         return REFUSED if _names_something(result.stderr, command) else NAMELESS
     if result.exit_code not in (0, 1):
         return CODE
-    if set(NUMBERLESS.findall(TITLE.sub("", result.stdout))) - set(command):
+    if set(NUMBERLESS.findall(NAMES.sub("", result.stdout))) - set(command):
         return NOT_FINITE
     return FAILED if result.exit_code else ACCEPTED
 

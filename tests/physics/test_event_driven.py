@@ -10,7 +10,9 @@ from tests.physics import test_den_hartog as den_hartog
 from tests.physics.cases import OMEGA_N
 from tests.physics.test_reference import ROWS
 from wedgesweep import response
+from wedgesweep.compiled import compiled
 from wedgesweep.hybrid.state import OK
+from wedgesweep.hybrid.step import MOST_STEPS, MOST_STEPS_IN_ALL, step_limit
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.event_driven import BatchSettings, empty_batch, run_batch
 from wedgesweep.solvers.trajectory import CaseError, TimedWindow, Window
@@ -21,6 +23,17 @@ from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 def respond(record, settle_periods=60, periods=2, rtol=1e-9, solve=event_driven.solve):
     window = Window(float(record["input"]["omega"][0]), settle_periods, periods, 256)
     return response.evaluate(solve(record, window, rtol, 60.0), record, harmonics=9)
+
+
+def test_a_mode_may_take_so_many_steps():
+    """A stiff bristle of a mass of milligrams took 1e9 steps of 25 s, for hours."""
+
+    @compiled
+    def limit(taken, periods):
+        return step_limit(taken, periods)
+
+    assert limit(10, 1.0) == 10 + 2 * MOST_STEPS
+    assert limit(10, 1e9) == 10 + MOST_STEPS_IN_ALL
 
 
 @pytest.mark.parametrize("row", ROWS)

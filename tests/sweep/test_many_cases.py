@@ -89,6 +89,27 @@ def test_radau_is_timed_by_a_part_of_the_periods(tmp_path, monkeypatch, solver, 
     assert sorted(cost.sampled["index"]) == [0, 1, 2, 3]
 
 
+@pytest.mark.parametrize(("each", "samples"), [(1e-7, [2, 2, 20, 200, 1000]), (1.0, [2, 2])])
+def test_a_motion_is_timed_by_its_start(tmp_path, monkeypatch, each, samples):
+    """A sample takes ``each`` (s): 1000 of them are run where that is soon done, else the first two."""
+    release = '[input]\nkind = "release"\ndisplacement_mm = 3.0\nduration_s = 1.0\nsampling_hz = 1000.0\n'
+    cases = '[sweep]\nfriction_law = "coulomb"\nscale = 1.0\n[solver]\nmethod = "event-driven"\n'
+    sweep, run = Sweep(config.parse(release + cases), tmp_path / "one.nc"), []
+
+    def solved(records, indices, settings, limit, dtype):
+        motion = settings.transient
+        assert motion.span == pytest.approx(motion.samples / 1000.0)
+        run.append(motion.samples)
+        found = np.zeros(1, dtype)
+        found["wall_time"] = each * motion.samples
+        return found
+
+    monkeypatch.setattr(estimate, "solve_cases", solved)
+    monkeypatch.setattr(estimate, "compile_once", lambda *_: None)
+    assert estimate.estimate(sweep, n_jobs=1).seconds == pytest.approx(1000 * each)
+    assert run == samples
+
+
 def test_a_list_of_many_numbers_is_read_in_a_moment():
     values = np.linspace(0.1, 3.0, 300_000).tolist()
     betas = ", ".join(map(repr, values))

@@ -29,7 +29,7 @@ def print_cost(sweep: "Sweep", n_jobs: int) -> None:
     failed = cost.sampled[cost.sampled["status"] != 0]
     if failed.size:
         reason = failed[0]["message"].decode()
-        click.echo(f"{failed.size} of the {cases} failed, the first by: {reason}")
+        click.echo(f"of those, {formatting.counted(failed.size, 'case')} failed, the first by: {reason}")
 
 
 def require_confirmed(sweep: "Sweep", n_jobs: int, confirmed: bool) -> None:

@@ -10,7 +10,7 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import N_JOBS, require_kind, require_place_for
+from wedgesweep.cli.options import N_JOBS, GivenPath, require_kind, require_place_for
 from wedgesweep.cli.steps import StepReport
 from wedgesweep.files import beside
 from wedgesweep.kinds import MEASURED
@@ -27,16 +27,16 @@ OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrog
 
 
 @click.command()
-@click.argument("measured", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("measured", type=GivenPath(exists=True, dir_okay=False))
 @click.option(
     "--model",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    type=GivenPath(exists=True, dir_okay=False),
     help="Config of the base model, instead of the one that MEASURED names.",
 )
 @click.option(
     "-o",
     "--output",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=GivenPath(file_okay=False),
     help="Directory of the result; default: MEASURED's name (for measured.toml that of its directory) with "
     "-diagnosis, in the current directory.",
 )

@@ -14,8 +14,21 @@ from wedgesweep.endings import mismatch
 from wedgesweep.files import replaceable
 from wedgesweep.kinds import confusion
 
-CONFIG = click.argument("config_path", metavar="CONFIG", type=click.Path(path_type=Path))
-DATASET = click.argument("path", metavar="OUT", type=click.Path(path_type=Path))
+
+class GivenPath(click.Path):
+    """A path that is not empty: an unset variable of the shell would be the current directory."""
+
+    def __init__(self, **options: bool) -> None:
+        super().__init__(path_type=Path, **options)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if not os.fsdecode(value):
+            self.fail("an empty path; give that of a file or directory.", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+CONFIG = click.argument("config_path", metavar="CONFIG", type=GivenPath())
+DATASET = click.argument("path", metavar="OUT", type=GivenPath())
 
 # A path that stands for the standard output.
 STANDARD_OUTPUT = Path("-")
@@ -38,11 +51,11 @@ class FiniteRange(click.FloatRange):
         return found
 
 
-class OutputPath(click.Path):
+class OutputPath(GivenPath):
     """A file to write in some format (see ``endings``), checked before any work is done."""
 
     def __init__(self, written: str | None = None, **options: bool) -> None:
-        super().__init__(dir_okay=False, writable=True, path_type=Path, **options)
+        super().__init__(dir_okay=False, writable=True, **options)
         self.written = written
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:

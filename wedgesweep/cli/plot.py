@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET, FiniteRange, require_place_for
+from wedgesweep.cli.options import DATASET, FiniteRange, GivenPath, require_place_for
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
@@ -59,7 +59,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     help=f"File ({', '.join(FORMATS)}), for 'all' a directory; default: beside the data.",
 )
 @click.option("--format", "suffix", type=click.Choice(SUFFIXES), default="png", show_default=True)

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from wedgesweep.cli.compiling import announce_compiling
-from wedgesweep.cli.options import N_JOBS
+from wedgesweep.cli.options import N_JOBS, GivenPath
 from wedgesweep.cli.progress import ProgressReport
 
 
@@ -13,7 +13,7 @@ from wedgesweep.cli.progress import ProgressReport
 @click.option(
     "-o",
     "--output",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=GivenPath(file_okay=False),
     default="reproduction",
     show_default=True,
     help="Directory for the datasets and the report.",

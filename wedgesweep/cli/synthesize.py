@@ -8,7 +8,7 @@ import click
 from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange
+from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, GivenPath
 from wedgesweep.synthesize.names import NOISES, QUANTITIES
 
 SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
@@ -19,7 +19,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
 @click.option(
     "--tests",
     "plan_path",
-    type=click.Path(path_type=Path),
+    type=GivenPath(),
     required=True,
     metavar="TESTS",
     help="TOML file with a [[test]] table per test (frequency_hz, amplitude_mm or amplitude_N, optionally "
@@ -37,9 +37,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
     help="Std of the noise relative to the channel's rms.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Random seed.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Directory to write; default: CONFIG-measured."
-)
+@click.option("-o", "--output", type=GivenPath(), help="Directory to write; default: CONFIG-measured.")
 @click.option(
     "--periods",
     type=FiniteRange(min=4.0),

@@ -12,9 +12,10 @@ from wedgesweep.hybrid.vectors import combination, weighted
 
 # Share of a state's natural size, times rtol, that an error may always have.
 ABSOLUTE = 1e-2
-# Shortest step, as a share of a period of the fastest input; a mode that needs a shorter one has failed. One
-# that needs more steps than MOST_STEPS per period will not end.
-SHORTEST, MOST_STEPS = 1e-13, 100_000
+# Shortest step, as a share of a period of the fastest input; a mode that needs a shorter one has failed.
+SHORTEST = 1e-13
+# A mode that needs more steps per period, or more in all, will not end: the latter are a minute or so.
+MOST_STEPS, MOST_STEPS_IN_ALL = 100_000, 50_000_000
 
 
 class Step(NamedTuple):
@@ -102,6 +103,12 @@ def dense_slope(share, step):
 @overload(dense_slope, jit_options=INNER | {"forceinline": True})
 def _dense_slope(share, step):
     return forward(("share", "step"), _SLOPE[step.instance_class])
+
+
+@inlined
+def step_limit(taken, periods):
+    """Steps after which a mode has failed: it began after ``taken`` of them, and lasts ``periods`` at most."""
+    return taken + min(MOST_STEPS * (1.0 + periods), MOST_STEPS_IN_ALL)
 
 
 @inlined

@@ -14,6 +14,7 @@ import numpy as np
 from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.errors import ConfigError
 from wedgesweep.files import read_bytes
+from wedgesweep.hints import shortened
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.inputs.units import RECORDED
 
@@ -26,7 +27,7 @@ def digest(file: Path) -> str:
     try:
         return sha256(read_bytes(file)).hexdigest()
     except OSError as error:
-        problem = f"input.file: {file}: {error.strerror}; give the path of a CSV file"
+        problem = f"input.file: {shortened(file)}: {error.strerror}; give the path of a CSV file"
         raise ConfigError([problem]) from error
 
 

@@ -1,7 +1,5 @@
 """measured.toml and its CSV files."""
 
-import errno
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +8,8 @@ from wedgesweep import toml
 from wedgesweep.config import Config
 from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.errors import InputError
-from wedgesweep.hints import show
+from wedgesweep.files import missing
+from wedgesweep.hints import shortened, show
 from wedgesweep.measured import arrays, channels, overrides, repeated
 from wedgesweep.measured.build import Channels, build_record
 from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
@@ -18,7 +17,7 @@ from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
 
-ABSENT = os.strerror(errno.ENOENT)
+MODEL = "give the path of a config, from here"
 
 
 def read(path: Path, model: Path | None = None) -> Measurement:
@@ -62,8 +61,8 @@ def _stated_model(path: Path, measurement: Mapping[str, Any], problems: list[str
     if "model" not in measurement:  # a fault of the document
         return None
     model = path.parent / measurement["model"]
-    if not model.exists():
-        problems.append(f"{path}: measurement.model: {model}: {ABSENT}; give the path of a config, from here")
+    if reason := missing(model):
+        problems.append(f"{path}: measurement.model: {shortened(model)}: {reason}; {MODEL}")
         return None
     return model
 
@@ -134,8 +133,8 @@ def _tests(
 def _test(
     file: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
 ) -> list[TestRecord]:
-    if not file.exists():
-        problems.append(f"{at}.file: {file}: {ABSENT}; give the path of a data file, from here")
+    if reason := missing(file):
+        problems.append(f"{at}.file: {shortened(file)}: {reason}; give the path of a data file, from here")
         return []
     columns = measurement["columns"]
     wanted = {channel: each["column"] for channel, each in columns.items()}

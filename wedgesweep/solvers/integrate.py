@@ -38,7 +38,7 @@ from wedgesweep.hybrid.interface import (
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero, zero_after_start
 from wedgesweep.hybrid.state import CHATTERING, FAILED, HANDED_OVER, LOCKED, NO_EVENT, OK, State
-from wedgesweep.hybrid.step import MOST_STEPS, SHORTEST, dense_output
+from wedgesweep.hybrid.step import SHORTEST, dense_output, step_limit
 from wedgesweep.solvers import explicit, implicit
 
 EVENTS_PER_PERIOD = 1000
@@ -222,7 +222,7 @@ def _integrate_mode(state, stop, p, keeping, recorder, work):
     k1, forces = rate(t, y, mode, p)
     events(forces, t, y, mode, p, work.at_start)
     expected = expected_event(forces, t, y, mode, p)
-    most_steps = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
+    most_steps = step_limit(work.counts[1], (stop - t) / period)
     implicitly = stiff(mode, p)
     if implicitly and last_event >= 0:
         h = min(h, settling_step(p))

@@ -7,6 +7,8 @@ from time import perf_counter
 
 import numpy as np
 
+from wedgesweep.simulate import Transient
+from wedgesweep.sweep import variables
 from wedgesweep.sweep.backend import local
 from wedgesweep.sweep.backend import threads as in_threads
 from wedgesweep.sweep.cases import compile_once, solve_cases
@@ -14,6 +16,8 @@ from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
 SECONDS = 0.3
+# Samples of the shortest start of a motion that is timed, and how many times as long the next one is.
+FIRST_SAMPLES, LONGER = 2, 10
 # A Radau run of a given number of periods is timed over the share 1/PART of them, as all take about as long.
 PART = 4
 GOLDEN = 0.6180339887498949
@@ -60,18 +64,20 @@ def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
 
 def _load(sweep: Sweep) -> None:
     """Have the compiled code loaded, by a case that is as short as can be."""
+    first = np.array([0])
     if sweep.settings.transient is not None:
-        sweep.solve(np.array([0]))
+        _start_of_motion(sweep, first, sweep.settings.transient, FIRST_SAMPLES)
         return
     short = replace(sweep.settings, settle_periods=1, steady=False, continuation=False)
-    first = np.array([0])
     solve_cases(sweep.config.records(first), first, short, short.case_timeout, sweep.dtype)
 
 
 def _timed(sweep: Sweep, index: np.ndarray) -> np.ndarray:
     """Record of a case, shape (1,), with the wall time (s) of all its periods; Radau runs a part of them."""
     settings, records = sweep.settings, sweep.config.records(index)
-    if settings.method != "radau" or settings.steady or settings.continuation or settings.transient:
+    if settings.transient is not None:
+        return _timed_motion(sweep, index, settings.transient)
+    if settings.method != "radau" or settings.steady or settings.continuation:
         return sweep.solve(index)
     periods = int(settings.settling(records["input"]["omega"])[0]) + settings.kept_periods
     settle = max(periods // PART - settings.kept_periods, 1)
@@ -79,6 +85,25 @@ def _timed(sweep: Sweep, index: np.ndarray) -> np.ndarray:
     found = solve_cases(records, index, short, short.case_timeout, sweep.dtype)
     found["wall_time"] *= periods / (settle + settings.kept_periods)
     return found
+
+
+def _timed_motion(sweep: Sweep, index: np.ndarray, whole: Transient) -> np.ndarray:
+    """Record of a motion, shape (1,), with the wall time (s) of all of it; its start is run for a moment."""
+    samples = min(FIRST_SAMPLES, whole.samples)
+    found = _start_of_motion(sweep, index, whole, samples)
+    while samples < whole.samples and found["wall_time"][0] * LONGER < SECONDS:
+        samples = min(LONGER * samples, whole.samples)
+        found = _start_of_motion(sweep, index, whole, samples)
+    found["wall_time"] *= whole.samples / samples
+    return found
+
+
+def _start_of_motion(sweep: Sweep, index: np.ndarray, whole: Transient, samples: int) -> np.ndarray:
+    """Record of the first samples of a motion, shape (1,), which are not stored."""
+    start = replace(whole, samples=samples, span=whole.span * samples / whole.samples)
+    short = replace(sweep.settings, transient=start, keep_waveforms=False)
+    dtype = variables.record_dtype({"time": 0}, False)
+    return solve_cases(sweep.config.records(index), index, short, short.case_timeout, dtype)
 
 
 def _spread(count: int) -> list[int]:

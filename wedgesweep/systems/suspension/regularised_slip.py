@@ -14,7 +14,7 @@ from wedgesweep.hybrid.interface import error_scales, leaves, transition
 from wedgesweep.hybrid.polynomials import largest_change, polynomial
 from wedgesweep.hybrid.recorded_step import record_step
 from wedgesweep.hybrid.state import FAILED, NO_EVENT, State
-from wedgesweep.hybrid.step import ABSOLUTE, MOST_STEPS, SHORTEST, SeriesStep
+from wedgesweep.hybrid.step import ABSOLUTE, SHORTEST, SeriesStep, step_limit
 from wedgesweep.systems.suspension import linear_slip, newton
 from wedgesweep.systems.suspension.events import COLUMN_NORMAL
 from wedgesweep.systems.suspension.first_event import slip_to_event
@@ -106,7 +106,7 @@ def _follow_series(state, stop, forces, p, keeping, recorder, work):
     t, y, mode, last_event, h = state
     period, ends = 2.0 * pi / p.input.omega, ends_of(mode, p)
     longest = period / (LEAST_STEPS_RECORDED if keeping else LEAST_STEPS)
-    most_steps = work.counts[1] + MOST_STEPS * (1.0 + (stop - t) / period)
+    most_steps = step_limit(work.counts[1], (stop - t) / period)
     while t < stop:
         series = _expanded(t, y, mode, forces, p)
         h = _length(series, longest, work.rtol, p)
