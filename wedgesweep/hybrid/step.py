@@ -107,7 +107,7 @@ def _dense_slope(share, step):
 
 @inlined
 def step_limit(taken, periods):
-    """Steps after which a mode has failed: it began after ``taken`` of them, and lasts ``periods`` at most."""
+    """Steps after which a mode fails that began after ``taken`` of them and lasts ``periods`` at most."""
     return taken + min(MOST_STEPS * (1.0 + periods), MOST_STEPS_IN_ALL)
 
 
