@@ -84,7 +84,7 @@ LOOP, LOOPS = 20_000_000, 12
 
 def main():
     sweep = Sweep(ws.load_config(ROOT / "configs" / "quick.toml"), Path("quick.nc"))
-    compile_once("radau")
+    compile_once(sweep.settings)
     lines = [
         "CPU s          a later case  in the kernel  page faults  before a first  this process  empty loop"
     ]

@@ -17,6 +17,7 @@ from wedgesweep import api, config, files
 from wedgesweep.cli import failure
 from wedgesweep.cli.diagnose import _move
 from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.simulate import Settings
 from wedgesweep.sweep import cases
 
 LONG = CONFIG.replace("settle_periods = 3", "settle_periods = 40")
@@ -143,7 +144,7 @@ def test_what_a_killed_process_left_is_removed_and_nothing_else(here):
 @pytest.mark.parametrize(("limit", "file"), [(4_000, "small.nc.partial"), (70_000, "small.nc")])
 def test_a_full_disk_is_told_with_the_file_and_loses_nothing(here, limit, file):
     """A limit on the size of a file fails as a full disk does."""
-    cases.compile_once("radau")
+    cases.compile_once(Settings("radau"))
     limited = subprocess.run(
         small_sweep.command("run", "small.toml", "--n-jobs", 1),
         env=small_sweep.environment(),

@@ -1,6 +1,6 @@
 """One case from its parameters to its numbers."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from math import pi
 from typing import Any
@@ -28,6 +28,10 @@ class Transient:
     span: float
     samples: int
     start: tuple[float, float]
+
+    def first(self, samples: int) -> "Transient":
+        """The motion up to one of its samples."""
+        return replace(self, samples=samples, span=self.span * samples / self.samples)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from tests.small_sweep import CASES, CONFIG, LOCKED, assert_same_numbers
 from wedgesweep import config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.response import Response
+from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep import cases, journal
 from wedgesweep.sweep.run import CaseFailedError
@@ -281,10 +282,10 @@ def test_a_failure_half_way_leaves_no_numbers(tmp_path, monkeypatch):
 
 def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):
     monkeypatch.setattr(cases, "CACHE_DIR", tmp_path)
-    assert not cases.is_compiled("radau")
+    assert not cases.is_compiled(Settings("radau"))
     for _ in range(2):
-        cases.compile_once("radau")
-        assert cases.is_compiled("radau")
+        cases.compile_once(Settings("radau"))
+        assert cases.is_compiled(Settings("radau"))
     assert sum(solved.values()) == 1
 
 

@@ -21,23 +21,38 @@ from wedgesweep.systems import example
 SUSPENSION = "suspension"
 
 
-def is_compiled(method: str, kit: int = 0, system: str = SUSPENSION) -> bool:
-    """Whether the compiled code of a solver is cached, for records of a system that need a kit of parts."""
-    return compiled_mark(f"{method}-{system}-{kit}").exists()
+def is_compiled(settings: Settings, kit: int = 0, system: str = SUSPENSION) -> bool:
+    """Whether the code for these settings is cached, for records of a system that need a kit of parts."""
+    return _mark_of(settings, kit, system).exists()
 
 
-def compile_once(method: str, kit: int = 0, system: str = SUSPENSION) -> None:
+def compile_once(settings: Settings, kit: int = 0, system: str = SUSPENSION) -> None:
     """Fill numba's cache in this process, so that the jobs of a first run need not compile.
 
     Nor does compile time count against the time limit of a case.
     """
-    if is_compiled(method, kit, system):
+    if is_compiled(settings, kit, system):
         return
-    short = Settings(method=method, settle_periods=1, kept_periods=2, samples_per_period=32)
-    dtype = variables.record_dtype({"phase": 64, "harmonic": variables.HARMONICS, "part": 2})
     # It sticks and slips, so that it uses all compiled functions.
-    solve_cases(example(system, kit), np.array([0]), short, inf, dtype)
-    compiled_mark(f"{method}-{system}-{kit}").touch()
+    solve_cases(example(system, kit), np.array([0]), _short(settings), inf, _SHORT_DTYPE)
+    _mark_of(settings, kit, system).touch()
+
+
+_SHORT_DTYPE = variables.record_dtype({"phase": 64, "harmonic": variables.HARMONICS, "part": 2})
+
+
+def _short(settings: Settings) -> Settings:
+    """Settings of a short run that compiles what these settings need, and nothing else."""
+    motion = settings.transient.first(2) if settings.transient else None
+    settle = None if settings.steady else 1
+    short = Settings(settings.method, kept_periods=2, samples_per_period=32, settle_periods=settle)
+    return replace(short, steady=settings.steady, transient=motion, max_periods=5)
+
+
+def _mark_of(settings: Settings, kit: int, system: str) -> Path:
+    """The mark of the code that these settings need."""
+    run = "transient" if settings.transient else "steady" if settings.steady else "periods"
+    return compiled_mark(f"{settings.method}-{run}-{system}-{kit}")
 
 
 def compiled_mark(code: str) -> Path:

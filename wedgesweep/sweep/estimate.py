@@ -39,7 +39,7 @@ class Estimate:
 
 def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
     """Time a few cases spread over the sweep, for a moment, and extrapolate to ``n_jobs`` jobs."""
-    compile_once(sweep.settings.method, sweep.kit, sweep.config.system)
+    compile_once(sweep.settings, sweep.kit, sweep.config.system)
     _load(sweep)
     started = perf_counter()
     records = []
@@ -100,8 +100,7 @@ def _timed_motion(sweep: Sweep, index: np.ndarray, whole: Transient) -> np.ndarr
 
 def _start_of_motion(sweep: Sweep, index: np.ndarray, whole: Transient, samples: int) -> np.ndarray:
     """Record of the first samples of a motion, shape (1,), which are not stored."""
-    start = replace(whole, samples=samples, span=whole.span * samples / whole.samples)
-    short = replace(sweep.settings, transient=start, keep_waveforms=False)
+    short = replace(sweep.settings, transient=whole.first(samples))
     dtype = variables.record_dtype({"time": 0}, False)
     return solve_cases(sweep.config.records(index), index, short, short.case_timeout, dtype)
 

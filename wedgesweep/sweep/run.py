@@ -210,7 +210,7 @@ class Sweep:
         complete = self.rows.complete(whole["index"])
         todo = self.rows.without(complete)
         if len(todo):
-            compile_once(self.settings.method, self.kit, self.config.system)
+            compile_once(self.settings, self.kit, self.config.system)
         log.debug("%s: %d cases of an earlier run", self.journal_path, len(whole))
         yield whole[np.isin(self.rows.of(whole["index"]), complete)]
         workers = Workers(

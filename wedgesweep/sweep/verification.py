@@ -109,7 +109,7 @@ def verify(sweep: Sweep, ds: xr.Dataset, count: int, seed: int, n_jobs: int) -> 
     candidates = np.flatnonzero(fine)
     drawn = np.random.default_rng(seed).choice(candidates, min(count, candidates.size), replace=False)
     tasks = [_task(sweep, stored, index) for index in np.sort(drawn).tolist()]
-    compile_once("radau", sweep.kit, sweep.config.system)
+    compile_once(Settings("radau"), sweep.kit, sweep.config.system)
     with loky(n_jobs, dict) as pool:
         found = list(pool.parallel()(joblib.delayed(_verified)(task) for task in tasks))
     return Verification(seed, candidates.size, tuple(sorted(found)))

@@ -14,6 +14,7 @@ from wedgesweep.measured.declarations import LOOP, STEADY
 from wedgesweep.measured.kinds import FEWEST
 from wedgesweep.measured.model import with_law
 from wedgesweep.measured.steadiness import FEWEST_SAMPLES as FEWEST_PER_PERIOD
+from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
@@ -140,7 +141,7 @@ def _name(i: int, test: TrueTest) -> str:
 
 def _motions(truth: Truth, options: Options, n_jobs: int, source: str) -> list[Motion]:
     """Simulate the tests; raises SynthesisError with every test of the plan's file that fails."""
-    compile_once("radau", int(kits(truth.record(truth.tests[0]))[0]), truth.config.system)
+    compile_once(Settings("radau"), int(kits(truth.record(truth.tests[0]))[0]), truth.config.system)
     more = 2 if options.noise == "differentiated" else 0
     jobs = (
         joblib.delayed(_motion)(
