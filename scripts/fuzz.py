@@ -174,18 +174,19 @@ def _command(options: argparse.Namespace, base: Path, first: int) -> list[str]:
 
 def _lines(process: subprocess.Popen) -> Iterator[str]:
     """Lines of a process, which is killed if it is silent for long."""
-    last = [time.monotonic()]
+    silent = [0.0]
 
     def watch() -> None:
         while process.poll() is None:
-            time.sleep(1.0)
-            if time.monotonic() - last[0] > SILENT:
+            time.sleep(1.0)  # counted, so that a campaign may be paused
+            silent[0] += 1.0
+            if silent[0] > SILENT:
                 process.kill()
 
     threading.Thread(target=watch, daemon=True).start()
     assert process.stdout is not None
     for line in process.stdout:
-        last[0] = time.monotonic()
+        silent[0] = 0.0
         yield line
 
 
