@@ -16,6 +16,8 @@ TREND, DRIFT, MOST_TREND = 0.02, 0.1, 0.3
 # Distance of an outlier from the periodic part, over the robust standard deviation of the noise. What
 # occurs as often as once in two periods is a part of the response.
 FAR, RARE = 10.0, 0.5
+# Times that outliers are looked for, the worst ones first.
+MOST_TRIES = 30
 # Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
 CLIPPED, RUN = 0.01, 3
 NOISY = 0.2
@@ -40,7 +42,7 @@ def _of_channel(test: TestRecord, samples: np.ndarray) -> list[str]:
     checks = (
         _trend(cycles, test.duration),
         _drift(cycles, test.duration, float(samples.std())),
-        _outliers(test, noise),
+        _outliers(test, samples, noise),
         _flat_tops(samples),
     )
     found = [each for each in checks if each]
@@ -97,19 +99,36 @@ def _change(times: np.ndarray, values: np.ndarray, duration: float) -> float:
     return float(slope * duration) if abs(slope) > -stdtrit(freedom, IMPROBABLE) * std else 0.0
 
 
-def _outliers(test: TestRecord, noise: NoiseEstimate) -> str | None:
+def _outliers(test: TestRecord, samples: np.ndarray, noise: NoiseEstimate) -> str | None:
     """Single samples far from where the other periods have theirs."""
-    left = np.abs(noise.residual - np.median(noise.residual))
-    std = 1.4826 * float(np.median(left))
-    far = np.flatnonzero(left > FAR * std)
-    if not (std and 0 < far.size < RARE * test.duration * test.refined_frequency):
+    far, std = _far_off(test, samples, noise)
+    count = np.count_nonzero(far)
+    if not 0 < count < RARE * test.duration * test.refined_frequency:
         return None
-    worst = int(left.argmax())
-    times = "sample is" if far.size == 1 else "samples are"
-    at = f"the worst at {test.time[worst]:.6g} s by {left[worst] / std:.3g} standard deviations of the noise"
-    return (
-        f"{far.size} {times} far from the other periods, {at}; correct them, or cut them off (from_s, to_s)"
-    )
+    worst = int(np.abs(far).argmax())
+    times = "sample is" if count == 1 else "samples are"
+    at = f"{test.time[worst]:.6g} s by {abs(far[worst]) / std:.0f} standard deviations of the noise"
+    fault = f"{count} {times} far from the other periods, the worst at {at}"
+    return f"{fault}; correct them, or cut them off (from_s, to_s)"
+
+
+def _far_off(test: TestRecord, samples: np.ndarray, noise: NoiseEstimate) -> tuple[np.ndarray, float]:
+    """By how much samples, shape (n,), are off if that is far, else 0; and the noise of the others.
+
+    An outlier has its share in the periodic part, and makes samples of all other periods seem far off. So the
+    worst ones are moved to where they belong, and the periodic part is estimated again.
+    """
+    mended = samples
+    for _ in range(MOST_TRIES):
+        left = noise.residual - np.median(noise.residual)
+        std = 1.4826 * float(np.median(np.abs(left)))
+        worst = np.abs(left) > max(FAR * std, 0.5 * np.abs(left).max())
+        if not std or not worst.any():
+            break
+        mended = np.where(worst, mended - left, mended)
+        noise = estimate_noise(test.time, mended, test.refined_frequency)
+    off = samples - mended
+    return np.where(np.abs(off) > FAR * std, off, 0.0), std
 
 
 def _flat_tops(samples: np.ndarray) -> str | None:

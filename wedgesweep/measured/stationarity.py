@@ -11,6 +11,8 @@ PARTS = 4
 MOST_LEVEL_RATIO = 1.5
 # Largest share of the power that may move to other frequencies between the halves of a record.
 MOST_MOVED = 0.5
+# One in so many samples holds less than this share of the power of a vibration.
+FEW, MUCH = 500, 0.2
 MEND = "cut the record to its steady part (from_s, to_s)"
 
 
@@ -46,13 +48,24 @@ def stationarity_faults(test: TestRecord, file: str) -> list[str]:
             first, second = found.centres
             fault = f"{100.0 * found.moved:.0f} % of the power of {name} moves to other frequencies"
             fault += f" (median {first:.4g} Hz, then {second:.4g} Hz)"
-            return [f"{file}: not steady: {fault}; {remedy('a sweep')}"]
+            return [f"{file}: not steady: {fault}; {_outliers(samples) or remedy('a sweep')}"]
         if found.level_ratio > MOST_LEVEL_RATIO:
             levels = ", ".join(f"{100.0 * each / found.levels.max():.3g}" for each in found.levels)
             fault = f"the rms of {name} is {levels} % of its largest in the four quarters"
-            decays = bool((np.diff(found.levels) < 0.0).all())
-            return [f"{file}: not steady: {fault}; {remedy('a ring-down') if decays else MEND}"]
+            mend = remedy("a ring-down") if (np.diff(found.levels) < 0.0).all() else MEND
+            return [f"{file}: not steady: {fault}; {_outliers(samples) or mend}"]
     return []
+
+
+def _outliers(signal: np.ndarray) -> str:
+    """What to do about the few samples, of shape (n,), that hold much of the power; else empty."""
+    power = np.sort(without_trend(signal) ** 2)[::-1]
+    few = max(signal.size // FEW, 1)
+    share = power[:few].sum() / power.sum()
+    if share < MUCH:
+        return ""
+    where = f"{100.0 * share:.0f} % of its power lies in {few} of {signal.size} samples"
+    return f"{where}: correct these, if they are faulty"
 
 
 def stationarity(signal: np.ndarray, rate: float) -> Stationarity:
