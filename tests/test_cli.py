@@ -329,6 +329,11 @@ def test_case_prints_stores_and_draws(here):
     assert found["dissipated energy"] == [f"{ds['dissipated_energy'].item() * 1e3:.6g}", "mJ"]
 
 
+def test_case_takes_the_amplitude_of_its_kind_of_input(here):
+    told = invoke("case", "few.toml", "--beta", 1, "--force", 2.0, code=2)
+    assert told == "Error: few.toml: its input is a motion: give --amplitude\n"
+
+
 def test_case_that_sticks_has_no_phase(here):
     told = invoke("case", "few.toml", "--law", "coulomb", "--beta", 0.02, "--amplitude", 0.01, "--quiet")
     for words in (r"phase lag +– deg", r"minimum normal force +– N", r"mean displacement +0 mm"):
@@ -470,7 +475,10 @@ def test_picks_off_the_grid_are_told_and_those_far_off_are_errors(here, drawn_da
     assert "--amplitude 1.05: the nearest one there is 1 mm" in told
     for arguments, words in (
         (("response", "--beta", 99), "--beta 99: no case is near; the dataset has 20 from 0.1 to 3.8"),
-        (("bifurcation", "--amplitude", 50), "--amplitude 50: no case is near; the dataset has 6 from"),
+        (
+            ("bifurcation", "--amplitude", 50),
+            "--amplitude 50: no case is near; the dataset has 0.01, 0.05, 0.2, 0.5, 1, 4 mm",
+        ),
         (("response", "--beta", 1, "--frequency", 10), "give either --beta or --frequency"),
         (("stick-map", "--law", "x"), "stick-map: no friction law 'x' in the dataset; it has coulomb, stat"),
     ):

@@ -77,8 +77,10 @@ def test_no_output_takes_the_place_of_a_pipe_or_device(here, command):
     assert (here / f"out.{ending}").is_fifo()
 
 
-@pytest.mark.parametrize("command", [["init", "a\0b"], ["run", "small.toml", "-o", "a\0b.nc"]])
-def test_a_null_character_in_an_output(here, command):
+@pytest.mark.parametrize(
+    "command", [["init", "a\0b"], ["run", "small.toml", "-o", "a\0b.nc"], ["status", "\0"], ["check", "a\0"]]
+)
+def test_a_null_character_in_an_argument(here, command):
     assert "cannot hold a null character" in invoke(*command, code=2)
 
 
@@ -109,6 +111,20 @@ def test_attributes_of_the_wrong_kind(here):
         whole.assign_attrs({name: value}).to_netcdf("other.nc")
         said = invoke("plot", "friction-laws", "other.nc", code=2)
         assert f"other.nc: not the dataset of a sweep: its attribute {name}" in said
+
+
+@pytest.mark.parametrize(("command", "file"), [("status", "small.nc"), ("check", "measured.nc")])
+def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch, command, file):
+    """A file with a damaged dimension ended in an AttributeError of the library."""
+    import netCDF4
+
+    (here / file).write_bytes(b"\x89HDF\r\n\x1a\n")
+
+    def raises(*arguments, **options):
+        raise AttributeError("'NoneType' object has no attribute 'dimensions'")  # noqa: EM101
+
+    monkeypatch.setattr(netCDF4, "Dataset", raises)
+    assert f"Error: {file}: " in invoke(command, file, code=2)
 
 
 def test_a_null_character_in_a_path(here):

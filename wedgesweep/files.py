@@ -40,7 +40,7 @@ def replaceable(path: Path) -> None:
 
     No file may take that of a device or pipe: /dev/null would be a plain file for every program from then on.
     """
-    if "\0" in str(path) or (path.exists() and not path.is_dir()):
+    if path.exists() and not path.is_dir():
         regular(path)
 
 

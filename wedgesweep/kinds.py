@@ -76,5 +76,5 @@ def _kind_of_netcdf(path: Path) -> str | None:
             if "tests" in found.groups:
                 return MEASURED
             return SWEEP if "beta" in found.variables else DATASET
-    except (OSError, RuntimeError):
+    except (OSError, RuntimeError, AttributeError):  # netCDF4 raises any of them
         return DATASET

@@ -172,6 +172,14 @@ def test_two_tones_are_stationary_and_a_beat_shorter_than_the_record_too():
     assert found.level_ratio < 1.2
 
 
+def test_a_half_without_any_motion():
+    """Its spectrum is not known; its level tells that the record is not steady."""
+    t = np.arange(1000) / 1000.0
+    found = stationarity(np.where(t < 0.5, np.cos(2.0 * np.pi * 20.0 * t), 0.0), 1000.0)
+    assert np.isnan(found.moved)
+    assert found.level_ratio > 100.0
+
+
 def test_check_prints_the_warnings(tmp_path):
     printed = invoke("check", written(tmp_path, spiked))
     assert "warning: one.csv: displacement: 1 sample is far" in printed

@@ -67,7 +67,12 @@ def case(
     from wedgesweep.config import load
     from wedgesweep.config.variants import single_case
 
-    settings = single_case(load(config_path), amplitude, beta, frequency, law, force)
+    given = load(config_path)
+    if given.forced != (force is not None):
+        wanted = "a force: give --force" if given.forced else "a motion: give --amplitude"
+        message = f"{config_path}: its input is {wanted}"
+        raise Failure(message)
+    settings = single_case(given, amplitude, beta, frequency, law, force)
     print_remark(settings)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))

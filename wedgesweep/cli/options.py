@@ -16,14 +16,17 @@ from wedgesweep.kinds import confusion
 
 
 class GivenPath(click.Path):
-    """A path that is not empty: an unset variable of the shell would be the current directory."""
+    """A path that a system can take; an empty one, of an unset variable, would be the current directory."""
 
     def __init__(self, **options: bool) -> None:
         super().__init__(path_type=Path, **options)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        if not os.fsdecode(value):
+        path = os.fsdecode(value)
+        if not path:
             self.fail("an empty path; give that of a file or directory.", param, ctx)
+        if "\0" in path:
+            self.fail("a path cannot hold a null character.", param, ctx)
         return super().convert(value, param, ctx)
 
 

@@ -1,6 +1,7 @@
 """plot: figures of a dataset, or of a diagnosis."""
 
 import os
+from contextlib import nullcontext
 from math import isclose, pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -16,6 +17,7 @@ from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
 from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
 
     from wedgesweep.diagnosis_result import DiagnosisResult
@@ -24,6 +26,8 @@ ALL = "all"
 OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS)
 # What drawing raises where a part of a diagnosis is missing or of another kind.
 DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
+# So many values are listed one by one.
+MOST_LISTED = 8
 SUFFIXES = tuple(suffix[1:] for suffix in FORMATS)
 
 
@@ -174,12 +178,16 @@ def _warn_unless_there(ds: "xr.Dataset", name: str, value: float, pick: Pick) ->
     if isclose(nearest, value, rel_tol=1e-6):
         return
     if abs(nearest - value) > cases.FAR * value:
-        span = f"{there.min():.4g} to {there.max():.4g} {pick.unit}".rstrip()
-        message = (
-            f"--{name} {value:.6g}: no case is near; the dataset has {np.unique(there).size} from {span}"
-        )
-        raise Failure(message)
+        message = f"--{name} {value:.6g}: no case is near; the dataset has {_listed(np.unique(there))}"
+        raise Failure(f"{message} {pick.unit}".rstrip())
     log.warning(f"--{name} {value:.6g}: the nearest one there is {nearest:.4g} {pick.unit}".rstrip())
+
+
+def _listed(values: "np.ndarray") -> str:
+    """The values, shape (n,), or the span of many."""
+    if len(values) <= MOST_LISTED:
+        return ", ".join(f"{each:.4g}" for each in values)
+    return f"{len(values)} from {values[0]:.4g} to {values[-1]:.4g}"
 
 
 def _require_kind(kind: str, path: Path) -> None:
@@ -221,6 +229,7 @@ def _draw_all(
 def _draw(
     kind: str, found: "xr.Dataset | DiagnosisResult", file: Path, options: dict[str, Any], strict: bool = True
 ) -> None:
+    import numpy as np
     import xarray as xr
 
     kinds = figures.of(found)
@@ -228,8 +237,11 @@ def _draw(
         message = f"no figure '{kind}' of these data; there are {', '.join(kinds)}"
         raise ValueError(message)
     picks = _accepted(kind, figures.options(kinds[kind]), options, strict)
+    # Numbers that no diagnosis writes end in an error below.
+    handled = nullcontext() if isinstance(found, xr.Dataset) else np.errstate(all="ignore")
     try:
-        figures.save(figures.draw(found, kind, **picks), file)
+        with handled:
+            figures.save(figures.draw(found, kind, **picks), file)
     except DAMAGE as error:
         if isinstance(found, xr.Dataset):  # whose content has been checked
             raise

@@ -110,7 +110,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
 
     try:
         root = netCDF4.Dataset(regular(path))
-    except (OSError, RuntimeError, ValueError) as error:  # netCDF4 raises any of them
+    except (OSError, RuntimeError, ValueError, AttributeError) as error:  # netCDF4 raises any of them
         problem = f"{path}: {getattr(error, 'strerror', error)}; give the path of a netCDF file"
         raise MeasuredError([problem]) from error
     with root:
@@ -187,7 +187,7 @@ def _model_faults(
 def _derived_velocity(groups: Sequence[Any], path: Path, problems: list[str]) -> bool:
     """Whether the velocity of the tests was derived from their displacement."""
     velocities = [each.variables["velocity"] for each in groups if "velocity" in each.variables]
-    derived = {bool(getattr(variable, "derived", 0)) for variable in velocities}
+    derived = {_is_marked(variable, "derived") for variable in velocities}
     if len(derived) > 1:
         problems.append(
             f"{path}: tests: velocity is derived in some and measured in others; leave out the derived ones"
@@ -204,10 +204,15 @@ def _columns_by_kind(groups: Sequence[Any]) -> tuple[dict[str, dict[str, dict[st
         kind = str(getattr(group, "kind", STEADY))
         known = found.setdefault(kind if kind in KINDS else STEADY, own)
         shared = {name: each for other in found.values() for name, each in other.items()}
-        undriven = bool(getattr(group, "undriven", 0))
+        undriven = _is_marked(group, "undriven")
         same = known == own or (undriven and {**own, INPUT: known.get(INPUT)} == known)
         different = different or not same or any(own[name] != shared[name] for name in own)
     return found, different
+
+
+def _is_marked(owner: Any, name: str) -> bool:
+    """Whether a group or variable has an attribute other than 0, a number or an array of them."""
+    return bool(np.any(getattr(owner, name, 0)))
 
 
 def _unit(variable: Any) -> str:

@@ -85,6 +85,7 @@ def without_trend(signal: np.ndarray) -> np.ndarray:
 
 
 def _cumulative_power(signal: np.ndarray) -> np.ndarray:
-    """Share of the power up to each frequency."""
+    """Share of the power up to each frequency; NaN without any power."""
     power = np.abs(np.fft.rfft(without_trend(signal) * np.hanning(signal.size))) ** 2
-    return np.cumsum(power) / power.sum()
+    with np.errstate(invalid="ignore"):
+        return np.cumsum(power) / power.sum()
