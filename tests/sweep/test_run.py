@@ -289,6 +289,16 @@ def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):
     assert sum(solved.values()) == 1
 
 
+@pytest.mark.parametrize("method", ["radau", "event-driven"])
+def test_the_short_run_of_a_motion_succeeds(method):
+    release = '[input]\nkind = "release"\ndisplacement_mm = 3.0\nduration_s = 1.0\n'
+    grid = f'[sweep]\nfriction_law = "coulomb"\nscale = 1.0\n[solver]\nmethod = "{method}"\n'
+    given = config.parse(release + grid)
+    short, dtype = cases.short_run(given.solver)
+    (record,) = cases.solve_cases(given.records(np.array([0])), np.array([0]), short, 60.0, dtype)
+    assert STATUSES[record["status"]] == "ok", record["message"]
+
+
 def test_list_of_cases(tmp_path):
     text = CONFIG[CONFIG.index("[solver]") :] + "".join(
         f'[[sweep.case]]\nfriction_law = "{law}"\nbeta = {beta}\namplitude_mm = {a}\n'

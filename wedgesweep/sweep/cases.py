@@ -34,19 +34,19 @@ def compile_once(settings: Settings, kit: int = 0, system: str = SUSPENSION) -> 
     if is_compiled(settings, kit, system):
         return
     # It sticks and slips, so that it uses all compiled functions.
-    solve_cases(example(system, kit), np.array([0]), _short(settings), inf, _SHORT_DTYPE)
+    short, dtype = short_run(settings)
+    solve_cases(example(system, kit), np.array([0]), short, inf, dtype)
     _mark_of(settings, kit, system).touch()
 
 
-_SHORT_DTYPE = variables.record_dtype({"phase": 64, "harmonic": variables.HARMONICS, "part": 2})
-
-
-def _short(settings: Settings) -> Settings:
-    """Settings of a short run that compiles what these settings need, and nothing else."""
+def short_run(settings: Settings) -> tuple[Settings, np.dtype]:
+    """Settings of a short run, for which the same code is compiled, and the layout of its records."""
     motion = settings.transient.first(2) if settings.transient else None
     settle = None if settings.steady else 1
     short = Settings(settings.method, kept_periods=2, samples_per_period=32, settle_periods=settle)
-    return replace(short, steady=settings.steady, transient=motion, max_periods=5)
+    sizes = {"time": 0} if motion else {"phase": 64, "harmonic": variables.HARMONICS, "part": 2}
+    short = replace(short, steady=settings.steady, transient=motion, max_periods=5)
+    return short, variables.record_dtype(sizes)
 
 
 def _mark_of(settings: Settings, kit: int, system: str) -> Path:

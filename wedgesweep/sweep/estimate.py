@@ -11,7 +11,7 @@ from wedgesweep.simulate import Transient
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.backend import local
 from wedgesweep.sweep.backend import threads as in_threads
-from wedgesweep.sweep.cases import compile_once, solve_cases
+from wedgesweep.sweep.cases import compile_once, short_run, solve_cases
 from wedgesweep.sweep.run import Sweep
 
 MOST_CASES = 60
@@ -64,12 +64,8 @@ def estimate(sweep: Sweep, n_jobs: int) -> Estimate:
 
 def _load(sweep: Sweep) -> None:
     """Have the compiled code loaded, by a case that is as short as can be."""
-    first = np.array([0])
-    if sweep.settings.transient is not None:
-        _start_of_motion(sweep, first, sweep.settings.transient, FIRST_SAMPLES)
-        return
-    short = replace(sweep.settings, settle_periods=1, steady=False, continuation=False)
-    solve_cases(sweep.config.records(first), first, short, short.case_timeout, sweep.dtype)
+    first, (short, dtype) = np.array([0]), short_run(sweep.settings)
+    solve_cases(sweep.config.records(first), first, short, short.case_timeout, dtype)
 
 
 def _timed(sweep: Sweep, index: np.ndarray) -> np.ndarray:
