@@ -42,7 +42,7 @@ COMMANDS = {
 def seconds(folder, command):
     """CPU seconds (user and system) of a command and of all that it starts."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    variables = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
+    variables = {"PYTHONPATH": str(ROOT), "WEDGESWEEP_CACHE_DIR": str(folder / "cache")}
     subprocess.run(
         [sys.executable, "-m", "wedgesweep", *command],
         cwd=folder,

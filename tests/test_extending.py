@@ -5,7 +5,6 @@ import os
 import re
 import subprocess
 import sys
-from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,6 @@ import xarray as xr
 
 from tests import fixture_dataset
 from wedgesweep import figures
-from wedgesweep.compiled import CACHE_DIR
 from wedgesweep.figures import catalogue
 
 PAGE = Path(__file__).parents[1] / "docs" / "extending.md"
@@ -82,20 +80,12 @@ def package(tmp_path, monkeypatch):
 
 @pytest.fixture
 def python(tmp_path):
-    """Run code beside examples of the page, in a process of its own: what it registers ends with it.
-
-    Compiled code is kept in a folder for this state of the examples.
-    """
+    """Run code beside examples of the page, in a process of its own: what it registers ends with it."""
 
     def run(code, examples, *arguments):
-        texts = {file: example(file) for file in examples}
-        for file, text in texts.items():
-            (tmp_path / file).write_text(text)
-        digest = sha256("".join([code, *texts.values()]).encode()).hexdigest()[:16]
-        variables = {
-            "PYTHONPATH": os.pathsep.join([str(REPOSITORY), str(tmp_path)]),
-            "NUMBA_CACHE_DIR": str(CACHE_DIR.parent / f"extending-{digest}"),
-        }
+        for file in examples:
+            (tmp_path / file).write_text(example(file))
+        variables = {"PYTHONPATH": os.pathsep.join([str(REPOSITORY), str(tmp_path)])}
         done = subprocess.run(
             [sys.executable, "-c", code, *arguments],
             cwd=tmp_path,

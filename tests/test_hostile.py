@@ -235,25 +235,6 @@ def test_umlauts_where_the_locale_has_none(here):
         assert b"pr" in told
 
 
-def test_a_cache_that_cannot_be_written_is_told_and_does_without(here):
-    """A file stands where the folder should be: also root cannot make it."""
-    (here / "file").write_text("")
-    code = (
-        "from wedgesweep import compiled; from wedgesweep.cli.compiling import announce_compiling;"
-        "import logging, os; logging.basicConfig(level='INFO'); announce_compiling(); announce_compiling();"
-        "print(compiled.CACHE_DIR.is_dir(), os.environ['NUMBA_CACHE_DIR'] == str(compiled.CACHE_DIR))"
-    )
-    ended = subprocess.run(
-        [sys.executable, "-c", code],
-        env=small_sweep.environment(NUMBA_CACHE_DIR=str(here / "file" / "cache")),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert ended.stdout == "True True\n"
-    assert ended.stderr.count("cannot be written to: what is compiled is not kept") == 1
-
-
 def test_a_hangup_that_is_ignored_stays_ignored():
     """Under nohup a run goes on when the terminal closes."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
@@ -320,8 +301,6 @@ def test_an_earlier_diagnosis_gives_way_to_a_complete_one_only(here):
 def test_a_diagnosis_leaves_its_result_and_nothing_else(here, monkeypatch):
     found = DiagnosisResult(*fixture_diagnosis.build(), "extended")
     monkeypatch.setattr(api, "diagnose_measurement", lambda *given, **more: found)
-    (here / "cache").mkdir()
-    monkeypatch.setattr(cases, "CACHE_DIR", here / "cache")
     before = set(here.iterdir())
     told = invoke("diagnose", "measured.toml", "--no-report", "-o", "results/first")
     assert "wrote results/first" in told

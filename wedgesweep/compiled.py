@@ -1,99 +1,31 @@
-"""numba, set up once: compiled code is cached under a digest of the sources it was made from.
+"""How functions are compiled, by numba; kernels.py keeps the code between runs.
 
-numba's own cache looks only at the file of the function itself, so that an edited callee would leave
-a stale caller behind. A cache folder per state of the compiled sources rules that out.
+Functions that Python calls are ``compiled``; those that only compiled code calls are ``inner``, ``inlined``
+or ``allocating``, and inner_code.py compiles them in a third of numba's time. Where numba's internals differ
+from what that needs, or ``WEDGESWEEP_COMPILER=plain`` asks for it, numba's own compiler takes its place.
 """
 
-import atexit
-import gc
 import inspect
-import os
+from ast import literal_eval
 from collections.abc import Callable, Mapping, Sequence
-from hashlib import sha256
-from pathlib import Path
-from shutil import rmtree
-from tempfile import TemporaryFile, mkdtemp
+from contextlib import suppress
 from typing import Any, TypeVar, cast
 
 import numba
 from numba import types
-from numba.core import cgutils, event
-from numba.core.dispatcher import Dispatcher
-from numba.core.registry import cpu_target
+from numba.core import cgutils
+from numba.core.ccallback import CFunc
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import intrinsic
 
-from wedgesweep.inner_code import InnerCompiler, InnerDispatcher
-from wedgesweep.known_types import keep_known_types
+from wedgesweep.kernels import PLAIN, KernelCache
 
-PACKAGE = Path(__file__).parent
-
-
-def source_digest(containing: bytes = b"") -> str:
-    """sha256 (hex) of the package's Python sources that contain the given bytes."""
-    digest = sha256()
-    for path in sorted(PACKAGE.rglob("*.py")):
-        source = path.read_bytes()
-        if containing in source:
-            digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + source)
-    return digest.hexdigest()
-
-
-def _cache_home() -> Path:
-    default = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(os.environ.get("NUMBA_CACHE_DIR") or Path(default) / "wedgesweep")
-
-
-def _usable(home: Path) -> tuple[Path, Path | None]:
-    """The cache folder to use; and the one below ``home`` if that cannot be written to, else None.
-
-    A temporary folder then takes its place: until this process ends, and for the jobs that it starts as well.
-    """
-    # numba's cache is valid for sources in one place only.
-    sources = source_digest(containing=b"from wedgesweep.compiled") + str(PACKAGE)
-    wanted = home / sha256(sources.encode()).hexdigest()[:16]
-    try:
-        wanted.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=wanted):
-            return wanted, None
-    except OSError:
-        place = mkdtemp(prefix="wedgesweep-")
-        atexit.register(rmtree, place, ignore_errors=True)
-        os.environ["NUMBA_CACHE_DIR"] = place
-        return Path(place), wanted
-
-
-CACHE_DIR, UNWRITABLE = _usable(_cache_home())
-numba.config.CACHE_DIR = str(CACHE_DIR)  # type: ignore[attr-defined]
+inner_code: Any = None
+if not PLAIN:
+    with suppress(ImportError):
+        from wedgesweep import inner_code
 
 Function = TypeVar("Function", bound=Callable)
-
-
-class _PausedCollector(event.Listener):
-    """Spares the garbage collector what numba makes.
-
-    While numba compiles, a search would find nothing. Afterwards it would free some hundred MB. Both would
-    take a sixth of the time.
-    """
-
-    def __init__(self) -> None:
-        self._depth, self._was_on = 0, False
-
-    def on_start(self, event: Any) -> None:
-        if self._depth == 0:
-            self._was_on = gc.isenabled()
-            gc.disable()
-        self._depth += 1
-
-    def on_end(self, event: Any) -> None:
-        self._depth -= 1
-        if self._depth == 0 and self._was_on:
-            gc.freeze()
-            gc.enable()
-
-
-event.register("numba:compile", _PausedCollector())
-keep_known_types(cpu_target.typing_context)
 
 # A division by zero gives inf or NaN, as in numpy. Threads run without the interpreter's lock. Nothing calls
 # these functions from C, and without C wrappers compilation takes nine tenths of the time. The last two
@@ -105,20 +37,27 @@ OPTIONS: dict[str, Any] = {
     "forceinline": False,
     "_nrt": True,
 }
-# References to arrays are not counted: callers hold the arrays. (Any: numba's stubs know only some options.)
-INNER: Any = {**OPTIONS, "_nrt": False, "no_cpython_wrapper": True, "pipeline_class": InnerCompiler}
+# (Any: numba's stubs know only some options.)
+ALLOCATING: Any = OPTIONS | {"no_cpython_wrapper": True}
+INNER: Any = ALLOCATING
+if inner_code:
+    ALLOCATING = ALLOCATING | {"pipeline_class": inner_code.InnerCompiler}
+    # References to arrays are not counted: callers hold the arrays.
+    INNER = ALLOCATING | {"_nrt": False}
 CONTRACTED: Any = INNER | {"forceinline": True, "fastmath": {"contract"}}
 
 
 def compiled(function: Function) -> Function:
     """Compile a function that Python calls."""
-    return cast(Function, numba.njit(cache=True, **OPTIONS)(function))
+    dispatcher = cast(Any, numba.njit(**OPTIONS)(function))
+    dispatcher._cache = KernelCache(function)
+    return cast(Function, dispatcher)
 
 
 def _inner(function: Function, options: dict[str, Any]) -> Function:
-    options = {"nopython": True} | options
-    compiler = options.pop("pipeline_class")
-    return cast(Function, InnerDispatcher(function, targetoptions=options, pipeline_class=compiler))
+    if not inner_code:
+        return cast(Function, numba.njit(**options)(function))
+    return cast(Function, inner_code.compile_inner(function, options))
 
 
 def inner(function: Function) -> Function:
@@ -128,7 +67,7 @@ def inner(function: Function) -> Function:
 
 def allocating(function: Function) -> Function:
     """As ``inner``, for a function that makes arrays, or calls one that returns them."""
-    return _inner(function, INNER | {"_nrt": True})
+    return _inner(function, ALLOCATING)
 
 
 def inlined(function: Function) -> Function:
@@ -179,7 +118,11 @@ class Pointer(types.WrapperAddressProtocol):
 
     def __init__(self, function: Callable, result: Any, arguments: tuple) -> None:
         self._signature = result(*map(numba.typeof, arguments))
-        self._code = numba.cfunc(self._signature, cache=True, error_model="numpy")(function)
+        signature = (self._signature.args, self._signature.return_type)
+        options = {"nopython": True, "error_model": "numpy"}
+        self._code = cast(Any, CFunc(function, signature, {}, options))
+        self._code._cache = KernelCache(function)
+        self._code.compile()
 
     def __wrapper_address__(self) -> int:
         return cast(int, self._code.address)
@@ -194,6 +137,29 @@ def function_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
     return cast(Callable, scope["function"])
 
 
+def expression_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable:
+    """As ``function_of``; a constant, or one of the arguments, needs no function to be compiled."""
+    if body not in arguments and body not in LITERALS:
+        return function_of(arguments, body, **scope)
+
+    def typed(*kinds: Any) -> Any:
+        place = arguments.index(body) if body in arguments else None
+        value = None if body in arguments else literal_eval(body)
+        result = numba.typeof(value) if place is None else types.unliteral(kinds[place])
+
+        def code(target: Any, builder: Any, signature: Any, given: Any) -> Any:
+            return target.get_constant_generic(builder, result, value) if place is None else given[place]
+
+        return result(*kinds), code
+
+    return cast(
+        Callable,
+        intrinsic(function_of(["context", *arguments], f"typed({', '.join(arguments)})", typed=typed)),
+    )
+
+
+# Expressions whose value stands in the code itself.
+LITERALS = ("0.0", "1.0", "0", "()", "False")
 _MADE_BY_RECORD: dict[Callable, types.Function] = {}
 
 
@@ -215,9 +181,10 @@ def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable
                 return None
             if record not in made:
                 chosen = choose(record.fields)
-                ready = isinstance(chosen, Dispatcher) or chosen in _MADE_BY_RECORD
-                made[record] = chosen if ready else inlined(chosen)
-            self.kind = _MADE_BY_RECORD.get(made[record]) or types.Dispatcher(made[record])
+                plain = inspect.isfunction(chosen) and chosen not in _MADE_BY_RECORD
+                made[record] = inlined(chosen) if plain else chosen
+                self.context.refresh()  # it may be an intrinsic that was made just now
+            self.kind = self.context.resolve_value_type(made[record])
             return self.kind.get_call_type(self.context, arguments, keywords)
 
         def get_impl_key(self, signature: Any) -> Any:
@@ -241,7 +208,7 @@ def term(owner: str, off: str, **scope: Any) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         arguments = list(inspect.signature(function).parameters)
-        present, absent = inlined(function), function_of(arguments, off, **scope)
+        present, absent = inlined(function), expression_of(arguments, off, **scope)
         return by_record(function, lambda fields: present if owner in fields else absent)
 
     return decorate

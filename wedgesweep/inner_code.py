@@ -6,6 +6,7 @@ times as long for this package. A function made with ``InnerCompiler`` is not op
 part of the functions that Python calls (``compiled.compiled``), which are optimised as a whole.
 """
 
+from collections.abc import Callable
 from typing import Any, cast
 
 from llvmlite.binding import create_new_function_pass_manager
@@ -143,8 +144,14 @@ class InnerDispatcher(CPUDispatcher):
         arguments, result = sigutils.normalize_signature(sig)
         known: Any = self.overloads.get(tuple(arguments))
         if known is None:
-            # Those who announce compilation, or pause the garbage collector, listen.
+            # Those who announce compilation listen.
             with event.trigger_event("numba:compile", data={"dispatcher": self, "args": arguments}):
                 known = cast(Any, self)._compiler.compile(arguments, result)
             self.add_overload(known)
         return known.entry_point
+
+
+def compile_inner(function: Callable, options: dict[str, Any]) -> InnerDispatcher:
+    """A function that compiled code can call, and is compiled when it does."""
+    targets = {"nopython": True} | {key: options[key] for key in options if key != "pipeline_class"}
+    return InnerDispatcher(function, targetoptions=targets, pipeline_class=InnerCompiler)

@@ -281,7 +281,7 @@ def test_a_failure_half_way_leaves_no_numbers(tmp_path, monkeypatch):
 
 
 def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):
-    monkeypatch.setattr(cases, "CACHE_DIR", tmp_path)
+    monkeypatch.setattr(cases.kernels, "folder", lambda: tmp_path)
     assert not cases.is_compiled(Settings("radau"))
     for _ in range(2):
         cases.compile_once(Settings("radau"))

@@ -19,10 +19,11 @@ def announce_compiling() -> None:
     if _listener is None:
         from numba.core import event
 
-        from wedgesweep.compiled import UNWRITABLE
+        from wedgesweep import kernels
 
-        if UNWRITABLE:
-            log.info("%s cannot be written to: what is compiled is not kept for later runs", UNWRITABLE)
+        if place := kernels.unwritable():
+            kept = kernels.folder() or "nowhere"
+            log.info("%s cannot be written to: compiled code is kept in %s", place, kept)
         _listener = listener(event.Listener)
         event.register("numba:compile", _listener)
 

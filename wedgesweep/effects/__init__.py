@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from types import ModuleType
 
+from wedgesweep import kernels
 from wedgesweep.effects import lift_off
 from wedgesweep.effects.base import SUSPENSION, Effect
 
@@ -38,6 +39,7 @@ SCALES = tuple(
 
 def register(module: ModuleType) -> None:
     """Add an effect from a module of one's own, which declares ``EFFECT`` and takes part in hooks.py."""
+    kernels.register(module)
     REGISTERED[module.EFFECT.name] = module
     EFFECTS[module.EFFECT.name] = module.EFFECT
 

@@ -7,7 +7,7 @@ of all viscous damping. Neutral and default: coefficient = 0, asymmetry = 0.
 from collections.abc import Mapping
 from typing import Any
 
-from wedgesweep.compiled import by_record, function_of, inlined
+from wedgesweep.compiled import by_record, expression_of, inlined
 from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.equations.symbols import Meaning
 from wedgesweep.quantity import Quantity
@@ -50,7 +50,7 @@ def _damper(p):
 
 
 def _of_system(fields: Mapping[str, Any]) -> Any:
-    return function_of(["p"], "p.oscillator.damping" if "oscillator" in fields else "0.0")
+    return expression_of(["p"], "p.oscillator.damping" if "oscillator" in fields else "0.0")
 
 
 by_record(_damper, _of_system)

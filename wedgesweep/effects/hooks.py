@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from inspect import signature
 from typing import Any
 
-from wedgesweep.compiled import by_record, function_of
+from wedgesweep.compiled import by_record, expression_of
 
 
 def _functions(name: str, fields: Mapping[str, Any]) -> list[Callable]:
@@ -19,7 +19,7 @@ def _functions(name: str, fields: Mapping[str, Any]) -> list[Callable]:
 
 
 def _built(arguments: list[str], expression: str, functions: list[Callable]) -> Callable:
-    return function_of(arguments, expression, **{f"f{i}": each for i, each in enumerate(functions)})
+    return expression_of(arguments, expression, **{f"f{i}": each for i, each in enumerate(functions)})
 
 
 def _sum(nothing: str) -> Callable[[Callable], Callable]:

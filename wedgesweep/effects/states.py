@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from math import inf, pi
 from typing import Any
 
-from wedgesweep.compiled import by_record, function_of
+from wedgesweep.compiled import by_record, expression_of, function_of
 from wedgesweep.hybrid.vectors import replaced
 
 # Kinds, and their natural sizes.
@@ -81,7 +81,7 @@ def state(owner: str, number: int) -> Callable:
     def get(y, p): ...
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        return function_of(["y", "p"], f"y[{_place(owner, number, fields)}]" if owner in fields else "0.0")
+        return expression_of(["y", "p"], f"y[{_place(owner, number, fields)}]" if owner in fields else "0.0")
 
     return by_record(get, choose)
 
@@ -93,7 +93,7 @@ def set_state(owner: str, number: int) -> Callable:
 
     def choose(fields: Mapping[str, Any]) -> Callable:
         body = f"replaced(y, {_place(owner, number, fields)}, value)" if owner in fields else "y"
-        return function_of(["y", "value", "p"], body, replaced=replaced)
+        return expression_of(["y", "value", "p"], body, replaced=replaced)
 
     return by_record(put, choose)
 

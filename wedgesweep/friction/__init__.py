@@ -13,8 +13,12 @@ from inspect import signature
 from types import ModuleType
 from typing import Any
 
+import numpy as np
+
+from wedgesweep import kernels
 from wedgesweep.compiled import by_record, function_of, inlined
 from wedgesweep.effects import hooks
+from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 
 # The laws by name; a law's place is its code in parameter records. ``register`` adds another.
@@ -27,9 +31,17 @@ LAWS: dict[str, ModuleType] = {
 OVERLAP = 1e-9
 
 
+# The laws that compiled code of this process knows, once there is such code.
+_compiled: list[str] = []
+
+
 def register(name: str, module: ModuleType) -> None:
-    """Add a law that is not part of this package."""
+    """Add a law that is not part of this package; RuntimeError once a case has been run without it."""
+    if _compiled and LAWS.get(name) is not module:
+        message = f"friction law {name!r}: register laws before the first case of this process is run"
+        raise RuntimeError(message)
     LAWS[name] = module
+    kernels.register(module)
 
 
 def code(name: str) -> int:
@@ -37,16 +49,26 @@ def code(name: str) -> int:
     return list(LAWS).index(name)
 
 
+def require_known(codes: np.ndarray) -> None:
+    """Raise ValueError for the code of a law that this process does not have: another law would run."""
+    _compiled[:] = LAWS
+    if (unknown := codes[codes >= len(LAWS)]).size:
+        message = f"friction law number {unknown[0]} is not registered in this process, which has {[*LAWS]}"
+        raise ValueError(message)
+
+
 def _of_the_law(function: Callable) -> Callable:
     """A function (..., p) that calls the function of the same name of the law in the record p."""
     arguments = list(signature(function).parameters)
 
     def choose(fields: Mapping[str, Any]) -> Callable:
-        calls = [f"f{i}({', '.join(arguments)})" for i in range(len(LAWS))]
-        chosen = calls[-1]
-        for i in reversed(range(len(LAWS) - 1)):
-            chosen = f"{calls[i]} if p.friction.law == {i} else ({chosen})"
-        functions = {f"f{i}": getattr(law, function.__name__) for i, law in enumerate(LAWS.values())}
+        _compiled[:] = LAWS
+        own = [name for name in LAWS if OSCILLATOR in fields or name not in OSCILLATOR_LAWS]
+        calls = {name: f"f{code(name)}({', '.join(arguments)})" for name in own}
+        *others, chosen = calls.values()
+        for name, call in reversed([*zip(own[:-1], others, strict=True)]):
+            chosen = f"{call} if p.friction.law == {code(name)} else ({chosen})"
+        functions = {f"f{code(name)}": getattr(LAWS[name], function.__name__) for name in own}
         return function_of(arguments, chosen, **functions)
 
     return by_record(function, choose)

@@ -10,10 +10,12 @@ system, which are known by the name of one of their fields; if several fields of
 first one decides. Times are in s, all else in the units of ``scales``.
 """
 
+import sys
 from collections.abc import Callable, Mapping
 from math import inf, nan
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
+from wedgesweep import kernels
 from wedgesweep.compiled import by_record, inlined
 from wedgesweep.hybrid.state import NO_EVENT
 
@@ -53,6 +55,7 @@ def implement(what: Callable, owner: str) -> Callable[[Function], Function]:
 
     def decorate(written: Function) -> Function:
         _IMPLEMENTED[what][owner] = written
+        kernels.register(sys.modules[cast(Any, written).__module__])
         return written
 
     return decorate

@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wedgesweep import simulate
-from wedgesweep.compiled import CACHE_DIR
+from wedgesweep import kernels, simulate
 from wedgesweep.outcome import Outcome
 from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
@@ -22,12 +21,13 @@ SUSPENSION = "suspension"
 
 
 def is_compiled(settings: Settings, kit: int = 0, system: str = SUSPENSION) -> bool:
-    """Whether the code for these settings is cached, for records of a system that need a kit of parts."""
-    return _mark_of(settings, kit, system).exists()
+    """Whether the code for these settings is kept, for records of a system that need a kit of parts."""
+    mark = _mark_of(settings, kit, system)
+    return mark is not None and mark.exists()
 
 
 def compile_once(settings: Settings, kit: int = 0, system: str = SUSPENSION) -> None:
-    """Fill numba's cache in this process, so that the jobs of a first run need not compile.
+    """Compile in this process what its jobs need, so that they load it.
 
     Nor does compile time count against the time limit of a case.
     """
@@ -36,7 +36,8 @@ def compile_once(settings: Settings, kit: int = 0, system: str = SUSPENSION) -> 
     # It sticks and slips, so that it uses all compiled functions.
     short, dtype = short_run(settings)
     solve_cases(example(system, kit), np.array([0]), short, inf, dtype)
-    _mark_of(settings, kit, system).touch()
+    if mark := _mark_of(settings, kit, system):
+        mark.touch()
 
 
 def short_run(settings: Settings) -> tuple[Settings, np.dtype]:
@@ -49,16 +50,11 @@ def short_run(settings: Settings) -> tuple[Settings, np.dtype]:
     return short, variables.record_dtype(sizes)
 
 
-def _mark_of(settings: Settings, kit: int, system: str) -> Path:
-    """The mark of the code that these settings need."""
+def _mark_of(settings: Settings, kit: int, system: str) -> Path | None:
+    """File that exists once all code that these settings need is kept; the folder itself exists earlier."""
     run = "transient" if settings.transient else "steady" if settings.steady else "periods"
-    return compiled_mark(f"{settings.method}-{run}-{system}-{kit}")
-
-
-def compiled_mark(code: str) -> Path:
-    """File that exists once all compiled code of a task is cached."""
-    # The cache folder itself exists earlier: reading parameters already compiles a few functions.
-    return CACHE_DIR / f"{code}.complete"
+    folder = kernels.folder()
+    return folder and folder / f"{settings.method}-{run}-{system}-{kit}.complete"
 
 
 class Chunk(NamedTuple):

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from wedgesweep import friction
 from wedgesweep.effects import states
 from wedgesweep.excitation import has_series, set_series
 from wedgesweep.systems.oscillator import hybrid as _oscillator_hybrid  # noqa: F401
@@ -25,6 +26,7 @@ def compact(parameters: np.ndarray) -> np.ndarray:
     """Records, shape (n,), as compiled code gets them: without the parts that none of them needs."""
     for name, system in SYSTEMS.items():
         if name in (parameters.dtype.names or ()):
+            friction.require_known(parameters["friction"]["law"])
             return system.compact(parameters)
     return parameters
 
