@@ -17,6 +17,7 @@ from wedgesweep.cli.reproduce import reproduce
 from wedgesweep.cli.run import run
 from wedgesweep.cli.status import status
 from wedgesweep.cli.synthesize import synthesize
+from wedgesweep.cli.warm_up import warm_up
 
 EPILOG = """\
 Exit codes: 0 success; 1 some cases failed, Radau disagrees (run --verify) or a
@@ -32,7 +33,20 @@ fish_source for the other shells).
     cls=Commands,
     commands=[
         with_verbosity(command)
-        for command in (init, schema, check, run, status, case, plot, export, reproduce, synthesize, diagnose)
+        for command in (
+            init,
+            schema,
+            check,
+            run,
+            status,
+            case,
+            plot,
+            export,
+            reproduce,
+            synthesize,
+            diagnose,
+            warm_up,
+        )
     ],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=EPILOG,
