@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from reproduce import joints
+from reproduce.runs import UNILATERAL, changed
 
 from wedgesweep import config
 from wedgesweep.config import Config
-from wedgesweep.reproduce import joints
-from wedgesweep.reproduce.runs import UNILATERAL, changed
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
 

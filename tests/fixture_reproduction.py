@@ -3,11 +3,11 @@
 from math import pi
 
 import xarray as xr
+from reproduce import integration, sticking, suspension
+from reproduce.findings import VERDICTS
+from reproduce.runs import Run, Runs
 
 from tests import fixture_dataset
-from wedgesweep.reproduce import integration, sticking, suspension
-from wedgesweep.reproduce.findings import VERDICTS
-from wedgesweep.reproduce.runs import Run, Runs
 
 BETAS = (0.1, 0.2, 0.4, 0.6, 0.8, 1.1, 1.472, 1.75, 2.2, 3.0)
 AMPLITUDES = (5e-6, 1.5e-5, 3e-5, 5e-5, 1e-4, 3e-4, 1e-3, 4.75e-3)

@@ -5,11 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from wedgesweep import reproduce as reproduction
-from wedgesweep import response
-from wedgesweep.figures import hypotheses as picture
-from wedgesweep.reproduce import (
+from reproduce import __main__ as reproduction
+from reproduce import (
     chandiramani,
     chandiramani_page,
     discrimination,
@@ -17,7 +14,8 @@ from wedgesweep.reproduce import (
     scenarios,
     search,
 )
-from wedgesweep.reproduce.hypotheses import (
+from reproduce import figure as picture
+from reproduce.hypotheses import (
     COULOMB,
     HYPOTHESES,
     INDEPENDENT_INPUTS,
@@ -25,9 +23,11 @@ from wedgesweep.reproduce.hypotheses import (
     STATIC_DYNAMIC,
     Law,
 )
-from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
-from wedgesweep.reproduce.scenarios import TIGHT, Scenario
-from wedgesweep.reproduce.search import Budget
+from reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
+from reproduce.scenarios import TIGHT, Scenario
+from reproduce.search import Budget
+
+from wedgesweep import response
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 

@@ -5,12 +5,12 @@ import re
 from pathlib import Path
 
 import pytest
+from reproduce.claims import CLAIMS, RECORDED, RECORDED_UNILATERAL
 
 from wedgesweep import equations
 from wedgesweep.cli import compiling
 from wedgesweep.effects import EFFECTS, REGISTERED
 from wedgesweep.equations import latex
-from wedgesweep.reproduce.claims import CLAIMS, RECORDED, RECORDED_UNILATERAL
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])

@@ -2,13 +2,10 @@
 
 import numpy as np
 import pytest
-
-from tests import fixture_reproduction
-from tests.fixture_reproduction import AMPLITUDES
-from wedgesweep.reproduce import claims, suspension
-from wedgesweep.reproduce import runs as running
-from wedgesweep.reproduce.comparison import laws as compared_laws
-from wedgesweep.reproduce.findings import (
+from reproduce import claims, suspension
+from reproduce import runs as running
+from reproduce.comparison import laws as compared_laws
+from reproduce.findings import (
     CONTRADICTED,
     HOLDS,
     NOT_TESTABLE,
@@ -20,8 +17,11 @@ from wedgesweep.reproduce.findings import (
     near,
     untested,
 )
-from wedgesweep.reproduce.runs import Run, Runs
-from wedgesweep.reproduce.single_case import mirrored_columns, single
+from reproduce.runs import Run, Runs
+from reproduce.single_case import mirrored_columns, single
+
+from tests import fixture_reproduction
+from tests.fixture_reproduction import AMPLITUDES
 
 SETTLED = {"solver": {"settle_periods": 60}}
 BY_NUMBER = {claim.number: claim for claim in claims.CLAIMS}

@@ -4,14 +4,14 @@ import json
 from math import pi
 
 import pytest
+from reproduce import __main__ as reproduction
+from reproduce import claims, page
+from reproduce import runs as running
+from reproduce.findings import HOLDS, below
 
 from tests import fixture_reproduction
 from tests.fixture_reproduction import HERTZ, SCHEMA
-from wedgesweep import reproduce as reproduction
 from wedgesweep.config import ConfigError
-from wedgesweep.reproduce import claims, page
-from wedgesweep.reproduce import runs as running
-from wedgesweep.reproduce.findings import HOLDS, below
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +55,12 @@ def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
     assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is False
     text = (tmp_path / "reproduction.md").read_text()
     assert "**Claim 3 with unilateral joints is recorded as holds, these runs say contradicted.**" in text
+
+
+def test_the_exit_code_says_whether_all_verdicts_are_as_recorded(monkeypatch):
+    for as_recorded, code in ((True, 0), (False, 1)):
+        monkeypatch.setattr(reproduction, "reproduce", lambda *given, agrees=as_recorded, **more: agrees)
+        assert reproduction.main(["--n-jobs", "1"]) == code
 
 
 def test_the_report_has_every_claim_and_the_figures(directory):

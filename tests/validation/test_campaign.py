@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from validation import hiding, judge, ranges, response, rigs, run, sets, strength
+from validation.__main__ import main
+from validation.shares import Share
+from validation.time_records import TIME_KINDS
 
 from tests.measured.test_steadiness import UNSTEADY, only_fault, written
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation import hiding, judge, ranges, response, rigs, run, sets, strength
-from wedgesweep.validation.__main__ import main
-from wedgesweep.validation.shares import Share
-from wedgesweep.validation.time_records import TIME_KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
