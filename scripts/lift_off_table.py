@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from reproduce import joints
 from reproduce.runs import UNILATERAL, changed
+from reproduce.suspension import changes_by_lift_off
 
 from wedgesweep import config
 from wedgesweep.config import Config
@@ -50,7 +50,7 @@ def main() -> None:
     for law in study.sweep.friction_law:
         for beta in FREQUENCIES:
             print(row(law, beta, held, opens))
-    for name, number in joints.changes(held, opens).items():
+    for name, number in changes_by_lift_off(held, opens).items():
         print(f"{name}: {number:.3g}")
 
 

@@ -367,7 +367,7 @@ def test_an_investigation_searches_every_scenario_and_reports_every_hypothesis(o
 def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     monkeypatch.setattr(chandiramani, "investigate", lambda n_jobs, report: outcome[0])
     told = []
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is False
+    assert reproduction.reproduce(tmp_path, 1, told.append, None, "chandiramani") is False
     content = json.loads((tmp_path / "chandiramani.json").read_text())
     text = (tmp_path / "chandiramani.md").read_text()
     for hypothesis in content["hypotheses"]:
@@ -378,7 +378,7 @@ def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     assert not list(tmp_path.glob(".*"))
     found = {each["hypothesis"]: each["satisfied"] for each in content["hypotheses"]}
     monkeypatch.setattr(chandiramani, "RECORDED", found)
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is True
+    assert reproduction.reproduce(tmp_path, 1, told.append, None, "chandiramani") is True
 
 
 def test_the_figure_leaves_out_what_has_no_response():

@@ -12,13 +12,14 @@ from functools import partial
 from pathlib import Path
 
 from reproduce import chandiramani, chandiramani_page, figure, observations, published
-from reproduce import report as files
 from reproduce.claims import check
-from reproduce.page import FIGURES
-from reproduce.runs import Run, obtain
+from reproduce.report import FIGURES, document, render
+from reproduce.runs import obtain
+from reproduce.writing import plain, write_json
 from wedgesweep import figures
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.progress import ProgressReport
+from wedgesweep.files import write_text
 from wedgesweep.sweep.backend import count_jobs
 from wedgesweep.sweep.run import Progress
 
@@ -43,73 +44,44 @@ def main(given: Sequence[str] | None = None) -> int:
     announce_compiling()
     report = partial(print, flush=True)
     jobs = count_jobs(options.n_jobs)
-    return 0 if reproduce(options.output, jobs, report, ProgressReport(), only=options.only) else 1
+    return 0 if reproduce(options.output, jobs, report, ProgressReport(), options.only) else 1
 
 
 def reproduce(
-    directory: Path,
-    n_jobs: int,
-    report: Callable[[str], None],
-    progress: Progress | None = None,
-    configs: Path = CONFIGS,
-    only: str | None = None,
+    directory: Path, n_jobs: int, report: Callable[[str], None], progress: Progress, only: str | None = None
 ) -> bool:
-    """Check the claims and search the hypotheses; write reports and figures.
+    """Check the claims and search the hypotheses; write reports and figures into ``directory``.
 
-    Parameters
-    ----------
-    directory : Path
-        Where datasets, reports and figures go; finished sweeps that it holds are kept.
-    n_jobs : int
-        Number of parallel jobs.
-    report : callable
-        Takes lines to show.
-    progress : callable, optional
-        As of sweep.run.Sweep.run.
-    configs : Path
-        Directory of the configs.
-    only : str, optional
-        "claims" or "chandiramani" (the hypotheses).
-
-    Returns
-    -------
-    bool
-        Whether all verdicts are as recorded.
-
-    Raises
-    ------
-    ConfigError
-        If ``configs`` does not hold the configs.
+    Finished sweeps that it holds are kept. ``only``: CLAIMS or CHANDIRAMANI. Returns whether all verdicts are
+    as recorded.
     """
     # The report on the claims includes the hypotheses: these come first.
     agrees = only == CLAIMS or _search_hypotheses(directory, n_jobs, report)
     if only != CHANDIRAMANI:
-        agrees &= _check_claims(directory, n_jobs, report, progress, configs)
+        agrees &= _check_claims(directory, n_jobs, report, progress)
     return agrees
 
 
-def _check_claims(
-    directory: Path,
-    n_jobs: int,
-    report: Callable[[str], None],
-    progress: Progress | None,
-    configs: Path,
-) -> bool:
+def _check_claims(directory: Path, n_jobs: int, report: Callable[[str], None], progress: Progress) -> bool:
     """Run the sweeps that ``directory`` lacks and check the claims."""
-    runs = obtain(directory, configs, n_jobs, report, progress or (lambda records, total: None))
+    runs = obtain(directory, CONFIGS, n_jobs, report, progress)
     claims = []
     for each in check(runs):
-        differs = "" if each.agrees else f" (on record: {each.recorded})"
-        report(f"{each.claim.number:2} {each.verdict}{differs}: {each.claim.statement}")
+        verdict = each.finding.verdict
+        differs = "" if each.agrees else f" (on record: {each.claim.recorded})"
+        report(f"{each.claim.number:2} {verdict}{differs}: {each.claim.statement}")
         claims.append(each)
-    _draw(runs.paper, directory)
-    oscillators = published.check(configs)
+    for kind in FIGURES:
+        figures.save(figures.draw(runs.paper.ds, kind), directory / f"paper-{kind}.png")
+    oscillators = published.check(CONFIGS)
     for number in oscillators:
         if not number.holds:
             report(f"{number.statement}: {number.here} (published: {number.criterion})")
-    files.write(directory, runs, claims, oscillators, _experiment(directory))
+    content = document(runs, claims, oscillators)
+    write_json(directory / "reproduction.json", content)
+    write_text(directory / "reproduction.md", render(content, _experiment(directory)))
     report(f"report: {directory / 'reproduction.md'}")
-    return all(each.agrees for each in claims) and all(number.holds for number in oscillators)
+    return bool(content["agrees"])
 
 
 def _experiment(directory: Path) -> str:
@@ -124,12 +96,12 @@ def _search_hypotheses(directory: Path, n_jobs: int, report: Callable[[str], Non
     """Search the hypotheses on the experiment; takes minutes."""
     directory.mkdir(parents=True, exist_ok=True)
     found = chandiramani.investigate(n_jobs, report)
-    content = files.plain(chandiramani.document(found))
+    content = plain(chandiramani.document(found))
     report(chandiramani_page.answer(content))
     if not found.agrees:
         report(f"on record: {chandiramani.RECORDED}")
-    files.write_text(directory / "chandiramani.json", files.json_text(content))
-    files.write_text(directory / "chandiramani.md", chandiramani_page.render(content))
+    write_json(directory / "chandiramani.json", content)
+    write_text(directory / "chandiramani.md", chandiramani_page.render(content))
     drawn = figure.draw(
         content["hertz"],
         content["hypotheses"],
@@ -140,11 +112,6 @@ def _search_hypotheses(directory: Path, n_jobs: int, report: Callable[[str], Non
     figures.save(drawn, directory / chandiramani_page.PICTURE)
     report(f"report: {directory / 'chandiramani.md'}")
     return found.agrees
-
-
-def _draw(run: Run, directory: Path) -> None:
-    for kind in FIGURES:
-        figures.save(figures.draw(run.ds, kind), directory / f"paper-{kind}.png")
 
 
 if __name__ == "__main__":

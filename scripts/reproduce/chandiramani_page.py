@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from reproduce.markdown import number, table
+from reproduce.writing import number, table
 
 PICTURE = "chandiramani.png"
 TITLE = "Chandiramani's experiment: which change of the model explains the observations?"

@@ -1,6 +1,6 @@
-"""The finding on a claim: numbers compared by stated criteria, and the verdict that follows."""
+"""A claim of the paper, the numbers that are compared by stated criteria, and the verdict that follows."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from reproduce.runs import Runs
@@ -45,10 +45,11 @@ def untested(statement: str, why: str) -> Check:
 
 @dataclass(frozen=True)
 class Finding:
-    """The checks of a claim and the numbers that its texts quote."""
+    """What the runs say on a claim: their numbers in short, the reason, and the checks that decide."""
 
+    here: str
+    reason: str
     checks: tuple[Check, ...]
-    numbers: Mapping[str, float]
 
     @property
     def verdict(self) -> str:
@@ -63,24 +64,22 @@ class Finding:
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and the function that checks it.
+    """A claim of the paper, its number there in short, and the function that checks it.
 
-    ``statement`` and ``paper`` are the paper's claim and number in short; ``here`` and ``reason`` are
-    templates for the numbers of the finding. ``large``: whether it is on inputs so large that joints pull, so
-    that it is checked with joints that lift off as well.
+    ``recorded`` is the verdict on record: if a run finds another one, something has changed. ``unilateral``
+    is that with joints that lift off, for claims on inputs so large that joints pull; None for others.
     """
 
     number: int
     statement: str
     paper: str
-    here: str
-    reason: str
+    recorded: str
     find: Callable[[Runs], Finding]
-    large: bool = False
+    unilateral: str | None = None
 
 
 def claim(
-    number: int, statement: str, *, paper: str, here: str, reason: str, large: bool = False
+    number: int, statement: str, *, paper: str, recorded: str, unilateral: str | None = None
 ) -> Callable[[Callable[[Runs], Finding]], Claim]:
     """Turn the decorated function, which checks it, into a claim."""
-    return lambda find: Claim(number, statement, paper, here, reason, find, large)
+    return lambda find: Claim(number, statement, paper, recorded, find, unilateral)

@@ -1,19 +1,22 @@
-"""The sweeps on which the claims are checked."""
+"""The sweeps on which the claims are checked, and single cases that none of them holds."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import pi
+from math import nan, pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from wedgesweep import config
-from wedgesweep.config import Config, from_document
-from wedgesweep.errors import ConfigError, MismatchError, SweepError
+from wedgesweep import config, simulate
+from wedgesweep.config import Case, Config, from_document
+from wedgesweep.errors import MismatchError
+from wedgesweep.response import NUMBERS
+from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.run import Progress, Sweep
+from wedgesweep.sweep.variables import HARMONICS
 
 CONFIG_NAMES = ("paper", "paper-y0", "breakaway")
 # The paper's cases with joints that lift off.
@@ -36,9 +39,12 @@ def changed(config: Config, changes: Changes) -> Config:
     return from_document(document)
 
 
-def identifier(law: str) -> str:
-    """A law's name as a template can use it."""
-    return law.replace("-", "_")
+def by_law(numbers: Iterable[float], digits: str = ".3f") -> str:
+    """A number of each law in words."""
+    coulomb, static_dynamic, exponential = (
+        f"{number:{digits}} ({law})" for number, law in zip(numbers, LAWS, strict=True)
+    )
+    return f"{coulomb}, {static_dynamic} and {exponential}"
 
 
 @dataclass(frozen=True)
@@ -83,9 +89,9 @@ class Run:
         cases = self.cases(name, beta)
         return cases.isel(amplitude=_place(cases["amplitude"], millimetres / MM))
 
-    def ratios(self, beta: float, millimetres: float) -> dict[str, float]:
-        """Amplitude ratio of one case under each law, by the law's identifier."""
-        return {identifier(law): self.number("amplitude_ratio", law, beta, millimetres) for law in LAWS}
+    def ratios(self, beta: float, millimetres: float) -> list[float]:
+        """Amplitude ratio of one case under each law."""
+        return [self.number("amplitude_ratio", law, beta, millimetres) for law in LAWS]
 
     def number(self, variable: str, name: str, beta: float, millimetres: float) -> float:
         """One variable of one case, in SI units."""
@@ -136,10 +142,7 @@ class Runs:
 def obtain(
     directory: Path, configs: Path, n_jobs: int, report: Callable[[str], None], progress: Progress
 ) -> Runs:
-    """Run the sweeps that ``directory`` lacks; raises ConfigError if the configs are missing."""
-    if not configs.is_dir():
-        message = f"{configs}: no such folder; reproduce needs the configs of a wedgesweep checkout"
-        raise ConfigError([message])
+    """Run the sweeps that ``directory`` lacks."""
     directory.mkdir(parents=True, exist_ok=True)
     studies = {name: config.load(configs / f"{name}.toml") for name in CONFIG_NAMES}
     studies[UNILATERAL_NAME] = changed(studies["paper"], UNILATERAL)
@@ -148,23 +151,36 @@ def obtain(
 
 
 def _obtain(sweep: Sweep, n_jobs: int, report: Callable[[str], None], progress: Progress) -> Run:
-    stored = _stored(sweep, report)
-    if stored is not None:
-        report(f"{sweep.out}: kept from an earlier run")
-        return Run(stored)
-    report(f"{sweep.out}: {sweep.config.title}")
     try:
+        stored = sweep.stored()
+        if stored is not None:
+            report(f"{sweep.out}: kept from an earlier run")
+            return Run(stored)
+        report(f"{sweep.out}: {sweep.config.title}")
         return Run(sweep.run(n_jobs, progress=progress))
-    except MismatchError as error:  # an unfinished run of another version
+    except MismatchError as error:  # results of another version or config
         report(f"{error}; running it again")
         return Run(sweep.run(n_jobs, progress=progress, fresh=True))
 
 
-def _stored(sweep: Sweep, report: Callable[[str], None]) -> xr.Dataset | None:
-    """Dataset of an earlier run; one of another version or config is discarded."""
+def mirrored_columns(config: Config) -> dict[str, dict[str, float]]:
+    """The change that mirrors the column angle."""
+    return {"suspension": {"column_angle_deg": -config.document["suspension"]["column_angle_deg"]}}
+
+
+def record(config: Config, law: str, beta: float, millimetres: float) -> np.ndarray:
+    """Parameter record of a case, shape (1,)."""
+    return config.record(Case(law, beta, millimetres / MM))
+
+
+def single(run: Run, law: str, beta: float, millimetres: float, changes: Changes) -> dict[str, float]:
+    """Numbers (see response.NUMBERS, SI) of a case of the run's config with some changes.
+
+    All are NaN if the case fails, so that no criterion holds.
+    """
+    config = changed(run.config, changes)
     try:
-        return sweep.stored()
-    except SweepError as error:
-        sweep.discard()  # refuses if the file is no dataset of a sweep
-        report(f"{error}; running it again")
-        return None
+        found, _ = simulate.respond(record(config, law, beta, millimetres), config.solver, HARMONICS)
+    except CaseError:
+        return dict.fromkeys(NUMBERS.names or (), nan)
+    return found.numbers

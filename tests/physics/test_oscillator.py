@@ -4,7 +4,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from reproduce.stick_slip_cycle import measured
+from reproduce.published import measured
 
 from tests import marks
 from wedgesweep import excitation, response
