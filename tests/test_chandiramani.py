@@ -390,7 +390,7 @@ def test_the_figure_leaves_out_what_has_no_response():
         "slow": {"peak_to_peak": 0.03},
         "fast": {"peak_to_peak": None},
     }
-    figure = picture.draw([20.0, 30.0, 40.0], [hypothesis], observations.LEVELS, 1.5, (33.0, 37.0))
+    figure = picture.draw([20.0, 30.0, 40.0], [hypothesis])
     drawn = [line.get_ydata() for line in figure.axes[0].lines]
     for expected in ([0.1, np.nan, picture.LEAST], [0.03, np.nan]):
         assert any(np.array_equal(each, expected, equal_nan=True) for each in drawn)

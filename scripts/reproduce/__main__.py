@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from reproduce import chandiramani, chandiramani_page, figure, observations, published
+from reproduce import chandiramani, chandiramani_page, figure, published
 from reproduce.claims import check
 from reproduce.report import FIGURES, document, render
 from reproduce.runs import obtain
@@ -102,13 +102,7 @@ def _search_hypotheses(directory: Path, n_jobs: int, report: Callable[[str], Non
         report(f"on record: {chandiramani.RECORDED}")
     write_json(directory / "chandiramani.json", content)
     write_text(directory / "chandiramani.md", chandiramani_page.render(content))
-    drawn = figure.draw(
-        content["hertz"],
-        content["hypotheses"],
-        observations.LEVELS,
-        observations.LEVEL_FACTOR,
-        observations.JUMP_HERTZ,
-    )
+    drawn = figure.draw(content["hertz"], content["hypotheses"])
     figures.save(drawn, directory / chandiramani_page.PICTURE)
     report(f"report: {directory / 'chandiramani.md'}")
     return found.agrees

@@ -13,7 +13,7 @@ from typing import Any
 import joblib
 import numpy as np
 
-from reproduce.best import HERTZ, Best, computed
+from reproduce import observations
 from reproduce.discrimination import Discrimination, discriminate
 from reproduce.hypotheses import (
     COLUMN_ANGLES,
@@ -23,10 +23,23 @@ from reproduce.hypotheses import (
     Hypothesis,
 )
 from reproduce.observations import OBSERVATIONS, Recording
-from reproduce.scenarios import LOOSE, Scenario, recordings
+from reproduce.scenarios import (
+    LOOSE,
+    TIGHT,
+    EvaluatedPoint,
+    Scenario,
+    loss,
+    recordings,
+    satisfied,
+    sweep,
+)
 from reproduce.search import COARSE, FINE, MEDIUM, Budget, SearchResult, search
+from wedgesweep.solvers.periodic import Accuracy
 from wedgesweep.sweep.backend import in_order
 
+HERTZ = np.arange(20.0, 41.0)
+# Points of a search that are compared again: the search used every second frequency of the sweep only.
+COMPARED = 50
 # Pairs of law and column angle of each hypothesis that get the medium budget.
 PROMISING = 2
 # Number of observations that each hypothesis satisfies. If a run finds another number, something has changed.
@@ -40,6 +53,37 @@ RECORDED = {
 }
 
 Report = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Best(EvaluatedPoint):
+    """The best point of a search, with recordings and sweep (peak-to-peak in mm over HERTZ)."""
+
+    result: SearchResult
+    slow: Recording
+    fast: Recording
+    sweep: np.ndarray
+
+
+def _computed(result: SearchResult) -> Best:
+    """Compute the best point of a search accurately, at all frequencies of the sweep."""
+    points = result.equally_good[:COMPARED]
+    *_, distances = _simulated(result.scenario, points, LOOSE)
+    best = points[np.lexsort((loss(distances), -satisfied(distances)))[:1]]
+    slow, fast, levels, distances = _simulated(result.scenario, best, TIGHT)
+    return Best(result.scenario, best[0], distances[0], result, slow, fast, levels[0])
+
+
+def _simulated(
+    scenario: Scenario, points: np.ndarray, accuracy: Accuracy
+) -> tuple[Recording, Recording, np.ndarray, np.ndarray]:
+    """Recordings, sweep (mm) and distances at points (n, free)."""
+    records = scenario.records(points)
+    recorded, swept = scenario.inputs(points, HERTZ)
+    slow, fast = recordings(records, recorded, accuracy)
+    levels = sweep(records, swept, HERTZ, accuracy)
+    parts = [observations.of_tests(slow, fast), observations.of_sweep(HERTZ, levels)]
+    return slow, fast, levels, np.concatenate(parts, axis=1)
 
 
 @dataclass(frozen=True)
@@ -76,7 +120,8 @@ def investigate(
     widest = [_with_independent_inputs(_ordered(found, hypothesis)[0]) for hypothesis in hypotheses]
     # Without start points: known good points would lead to the same minima again.
     found += _search(((scenario, fine, None) for scenario in widest), n_jobs)
-    best = [_best(_ordered(found, hypothesis)) for hypothesis in hypotheses]
+    # The best of each hypothesis once all its results are computed accurately.
+    best = [min(map(_computed, _ordered(found, hypothesis)), key=_rank) for hypothesis in hypotheses]
     for each in best:
         report(f"{each.satisfied} of {len(OBSERVATIONS)}: {each.scenario.hypothesis.description}")
     rivals = _rivals(best)
@@ -102,18 +147,14 @@ def _search(
     return in_order((joblib.delayed(search)(*each) for each in searches), n_jobs)
 
 
+def _rank(result: EvaluatedPoint) -> tuple[int, int, float]:
+    """Order of results, best first: of two that satisfy as much, the one with fewer inputs."""
+    return -result.satisfied, result.scenario.interpretation.inputs, result.loss
+
+
 def _ordered(results: Iterable[SearchResult], hypothesis: Hypothesis) -> list[SearchResult]:
-    """Results of a hypothesis, best first: of two that satisfy as much, the one with fewer inputs."""
-    own = [each for each in results if each.scenario.hypothesis.name == hypothesis.name]
-    return sorted(own, key=lambda each: (-each.satisfied, each.scenario.interpretation.inputs, each.loss))
-
-
-def _best(results: Sequence[SearchResult]) -> Best:
-    """The best result of a hypothesis once all are computed accurately."""
-    return max(
-        map(computed, results),
-        key=lambda each: (each.satisfied, -each.scenario.interpretation.inputs, -each.loss),
-    )
+    """Results of a hypothesis, best first."""
+    return sorted((each for each in results if each.scenario.hypothesis.name == hypothesis.name), key=_rank)
 
 
 def _with_independent_inputs(best: SearchResult) -> Scenario:
@@ -137,12 +178,7 @@ def _promising(ordered: Sequence[SearchResult]) -> Iterator[tuple[Scenario, np.n
 
 def _merged(first: Sequence[SearchResult], later: Sequence[SearchResult]) -> list[SearchResult]:
     """One result per scenario, the last one if there are several."""
-    again = {_key(each): each for each in later}
-    return [again.get(_key(each), each) for each in first]
-
-
-def _key(result: SearchResult) -> tuple[str | float, ...]:
-    return tuple(result.scenario.labels().values())
+    return list({tuple(each.scenario.labels().values()): each for each in (*first, *later)}.values())
 
 
 def _rivals(best: Sequence[Best]) -> list[Best]:

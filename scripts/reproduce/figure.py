@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from reproduce.observations import JUMP_HERTZ, LEVEL_FACTOR, LEVELS
 from wedgesweep.figures import style
 from wedgesweep.figures.panels import panels
 
@@ -17,23 +18,16 @@ COLUMNS = 3
 LEAST = 1e-3  # mm; smaller levels are drawn at this one
 
 
-def draw(
-    hertz: Sequence[float],
-    hypotheses: Sequence[Mapping[str, Any]],
-    levels: Mapping[float, float],
-    factor: float,
-    jump_hertz: tuple[float, float],
-) -> Figure:
+def draw(hertz: Sequence[float], hypotheses: Sequence[Mapping[str, Any]]) -> Figure:
     """Draw a panel per hypothesis: its sweep, its recordings and the measured levels (mm, by frequency).
 
-    A hypothesis is an entry of chandiramani.json, with None where there is no response; ``factor`` is the
-    tolerance of the levels, and the jump was seen within ``jump_hertz``.
+    A hypothesis is an entry of chandiramani.json, with None where there is no response.
     """
     made = panels(None, len(hypotheses), columns=COLUMNS, size=(3.1, 2.6))
     for ax, hypothesis in zip(made.axes, hypotheses, strict=True):
-        ax.axvspan(*jump_hertz, color=style.YELLOW, alpha=0.35, linewidth=0)
-        for frequency, level in levels.items():
-            bar = [[level * (1.0 - 1.0 / factor)], [level * (factor - 1.0)]]
+        ax.axvspan(*JUMP_HERTZ, color=style.YELLOW, alpha=0.35, linewidth=0)
+        for frequency, level in LEVELS.items():
+            bar = [[level * (1.0 - 1.0 / LEVEL_FACTOR)], [level * (LEVEL_FACTOR - 1.0)]]
             ax.errorbar([frequency], [level], bar, color="black", capsize=3, linewidth=1.3)
         swept = _shown(hypothesis["peak_to_peak_mm"])
         if (swept <= LEAST).any():
@@ -41,7 +35,7 @@ def draw(
             ax.text(hertz[0], 1.15 * LEAST, f"drawn here: {LEAST:g} mm or less", fontsize=7, color=style.GREY)
         ax.plot(hertz, swept, "-o", color=style.BLUE, markersize=2.5, linewidth=1.3)
         recorded = [hypothesis[name]["peak_to_peak"] for name in ("slow", "fast")]
-        ax.plot(list(levels), _shown(recorded), "D", color=style.VERMILLION, markersize=5)
+        ax.plot(list(LEVELS), _shown(recorded), "D", color=style.VERMILLION, markersize=5)
         count = f"{hypothesis['satisfied']} of {len(hypothesis['distances'])}"
         ax.set_title(f"{hypothesis['description']}: {count}", fontsize=9)
         ax.set_yscale("log")

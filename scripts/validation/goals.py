@@ -5,8 +5,7 @@ from statistics import median
 from typing import NamedTuple
 
 from validation import judge
-from validation.judge import Record
-from validation.shares import Share, share
+from validation.judge import Record, Share, share
 from validation.time_records import TIME_KINDS
 from wedgesweep.effects import EFFECTS
 

@@ -1,15 +1,17 @@
-"""Hides effects in the draft of a validation set, as strong as its excess chi-squared asks for."""
+"""Draws a validation set, and hides effects in it, as strong as its excess chi-squared asks for."""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from validation import ranges, strength, unmodelled
-from validation.benches import SAME_NOISE
+from validation.benches import SAME_NOISE, draw_bench
 from validation.draft import Draft
 from validation.sets import DataSet
 from wedgesweep.effects import EFFECTS, go_together, lift_off, parts
 
+# Attempts with other laws, tests and numbers.
+ATTEMPTS = 60
 # After so many attempts even an effect that is due gives way to the next one.
 SAME_EFFECT = 48
 # Excess that each effect of a pair must cause while only the other is in the model.
@@ -148,3 +150,17 @@ HIDE: dict[str, Callable[[DataSet, Draft, np.random.Generator, int], bool]] = {
     "random-rig": _hide_possible,
     "oscillator": _hide_possible,
 }
+
+
+def draw(one: DataSet) -> Draft:
+    """Draw what a set is made from; the same set gives the same draft.
+
+    Raises RuntimeError if no system reaches the excess wanted.
+    """
+    for attempt in range(ATTEMPTS):
+        random = one.random(attempt)
+        draft = draw_bench(one, random, attempt)
+        if draft and HIDE[one.kind](one, draft, random, attempt):
+            return draft
+    message = f"{one.name}: no system of this kind reaches the excess wanted in {ATTEMPTS} attempts"
+    raise RuntimeError(message)

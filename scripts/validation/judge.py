@@ -1,7 +1,10 @@
-"""Compares a verdict with the truth."""
+"""Compares a verdict with the truth, and counts how often it is right."""
 
-from math import inf
-from typing import Any
+from collections.abc import Callable, Sequence
+from math import inf, nan
+from typing import Any, NamedTuple
+
+from scipy.stats import binomtest
 
 from validation import imperfect
 from wedgesweep.effects import EFFECTS
@@ -116,3 +119,33 @@ def coverage(record: Record) -> list[tuple[str, bool]]:
             covers = covers and low <= quantities[key].nearest(true[key], 0.5 * (low + high)) <= high
             found.append((f"{cause['effect']}.{key}", covers))
     return found
+
+
+class Share(NamedTuple):
+    """``hits`` out of ``n``."""
+
+    hits: int
+    n: int
+
+    @property
+    def value(self) -> float:
+        return self.hits / self.n if self.n else nan
+
+    @property
+    def wilson(self) -> tuple[float, float]:
+        """95 % interval (Wilson, 1927)."""
+        if not self.n:
+            return 0.0, 1.0
+        interval = binomtest(self.hits, self.n).proportion_ci(0.95, "wilson")
+        return interval.low, interval.high
+
+    def __str__(self) -> str:
+        if not self.n:
+            return "no sets"
+        low, high = self.wilson
+        return f"{self.hits:3d}/{self.n:<3d} {self.value:4.0%} [{low:.0%}, {high:.0%}]"
+
+
+def share(records: Sequence[Any], passes: Callable[[Any], bool]) -> Share:
+    """Share of the records that pass a test."""
+    return Share(sum(map(passes, records)), len(records))

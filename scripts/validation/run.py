@@ -14,7 +14,7 @@ from typing import Any
 from validation import time_records, unmodelled_data
 from validation.baselines import BASELINES
 from validation.draft import Draft
-from validation.draw import draw
+from validation.hiding import draw
 from validation.judge import Record
 from validation.response import TONE, Test
 from validation.sets import DataSet
@@ -46,16 +46,14 @@ class CommandError(Exception):
 
 def run_chain(chain: list[DataSet], out: Path) -> list[Record]:
     """Records of sets that depend on each other; finished ones are read. A failure is a record, too."""
-    return [_record_or_failure(one, out) for one in chain]
-
-
-def _record_or_failure(one: DataSet, out: Path) -> Record:
-    try:
-        return record_of(one, out)
-    except Exception as error:  # whatever it is, the other sets continue
-        # No record file: the next run tries again.
-        failure = f"{type(error).__name__}: {error}"
-        return {"name": one.name, "kind": one.kind, "index": one.index, "failure": failure}
+    records = []
+    for one in chain:
+        try:
+            records.append(record_of(one, out))
+        except Exception as error:  # whatever it is, the other sets continue, and the next run tries again
+            failure = f"{type(error).__name__}: {error}"
+            records.append({"name": one.name, "kind": one.kind, "index": one.index, "failure": failure})
+    return records
 
 
 def record_of(one: DataSet, out: Path) -> Record:
@@ -114,18 +112,17 @@ def _run(one: DataSet, out: Path) -> Record:
     else:
         _synthesize(draft, spreads, one.noise_seed, directory)
     write(directory / DRAFT, asdict(draft))
-    # Out of the reach of the diagnosis.
-    (directory / DATA / TRUTH).rename(directory / TRUTH)
-    clock.lap("synthesize")
     limit = ["--effects", ",".join(draft.candidates)] if one.kind == "unknown" else []
-    files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
-    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *limit)
-    clock.lap("diagnose")
+    found = _diagnose(directory, clock, *limit)
     simpler = BASELINES if one.kind in COMPARED else {}
     named_by = {name: method(directory / RESULT) for name, method in simpler.items()}
     clock.lap("baselines")
-    found = json.loads((directory / RESULT / "diagnosis.json").read_text())
-    return {**_record(one, draft, found), "baselines": named_by, "seconds": clock.seconds}
+    made = {key: getattr(draft, key) for key in KEPT}
+    gain = gain_in_truth(draft, found["causes"])
+    return _record(one, draft.truth, draft.hidden, made, found, gain) | {
+        "baselines": named_by,
+        "seconds": clock.seconds,
+    }
 
 
 def _run_time_records(one: DataSet, directory: Path) -> Record:
@@ -138,49 +135,46 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
     noise = ["--noise", drawn["noise"], "--level", drawn["level"], "--input-level", 0.5 * drawn["level"]]
     more = ["--sampling-hz", drawn["sampling_hz"], "--seed", one.noise_seed, "--n-jobs", 1]
     wedgesweep("synthesize", *files, *noise, *more, "--settle-periods", SETTLE_PERIODS)
+    found = _diagnose(directory, clock)
+    made = {key: drawn[key] for key in ("law", "noise", "level")}
+    record = _record(one, sorted(drawn["hidden"]), drawn["hidden"], made, found, None)
+    return record | {"baselines": {}, "seconds": clock.seconds}
+
+
+def _diagnose(directory: Path, clock: _Clock, *options: str) -> dict[str, Any]:
+    """Diagnose the data of a directory; the truth is put out of the reach of the diagnosis."""
     (directory / DATA / TRUTH).rename(directory / TRUTH)
     clock.lap("synthesize")
     files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
-    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1)
+    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *options)
     clock.lap("diagnose")
-    found = json.loads((directory / RESULT / "diagnosis.json").read_text())
-    return {
-        **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
-        "code": git_commit() or __version__,
-        "truth": sorted(drawn["hidden"]),
-        "numbers": drawn["hidden"],
-        **{key: drawn[key] for key in ("law", "noise", "level")},
-        **_answer(found),
-        "gain_in_truth": None,
-        "baselines": {},
-        "seconds": clock.seconds,
-    }
+    return json.loads((directory / RESULT / "diagnosis.json").read_text())
 
 
-def _record(one: DataSet, draft: Draft, found: dict[str, Any]) -> Record:
-    """What is kept of a set, from the document of its diagnosis."""
-    return {
-        **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
-        "code": git_commit() or __version__,
-        "truth": draft.truth,
-        "numbers": draft.hidden,
-        **{key: getattr(draft, key) for key in KEPT},
-        **_answer(found),
-        "gain_in_truth": gain_in_truth(draft, found["causes"]),
-    }
-
-
-def _answer(found: dict[str, Any]) -> Record:
-    """What is kept of a diagnosis, from its document."""
+def _record(
+    one: DataSet,
+    truth: list[str],
+    hidden: dict[str, Any],
+    made: dict[str, Any],
+    found: dict[str, Any],
+    gain_in_truth: float | None,
+) -> Record:
+    """What is kept of a set: its truth, how it was made, and the document of its diagnosis in short."""
     gain = found["gain"]
     # Test by test the gain is too long for a record.
     kept = {key: gain[key] for key in gain if key != "held_out"} if gain else gain
     levels = [{key: level[key] for key in ("effects", "accuracy", "distinct")} for level in found["ladder"]]
     return {
+        **{"name": one.name, "kind": one.kind, "index": one.index, "seed": one.seed},
+        "code": git_commit() or __version__,
+        "truth": truth,
+        "numbers": hidden,
+        **made,
         **{key: found[key] for key in ("verdict", "causes", "rivals")},
         **{"gain": kept, "next_test": found["next_test"], "ladder": levels},
         "excess": found["misfit"]["excess_base"],
         **{key: found["misfit"][key] for key in ("p_extended", "p_constant")},
+        "gain_in_truth": gain_in_truth,
     }
 
 

@@ -6,10 +6,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from validation import judge
-from validation.baselines import LISTED
+from validation.baselines import BASELINES
 from validation.goals import Sets, goals
-from validation.judge import Record
-from validation.shares import Share, share
+from validation.judge import Record, Share, share
 from validation.time_records import TIME_KINDS
 from wedgesweep.effects import EFFECTS
 
@@ -111,7 +110,7 @@ def _outcome(record: Record) -> str:
 
 
 def _baselines(records: Sequence[Record]) -> list[str]:
-    return [name for name in LISTED if any(name in record.get("baselines", {}) for record in records)]
+    return [name for name in BASELINES if any(name in record.get("baselines", {}) for record in records)]
 
 
 def _share_of_baseline(records: Sequence[Record], name: str, passes: Comparison) -> Share:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from validation import hiding, judge, ranges, response, rigs, run, sets, strength
 from validation.__main__ import main
-from validation.shares import Share
+from validation.judge import Share
 from validation.time_records import TIME_KINDS
 
 from tests.measured.test_steadiness import UNSTEADY, only_fault, written
