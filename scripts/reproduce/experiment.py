@@ -4,7 +4,7 @@ from math import nan
 
 import numpy as np
 
-from reproduce.findings import DISTORTED, HOLDS, MOVES, PARTLY, STICKS, Finding, above, below, claim, untested
+from reproduce.findings import DISTORTED, MOVES, STICKS, Finding, above, below, untested
 from reproduce.runs import MM, Run, Runs, distortion
 
 JUMP_HERTZ = (32.0, 38.0)  # around the measured jump
@@ -13,12 +13,6 @@ PLATEAU = 1 / 8  # of the period
 NO_NUMBERS = "the measured curves are not given in numbers"
 
 
-@claim(
-    11,
-    "30 Hz at 0.1 mm and 20 Hz at 0.015 mm: harmonic, closest to the measured peak-to-peak",
-    paper="Figs. 8 and 9",
-    recorded=PARTLY,
-)
 def shown_cases(runs: Runs) -> Finding:
     """Simulate the two cases that the paper compares with the experiment."""
     run = runs.breakaway
@@ -45,12 +39,6 @@ def shown_cases(runs: Runs) -> Finding:
     )
 
 
-@claim(
-    12,
-    "The measured peak-to-peak jumps near 35 Hz, the computed one does not",
-    paper="no jump from 20 to 40 Hz",
-    recorded=PARTLY,
-)
 def jump(runs: Runs) -> Finding:
     """Compare the growth of the peak-to-peak around 35 Hz for all inputs."""
     amplitudes, growth = _growth(runs.breakaway)
@@ -84,12 +72,6 @@ def _peak_to_peak(run: Run, hertz: float, millimetres: float) -> float:
     return run.number("peak_to_peak", "coulomb", run.beta_of(hertz), millimetres) * MM
 
 
-@claim(
-    13,
-    "Measured at 20 Hz: small plateaus of the velocity",
-    paper="about 1/8 of the period",
-    recorded=HOLDS,
-)
 def plateaus(runs: Runs) -> Finding:
     """Look for stops of an eighth of the period."""
     lengths, inputs, levels = stops(runs.breakaway)

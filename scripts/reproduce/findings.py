@@ -1,9 +1,6 @@
-"""A claim of the paper, the numbers that are compared by stated criteria, and the verdict that follows."""
+"""The finding on a claim: numbers compared by stated criteria, and the verdict that follows."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-
-from reproduce.runs import Runs
 
 VERDICTS = ("holds", "partly", "contradicted", "not testable")
 HOLDS, PARTLY, CONTRADICTED, NOT_TESTABLE = VERDICTS
@@ -60,26 +57,3 @@ class Finding:
         if all(tested):
             return HOLDS
         return PARTLY if any(tested) else CONTRADICTED
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A claim of the paper, its number there in short, and the function that checks it.
-
-    ``recorded`` is the verdict on record: if a run finds another one, something has changed. ``unilateral``
-    is that with joints that lift off, for claims on inputs so large that joints pull; None for others.
-    """
-
-    number: int
-    statement: str
-    paper: str
-    recorded: str
-    find: Callable[[Runs], Finding]
-    unilateral: str | None = None
-
-
-def claim(
-    number: int, statement: str, *, paper: str, recorded: str, unilateral: str | None = None
-) -> Callable[[Callable[[Runs], Finding]], Claim]:
-    """Turn the decorated function, which checks it, into a claim."""
-    return lambda find: Claim(number, statement, paper, recorded, find, unilateral)

@@ -6,14 +6,11 @@ import numpy as np
 import xarray as xr
 
 from reproduce.findings import (
-    CONTRADICTED,
     DISTORTED,
     MOVES,
-    PARTLY,
     Finding,
     above,
     below,
-    claim,
 )
 from reproduce.runs import LAWS, MM, Changes, Run, Runs, by_law, distortion, record, single
 from wedgesweep.friction.curve import curve
@@ -51,13 +48,6 @@ def _close_to_breakaway(runs: Runs) -> str:
     return by_law(runs.breakaway.ratios(runs.breakaway.beta_of(20.0), 0.05))
 
 
-@claim(
-    5,
-    "The friction laws do not change the amplitude ratio",
-    paper="the same tendency line",
-    recorded=PARTLY,
-    unilateral=PARTLY,
-)
 def same_trend(runs: Runs) -> Finding:
     """Compare the ratios of the three laws near breakaway and far above it."""
     values = spread(runs.paper).where(_settled(runs.paper))
@@ -77,12 +67,6 @@ def same_trend(runs: Runs) -> Finding:
     )
 
 
-@claim(
-    8,
-    "At beta = 0.1 Coulomb is distorted, the other two show no stick-slip",
-    paper="Fig. 5",
-    recorded=PARTLY,
-)
 def lowest_frequency(runs: Runs) -> Finding:
     """Examine the cases at the lowest frequency."""
     cases = runs.paper.ds.sel(beta=LOWEST_BETA)
@@ -105,13 +89,6 @@ def lowest_frequency(runs: Runs) -> Finding:
     )
 
 
-@claim(
-    9,
-    "Static-dynamic and exponential behave very similarly",
-    paper="very similar",
-    recorded=PARTLY,
-    unilateral=PARTLY,
-)
 def regularised_alike(runs: Runs) -> Finding:
     """Compare the two regularised laws over all cases."""
     values = spread(runs.paper, REGULARISED)
@@ -132,12 +109,6 @@ def regularised_alike(runs: Runs) -> Finding:
     )
 
 
-@claim(
-    14,
-    "Near zero velocity exponential approaches Coulomb, static-dynamic has the higher jump",
-    paper="exponential nearer",
-    recorded=CONTRADICTED,
-)
 def nearer_to_coulomb(runs: Runs) -> Finding:
     """Compare the jumps of both laws, and the distances of their ratios from those of coulomb."""
     static_jump, exponential_jump = (_jump(runs.paper, law) for law in REGULARISED)
@@ -169,12 +140,6 @@ def _jump(run: Run, law: str) -> float:
     return float(ramp - sliding)
 
 
-@claim(
-    17,
-    "The integration method is an unlikely source of errors",
-    paper="unlikely",
-    recorded=PARTLY,
-)
 def method(runs: Runs) -> Finding:
     """Integrate again with a smaller tolerance, and with a ramp in place of sign(v)."""
     rtol = runs.paper.config.solver.rtol

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from reproduce.findings import CONTRADICTED, DISTORTED, PARTLY, STICKS, Finding, above, below, claim
+from reproduce.findings import DISTORTED, STICKS, Finding, above, below
 from reproduce.runs import MM, Run, Runs, by_law, distortion, mirrored_columns, record, single
 
 # A case that is stuck for a larger share of the time hardly moves.
@@ -17,12 +17,6 @@ ONSET_MM = 0.3  # where the paper saw motion begin
 MOVING, APPRECIABLE = 0.01, 0.1  # amplitude ratios
 
 
-@claim(
-    6,
-    "Stick-slip up to beta = 0.4 only; none at 20 and 30 Hz",
-    paper="beta <= 0.4",
-    recorded=CONTRADICTED,
-)
 def stick_slip(runs: Runs) -> Finding:
     """Look for stick-slip above the paper's highest beta, and at the frequencies of its Figs. 8 and 9."""
     run = runs.breakaway
@@ -76,12 +70,6 @@ def _longest(run: Run, beta: float) -> tuple[float, float, float]:
     return float(longest), millimetres, mirrored["stick_fraction"]
 
 
-@claim(
-    7,
-    "Appreciable motion begins at the same input at all frequencies",
-    paper="about 0.3 mm",
-    recorded=CONTRADICTED,
-)
 def onset_of_motion(runs: Runs) -> Finding:
     """Compare the inputs from which coulomb keeps slipping, and moves appreciably."""
     run = runs.paper
@@ -132,13 +120,6 @@ def slope(beta: np.ndarray, onset: np.ndarray) -> float:
     return float(np.polyfit(np.log(beta), np.log(onset), 1)[0])
 
 
-@claim(
-    10,
-    "At beta = 1.75 the response is almost sinusoidal, without stick-slip",
-    paper="Fig. 7",
-    recorded=PARTLY,
-    unilateral=PARTLY,
-)
 def sinusoidal(runs: Runs) -> Finding:
     """Compare harmonics and sticking above and below the smallest input of the paper."""
     cases = runs.paper.ds.sel(beta=SHOWN_BETA)

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import xarray as xr
 
-from reproduce.findings import CONTRADICTED, HOLDS, PARTLY, Finding, below, claim, near
+from reproduce.findings import Finding, below, near
 from reproduce.runs import LAWS, MM, Run, Runs, by_law, changed, mirrored_columns, record, single
 from wedgesweep.systems.suspension.equilibrium import resonance as frictionless_resonance
 from wedgesweep.systems.suspension.parameters import driven_mass, moving_mass
@@ -19,12 +19,6 @@ LONG = 300  # periods until large motions, which friction hardly damps, have set
 LARGE_MM, LARGE_BETA, ROUNDING = 1.0, 1.0, 1e-6
 
 
-@claim(
-    1,
-    "Natural frequency, frequency range, number of cases",
-    paper="85.35 rad/s; 1.36 to 40.76 Hz; 1800 cases",
-    recorded=HOLDS,
-)
 def parameters_and_cases(runs: Runs) -> Finding:
     """Compare the numbers that follow from Table 1 and from the ranges."""
     hertz, size = runs.paper.ds["frequency"].values, runs.paper.ds["status"].size
@@ -42,7 +36,6 @@ def parameters_and_cases(runs: Runs) -> Finding:
     )
 
 
-@claim(2, "Equilibrium position y_0", paper="-2.1941 mm", recorded=CONTRADICTED)
 def rest_position(runs: Runs) -> Finding:
     """Compare the frictionless rest position."""
     rest, scaled = (run.ds.attrs["rest_position"] * MM for run in (runs.paper, runs.scaled))
@@ -67,13 +60,6 @@ def _spring_scale(runs: Runs) -> float:
     return scaled / printed
 
 
-@claim(
-    3,
-    "Resonance at about 80 % of omega_n",
-    paper="0.8 omega_n, about 11 Hz",
-    recorded=CONTRADICTED,
-    unilateral=CONTRADICTED,
-)
 def resonance(runs: Runs) -> Finding:
     """Compare the frictionless resonance and the frequencies of the largest ratios."""
     here, scaled = runs.paper.resonance, runs.scaled.resonance
@@ -102,13 +88,6 @@ def _peaks(run: Run) -> list[float]:
     return [float(largest.sel(friction_law=law).idxmax("beta")) for law in LAWS]
 
 
-@claim(
-    4,
-    "At high frequencies the amplitude ratio goes to one; it is there by 20 Hz",
-    paper="1 at 20 Hz",
-    recorded=PARTLY,
-    unilateral=PARTLY,
-)
 def unit_ratio(runs: Runs) -> Finding:
     """Compare the ratio with 1 at 20 Hz, at the end of the range and far above."""
     run = runs.paper
@@ -143,7 +122,6 @@ def frictionless_ratio(run: Run, beta: float) -> float:
     return float(abs(driven_mass(p) / moving_mass(p) * squared / (squared - frictionless_resonance(p) ** 2)))
 
 
-@claim(15, "The bolster does not lift off, by design", paper="none", recorded=CONTRADICTED)
 def lift_off(runs: Runs) -> Finding:
     """Look for negative normal forces."""
     ds = runs.paper.ds
@@ -202,12 +180,6 @@ def changes_by_lift_off(held: xr.Dataset, opens: xr.Dataset) -> dict[str, float]
     }
 
 
-@claim(
-    16,
-    "Above resonance the system responds like one without friction",
-    paper="like a harmonic oscillator",
-    recorded=PARTLY,
-)
 def like_frictionless(runs: Runs) -> Finding:
     """Compare the ratio with the frictionless one at a larger and a smaller input."""
     run = runs.breakaway
