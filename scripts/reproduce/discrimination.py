@@ -16,8 +16,10 @@ from reproduce.search import SearchResult
 
 NOISE = 0.04
 LEAST_MOTION = 1e-5  # m; a smaller motion has the noise of one of this size
-# Frequencies (Hz) and amplitudes (m) of the tests that are considered.
-HERTZ, AMPLITUDES = np.arange(10.0, 41.0, 5.0), np.geomspace(0.01e-3, 1e-3, 9)
+# Frequencies (Hz) and amplitudes (m) of the tests that are considered, shape (t,).
+HERTZ, AMPLITUDES = map(
+    np.ravel, np.meshgrid(np.arange(10.0, 41.0, 5.0), np.geomspace(0.01e-3, 1e-3, 9), indexing="ij")
+)
 HARMONICS = 9
 REPRESENTATIVES = 5
 
@@ -46,30 +48,17 @@ def discriminate(rivals: Sequence[SearchResult]) -> tuple[list[Discrimination], 
 
 
 def _discrimination(names: tuple[str, str], test: int, distances: np.ndarray) -> Discrimination:
-    hertz, amplitude = _tests()
-    return Discrimination(names, float(hertz[test]), float(amplitude[test]), float(distances[test]))
-
-
-def _tests() -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (Hz) and amplitudes (m) of all tests, shape (t,)."""
-    hertz, amplitude = np.meshgrid(HERTZ, AMPLITUDES, indexing="ij")
-    return hertz.ravel(), amplitude.ravel()
-
-
-def _representatives(result: SearchResult) -> np.ndarray:
-    """The best point and others that satisfy as many observations, shape (m, free)."""
-    points = result.equally_good
-    return points[np.linspace(0, len(points) - 1, min(REPRESENTATIVES, len(points))).astype(int)]
+    return Discrimination(names, float(HERTZ[test]), float(AMPLITUDES[test]), float(distances[test]))
 
 
 def _predictions(result: SearchResult) -> np.ndarray:
-    """Complex harmonics of displacement (m), shape (points, tests, HARMONICS)."""
-    records = result.scenario.records(_representatives(result))
-    hertz, amplitude = _tests()
-    tests = zip(hertz, amplitude, strict=True)
+    """Complex harmonics of displacement (m) at some equally good points, (points, tests, HARMONICS)."""
+    points = result.equally_good
+    some = np.linspace(0, len(points) - 1, min(REPRESENTATIVES, len(points))).astype(int)
+    records, tests = result.scenario.records(points[some]), zip(HERTZ, AMPLITUDES, strict=True)
     rows = np.concatenate([excited(records, f, np.full(len(records), a)) for f, a in tests])
     harmonics = respond(rows, LOOSE, harmonics=HARMONICS).spectra[:, 0]
-    return harmonics.reshape(hertz.size, len(records), HARMONICS).swapaxes(0, 1)
+    return harmonics.reshape(HERTZ.size, len(records), HARMONICS).swapaxes(0, 1)
 
 
 def smallest_distance(first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """The goals of a campaign and what was reached."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from validation import judge
 from validation.judge import Record, Share, share
@@ -13,6 +13,7 @@ from wedgesweep.effects import EFFECTS
 STRONG, WEAK = 800.0, 100.0
 # A single effect must come out exactly or in a tie in this share of its sets.
 EVERY_EFFECT = 0.75
+Test = Callable[[Any], bool]
 
 
 class Sets(NamedTuple):
@@ -71,52 +72,48 @@ class Goal(NamedTuple):
         return f"{self.what:52} {self.required:18} {self.reached:28} {outcome}".rstrip()
 
 
-def _at_least(what: str, found: Share, least: float) -> Goal:
+def _at_least(what: str, records: Sequence[Any], passes: Test, least: float) -> Goal:
+    found = share(records, passes)
     return Goal(what, f">= {least:.0%}", str(found), found.value >= least if found.n else None)
 
 
-def _at_most(what: str, found: Share, most: float) -> Goal:
+def _at_most(what: str, records: Sequence[Any], passes: Test, most: float) -> Goal:
+    found = share(records, passes)
     return Goal(what, f"<= {most:.0%}", str(found), found.value <= most if found.n else None)
 
 
-def _listed(what: str, found: Share) -> Goal:
+def _listed(what: str, records: Sequence[Any], passes: Test) -> Goal:
     """A line that nothing is required of."""
-    return Goal(what, "", str(found), None)
+    return Goal(what, "", str(share(records, passes)), None)
 
 
 def goals(sets: Sets) -> list[Goal]:
     """All lines of the table."""
-    clean = share(sets.of("clean"), lambda record: bool(record["causes"]))
+    clean = share(sets.of("clean"), judge.names_any)
     unknown, two, three = sets.of("unknown"), sets.of("poor"), sets.of("added")
     imperfect, errors = sets.of("imperfect"), sets.of("errors-only")
     return [
         Goal("nothing hidden: a cause named", "at most 1", str(clean), clean.hits <= 1 if clean.n else None),
-        _at_least("one effect, excess >= 800: right family", share(sets.strong, judge.right_family), 0.95),
-        _at_least("  exact, or in a tie that contains it", share(sets.strong, judge.exact_or_tied), 0.95),
-        _at_least("  exact", share(sets.strong, judge.exact), 0.85),
+        _at_least("one effect, excess >= 800: right family", sets.strong, judge.right_family, 0.95),
+        _at_least("  exact, or in a tie that contains it", sets.strong, judge.exact_or_tied, 0.95),
+        _at_least("  exact", sets.strong, judge.exact, 0.85),
         _every_effect(sets.strong),
-        _at_least("one effect, excess 100 to 800: truth reported", share(sets.weak, judge.reported), 0.85),
-        _at_most("  wrong `named`", share(sets.weak, judge.wrongly_named), 0.02),
-        _at_least("two effects: exact pair", share(sets.of("pair"), judge.exact), 0.85),
-        _at_least("effect that is no candidate: abstains", share(unknown, judge.abstains), 0.90),
-        _at_most("  wrong `named`", share(unknown, judge.wrongly_named), 0.05),
-        _at_least(
-            "the paper's two tests: abstains, recommends a test", share(two, judge.asks_for_test), 0.95
-        ),
-        _at_least("these and the recommended test: truth named", share(three, judge.exact), 0.80),
-        _at_least(
-            "small errors, one effect: it leads the ladder", share(imperfect, judge.leads_ladder), 0.90
-        ),
-        _at_least("  named, alone or with errors that are there", share(imperfect, judge.names_cause), 0.80),
-        _listed("  named alone", share(imperfect, judge.exact)),
-        _at_most("  wrong `named`", share(imperfect, judge.names_another_cause), 0.03),
-        _at_least("small errors only: nothing missing", share(errors, judge.nothing_missing), 0.90),
-        _listed("  an error that is there named", share(errors, judge.names_what_is_there)),
-        _listed("  they leave more than is allowed for", share(errors, judge.errs_by_more)),
-        _at_least(
-            "rig of any size: exact or in a tie", share(sets.of("random-rig"), judge.exact_or_tied), 0.95
-        ),
-        _at_least("oscillator: exact or in a tie", share(sets.of("oscillator"), judge.exact_or_tied), 0.95),
+        _at_least("one effect, excess 100 to 800: truth reported", sets.weak, judge.reported, 0.85),
+        _at_most("  wrong `named`", sets.weak, judge.wrongly_named, 0.02),
+        _at_least("two effects: exact pair", sets.of("pair"), judge.exact, 0.85),
+        _at_least("effect that is no candidate: abstains", unknown, judge.abstains, 0.90),
+        _at_most("  wrong `named`", unknown, judge.wrongly_named, 0.05),
+        _at_least("the paper's two tests: abstains, recommends a test", two, judge.asks_for_test, 0.95),
+        _at_least("these and the recommended test: truth named", three, judge.exact, 0.80),
+        _at_least("small errors, one effect: it leads the ladder", imperfect, judge.leads_ladder, 0.90),
+        _at_least("  named, alone or with errors that are there", imperfect, judge.names_cause, 0.80),
+        _listed("  named alone", imperfect, judge.exact),
+        _at_most("  wrong `named`", imperfect, judge.names_another_cause, 0.03),
+        _at_least("small errors only: nothing missing", errors, judge.nothing_missing, 0.90),
+        _listed("  an error that is there named", errors, judge.names_what_is_there),
+        _listed("  they leave more than is allowed for", errors, judge.errs_by_more),
+        _at_least("rig of any size: exact or in a tie", sets.of("random-rig"), judge.exact_or_tied, 0.95),
+        _at_least("oscillator: exact or in a tie", sets.of("oscillator"), judge.exact_or_tied, 0.95),
         *(line for kind in TIME_KINDS for line in _of_time_records(kind, sets.of(kind))),
         _coverage(sets.exact_singles),
         *_gain(sets.exact_singles),
@@ -129,9 +126,9 @@ def _of_time_records(kind: str, records: Sequence[Record]) -> list[Goal]:
     hidden = [record for record in records if record["truth"]]
     strong = [record for record in hidden if judge.excess(record) >= STRONG]
     return [
-        _at_least(f"{kind}, excess >= 800: exact or in a tie", share(strong, judge.exact_or_tied), 0.95),
-        _at_most("  wrong `named`", share(hidden, judge.wrongly_named), 0.03),
-        _at_most("  nothing hidden: a cause", share(clean, lambda record: bool(record["causes"])), 0.0),
+        _at_least(f"{kind}, excess >= 800: exact or in a tie", strong, judge.exact_or_tied, 0.95),
+        _at_most("  wrong `named`", hidden, judge.wrongly_named, 0.03),
+        _at_most("  nothing hidden: a cause", clean, judge.names_any, 0.0),
     ]
 
 
@@ -156,10 +153,7 @@ def _gain(right: Sequence[Record]) -> list[Goal]:
         return [Goal("held-out tests (single effects, exact)", ">= 80 %", "no sets", None)]
     removed = median(record["gain"]["excess_removed"] for record in gains)
     with_interval = [r for r in gains if r["gain"]["ci95"] and r["gain_in_truth"] is not None]
-    covers = share(
-        with_interval, lambda r: r["gain"]["ci95"][0] <= r["gain_in_truth"] <= r["gain"]["ci95"][1]
-    )
     return [
         Goal("held-out tests: median excess removed", ">= 80 %", f"{removed:.1%}", removed >= 0.8),
-        _at_least("  its interval covers the gain without noise", covers, 0.90),
+        _at_least("  its interval covers the gain without noise", with_interval, judge.gain_covered, 0.90),
     ]

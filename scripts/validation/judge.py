@@ -25,6 +25,11 @@ def causes(record: Record) -> list[str]:
     return sorted(cause["effect"] for cause in record["causes"])
 
 
+def names_any(record: Record) -> bool:
+    """Whether any cause is listed."""
+    return bool(record["causes"])
+
+
 def answer(record: Record) -> list[str]:
     """Effects that the verdict names; none where it abstains."""
     return causes(record) if record["verdict"] in NAMING else []
@@ -103,6 +108,12 @@ def families(names: list[str]) -> list[str]:
 def right_family(record: Record) -> bool:
     """Whether the causes are of the families of the truth."""
     return bool(causes(record)) and families(causes(record)) == families(record["truth"])
+
+
+def gain_covered(record: Record) -> bool:
+    """Whether the 95 % interval of the gain on held-out tests contains the gain without noise."""
+    low, high = record["gain"]["ci95"]
+    return bool(low <= record["gain_in_truth"] <= high)
 
 
 def coverage(record: Record) -> list[tuple[str, bool]]:
