@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from validation import ranges, strength, unmodelled
+from validation import ranges, rigs, strength, unmodelled
 from validation.benches import SAME_NOISE, draw_bench
 from validation.draft import Draft
 from validation.sets import DataSet
@@ -35,7 +35,7 @@ def _hide(draft: Draft, effect: str, target: float, random: np.random.Generator)
     found = strength.reach(target, lambda s: draft.excess_of({**others, effect: path(s)}, others))
     if found is None:
         return False
-    draft.hidden[effect] = {key: float(f"{value:.6g}") for key, value in path(found).items()}
+    draft.hidden[effect] = rigs.rounded(path(found))
     return draft.presses()
 
 

@@ -122,7 +122,7 @@ def any_size(random: np.random.Generator) -> Rig:
         "column_angle_deg": random.uniform(*COLUMN_ANGLE_DEG),
     }
     friction = {"threshold_velocity_mm_per_s": units.ratio(VELOCITY)}
-    return Rig({"suspension": _rounded(suspension), "friction": _rounded(friction)})
+    return Rig({"suspension": rounded(suspension), "friction": rounded(friction)})
 
 
 def oscillator(index: int, random: np.random.Generator) -> Rig:
@@ -131,15 +131,21 @@ def oscillator(index: int, random: np.random.Generator) -> Rig:
     contact, excitation = KINDS[(index + index // len(KINDS)) % len(KINDS)]
     mass, omega = logarithmic(MASS_KG, random), 2.0 * pi * logarithmic(FREQUENCY_HZ, random)
     normal_force = mass * GRAVITY * logarithmic(FRICTION, random)
-    own = {
+    numbers = on_spring(mass, omega, random.uniform(*DAMPING), normal_force)
+    rig = Rig({"oscillator": {**numbers, "contact": contact}}, excitation)
+    threshold = {"threshold_velocity_mm_per_s": 1e3 * THRESHOLD * rig.units.length / rig.units.time}
+    return Rig({**rig.sections, "friction": rounded(threshold)}, excitation)
+
+
+def on_spring(mass: float, omega: float, damping_ratio: float, normal_force: float) -> dict[str, float]:
+    """Keys of a mass (kg) on a spring, by its natural frequency (rad/s) and normal force (N)."""
+    numbers = {
         "mass_kg": mass,
         "spring_N_per_mm": 1e-3 * mass * omega**2,
-        "damping_N_s_per_m": 2.0 * random.uniform(*DAMPING) * mass * omega,
+        "damping_N_s_per_m": 2.0 * damping_ratio * mass * omega,
         "normal_force_N": normal_force,
     }
-    rig = Rig({"oscillator": {**_rounded(own), "contact": contact}}, excitation)
-    threshold = {"threshold_velocity_mm_per_s": 1e3 * THRESHOLD * rig.units.length / rig.units.time}
-    return Rig({**rig.sections, "friction": _rounded(threshold)}, excitation)
+    return rounded(numbers)
 
 
 def frequency_ratio(rig: Rig) -> float:
@@ -156,5 +162,6 @@ def _about_one(random: np.random.Generator) -> float:
     return float(np.exp(random.uniform(-SPREAD, SPREAD)))
 
 
-def _rounded(numbers: Mapping[str, float]) -> dict[str, float]:
+def rounded(numbers: Mapping[str, float]) -> dict[str, float]:
+    """The numbers with six digits, as a config states them."""
     return {key: float(f"{value:.6g}") for key, value in numbers.items()}

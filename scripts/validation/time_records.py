@@ -38,6 +38,8 @@ BENCH_HZ, BENCH_TRAVEL_MM, BENCH_IMPOSED_MM, BENCH_BASE_MM = 13.6, 1.0, 0.15, 0.
 # Of an oscillator: natural frequency (Hz), damping ratio, and friction over the spring's force at the largest
 # motion.
 FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
+# Its coefficients of friction.
+STATIC, DYNAMIC = 0.36, 0.3
 # Largest motion (mm) of a mass (kg), noise over the rms of a channel.
 TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
 # Change of the response to the first release or loop over that response, and attempts to reach it.
@@ -99,7 +101,7 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
         strength = reach(wanted, lambda s: change({effect: path(s)}))
         if strength is None:
             return None
-        hidden[effect] = {key: float(f"{value:.6g}") for key, value in path(strength).items()}
+        hidden[effect] = rigs.rounded(path(strength))
     others = [test for test in planned if test.kind in (TRANSIENT, LOOP)]
     if any(_response(rig, law, hidden, test, sampling_hz) is None for test in others):
         return None
@@ -157,18 +159,13 @@ def _suspension(random: np.random.Generator) -> Drawn:
 def _oscillator(random: np.random.Generator) -> Drawn:
     frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
     mass, omega = rigs.logarithmic(MASS_KG, random), 2.0 * pi * frequency
-    stiffness = mass * omega**2
-    own = {
-        "mass_kg": mass,
-        "spring_N_per_mm": 1e-3 * stiffness,
-        "damping_N_s_per_m": 2.0 * rigs.logarithmic(DAMPING, random) * mass * omega,
-        "normal_force_N": rigs.logarithmic(FRICTION, random) * 1e-3 * travel * stiffness / 0.3,
-    }
-    rounded = {key: float(f"{value:.6g}") for key, value in own.items()}
-    threshold = float(f"{rigs.THRESHOLD * travel * omega:.6g}")
+    damping, friction = rigs.logarithmic(DAMPING, random), rigs.logarithmic(FRICTION, random)
+    normal_force = friction * 1e-3 * travel * mass * omega**2 / DYNAMIC
+    coefficients = {"static": STATIC, "dynamic": DYNAMIC}
+    threshold = {"threshold_velocity_mm_per_s": rigs.THRESHOLD * travel * omega}
     sections: rigs.Sections = {
-        "oscillator": {**rounded, "contact": "base"},
-        "friction": {"static": 0.36, "dynamic": 0.3, "threshold_velocity_mm_per_s": threshold},
+        "oscillator": {**rigs.on_spring(mass, omega, damping, normal_force), "contact": "base"},
+        "friction": {**coefficients, **rigs.rounded(threshold)},
     }
     return Drawn(Rig(sections), frequency, travel, travel, 0.25 * travel)
 
