@@ -1,41 +1,40 @@
 """The data sets of a campaign. What a set hides depends on its seed, kind and index only."""
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-# Sets of each kind in a full campaign:
-#   clean           nothing is hidden
-#   strong, weak    one effect
-#   pair            two effects of different families
-#   unknown         an effect that is not among the candidates
-#   poor            one effect, in the paper's two tests of unknown amplitude
-#   added           a poor set with the test that its diagnosis recommends
-#   imperfect       one effect, and small errors of everything; a model error is allowed for
-#   errors-only     small errors of everything, and no effect
-#   random-rig      one effect on a rig of any size
-#   oscillator      one effect on a mass on a spring, whose input is recorded
-#   transient       one effect, or none, in releases and a sweep; see time_records.py
-#   loop            the same in hysteresis loops
-#   mixed           the same in steady tests, releases and a loop together
-SIZES = {
-    **{"clean": 60, "strong": 84, "weak": 42, "pair": 30, "unknown": 30, "poor": 20, "added": 20},
-    **{"imperfect": 60, "errors-only": 20, "random-rig": 40, "oscillator": 40},
-    **{"transient": 40, "loop": 40, "mixed": 20},
+
+class Kind(NamedTuple):
+    """Number of sets of a kind in a full campaign, and the excess chi-squared that they are drawn for.
+
+    That of the base model, log-uniform. The excess that the diagnosis reports is the one that counts; the
+    margins to its limits, 800 and 100, allow for noise.
+    """
+
+    size: int
+    excess: tuple[float, float] | None = None
+
+
+STRONG = (1000.0, 30_000.0)
+ALL = {
+    "clean": Kind(60),  # nothing is hidden
+    "strong": Kind(84, STRONG),  # one effect
+    "weak": Kind(42, (150.0, 700.0)),  # one effect
+    "pair": Kind(30, (1100.0, 30_000.0)),  # two effects of different families
+    "unknown": Kind(30, STRONG),  # an effect that is not among the candidates
+    "poor": Kind(20, (150.0, 5000.0)),  # one effect, in the paper's two tests of unknown amplitude
+    "added": Kind(20),  # a poor set with the test that its diagnosis recommends
+    "imperfect": Kind(60, STRONG),  # one effect, and small errors of everything, which are allowed for
+    "errors-only": Kind(20),  # small errors of everything, and no effect
+    "random-rig": Kind(40, STRONG),  # one effect on a rig of any size
+    "oscillator": Kind(40, STRONG),  # one effect on a mass on a spring, whose input is recorded
+    "transient": Kind(40),  # one effect, or none, in releases and a sweep; see time_records.py
+    "loop": Kind(40),  # the same in hysteresis loops
+    "mixed": Kind(20),  # the same in steady tests, releases and a loop together
 }
-KINDS = tuple(SIZES)
-# Range of the excess chi-squared of the base model that a set is drawn for, log-uniformly. The excess that
-# the diagnosis reports is the one that counts; the margins to its limits, 800 and 100, allow for noise.
-TARGETS = {
-    "strong": (1000.0, 30_000.0),
-    "weak": (150.0, 700.0),
-    "pair": (1100.0, 30_000.0),
-    "unknown": (1000.0, 30_000.0),
-    "poor": (150.0, 5000.0),
-    "imperfect": (1000.0, 30_000.0),
-    "random-rig": (1000.0, 30_000.0),
-    "oscillator": (1000.0, 30_000.0),
-}
+KINDS = tuple(ALL)
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,9 @@ class DataSet:
 
     def draw_target(self, random: np.random.Generator) -> float:
         """Draw the excess chi-squared that the set should have."""
-        low, high = np.log(TARGETS[self.kind])
+        limits = ALL[self.kind].excess
+        assert limits is not None
+        low, high = np.log(limits)
         return float(np.exp(random.uniform(low, high)))
 
 
@@ -75,7 +76,7 @@ def chains(seed: int, size: float, only: tuple[str, ...] = ()) -> list[list[Data
     The kinds alternate, so that an interrupted campaign is a sample of all of them.
     """
     kinds = only or KINDS
-    wanted = {kind: max(1, round(SIZES[kind] * size)) for kind in kinds}
+    wanted = {kind: max(1, round(ALL[kind].size * size)) for kind in kinds}
     if "added" in kinds:
         wanted["poor"] = max(wanted.get("poor", 0), wanted["added"])
     placed = []

@@ -46,7 +46,7 @@ def test_a_smaller_campaign_has_sets_of_the_full_one():
     whole = {one for chain in sets.chains(3, 1.0) for one in chain}
     part = {one for chain in sets.chains(3, 0.1) for one in chain}
     assert part < whole
-    assert len(whole) == sum(sets.SIZES.values())
+    assert len(whole) == sum(kind.size for kind in sets.ALL.values())
     other = {one for chain in sets.chains(4, 1.0) for one in chain}
     assert not whole & other
 
