@@ -36,11 +36,11 @@ lint: install  ## linter and types
 check: lint test acceptance  ## linter, types and all tests
 
 reproduce: install  ## run the paper's 1,800 cases and check its claims
-	$(BIN)/wedgesweep reproduce -o $(OUT)/reproduction
+	PYTHONPATH=scripts $(BIN)/python -m reproduce -o $(OUT)/reproduction
 
 validate: install  ## hide effects in data, diagnose them, compare with the truth (hours; rerun to resume)
 	$(BIN)/python -m pytest -q tests/validation/diagnoses.py
-	$(BIN)/python -m wedgesweep.validation --output $(OUT)/validation
+	PYTHONPATH=scripts $(BIN)/python -m validation --output $(OUT)/validation
 
 torture: install  ## 100,000 hostile inputs and 200 kills (hours)
 	$(BIN)/python scripts/fuzz.py

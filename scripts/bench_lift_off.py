@@ -14,11 +14,11 @@ from time import process_time
 
 import compare_siconos
 import numpy as np
+from reproduce.runs import changed
 
 from wedgesweep import config
 from wedgesweep.config import Case
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.reproduce.runs import changed
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases

@@ -12,9 +12,9 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
+from reproduce.runs import UNILATERAL, changed
 
 from wedgesweep import config
-from wedgesweep.reproduce.runs import UNILATERAL, changed
 from wedgesweep.solvers.period_map import memory, prepared, run_periods
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from reproduce.runs import UNILATERAL, changed
+from reproduce.suspension import changes_by_lift_off
 
 from wedgesweep import config
 from wedgesweep.config import Config
-from wedgesweep.reproduce import joints
-from wedgesweep.reproduce.runs import UNILATERAL, changed
 from wedgesweep.sweep import variables
 from wedgesweep.sweep.cases import solve_cases
 
@@ -50,7 +50,7 @@ def main() -> None:
     for law in study.sweep.friction_law:
         for beta in FREQUENCIES:
             print(row(law, beta, held, opens))
-    for name, number in joints.changes(held, opens).items():
+    for name, number in changes_by_lift_off(held, opens).items():
         print(f"{name}: {number:.3g}")
 
 

@@ -5,11 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from wedgesweep import reproduce as reproduction
-from wedgesweep import response
-from wedgesweep.figures import hypotheses as picture
-from wedgesweep.reproduce import (
+from reproduce import __main__ as reproduction
+from reproduce import (
     chandiramani,
     chandiramani_page,
     discrimination,
@@ -17,7 +14,8 @@ from wedgesweep.reproduce import (
     scenarios,
     search,
 )
-from wedgesweep.reproduce.hypotheses import (
+from reproduce import figure as picture
+from reproduce.hypotheses import (
     COULOMB,
     HYPOTHESES,
     INDEPENDENT_INPUTS,
@@ -25,9 +23,11 @@ from wedgesweep.reproduce.hypotheses import (
     STATIC_DYNAMIC,
     Law,
 )
-from wedgesweep.reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
-from wedgesweep.reproduce.scenarios import TIGHT, Scenario
-from wedgesweep.reproduce.search import Budget
+from reproduce.observations import OBSERVATIONS, OF_TESTS, Recording
+from reproduce.scenarios import TIGHT, Scenario
+from reproduce.search import Budget
+
+from wedgesweep import response
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 
@@ -367,7 +367,7 @@ def test_an_investigation_searches_every_scenario_and_reports_every_hypothesis(o
 def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     monkeypatch.setattr(chandiramani, "investigate", lambda n_jobs, report: outcome[0])
     told = []
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is False
+    assert reproduction.reproduce(tmp_path, 1, told.append, None, "chandiramani") is False
     content = json.loads((tmp_path / "chandiramani.json").read_text())
     text = (tmp_path / "chandiramani.md").read_text()
     for hypothesis in content["hypotheses"]:
@@ -378,7 +378,7 @@ def test_report_of_an_investigation(outcome, monkeypatch, tmp_path):
     assert not list(tmp_path.glob(".*"))
     found = {each["hypothesis"]: each["satisfied"] for each in content["hypotheses"]}
     monkeypatch.setattr(chandiramani, "RECORDED", found)
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="chandiramani") is True
+    assert reproduction.reproduce(tmp_path, 1, told.append, None, "chandiramani") is True
 
 
 def test_the_figure_leaves_out_what_has_no_response():
@@ -390,7 +390,7 @@ def test_the_figure_leaves_out_what_has_no_response():
         "slow": {"peak_to_peak": 0.03},
         "fast": {"peak_to_peak": None},
     }
-    figure = picture.draw([20.0, 30.0, 40.0], [hypothesis], observations.LEVELS, 1.5, (33.0, 37.0))
+    figure = picture.draw([20.0, 30.0, 40.0], [hypothesis])
     drawn = [line.get_ydata() for line in figure.axes[0].lines]
     for expected in ([0.1, np.nan, picture.LEAST], [0.03, np.nan]):
         assert any(np.array_equal(each, expected, equal_nan=True) for each in drawn)

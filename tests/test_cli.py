@@ -549,22 +549,6 @@ def test_a_sweep_without_waveforms(here):
     assert xr.load_dataset("one.nc").sizes["phase"] == 64
 
 
-def test_reproduce_exit_code(here, monkeypatch):
-    from wedgesweep import reproduce
-
-    def fake(as_recorded):
-        def run_all(directory, n_jobs, report, progress, only):
-            report(f"{directory.name} on {n_jobs}")
-            return as_recorded
-
-        return run_all
-
-    for as_recorded, code in ((True, 0), (False, 1)):
-        monkeypatch.setattr(reproduce, "reproduce", fake(as_recorded), raising=False)
-        told = invoke("reproduce", "-o", "new/folder", "--n-jobs", 3, code=code)
-        assert told.endswith("folder on 3\n")
-
-
 def records(*statuses):
     return np.array([(status,) for status in statuses], [("status", "i1")])
 

@@ -10,13 +10,11 @@ from wedgesweep import equations
 from wedgesweep.cli import compiling
 from wedgesweep.effects import EFFECTS, REGISTERED
 from wedgesweep.equations import latex
-from wedgesweep.reproduce.claims import CLAIMS, RECORDED, RECORDED_UNILATERAL
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
 PHYSICS = ROOT / "docs" / "physics.md"
 PERFORMANCE = ROOT / "docs" / "performance.md"
-PAPER = ROOT / "docs" / "paper.md"
 
 
 def anchors(page):
@@ -71,20 +69,6 @@ def test_steady_responses_are_those_of_the_test_data():
         (row["friction_law"], *(row[key] for key in keys), row["minimum_normal_force_N"]) for row in data
     }
     assert {(row[0], *map(float, row[1:])) for row in rows("**Steady responses**")} == expected
-
-
-def test_claims_are_those_that_reproduce_checks():
-    page = {cells[0]: cells[1:] for cells in rows("## Claim by claim", PAPER)}
-    for claim in CLAIMS:
-        statement, paper, _, verdict = page[str(claim.number)]
-        assert (statement, paper, verdict) == (claim.statement, claim.paper, f"**{RECORDED[claim.number]}**")
-    assert len(page) == len(CLAIMS)
-
-
-def test_claims_with_unilateral_joints_are_those_that_reproduce_checks():
-    page = {cells[0]: cells[-1] for cells in rows("No verdict changes with joints", PAPER)}
-    assert page == {str(number): f"**{verdict}**" for number, verdict in RECORDED_UNILATERAL.items()}
-    assert all(RECORDED[number] == verdict for number, verdict in RECORDED_UNILATERAL.items())
 
 
 def test_speeds_are_those_of_the_bench():

@@ -9,8 +9,16 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parent.parent / "wedgesweep"
-FILES = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
+ROOT = Path(__file__).parent.parent
+PACKAGE, SCRIPTS = ROOT / "wedgesweep", ROOT / "scripts"
+STUDIES = ("reproduce", "validation")
+
+
+def files_of(root, folder="."):
+    return {path.relative_to(root).as_posix(): path for path in sorted((root / folder).rglob("*.py"))}
+
+
+FILES = files_of(PACKAGE)
 
 NUMERICS = (
     *("compiled.py", "inner_code.py", "outcome.py", "natural_units.py", "quantity.py"),
@@ -18,7 +26,7 @@ NUMERICS = (
     *("friction/", "effects/", "hybrid/", "systems/", "solvers/", "response.py", "simulate.py"),
 )
 ABOVE = (
-    *("sweep", "config", "figures", "reproduce", "measured", "synthesize", "cli", "report"),
+    *("sweep", "config", "figures", "measured", "synthesize", "cli", "report"),
     "diagnosis_result",
 )
 MECHANICS = ("friction", "effects", "excitation", "sampled_input")
@@ -40,25 +48,22 @@ FORBIDDEN = {
         *("xarray", "wedgesweep.sweep.run", "wedgesweep.sweep.batch"),
         "wedgesweep.solvers.event_driven",
     ),
-    ("sweep/",): tuple(
-        f"wedgesweep.{name}" for name in ("figures", "report", "diagnose", "measured", "reproduce", "cli")
-    ),
+    ("sweep/",): tuple(f"wedgesweep.{name}" for name in ("figures", "report", "diagnose", "measured", "cli")),
     tuple(
         f"sweep/{name}.py" for name in ("variables", "dataset", "journal", "cases", "batch", "continuation")
     ): ("wedgesweep.sweep.run",),
     ("figures/",): tuple(f"wedgesweep.{name}" for name in ("sweep", "report", "diagnose", "cli")),
     ("report/", "diagnosis_result.py"): ("wedgesweep.sweep.run", "wedgesweep.diagnose", "wedgesweep.cli"),
+    ("formatting.py",): ("wedgesweep", "numpy"),
     ("validation/",): ("wedgesweep.diagnose", "wedgesweep.solvers", "wedgesweep.cli"),
-    ("validation/simulator.py", "formatting.py"): ("wedgesweep",),
-    ("formatting.py",): ("numpy",),
+    ("validation/simulator.py",): ("wedgesweep",),
 }
 ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/", "api.py"),  # there for annotations only
     "joblib": (
         *("sweep/backend.py", "sweep/cluster.py", "sweep/workers.py", "sweep/verification.py"),
-        *("synthesize/", "validation/", "cli/"),
-        "reproduce/chandiramani.py",
+        *("synthesize/", "cli/"),
     ),
     "distributed": ("sweep/cluster.py",),
     "wedgesweep.cli": ("cli/", "__main__.py"),
@@ -84,11 +89,17 @@ def imports_any(path, modules):
 
 @pytest.mark.parametrize("files", FORBIDDEN, ids=lambda files: files[0])
 def test_nothing_imports_what_is_above_it(files):
-    checked = [name for name in FILES if name.startswith(files)]
+    every = FILES | files_of(SCRIPTS, "validation")
+    checked = [name for name in every if name.startswith(files)]
     assert checked
-    assert {name: imports_any(FILES[name], FORBIDDEN[files]) for name in checked} == {
+    assert {name: imports_any(every[name], FORBIDDEN[files]) for name in checked} == {
         name: [] for name in checked
     }
+
+
+def test_the_package_imports_no_study():
+    assert all(files_of(SCRIPTS, study) for study in STUDIES)
+    assert {name: found for name, path in FILES.items() if (found := imports_any(path, STUDIES))} == {}
 
 
 @pytest.mark.parametrize("module", ONLY_IN)
@@ -146,7 +157,7 @@ def test_only_the_command_line_prints_or_exits():
     for name, path in FILES.items():
         nodes = ast.walk(ast.parse(path.read_text()))
         used = {getattr(node, "id", getattr(node, "attr", "")) for node in nodes} & words
-        entry = name.startswith(("cli/", "__main__.py", "validation/__main__.py"))
+        entry = name.startswith(("cli/", "__main__.py"))
         assert entry or not used, f"{name}: {used}"
 
 

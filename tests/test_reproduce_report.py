@@ -1,17 +1,17 @@
 """Reproduction as a whole: what is run, what is written, and when it disagrees with the record."""
 
 import json
+from dataclasses import replace
 from math import pi
 
 import pytest
+from reproduce import __main__ as reproduction
+from reproduce import claims, report
+from reproduce import runs as running
+from reproduce.findings import HOLDS, below
 
 from tests import fixture_reproduction
 from tests.fixture_reproduction import HERTZ, SCHEMA
-from wedgesweep import reproduce as reproduction
-from wedgesweep.config import ConfigError
-from wedgesweep.reproduce import claims, page
-from wedgesweep.reproduce import runs as running
-from wedgesweep.reproduce.findings import HOLDS, below
 
 
 @pytest.fixture(scope="module")
@@ -32,29 +32,42 @@ def runs(patch):
 def directory(runs, tmp_path_factory):
     """Directory with the reports of these runs."""
     made = tmp_path_factory.mktemp("reproduction")
-    reproduction.reproduce(made, 1, lambda line: None, only="claims")
+    reproduction.reproduce(made, 1, lambda line: None, lambda records, total: None, "claims")
     return made
 
 
 def test_recorded_verdicts_decide_the_outcome(runs, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduction, "FIGURES", {})
     told = []
-    found = {each.claim.number: each.verdict for each in claims.check(runs)}
-    lifting = {each.claim.number: each.unilateral.verdict for each in claims.check(runs) if each.unilateral}
-    monkeypatch.setattr(claims, "RECORDED", found)
-    monkeypatch.setattr(claims, "RECORDED_UNILATERAL", lifting)
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is True
-    told.clear()
-    monkeypatch.setattr(claims, "RECORDED", found | {2: HOLDS})
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is False
+    recorded = [
+        replace(
+            each.claim,
+            recorded=each.finding.verdict,
+            unilateral=each.unilateral and each.unilateral.verdict,
+        )
+        for each in claims.check(runs)
+    ]
+
+    def agrees(number=None, **verdict):
+        told.clear()
+        changed = [replace(each, **verdict) if each.number == number else each for each in recorded]
+        monkeypatch.setattr(claims, "CLAIMS", changed)
+        return reproduction.reproduce(tmp_path, 1, told.append, lambda records, total: None, "claims")
+
+    assert agrees() is True
+    assert agrees(2, recorded=HOLDS) is False
     assert "on record: holds" in told[1]
     text = (tmp_path / "reproduction.md").read_text()
     assert "**Claim 2 is recorded as holds, these runs say contradicted.**" in text
-    monkeypatch.setattr(claims, "RECORDED", found)
-    monkeypatch.setattr(claims, "RECORDED_UNILATERAL", lifting | {3: HOLDS})
-    assert reproduction.reproduce(tmp_path, 1, told.append, only="claims") is False
+    assert agrees(3, unilateral=HOLDS) is False
     text = (tmp_path / "reproduction.md").read_text()
     assert "**Claim 3 with unilateral joints is recorded as holds, these runs say contradicted.**" in text
+
+
+def test_the_exit_code_says_whether_all_verdicts_are_as_recorded(monkeypatch):
+    for as_recorded, code in ((True, 0), (False, 1)):
+        monkeypatch.setattr(reproduction, "reproduce", lambda *given, agrees=as_recorded, **more: agrees)
+        assert reproduction.main(["--n-jobs", "1"]) == code
 
 
 def test_the_report_has_every_claim_and_the_figures(directory):
@@ -64,7 +77,7 @@ def test_the_report_has_every_claim_and_the_figures(directory):
     for claim in content["claims"]:
         assert f"| {claim['number']} | {claim['claim']} | {claim['paper']} |" in text
         assert f"### {claim['number']}. {claim['claim']}: {claim['verdict']}" in text
-    for kind in page.FIGURES:
+    for kind in report.FIGURES:
         assert (directory / f"paper-{kind}.png").stat().st_size > 10_000
         assert f"](paper-{kind}.png)" in text
 
@@ -128,11 +141,6 @@ def test_an_unfinished_run_of_another_version_gives_way(tmp_path, configs):
     runs, told = obtain(tmp_path, configs)
     assert "running it again" in "".join(told)
     assert runs.paper.ds["amplitude"].values.tolist() == [6e-4]
-
-
-def test_missing_configs_are_named(tmp_path):
-    with pytest.raises(ConfigError, match="nowhere: no such folder"):
-        obtain(tmp_path, tmp_path / "nowhere")
 
 
 def test_the_checkout_has_the_configs_with_the_cases_that_the_claims_need():

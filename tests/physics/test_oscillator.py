@@ -4,10 +4,10 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
+from reproduce.published import measured
 
 from tests import marks
 from wedgesweep import excitation, response
-from wedgesweep.reproduce.stick_slip_cycle import measured
 from wedgesweep.solvers import event_driven, radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.oscillator import parameters

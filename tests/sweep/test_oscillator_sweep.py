@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reproduce import published
 
 from wedgesweep import config, figures
 from wedgesweep.config import ConfigError
-from wedgesweep.reproduce import published
 from wedgesweep.sweep.run import Sweep
 
 CONFIGS = Path(__file__).parents[2] / "configs"

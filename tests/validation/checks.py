@@ -2,10 +2,10 @@
 
 import pytest
 import xarray as xr
+from validation.judge import NAMING
 
 from tests.validation.laboratory import diagnose, make
 from wedgesweep.diagnosis_result import DATASET
-from wedgesweep.validation.judge import NAMING
 
 # True numbers lie within twice the 95 % interval (4 standard deviations).
 WIDER = 2.0

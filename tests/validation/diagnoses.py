@@ -4,6 +4,7 @@ They take a quarter of an hour, and run in ``make validate``, not with the tests
 """
 
 import pytest
+from validation.judge import ABSTAINING
 
 from tests.validation import checks, examples
 from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, Specimen, diagnose, make
@@ -11,7 +12,6 @@ from wedgesweep import measured
 from wedgesweep.diagnose import diagnosis, work
 from wedgesweep.diagnose.search import WORK_PER_TEST
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation.judge import ABSTAINING
 
 UNCERTAIN = {"friction_level": 0.07}
 STRONG = (

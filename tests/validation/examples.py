@@ -3,8 +3,9 @@
 import json
 from pathlib import Path
 
+from validation.judge import ABSTAINING, NAMING
+
 from tests.validation.laboratory import diagnose
-from wedgesweep.validation.judge import ABSTAINING, NAMING
 
 SHARED = Path(__file__).parents[3] / "shared"
 EXAMPLES, HARD_EXAMPLES = SHARED / "blind-examples", SHARED / "hard-examples"

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from validation import hiding, judge, ranges, response, rigs, run, sets, strength
+from validation.__main__ import main
+from validation.judge import Share
+from validation.time_records import TIME_KINDS
 
 from tests.measured.test_steadiness import UNSTEADY, only_fault, written
 from wedgesweep.effects import EFFECTS
-from wedgesweep.validation import hiding, judge, ranges, response, rigs, run, sets, strength
-from wedgesweep.validation.__main__ import main
-from wedgesweep.validation.shares import Share
-from wedgesweep.validation.time_records import TIME_KINDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 RECORDS, RESULTS = DOCS / "validation-records.jsonl", DOCS / "validation.md"
@@ -46,7 +46,7 @@ def test_a_smaller_campaign_has_sets_of_the_full_one():
     whole = {one for chain in sets.chains(3, 1.0) for one in chain}
     part = {one for chain in sets.chains(3, 0.1) for one in chain}
     assert part < whole
-    assert len(whole) == sum(sets.SIZES.values())
+    assert len(whole) == sum(kind.size for kind in sets.ALL.values())
     other = {one for chain in sets.chains(4, 1.0) for one in chain}
     assert not whole & other
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from validation import imperfect, ranges, rigs
 
 from wedgesweep.natural_units import FREQUENCY
-from wedgesweep.validation import imperfect, ranges, rigs
 
 
 def test_a_rig_of_any_size_is_in_the_ranges():

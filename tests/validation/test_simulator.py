@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from validation import response, rigs, simulator
 
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.validation import response, rigs, simulator
 
 PHASES, SETTLE = 128, 60
 

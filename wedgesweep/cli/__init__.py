@@ -13,16 +13,14 @@ from wedgesweep.cli.export import export
 from wedgesweep.cli.failure import Commands
 from wedgesweep.cli.messages import with_verbosity
 from wedgesweep.cli.plot import plot
-from wedgesweep.cli.reproduce import reproduce
 from wedgesweep.cli.run import run
 from wedgesweep.cli.status import status
 from wedgesweep.cli.synthesize import synthesize
 from wedgesweep.cli.warm_up import warm_up
 
 EPILOG = """\
-Exit codes: 0 success; 1 some cases failed, Radau disagrees (run --verify) or a
-verdict differs from the recorded one (reproduce); 2 bad input; 130 interrupted
-(129 by SIGHUP, 143 by SIGTERM).
+Exit codes: 0 success; 1 some cases failed, or Radau disagrees (run --verify);
+2 bad input; 130 interrupted (129 by SIGHUP, 143 by SIGTERM).
 
 Shell completion: add eval "$(_WEDGESWEEP_COMPLETE=bash_source wedgesweep)" to ~/.bashrc (zsh_source and
 fish_source for the other shells).
@@ -33,20 +31,7 @@ fish_source for the other shells).
     cls=Commands,
     commands=[
         with_verbosity(command)
-        for command in (
-            init,
-            schema,
-            check,
-            run,
-            status,
-            case,
-            plot,
-            export,
-            reproduce,
-            synthesize,
-            diagnose,
-            warm_up,
-        )
+        for command in (init, schema, check, run, status, case, plot, export, synthesize, diagnose, warm_up)
     ],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=EPILOG,

@@ -15,7 +15,7 @@ from wedgesweep.hints import show
 PACKAGE = Path(__file__).parents[1]
 SAME_RESULTS = ("numpy", "scipy", "numba")
 # Folders that do not affect results.
-PRESENTATION = ("cli", "figures", "reproduce", "validation")
+PRESENTATION = ("cli", "figures")
 
 
 def fingerprint(config: Config) -> dict[str, str]:

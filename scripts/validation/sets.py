@@ -1,0 +1,89 @@
+"""The data sets of a campaign. What a set hides depends on its seed, kind and index only."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Kind(NamedTuple):
+    """Number of sets of a kind in a full campaign, and the excess chi-squared that they are drawn for.
+
+    That of the base model, log-uniform. The excess that the diagnosis reports is the one that counts; the
+    margins to its limits, 800 and 100, allow for noise.
+    """
+
+    size: int
+    excess: tuple[float, float] | None = None
+
+
+STRONG = (1000.0, 30_000.0)
+ALL = {
+    "clean": Kind(60),  # nothing is hidden
+    "strong": Kind(84, STRONG),  # one effect
+    "weak": Kind(42, (150.0, 700.0)),  # one effect
+    "pair": Kind(30, (1100.0, 30_000.0)),  # two effects of different families
+    "unknown": Kind(30, STRONG),  # an effect that is not among the candidates
+    "poor": Kind(20, (150.0, 5000.0)),  # one effect, in the paper's two tests of unknown amplitude
+    "added": Kind(20),  # a poor set with the test that its diagnosis recommends
+    "imperfect": Kind(60, STRONG),  # one effect, and small errors of everything, which are allowed for
+    "errors-only": Kind(20),  # small errors of everything, and no effect
+    "random-rig": Kind(40, STRONG),  # one effect on a rig of any size
+    "oscillator": Kind(40, STRONG),  # one effect on a mass on a spring, whose input is recorded
+    "transient": Kind(40),  # one effect, or none, in releases and a sweep; see time_records.py
+    "loop": Kind(40),  # the same in hysteresis loops
+    "mixed": Kind(20),  # the same in steady tests, releases and a loop together
+}
+KINDS = tuple(ALL)
+
+
+@dataclass(frozen=True)
+class DataSet:
+    """One data set of a campaign."""
+
+    kind: str
+    index: int
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind}-{self.index:03d}"
+
+    @property
+    def original(self) -> "DataSet":
+        """The poor set that an ``added`` set extends; every other set itself."""
+        return replace(self, kind="poor") if self.kind == "added" else self
+
+    def random(self, attempt: int = 0) -> np.random.Generator:
+        """A generator of its own, so that a campaign of another size draws the same sets."""
+        return np.random.default_rng([self.seed, KINDS.index(self.original.kind), self.index, attempt])
+
+    @property
+    def noise_seed(self) -> int:
+        return int(self.random().integers(2**31))
+
+    def draw_target(self, random: np.random.Generator) -> float:
+        """Draw the excess chi-squared that the set should have."""
+        limits = ALL[self.kind].excess
+        assert limits is not None
+        low, high = np.log(limits)
+        return float(np.exp(random.uniform(low, high)))
+
+
+def chains(seed: int, size: float, only: tuple[str, ...] = ()) -> list[list[DataSet]]:
+    """Lists of sets to be run one after the other, as an ``added`` set needs its poor set.
+
+    The kinds alternate, so that an interrupted campaign is a sample of all of them.
+    """
+    kinds = only or KINDS
+    wanted = {kind: max(1, round(ALL[kind].size * size)) for kind in kinds}
+    if "added" in kinds:
+        wanted["poor"] = max(wanted.get("poor", 0), wanted["added"])
+    placed = []
+    for kind, count in wanted.items():
+        for index in range(count if kind != "added" else 0):
+            chain = [DataSet(kind, index, seed)]
+            if kind == "poor" and index < wanted.get("added", 0):
+                chain.append(DataSet("added", index, seed))
+            placed.append(((index + 0.5) / count, chain))
+    return [chain for _, chain in sorted(placed, key=lambda each: each[0])]

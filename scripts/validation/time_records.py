@@ -1,0 +1,212 @@
+"""Sets of tests that are not all steady: releases and sweeps, hysteresis loops, and several kinds together.
+
+Oscillators and suspensions of any size take turns. Each hides one effect, or none in every fifth set. It is
+as strong as is needed for a drawn change of the response; sets whose excess is too small for a name all the
+same count as weak.
+"""
+
+from collections.abc import Callable
+from math import nan, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from validation import ranges, rigs
+from validation.rigs import Rig
+from validation.sets import DataSet
+from validation.strength import reach
+from wedgesweep.config import from_document
+from wedgesweep.effects import EFFECTS
+from wedgesweep.natural_units import FREQUENCY, LENGTH
+from wedgesweep.synthesize import plan
+from wedgesweep.synthesize.loops import loop
+from wedgesweep.synthesize.motion import NoMotion
+from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.plan import PlannedTest
+from wedgesweep.synthesize.transients import transient
+
+TRANSIENT, LOOP, MIXED = TIME_KINDS = ("transient", "loop", "mixed")
+LAWS = ("coulomb", "static-dynamic")
+# Effects of a sine as an input, and those that a loop cannot show.
+OF_A_SINE = ("input_distortion", "stray_vibration", "fixture_resonance", "cross_slip")
+NOT_IN_LOOPS = (*OF_A_SINE, "column_compliance", "displacement_gain", "velocity_lag")
+# Every so many sets one hides nothing.
+CLEAN_EACH = 5
+# Of a suspension of the bench's size: natural frequency (Hz), largest motion (mm) that it is released to, and
+# that is imposed on it (a larger one lifts its wedges off), motion of the base in steady tests.
+BENCH_HZ, BENCH_TRAVEL_MM, BENCH_IMPOSED_MM, BENCH_BASE_MM = 13.6, 1.0, 0.15, 0.6
+# Of an oscillator: natural frequency (Hz), damping ratio, and friction over the spring's force at the largest
+# motion.
+FREQUENCY_HZ, DAMPING, FRICTION = (1.0, 8.0), (0.003, 0.02), (0.02, 0.08)
+# Its coefficients of friction.
+STATIC, DYNAMIC = 0.36, 0.3
+# Largest motion (mm) of a mass (kg), noise over the rms of a channel.
+TRAVEL_MM, MASS_KG, LEVEL = (2.0, 30.0), (0.5, 20.0), (0.005, 0.02)
+# Change of the response to the first release or loop over that response, and attempts to reach it.
+CHANGE, ATTEMPTS = (0.05, 0.5), 60
+# After so many of them the next effect takes the place of the one that is due.
+SAME_EFFECT = 5
+# Sampling rate, lengths of a release, a sweep and a loop in natural periods.
+SAMPLED, RELEASE, SWEEP, LOOPS = 60.0, 8.0, 24.0, 20.0
+# Frequencies of steady tests beside the others, over the natural one.
+STEADY = (0.7, 0.9, 1.15, 1.4)
+
+
+class Drawn(NamedTuple):
+    """A rig, its natural frequency (Hz), and the sizes (mm) of its tests.
+
+    ``travel``: largest motion after a release; ``imposed``: largest imposed one; ``base``: motion of the base
+    in steady tests.
+    """
+
+    rig: Rig
+    frequency: float
+    travel: float
+    imposed: float
+    base: float
+
+
+def draw(one: DataSet) -> dict[str, Any]:
+    """Rig, tests, effect and noise of a set, as documents.
+
+    Raises
+    ------
+    RuntimeError
+        If no rig shows the effect as strongly as is wanted.
+    """
+    for attempt in range(ATTEMPTS):
+        if found := _drawn(one, attempt):
+            return found
+    message = f"{one.name}: no rig shows its effect as is wanted in {ATTEMPTS} attempts"
+    raise RuntimeError(message)
+
+
+def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
+    """Documents of a set; None if its effect cannot be as strong as is wanted."""
+    random = one.random(attempt)
+    law = LAWS[one.index % len(LAWS)]
+    drawn = _suspension(random) if one.index // 2 % 2 else _oscillator(random)
+    rig, tests = drawn.rig, TESTS[one.kind](drawn)
+    planned = plan.from_document({"test": tests}).tests
+    sampling_hz = round(SAMPLED * drawn.frequency, 3)
+    hidden: dict[str, dict[str, float]] = {}
+    if one.index % CLEAN_EACH != CLEAN_EACH - 1:
+        left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
+        possible = [name for name in EFFECTS if name in rig.possible_effects and name not in left_out]
+        order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
+        effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
+        path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)
+        shown = next((each for each in planned if each.release_mm), planned[0])
+        change = _change(rig, law, shown, sampling_hz)
+        strength = reach(wanted, lambda s: change({effect: path(s)}))
+        if strength is None:
+            return None
+        hidden[effect] = rigs.rounded(path(strength))
+    others = [test for test in planned if test.kind in (TRANSIENT, LOOP)]
+    if any(_response(rig, law, hidden, test, sampling_hz) is None for test in others):
+        return None
+    return {
+        "law": law,
+        "document": rig.document(law, hidden),
+        "hidden": hidden,
+        "tests": tests,
+        "sampling_hz": sampling_hz,
+        "level": round(rigs.logarithmic(LEVEL, random), 5),
+        "noise": NOISES[one.index % 3],
+    }
+
+
+def _change(
+    rig: Rig, law: str, test: PlannedTest, sampling_hz: float
+) -> Callable[[dict[str, dict[str, float]]], float]:
+    """Change of the response to a test by effects, over the response; of all channels together.
+
+    NaN where there is no response.
+    """
+    base = _response(rig, law, {}, test, sampling_hz)
+
+    def change(effects: dict[str, dict[str, float]]) -> float:
+        found = _response(rig, law, effects, test, sampling_hz)
+        if base is None or found is None:
+            return nan
+        return float(np.linalg.norm((found - base).std(axis=1) / base.std(axis=1)))
+
+    return change
+
+
+def _response(
+    rig: Rig, law: str, effects: dict[str, dict[str, float]], test: PlannedTest, sampling_hz: float
+) -> np.ndarray | None:
+    """Channels of a transient or a loop; None where there is no response."""
+    config = from_document(rig.document(law, effects))
+    try:
+        if test.kind == LOOP:
+            return loop(config, law, config.effects, test, sampling_hz)[1][None]
+        made = transient(config, law, config.effects, test, sampling_hz, np.random.default_rng(0))
+    except NoMotion:
+        return None
+    return np.array([made.displacement, made.velocity])
+
+
+def _suspension(random: np.random.Generator) -> Drawn:
+    rig = rigs.any_size(random)
+    length = rig.units.ratio(LENGTH)
+    frequency = BENCH_HZ * rig.units.ratio(FREQUENCY)
+    sizes = (size * length for size in (BENCH_TRAVEL_MM, BENCH_IMPOSED_MM, BENCH_BASE_MM))
+    return Drawn(rig, frequency, *sizes)
+
+
+def _oscillator(random: np.random.Generator) -> Drawn:
+    frequency, travel = rigs.logarithmic(FREQUENCY_HZ, random), rigs.logarithmic(TRAVEL_MM, random)
+    mass, omega = rigs.logarithmic(MASS_KG, random), 2.0 * pi * frequency
+    damping, friction = rigs.logarithmic(DAMPING, random), rigs.logarithmic(FRICTION, random)
+    normal_force = friction * 1e-3 * travel * mass * omega**2 / DYNAMIC
+    coefficients = {"static": STATIC, "dynamic": DYNAMIC}
+    threshold = {"threshold_velocity_mm_per_s": rigs.THRESHOLD * travel * omega}
+    sections: rigs.Sections = {
+        "oscillator": {**rigs.on_spring(mass, omega, damping, normal_force), "contact": "base"},
+        "friction": {**coefficients, **rigs.rounded(threshold)},
+    }
+    return Drawn(Rig(sections), frequency, travel, travel, 0.25 * travel)
+
+
+def _releases(drawn: Drawn) -> list[dict[str, Any]]:
+    frequency, travel = drawn.frequency, drawn.travel
+    length = {"kind": "transient", "duration_s": RELEASE / frequency}
+    speed = 2.0 * pi * frequency * travel
+    return [
+        {**length, "release_mm": travel},
+        {**length, "release_mm": -0.7 * travel, "release_mm_per_s": 0.2 * speed},
+        {**length, "release_mm": 0.5 * travel, "release_mm_per_s": -0.3 * speed},
+    ]
+
+
+def _transients(drawn: Drawn) -> list[dict[str, Any]]:
+    sweep = {
+        "kind": "transient",
+        "motion": "sweep",
+        "frequency_hz": 0.5 * drawn.frequency,
+        "to_hz": 2.0 * drawn.frequency,
+        "amplitude_mm": 0.25 * drawn.travel,
+        "duration_s": SWEEP / drawn.frequency,
+    }
+    return [*_releases(drawn), sweep]
+
+
+def _loops(drawn: Drawn) -> list[dict[str, Any]]:
+    length = {"kind": "loop", "duration_s": LOOPS / drawn.frequency}
+    return [
+        {**length, "frequency_hz": 0.4 * drawn.frequency, "amplitude_mm": drawn.imposed},
+        {**length, "frequency_hz": 0.7 * drawn.frequency, "amplitude_mm": 0.5 * drawn.imposed},
+    ]
+
+
+def _mixed(drawn: Drawn) -> list[dict[str, Any]]:
+    steady = [
+        {"frequency_hz": share * drawn.frequency, "amplitude_mm": drawn.base, "amplitude_std": 0.005}
+        for share in STEADY
+    ]
+    return [*steady, *_releases(drawn), _loops(drawn)[0]]
+
+
+TESTS = {TRANSIENT: _transients, LOOP: _loops, MIXED: _mixed}
