@@ -50,6 +50,6 @@ bench: install  ## benchmarks, as ratios within one run
 	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 clean:  ## remove everything that the other targets made
-	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .kernels
 
 .PHONY: help install run test acceptance lint check reproduce validate torture bench clean

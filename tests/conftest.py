@@ -1,37 +1,44 @@
-"""Tests run as the command does: threads of numpy's libraries stand in each other's way on a busy machine."""
+"""Tests run as the command does, and share one cache of compiled code, which stays in the checkout."""
 
+import fcntl
 import os
+from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 
 from wedgesweep.__main__ import THREADS
 
+ROOT = Path(__file__).parents[1]
+KERNELS = ROOT / ".kernels"
+
+# Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
-
-# Each of the first of these compiles something else for 10 to 30 s: the two processes of ``make test`` begin
-# with them, so that neither compiles what the other one does. Those that take longest follow, so that both
-# processes end together.
-FIRST = (
-    "physics/test_unilateral.py",
-    "physics/test_agreement.py",
-    "diagnose/test_driven.py",
-    "physics/test_transients.py",
-    "physics/test_effects.py",
-    "diagnose/test_loops.py",
-    "physics/test_series.py",
-    "sweep/test_backend.py",
-    "test_hostile.py",
-    "test_cli.py",
-    "sweep/test_run.py",
-    "physics/test_oscillator_effects.py",
-    "validation/test_scale.py",
-    "validation/test_real_frame.py",
-    "validation/test_planted_effects.py",
-    "test_synthesize_kinds.py",
-)
-TESTS = Path(__file__).parent
+# Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.
+os.environ.update(dict.fromkeys(("WEDGESWEEP_CACHE_DIR", "NUMBA_CACHE_DIR"), str(KERNELS)))
 
 
-def pytest_collection_modifyitems(items):
-    """Put the files of FIRST in front."""
-    place = {str(TESTS / name): i for i, name in enumerate(FIRST)}
-    items.sort(key=lambda item: place.get(str(item.path), len(FIRST)))
+def _compile_once() -> None:
+    """Let one process of the tests compile a function while the others wait for it.
+
+    A process that needs what another one is compiling would otherwise compile it as well.
+    """
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.dispatcher import Dispatcher
+
+    compile_here = Dispatcher.compile
+
+    def compile_or_wait(self, signature):
+        if type(self._cache).__name__ == "NullCache" or self.overloads.get(signature):
+            return compile_here(self, signature)
+        name = f"{self.py_func.__module__}.{self.py_func.__qualname__} {signature}"
+        path = KERNELS / f"{sha256(name.encode()).hexdigest()[:16]}.lock"
+        with global_compiler_lock, path.open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            return compile_here(self, signature)
+
+    Dispatcher.compile = compile_or_wait
+
+
+with suppress(OSError):  # a checkout that cannot be written to
+    KERNELS.mkdir(exist_ok=True)
+    _compile_once()

@@ -54,8 +54,17 @@ def command(*arguments: object) -> list[str]:
 
 def start(*arguments: object, directory: Path) -> subprocess.Popen:
     """Start the command line in a process group of its own."""
+    return _started(command(*arguments), directory)
+
+
+def python(code: str, directory: Path) -> subprocess.Popen:
+    """Start Python on some code in a process group of its own."""
+    return _started([sys.executable, "-c", code], directory)
+
+
+def _started(arguments: list[str], directory: Path) -> subprocess.Popen:
     return subprocess.Popen(
-        command(*arguments),
+        arguments,
         cwd=directory,
         env=environment(),
         stdout=subprocess.PIPE,
