@@ -25,7 +25,7 @@ run: install  ## run configs/quick.toml; dataset and figures in out/
 test: install  ## the tests
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
-acceptance: install  ## whole commands and full searches, over 20 s each
+acceptance: install  ## full searches, rare combinations, the slow solver (see the marks in pyproject.toml)
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m acceptance
 
 lint: install  ## linter and types

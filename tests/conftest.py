@@ -6,6 +6,8 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 
+import pytest
+
 from wedgesweep.__main__ import THREADS
 
 ROOT = Path(__file__).parents[1]
@@ -42,3 +44,20 @@ def _compile_once() -> None:
 with suppress(OSError):  # a checkout that cannot be written to
     KERNELS.mkdir(exist_ok=True)
     _compile_once()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Of a test that is marked ``few(n)`` leave n sets of parameters to ``make test``, from all over them."""
+    sets = {}
+    for item in items:
+        if item.get_closest_marker("few"):
+            sets.setdefault((item.path, item.originalname), []).append(item)
+    for some in sets.values():
+        number = some[0].get_closest_marker("few").args[0]
+        size = max(len(some) // number, 1)
+        # One of each block of neighbours, not always in the same place: the last parameter varies fastest.
+        chosen = {block * size + block % size for block in range(number)}
+        for place, item in enumerate(some):
+            if place not in chosen:
+                item.add_marker("acceptance")

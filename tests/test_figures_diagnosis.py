@@ -48,6 +48,7 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
+@pytest.mark.few(22)
 @pytest.mark.parametrize("verdict", fixture_diagnosis.CASES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_verdict(kind, verdict):

@@ -536,6 +536,7 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
     assert {each.name for each in tmp_path.iterdir()} == {diagnosis_result.JSON, diagnosis_result.DATASET}
 
 
+@pytest.mark.acceptance
 def test_the_page_is_the_same_from_one_process_and_from_two(tmp_path):
     fixture_diagnosis.write(tmp_path, "nothing-missing", tests=2)
     one, two = (report.write(tmp_path, n_jobs).read_text(encoding="utf-8") for n_jobs in (1, 2))

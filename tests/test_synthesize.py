@@ -112,6 +112,7 @@ def test_a_seed_decides_everything(here):
     assert a["test-00.csv"] != c["test-00.csv"]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
 def test_without_noise_it_is_the_other_solvers_motion(here, law):
     """Amplitude, phase, sampling and settling, against the event-driven solver."""
@@ -273,6 +274,7 @@ def test_records_of_a_length_that_none_has_write_nothing(here, option, value, me
     assert not (here / "made").exists()
 
 
+@pytest.mark.acceptance
 def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):
     tone = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.4\nfrequency_hz = 47.0\n"
     (here / "true.toml").write_text(TRUE.replace("[sweep]", f"{tone}[sweep]"))

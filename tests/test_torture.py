@@ -98,6 +98,7 @@ def test_mutations_are_toml_that_is_read_or_refused():
     assert read > 200
 
 
+@pytest.mark.acceptance
 def test_a_killed_sweep_leaves_nothing_and_goes_on(tmp_path):
     scenario = next(each for each in kill_campaign.scenarios() if each.name == "event-driven")
     expected = kills.reference(scenario, tmp_path / "expected")

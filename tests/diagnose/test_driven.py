@@ -100,6 +100,7 @@ def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind, records):
     assert value == pytest.approx(4.0, rel=0.05)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["sweep", "random", pytest.param("bumps", marks=pytest.mark.acceptance)])
 def test_nothing_is_missing_where_nothing_is(tmp_path, kind):
     assert diagnosed(write(tmp_path, INPUTS[kind]()), CANDIDATES).verdict == "nothing-missing"

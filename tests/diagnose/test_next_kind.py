@@ -73,6 +73,7 @@ def released(folder, truth):
     return path
 
 
+@pytest.mark.acceptance
 def test_a_loop_tells_mass_from_spring_where_no_free_motion_does(tmp_path):
     path = released(tmp_path / "first", "bolster_mass")
     found = diagnosed(path, list(RIVALS))

@@ -321,6 +321,7 @@ def test_any_effects_end_with_a_finite_answer_or_a_reason(law, names, place, bet
     assert (again.outcome[0] == periodic.OK) == (found.outcome[0] == periodic.OK)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(("name", "law"), [(name, LAWS[i % 3]) for i, name in enumerate(EXTENDING)])
 def test_both_solvers_agree_from_the_same_start(name, law):
     record = with_effect(law, name)
@@ -337,6 +338,7 @@ def test_both_solvers_agree_from_the_same_start(name, law):
     np.testing.assert_array_equal(np.isnan(ours.waveforms["normal_force_column"][slipping]), False)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("more", [5e-3, 2e-4])
 @pytest.mark.parametrize("times", [1, 5, 15])
 def test_a_release_that_lasts_a_moment_is_not_missed(times, more):

@@ -35,6 +35,7 @@ def after(step, record, start, duration, steps):
     return np.array(y), np.array(middle)
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize(("place", "order"), [(0, 4), (1, 3)], ids=["end", "dense output"])
 def test_order_on_a_gentle_ramp(place, order):
     gentle = record(threshold_velocity=1.0)
@@ -88,6 +89,7 @@ def test_short_bristles_are_friction_that_holds_but_for_the_time_of_their_way():
     assert apart[0] / apart[1] == pytest.approx(2.0, rel=0.01)
 
 
+@pytest.mark.acceptance
 def test_long_steps_on_a_steep_ramp_end_where_short_ones_do():
     steep = record("coulomb")
     start = moving(steep)
@@ -109,6 +111,7 @@ def test_what_runs_away_is_not_stepped_over():
     assert mechanics.growth(slopes, p) < 0.0
 
 
+@pytest.mark.acceptance
 def test_a_step_that_would_damp_what_runs_away_is_refused():
     driven = parameters.record(
         "static-dynamic",

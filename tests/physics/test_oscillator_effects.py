@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tests import marks
 from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, M, coulomb, oscillator, steady
 from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven
@@ -54,7 +53,9 @@ def test_words_name_parts_of_the_oscillator(name):
     assert not any(part in words for part in ("bolster", "wedge", "column", "side frame", "{"))
 
 
-@pytest.mark.parametrize(("name", "law"), marks.each_nth(2, MECHANICAL, ["coulomb", "exponential"]))
+@pytest.mark.few(5)
+@pytest.mark.parametrize("law", ["coulomb", "exponential"])
+@pytest.mark.parametrize("name", MECHANICAL)
 def test_energy_balances_and_solvers_agree(name, law):
     contact = "ground" if name in GROUNDED else "base"
     # Time at rest strengthens friction only where there is some.
@@ -74,6 +75,7 @@ def test_energy_balances_and_solvers_agree(name, law):
     assert abs(found[0][changed] - without[changed]) > 1e-3 * abs(found[0][changed])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("level", [0.5, 1.5])
 def test_bent_bristles_hold_a_mass_between_the_frictions_of_both_directions(level):
     """At zero slip friction jumps by the asymmetry times what the bristles hold."""

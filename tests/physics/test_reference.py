@@ -11,6 +11,7 @@ from wedgesweep.systems.suspension import equilibrium, parameters
 ROWS = json.loads((Path(__file__).parents[1] / "data" / "steady.json").read_text())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "row", ROWS, ids=lambda row: f"{row['friction_law']}-{row['beta']}-{row['amplitude_mm']}"
 )
@@ -42,6 +43,7 @@ def test_linkage_ratios():
     assert record["geometry"]["bolster_ratio"][0] == pytest.approx(-0.1052737144, rel=1e-9)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("law", "beta", "amplitude_mm", "ratio"),
     [

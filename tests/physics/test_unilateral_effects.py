@@ -217,6 +217,7 @@ def test_a_guide_holds_the_bolster_until_the_base_shakes_it_loose_while_wedges_f
     assert moved[slips] == pytest.approx(exact, abs=1e-10)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAW_NAMES)
 @pytest.mark.parametrize("effects", [FIXTURE, GUIDE, FIXTURE | GUIDE], ids=["table", "guide", "both"])
 def test_both_solvers_agree_and_energy_balances(law, effects):

@@ -141,6 +141,7 @@ def test_random_cases_are_bilateral_until_a_contact_opens_and_themselves_after_t
     assert min(closed, opened) > 30
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_cases_that_could_lock_are_followed_alike_and_lock_alike(law):
     generator, followed, opened = np.random.default_rng(5), 0, 0
@@ -196,6 +197,7 @@ def test_effects_and_recorded_inputs_are_followed_alike(law, kind):
     assert min(closed, opened) > 3
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_radau_takes_turns_as_well(law):
     window = Window(1.472 * OMEGA_N, 1, 2, 32)

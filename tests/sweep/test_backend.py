@@ -81,6 +81,7 @@ def test_a_cluster_that_is_left_while_a_worker_starts(monkeypatch):
         raise KeyboardInterrupt
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("method", ["radau", "event-driven"])
 def test_every_backend_gives_the_same_bits(tmp_path, monkeypatch, method):
     monkeypatch.chdir(tmp_path)
@@ -119,6 +120,7 @@ def test_a_killed_worker_costs_its_chunk_only(tmp_path, expected, cluster):
     assert [path.name for path in tmp_path.iterdir()] == ["small.nc"]
 
 
+@pytest.mark.acceptance
 def test_what_dask_gives_up_is_solved_again(tmp_path, expected):
     kept, remarks = [], []
 
@@ -194,6 +196,7 @@ def test_options_that_contradict_each_other(tmp_path):
     assert "--scheduler needs --backend dask" in told
 
 
+@pytest.mark.acceptance
 def test_interrupted_it_keeps_what_is_finished(tmp_path, cluster, expected):
     def stop(records, total):
         if records["index"].size and records["index"].max() > 7:

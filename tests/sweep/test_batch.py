@@ -224,6 +224,7 @@ def test_ends_with_numbers_that_can_be_or_with_a_reason(record, steady):
     assert np.isnan(found["lift_off_fraction"]) or 0.0 <= found["lift_off_fraction"] <= 1.0
 
 
+@pytest.mark.acceptance
 @hypothesis_settings(max_examples=6, deadline=None, derandomize=True, phases=[Phase.generate])
 @given(records())
 def test_agrees_with_radau_where_radau_agrees_with_itself(record):
