@@ -25,6 +25,7 @@ kept_periods = 2
 samples_per_period = 32
 """
 CASES = 24
+FAST = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 # Both cases lock: with this lean and friction the normal forces are not unique.
 LOCKED = """\
 title = "small"

@@ -11,13 +11,12 @@ import pytest
 import xarray as xr
 
 import wedgesweep as ws
-from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
+from tests.small_sweep import CONFIG, FAST, LOCKED, assert_same_numbers
 from wedgesweep import config
 from wedgesweep.errors import InputError, MismatchError, SweepError
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "api.md").read_text()
-FAST = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 
 
 def test_the_page_runs(tmp_path, monkeypatch):

@@ -6,11 +6,10 @@ import subprocess
 import sys
 
 import pytest
-import xarray as xr
 
-from tests import fixture_diagnosis, fixture_measured, small_sweep
+from tests import fixture_dataset, fixture_diagnosis, fixture_measured, small_sweep
 from tests.command import invoke, python_calls
-from tests.small_sweep import CONFIG
+from tests.small_sweep import CONFIG, FAST
 from wedgesweep import api, config, files
 from wedgesweep.cli.diagnose import _move
 from wedgesweep.diagnosis_result import DiagnosisResult
@@ -68,7 +67,7 @@ def test_no_output_takes_the_place_of_a_pipe_or_device(here, command):
     """As root, ``-o /dev/null`` would leave a plain file there."""
     ending = {"init": "toml", "schema": "json", "case": "nc", "run": "nc", "plot": "png"}[command[0]]
     command = [word.replace("out.toml", f"out.{ending}") for word in command]
-    invoke("run", "small.toml", "-o", "made.nc")
+    fixture_dataset.build().to_netcdf("made.nc")
     os.mkfifo(here / f"out.{ending}")
     assert f"out.{ending}: not a regular file" in invoke(*command, code=2)
     assert (here / f"out.{ending}").is_fifo()
@@ -102,8 +101,7 @@ def test_an_output_without_a_name(here):
 
 
 def test_attributes_of_the_wrong_kind(here):
-    invoke("run", "small.toml", "-o", "made.nc")
-    whole = xr.load_dataset("made.nc")
+    whole = fixture_dataset.build()
     for name, value in (("config", 3), ("omega_n", "x")):
         whole.assign_attrs({name: value}).to_netcdf("other.nc")
         said = invoke("plot", "friction-laws", "other.nc", code=2)
@@ -157,7 +155,8 @@ def test_what_a_killed_process_left_is_removed_and_nothing_else(here):
 @pytest.mark.parametrize(("limit", "file"), [(4_000, "small.nc.partial"), (70_000, "small.nc")])
 def test_a_full_disk_is_told_with_the_file_and_loses_nothing(here, limit, file):
     """A limit on the size of a file fails as a full disk does."""
-    cases.compile_once(Settings("radau"))
+    (here / "small.toml").write_text(FAST)
+    cases.compile_once(Settings("event-driven"))
     limited = subprocess.run(
         small_sweep.command("run", "small.toml", "--n-jobs", 1),
         env=small_sweep.environment(),

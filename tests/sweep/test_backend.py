@@ -11,7 +11,7 @@ import xarray as xr
 
 from tests import small_sweep
 from tests.command import invoke
-from tests.small_sweep import CASES, CONFIG, assert_same_numbers
+from tests.small_sweep import CASES, CONFIG, FAST, assert_same_numbers
 from tests.sweep.test_transient_sweep import HEAD, SWEPT, TAIL
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.sweep import cluster as clusters
@@ -21,9 +21,7 @@ dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed", reason="Dask is not installed")
 
 # Long enough that a worker is at work when it is killed.
-LONG = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"').replace(
-    "settle_periods = 3", "settle_periods = 2000"
-)
+LONG = FAST.replace("settle_periods = 3", "settle_periods = 2000")
 FEW = CONFIG.replace("1.1, ", "")
 
 

@@ -9,7 +9,7 @@ from hypothesis import Phase, given, strategies
 from hypothesis import settings as hypothesis_settings
 
 from tests import small_sweep
-from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
+from tests.small_sweep import LOCKED, assert_same_numbers
 from wedgesweep.friction import LAW_NAMES
 from wedgesweep.response import NUMBERS
 from wedgesweep.simulate import Settings
@@ -18,7 +18,7 @@ from wedgesweep.sweep import cases, chunks, variables
 from wedgesweep.sweep.variables import STATUSES
 from wedgesweep.systems.suspension import parameters
 
-EVENT_DRIVEN = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
+EVENT_DRIVEN = small_sweep.FAST
 STEADY = EVENT_DRIVEN.replace("settle_periods = 3", 'settle = "steady"\nsteady_tolerance = 1e-9\nrtol = 1e-9')
 WAVEFORMS = {"displacement", "velocity", "normal_force_column", "normal_force_bolster", "stuck"}
 OMEGA_N = 85.0
