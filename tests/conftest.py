@@ -16,7 +16,7 @@ KERNELS = ROOT / ".kernels"
 # Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
 # Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.
-os.environ.update(dict.fromkeys(("WEDGESWEEP_CACHE_DIR", "NUMBA_CACHE_DIR"), str(KERNELS)))
+os.environ.update(dict.fromkeys(("WEDGESWEEP_CACHE_DIR", "XDG_CACHE_HOME"), str(KERNELS)))
 
 
 def _compile_once() -> None:
@@ -24,21 +24,25 @@ def _compile_once() -> None:
 
     A process that needs what another one is compiling would otherwise compile it as well.
     """
+    from numba.core.ccallback import CFunc
     from numba.core.compiler_lock import global_compiler_lock
     from numba.core.dispatcher import Dispatcher
 
-    compile_here = Dispatcher.compile
+    def waiting(compile_here, function_of):
+        def compile_or_wait(self, *signature):
+            function = function_of(self)
+            if type(self._cache).__name__ == "NullCache":
+                return compile_here(self, *signature)
+            name = f"{function.__module__}.{function.__qualname__} {signature or self._sig}"
+            path = KERNELS / f"{sha256(name.encode()).hexdigest()[:16]}.lock"
+            with global_compiler_lock, path.open("w") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                return compile_here(self, *signature)
 
-    def compile_or_wait(self, signature):
-        if type(self._cache).__name__ == "NullCache" or self.overloads.get(signature):
-            return compile_here(self, signature)
-        name = f"{self.py_func.__module__}.{self.py_func.__qualname__} {signature}"
-        path = KERNELS / f"{sha256(name.encode()).hexdigest()[:16]}.lock"
-        with global_compiler_lock, path.open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            return compile_here(self, signature)
+        return compile_or_wait
 
-    Dispatcher.compile = compile_or_wait
+    Dispatcher.compile = waiting(Dispatcher.compile, lambda each: each.py_func)
+    CFunc.compile = waiting(CFunc.compile, lambda each: each._pyfunc)
 
 
 with suppress(OSError):  # a checkout that cannot be written to

@@ -89,6 +89,7 @@ INPUTS = {
 
 
 # Three bumps take a minute.
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("kind", "records"),
     [("sweep", 1), ("random", 1), ("bumps", 1), pytest.param("bumps", 3, marks=pytest.mark.acceptance)],

@@ -139,6 +139,7 @@ def test_no_kind_tells_an_explanation_from_itself(tmp_path):
     assert recommend([explained(data, DAMPED)]) is None
 
 
+@pytest.mark.acceptance
 def test_a_heavier_rig_gets_the_same_advice(tmp_path):
     """Masses, springs and forces times 4,000 move alike."""
     found = []

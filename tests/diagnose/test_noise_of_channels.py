@@ -161,6 +161,7 @@ def test_noise_shows_where_the_motion_is_over():
     assert quiet_bins(noisy(decay(0.001)[1], 0.9, rng)) is None
 
 
+@pytest.mark.acceptance
 def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     # The reason for which tests are looked at together: kinks of the velocity fall with frequency like noise.
     rng, (_, v) = np.random.default_rng(0), decay(0.04)
@@ -218,7 +219,7 @@ def test_what_an_explanation_leaves_shows_that_there_is_less_noise(seed):
         assert wrong[t, 2](AT[1]) <= most
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("pole", [0.0, 0.9, 0.97])
 def test_noise_does_not_hide_that_physics_is_missing(tmp_path, pole):
     path = write(tmp_path, effects={"cubic_stiffness": HIDDEN["cubic_stiffness"]}, pole=pole)

@@ -47,7 +47,7 @@ class Answer:
         return inverse.effects(explanation.fit.values)
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize(
     ("effects", "size", "candidates"),
     [(GUIDE, FROUDE, OF_FRICTION), (SPRING, HEAVIER, OF_SPRINGS)],

@@ -1,6 +1,6 @@
 """Energy, free decay, linear limit and similarity: what must hold whatever the numbers are."""
 
-from math import pi, sin
+from math import inf, pi, sin
 
 import numpy as np
 import pytest
@@ -50,7 +50,7 @@ def test_free_vibration_loses_4_f_over_k_per_cycle():
     for cycles in (1, 2, 5, 20):
         end = cycles * 2 * pi / resonance(record[0])
         record["input"]["omega"] = 2 * pi / end
-        run = radau.solve(record, Window(2 * pi / end, 1, 1, 64), 1e-8, 60.0, start=(start, 0.0))
+        run = radau.solve(record, Window(2 * pi / end, 1, 1, 64), 1e-8, inf, start=(start, 0.0))
         # After whole cycles the bolster is at rest: the window that follows begins at that extreme.
         assert run.sums["highest"][0] == pytest.approx(
             max(start - 2 * cycles * half_cycle, 0.0), rel=1e-6, abs=half_cycle / 2
@@ -70,7 +70,7 @@ def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
         s["bolster_mass"] + 2 * s["wedge_mass"] * ratio**2
     )
     window = Window(omega, 2, 2, 64)
-    samples = radau.solve(record, window, 1e-9, 60.0).samples
+    samples = radau.solve(record, window, 1e-9, inf).samples
     forced = share * amplitude * omega**2 / (natural**2 - omega**2)
     expected = [forced * (sin(omega * t) - omega / natural * sin(natural * t)) for t in samples.t]
     np.testing.assert_allclose(samples.x, expected, atol=1e-6 * np.ptp(expected))

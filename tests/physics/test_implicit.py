@@ -1,5 +1,7 @@
 """The implicit steps x, dense output, and no step over what runs away."""
 
+from math import inf
+
 import numpy as np
 import pytest
 
@@ -56,7 +58,7 @@ def test_order_on_a_gentle_ramp(place, order):
 def work(case, rtol):
     """Rate evaluations of five periods from rest."""
     window = Window(float(case["input"]["omega"][0]), 0, 5, 64)
-    return event_driven.solve(case, window, rtol, 60.0).statistics["rate_evaluations"]
+    return event_driven.solve(case, window, rtol, inf).statistics["rate_evaluations"]
 
 
 def test_steps_become_shorter_with_the_tolerance_as_the_order_says():

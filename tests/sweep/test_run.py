@@ -248,6 +248,7 @@ def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):
     assert sum(solved.values()) == 1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("method", ["radau", "event-driven"])
 def test_the_short_run_of_a_motion_succeeds(method):
     release = '[input]\nkind = "release"\ndisplacement_mm = 3.0\nduration_s = 1.0\n'

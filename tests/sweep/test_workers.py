@@ -37,6 +37,7 @@ def solved(cases, size, task):
     return records[np.argsort(records["index"])]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("width", "size"), [(1, 1), (1, 5), (3, 2)])
 def test_a_deadly_case_fails_and_no_other(width, size):
     cases = np.arange(18).reshape(-1, width)
