@@ -52,8 +52,16 @@ with suppress(OSError):  # a checkout that cannot be written to
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Of a test that is marked ``few(n)`` leave n sets of parameters to ``make test``, from all over them."""
-    sets = {}
+    """Of a test that is marked ``few(n)`` leave n sets of parameters to ``make test``, from all over them.
+
+    Both processes of ``make test`` get files in turn: neighbours are from different folders, so that they do
+    not wait for each other to compile the same code.
+    """
+    folders, sets = {}, {}
+    for item in items:
+        files = folders.setdefault(item.path.parent, [])
+        files += [] if item.path in files else [item.path]
+    items.sort(key=lambda item: folders[item.path.parent].index(item.path))
     for item in items:
         if item.get_closest_marker("few"):
             sets.setdefault((item.path, item.originalname), []).append(item)

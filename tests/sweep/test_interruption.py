@@ -5,12 +5,11 @@ import random
 import signal
 import time
 
-import pytest
 import xarray as xr
 
 from tests import small_sweep
 from tests.command import hang_limit, invoke
-from tests.small_sweep import CASES, CONFIG, ROOT, assert_same_numbers
+from tests.small_sweep import CASES, CONFIG, FAST, ROOT, assert_same_numbers
 from wedgesweep.cli import failure
 from wedgesweep.sweep import journal
 
@@ -44,16 +43,12 @@ def test_ctrl_c_while_jobs_start(tmp_path, monkeypatch):
     assert "remaining" in invoke("status", "long.nc")
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_other_signals_end_a_run_as_ctrl_c_does(tmp_path, number):
+def test_kill_ends_a_run_as_ctrl_c_does(tmp_path):
     (tmp_path / "long.toml").write_text(LONG)
-    backend = "loky" if number == signal.SIGTERM else "threads"
-    command = ("run", "long.toml", "--n-jobs", 2, "--backend", backend)
-    process = small_sweep.start(*command, directory=tmp_path)
+    process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=tmp_path)
     wait_for(process, tmp_path / "long.nc.partial", 5000)
-    # A terminal that closes tells all processes of the group, kill just one.
-    (os.killpg if number == signal.SIGHUP else os.kill)(process.pid, number)
-    ended(process, number)
+    os.kill(process.pid, signal.SIGTERM)
+    ended(process, signal.SIGTERM)
 
 
 # Threads in which all cases but the first four take for ever. Compiled code does not hear of a signal.
@@ -68,21 +63,21 @@ def solve_or_block(records, indices, *others):
         threading.Event().wait()
     return solve_cases(records, indices, *others)
 cases.solve_cases, failure.GRACE = solve_or_block, 1e6
-sys.argv = "wedgesweep run long.toml --backend threads --n-jobs 2".split()
+sys.argv = "wedgesweep run long.toml --n-jobs 2".split()
 main()
 """
 
 
 def test_a_case_that_is_being_solved_is_not_waited_for(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "long.toml").write_text(CONFIG)
+    (tmp_path / "long.toml").write_text(FAST)
     process = small_sweep.python(BLOCKED, directory=tmp_path)
-    sweep, path = small_sweep.sweep(tmp_path), tmp_path / "long.nc.partial"
+    sweep, path = small_sweep.sweep(tmp_path, FAST), tmp_path / "long.nc.partial"
     wait_for(process, path, 4 * (sweep.dtype.itemsize + 4))
-    os.killpg(process.pid, signal.SIGINT)
-    ended(process, signal.SIGINT)
+    os.killpg(process.pid, signal.SIGHUP)  # as a terminal that closes does
+    ended(process, signal.SIGHUP)
     assert "cases are there" in invoke("plot", "peak-to-peak", "long.nc")
-    assert "from an earlier run" in invoke("run", "long.toml", "--backend", "threads", "--n-jobs", 2)
+    assert "from an earlier run" in invoke("run", "long.toml", "--n-jobs", 2)
     assert_same_numbers(xr.load_dataset("long.nc"), sweep.run_here())
 
 
