@@ -25,7 +25,7 @@ run: install  ## run configs/quick.toml; dataset and figures in out/
 test: install  ## the tests
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
-acceptance: install  ## whole commands and full searches, over 20 s each
+acceptance: install  ## full searches, rare combinations, the slow solver (see the marks in pyproject.toml)
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder -m acceptance
 
 lint: install  ## linter and types
@@ -50,6 +50,6 @@ bench: install  ## benchmarks, as ratios within one run
 	for script in scripts/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 clean:  ## remove everything that the other targets made
-	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .kernels
 
 .PHONY: help install run test acceptance lint check reproduce validate torture bench clean

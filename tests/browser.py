@@ -11,8 +11,9 @@ import select
 import shutil
 import subprocess
 import tempfile
-import time
 from contextlib import contextmanager
+
+from tests.command import hang_limit
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 PROGRAM = next(filter(None, map(shutil.which, NAMES)), None)
@@ -20,7 +21,6 @@ OPTIONS = (
     *("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars"),
     *("--disable-background-networking", "--disable-component-update", "--no-first-run"),
 )
-ANSWER_TIME = 60.0  # s
 
 
 class Tab:
@@ -48,9 +48,8 @@ class Tab:
         return answer["result"]
 
     def _next(self):
-        end = time.monotonic() + ANSWER_TIME
         while b"\0" not in self._read:
-            ready = select.select([self._answers], [], [], max(0.0, end - time.monotonic()))[0]
+            ready = select.select([self._answers], [], [], hang_limit())[0]
             assert ready, "the browser does not answer"
             received = os.read(self._answers, 1 << 20)
             assert received, "the browser has ended"

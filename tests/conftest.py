@@ -1,37 +1,77 @@
-"""Tests run as the command does: threads of numpy's libraries stand in each other's way on a busy machine."""
+"""Tests run as the command does, and share one cache of compiled code, which stays in the checkout."""
 
+import fcntl
 import os
+from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
+
+import pytest
 
 from wedgesweep.__main__ import THREADS
 
+ROOT = Path(__file__).parents[1]
+KERNELS = ROOT / ".kernels"
+
+# Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
-
-# Each of the first of these compiles something else for 10 to 30 s: the two processes of ``make test`` begin
-# with them, so that neither compiles what the other one does. Those that take longest follow, so that both
-# processes end together.
-FIRST = (
-    "physics/test_unilateral.py",
-    "physics/test_agreement.py",
-    "diagnose/test_driven.py",
-    "physics/test_transients.py",
-    "physics/test_effects.py",
-    "diagnose/test_loops.py",
-    "physics/test_series.py",
-    "sweep/test_backend.py",
-    "test_hostile.py",
-    "test_cli.py",
-    "sweep/test_run.py",
-    "physics/test_oscillator_effects.py",
-    "validation/test_scale.py",
-    "validation/test_real_frame.py",
-    "validation/test_planted_effects.py",
-    "test_synthesize_kinds.py",
-)
-TESTS = Path(__file__).parent
+# Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.
+os.environ.update(dict.fromkeys(("WEDGESWEEP_CACHE_DIR", "XDG_CACHE_HOME"), str(KERNELS)))
 
 
+def _compile_once() -> None:
+    """Let one process of the tests compile a function while the others wait for it.
+
+    A process that needs what another one is compiling would otherwise compile it as well.
+    """
+    from numba.core.ccallback import CFunc
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.dispatcher import Dispatcher
+
+    from wedgesweep.kernels import KernelCache
+
+    def waiting(compile_here, function_of):
+        def compile_or_wait(self, *signature):
+            function = function_of(self)
+            if not isinstance(self._cache, KernelCache):
+                return compile_here(self, *signature)
+            name = f"{function.__module__}.{function.__qualname__} {signature or self._sig}"
+            path = KERNELS / f"{sha256(name.encode()).hexdigest()[:16]}.lock"
+            with global_compiler_lock, path.open("w") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                return compile_here(self, *signature)
+
+        return compile_or_wait
+
+    Dispatcher.compile = waiting(Dispatcher.compile, lambda each: each.py_func)
+    CFunc.compile = waiting(CFunc.compile, lambda each: each._pyfunc)
+
+
+with suppress(OSError):  # a checkout that cannot be written to
+    KERNELS.mkdir(exist_ok=True)
+    _compile_once()
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Put the files of FIRST in front."""
-    place = {str(TESTS / name): i for i, name in enumerate(FIRST)}
-    items.sort(key=lambda item: place.get(str(item.path), len(FIRST)))
+    """Of a test that is marked ``few(n)`` leave n sets of parameters to ``make test``, from all over them.
+
+    Both processes of ``make test`` get files in turn: neighbours are from different folders, so that they do
+    not wait for each other to compile the same code.
+    """
+    folders, sets = {}, {}
+    for item in items:
+        files = folders.setdefault(item.path.parent, [])
+        files += [] if item.path in files else [item.path]
+    items.sort(key=lambda item: folders[item.path.parent].index(item.path))
+    for item in items:
+        if item.get_closest_marker("few"):
+            sets.setdefault((item.path, item.originalname), []).append(item)
+    for some in sets.values():
+        number = some[0].get_closest_marker("few").args[0]
+        size = max(len(some) // number, 1)
+        # One of each block of neighbours, not always in the same place: the last parameter varies fastest.
+        chosen = {block * size + block % size for block in range(number)}
+        for place, item in enumerate(some):
+            if place not in chosen:
+                item.add_marker("acceptance")

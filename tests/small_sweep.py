@@ -25,6 +25,7 @@ kept_periods = 2
 samples_per_period = 32
 """
 CASES = 24
+FAST = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 # Both cases lock: with this lean and friction the normal forces are not unique.
 LOCKED = """\
 title = "small"
@@ -54,8 +55,17 @@ def command(*arguments: object) -> list[str]:
 
 def start(*arguments: object, directory: Path) -> subprocess.Popen:
     """Start the command line in a process group of its own."""
+    return _started(command(*arguments), directory)
+
+
+def python(code: str, directory: Path) -> subprocess.Popen:
+    """Start Python on some code in a process group of its own."""
+    return _started([sys.executable, "-c", code], directory)
+
+
+def _started(arguments: list[str], directory: Path) -> subprocess.Popen:
     return subprocess.Popen(
-        command(*arguments),
+        arguments,
         cwd=directory,
         env=environment(),
         stdout=subprocess.PIPE,

@@ -1,6 +1,7 @@
 """The Python API: the page about it runs as it stands, and says what the functions offer."""
 
 import inspect
+import json
 import re
 import shutil
 import subprocess
@@ -11,13 +12,12 @@ import pytest
 import xarray as xr
 
 import wedgesweep as ws
-from tests.small_sweep import CONFIG, LOCKED, assert_same_numbers
+from tests.small_sweep import CONFIG, FAST, LOCKED, assert_same_numbers
 from wedgesweep import config
 from wedgesweep.errors import InputError, MismatchError, SweepError
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "api.md").read_text()
-FAST = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
 
 
 def test_the_page_runs(tmp_path, monkeypatch):
@@ -32,6 +32,10 @@ def test_the_page_runs(tmp_path, monkeypatch):
     assert all(ax.has_data() for ax in names["axes"])
     found = names["found"]
     assert (found.verdict, [cause["effect"] for cause in found.causes]) == ("named", ["fixture_resonance"])
+    truth = json.loads((ROOT / "examples/bench/truth.json").read_text())["effects"]["fixture_resonance"]
+    for key, number in found.causes[0]["parameters"].items():
+        low, high = number["ci95"]
+        assert low <= truth[key] <= high
     stored = {file.name for file in (tmp_path / "bench-diagnosis").iterdir()}
     assert stored == {"diagnosis.json", "diagnosis.nc", "extended.toml"}
 

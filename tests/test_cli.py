@@ -3,10 +3,8 @@
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -190,8 +188,8 @@ def test_fail_fast_keeps_what_is_finished(here):
 
 
 def test_case_timeout(here):
-    told = run("few.toml", "--case-timeout", 0.001, code=1)
-    assert "time_limit: gave up after 0.001 s" in told
+    told = run("few.toml", "--case-timeout", 1e-6, code=1)
+    assert "time_limit: gave up after 1e-06 s" in told
     assert "and " in told  # no more than some are listed
     assert told.count("gave up") == 5
     assert "Invalid value" in run("few.toml", "--case-timeout", 0, code=2)
@@ -268,45 +266,6 @@ def test_status_of_nothing(here):
     assert "few.toml: a config, where the dataset of a run is wanted" in invoke("status", "few.toml", code=2)
     (here / "x.nc.partial").write_text("text\n")
     assert "not the journal of a sweep" in invoke("status", "x.nc", code=2)
-
-
-@pytest.mark.parametrize("bytes_written", [0, 5000], ids=["jobs are starting", "jobs are at work"])
-def test_ctrl_c_keeps_what_is_finished(here, bytes_written):
-    (here / "long.toml").write_text(CONFIG.replace("settle_periods = 3", "settle_periods = 40"))
-    process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=here)
-    while process.stdout.readline().strip() != "24 cases":
-        assert process.poll() is None
-    journal = here / "long.nc.partial"
-    while process.poll() is None and journal.stat().st_size <= bytes_written:
-        time.sleep(0.01)
-    time.sleep(0.3)  # by then jobs that do not ignore it are importing: they would print tracebacks
-    os.killpg(process.pid, signal.SIGINT)
-    told = process.communicate()[0]
-    assert process.returncode == 130, told
-    assert "finished cases are stored in long.nc.partial; rerun the same command" in told
-    assert "Traceback" not in told
-    assert "remaining" in invoke("status", "long.nc")
-
-
-def test_ctrl_c_stops_threads_at_once(here):
-    """A chunk that is being solved is not waited for; what is in the journal goes on to the same bits."""
-    text = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
-    (here / "long.toml").write_text(text.replace("settle_periods = 3", "settle_periods = 10_000"))
-    process = small_sweep.start("run", "long.toml", "--n-jobs", 2, directory=here)
-    journal = here / "long.nc.partial"
-    while process.poll() is None and not (journal.exists() and journal.stat().st_size > 20_000):
-        time.sleep(0.01)
-    began = time.monotonic()
-    os.killpg(process.pid, signal.SIGINT)
-    told = process.communicate()[0]
-    assert time.monotonic() - began < 5.0
-    assert process.returncode == 130, told
-    assert "finished cases are stored in long.nc.partial; rerun the same command" in told
-    assert "Traceback" not in told
-    assert "cases are there" in invoke("plot", "peak-to-peak", "long.nc")
-    assert "from an earlier run" in run("long.toml", "--n-jobs", 2)
-    run("long.toml", "-o", "other.nc", "--n-jobs", 1, "--backend", "loky")
-    small_sweep.assert_same_numbers(xr.load_dataset("long.nc"), xr.load_dataset("other.nc"))
 
 
 def numbers(told):

@@ -69,6 +69,7 @@ def grid(request):
     return fixture_dataset.build(**GRIDS[request.param])
 
 
+@pytest.mark.few(9)
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_small_and_large_grids(kind, grid):
     if grid["status"].size == 1 and kind in FEWEST:
@@ -78,6 +79,7 @@ def test_draws_small_and_large_grids(kind, grid):
     figures.draw(grid, kind).draw_without_rendering()
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_a_sweep_in_which_every_case_failed(kind, dataset):
     figures.draw(everything_failed(dataset), kind).draw_without_rendering()
@@ -180,6 +182,7 @@ def test_a_new_figure_is_one_file(dataset, tmp_path, monkeypatch):
     assert drawn.get_suptitle() == "Stick fractions"
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
     one = dataset.sel(friction_law="coulomb")
@@ -197,6 +200,7 @@ def test_a_single_panel_is_drawn_into_given_axes(kind, dataset):
         figures.draw(dataset, kind, ax=left)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_several_panels_are_drawn_into_a_given_subfigure(kind, dataset):
     figure = Figure(layout="constrained", figsize=(12.0, 5.0))
@@ -379,6 +383,7 @@ def test_marked_points_are_those_of_the_variables(dataset):
     assert (grey.get_xdata().tolist(), grey.get_color()) == ([0.6], "0.6")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("law", ["Coulomb", "EXPONENTIAL"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_figure_takes_a_law(kind, law, dataset):

@@ -48,6 +48,7 @@ def test_draws_and_says_what_it_shows(kind):
     assert diagnosis.FIGURES[kind].load().draw.__doc__.count("To see:") == 1
 
 
+@pytest.mark.few(22)
 @pytest.mark.parametrize("verdict", fixture_diagnosis.CASES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_verdict(kind, verdict):
@@ -75,7 +76,7 @@ def test_many_tests_without_velocity_and_amplitude(kind):
 
 
 def test_responses_that_were_not_found_and_channels_that_are_missing():
-    result = build()
+    result = build(tests=6)
     data = result.data
     data["simulated_harmonics"][1, 3] = np.nan
     data["simulated_waveform"][1, 3] = np.nan
@@ -243,7 +244,7 @@ def test_parts_of_one_record_are_one_spectrogram():
 
 def test_figures_of_an_oscillator_say_what_it_has():
     """Axes and titles of a mass under a force name neither bolster nor side frame."""
-    result = build()
+    result = build(tests=4)
     result.data.attrs |= {
         **{"system": "oscillator", "contact": "ground", "excitation": "force"},
         "reference": "force amplitude over k",

@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -70,8 +71,14 @@ ONLY_IN = {
 }
 
 
+@cache
+def tree(path):
+    return ast.parse(path.read_text())
+
+
+@cache
 def imports(path):
-    return imported(ast.parse(path.read_text()))
+    return list(imported(tree(path)))
 
 
 def imported(tree):
@@ -155,7 +162,7 @@ def test_solvers_know_no_part_of_the_suspension():
 def test_only_the_command_line_prints_or_exits():
     words = {"print", "exit", "quit", "_exit", "SystemExit"}
     for name, path in FILES.items():
-        nodes = ast.walk(ast.parse(path.read_text()))
+        nodes = ast.walk(tree(path))
         used = {getattr(node, "id", getattr(node, "attr", "")) for node in nodes} & words
         entry = name.startswith(("cli/", "__main__.py"))
         assert entry or not used, f"{name}: {used}"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.scaling import BENCH_SIZE, SIZES, Size
+from wedgesweep.config import load
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.effects import EFFECTS
 from wedgesweep.natural_units import BENCH, FREQUENCY, LENGTH, natural_units
@@ -24,6 +25,12 @@ def test_the_bench_is_the_one_of_table_1():
     assert units(BENCH_SIZE) == BENCH
     for dimension in DIMENSIONS.values():
         assert BENCH.ratio(dimension) == 1.0
+
+
+def test_the_config_of_a_bogie_is_that_of_the_bench_at_another_size():
+    bogie = load(Path(__file__).parents[1] / "configs" / "bogie.toml").natural_units()
+    assert bogie.ratio(LENGTH) == pytest.approx(36.0, rel=1e-3)
+    assert bogie.ratio(FREQUENCY) == pytest.approx(1.0 / 6.0, rel=1e-3)
 
 
 def test_every_unit_has_its_dimension():

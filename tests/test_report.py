@@ -15,6 +15,8 @@ from wedgesweep.errors import InputError, SweepError
 from wedgesweep.report import html, phrases, summary
 from wedgesweep.report.inline_figures import InlineFigures
 
+# The verdict whose page has its figures; test_figures_diagnosis.py draws those of all verdicts.
+WITH_FIGURES = "named"
 VOID = {"meta", "img", "link", "br"}
 
 
@@ -59,21 +61,26 @@ def plain(text):
     return text.replace(formatting.NO_BREAK, " ").replace("\N{NARROW NO-BREAK SPACE}", " ")
 
 
+def _caption(figures, name, caption, tests=None):
+    return html.paragraph(caption)
+
+
 @pytest.fixture
 def no_figures(monkeypatch):
     """Pages without figures, for tests of their text."""
-    monkeypatch.setattr(
-        InlineFigures, "__call__", lambda self, name, caption, tests=None: html.paragraph(caption)
-    )
+    monkeypatch.setattr(InlineFigures, "__call__", _caption)
 
 
 @pytest.fixture(scope="module", params=VERDICTS)
 def written(request, tmp_path_factory):
     """Verdict, directory and page of a diagnosis of each verdict."""
     directory = tmp_path_factory.mktemp(request.param)
-    # With more than six tests some figures are folded away; one page with them is enough.
-    fixture_diagnosis.write(directory, request.param, tests=8 if request.param == "named" else 3)
-    return request.param, directory, Page(report.write(directory).read_text(encoding="utf-8"))
+    with pytest.MonkeyPatch.context() as patched:
+        if request.param != WITH_FIGURES:
+            patched.setattr(InlineFigures, "__call__", _caption)
+        # With more than six tests some figures are folded away.
+        fixture_diagnosis.write(directory, request.param, tests=7 if request.param == WITH_FIGURES else 3)
+        return request.param, directory, Page(report.write(directory).read_text(encoding="utf-8"))
 
 
 def test_the_answer_comes_first(written):
@@ -85,9 +92,9 @@ def test_the_answer_comes_first(written):
 
 
 def test_nothing_comes_from_elsewhere(written):
-    _, directory, page = written
+    verdict, directory, page = written
     addresses = [image["src"] for image in page.of("img")]
-    assert addresses
+    assert bool(addresses) == (verdict == WITH_FIGURES)
     assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses)
     assert {link["href"] for link in page.of("a")} <= {
         "extended.toml",
@@ -536,6 +543,7 @@ def test_what_is_missing_or_damaged_is_named(tmp_path):
     assert {each.name for each in tmp_path.iterdir()} == {diagnosis_result.JSON, diagnosis_result.DATASET}
 
 
+@pytest.mark.acceptance
 def test_the_page_is_the_same_from_one_process_and_from_two(tmp_path):
     fixture_diagnosis.write(tmp_path, "nothing-missing", tests=2)
     one, two = (report.write(tmp_path, n_jobs).read_text(encoding="utf-8") for n_jobs in (1, 2))

@@ -156,6 +156,7 @@ def test_frictionless_ratios_and_those_of_mirrored_columns_are_those_of_table_1(
     assert suspension.mirrored_rest(run) == pytest.approx(-0.9342939466)
 
 
+@pytest.mark.acceptance
 def test_single_cases_follow_what_is_changed(runs):
     run = runs.paper
     coulomb = single(run, "coulomb", 1.472, 0.05, SETTLED)
@@ -171,6 +172,7 @@ def test_a_single_case_that_locks_is_nan(runs):
     assert np.isnan(single(runs.paper, "coulomb", 1.1, 2.0, locking)["amplitude_ratio"])
 
 
+@pytest.mark.acceptance
 def test_a_real_run_at_20_hz_has_plateaus_of_an_eighth(tmp_path):
     small = """
         title = "20 Hz"

@@ -115,6 +115,7 @@ def obtain(tmp_path, configs):
     return runs, told
 
 
+@pytest.mark.acceptance
 def test_finished_runs_are_kept_and_others_made_again(tmp_path, configs):
     first, told = obtain(tmp_path, configs)
     assert ["tiny" in line for line in told] == [True] * 4

@@ -1,7 +1,7 @@
 """Synthetic measurements: what is hidden comes out again, and nothing else is in them."""
 
 import json
-from math import pi
+from math import inf, pi
 
 import numpy as np
 import pytest
@@ -40,6 +40,8 @@ amplitude_std = 0.05
 known = false
 """
 
+# Records of tests that need neither a steady motion nor a long one.
+SHORT = ("--settle-periods", 3, "--periods", 4)
 # So many that a straight line between them is right to 1e-6 of the signal.
 SAMPLES = 2**17
 
@@ -69,6 +71,7 @@ def contents(directory):
 def test_round_trip(here):
     told = synthesize("--seed", 3)
     assert told.endswith("wrote made/measured.toml: 2 tests\n")
+    assert "not steady" not in told
     assert sorted(contents(here / "made")) == [
         *("measured.toml", "model.toml", "test-00.csv", "test-01.csv", "truth.json")
     ]
@@ -105,13 +108,14 @@ def test_round_trip(here):
 
 def test_a_seed_decides_everything(here):
     for output, seed, n_jobs in (("a", 1, 1), ("b", 1, 2), ("c", 2, 1)):
-        synthesize("--seed", seed, "--n-jobs", n_jobs, "--settle-periods", 3, "--periods", 4, output=output)
+        synthesize("--seed", seed, "--n-jobs", n_jobs, *SHORT, output=output)
     a, b, c = (contents(here / name) for name in "abc")
     a["measured.toml"] = a["measured.toml"].replace(b'"a"', b'"b"')  # the title
     assert a == b
     assert a["test-00.csv"] != c["test-00.csv"]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
 def test_without_noise_it_is_the_other_solvers_motion(here, law):
     """Amplitude, phase, sampling and settling, against the event-driven solver."""
@@ -126,7 +130,7 @@ def test_without_noise_it_is_the_other_solvers_motion(here, law):
             *(true.suspension, true.friction, true.effects),
         )
         window = Window(omega, 150, 1, SAMPLES)
-        samples = event_driven.solve(record, window, 1e-10, 60.0).samples
+        samples = event_driven.solve(record, window, 1e-10, inf).samples
         phase = omega * test.time + np.radians(hidden_test["phase_deg"])
         grid = np.linspace(0.0, 2.0 * pi, SAMPLES, endpoint=False)
         for channel, expected in ((test.displacement, -samples.x), (test.velocity, -samples.velocity)):
@@ -159,7 +163,7 @@ def test_noise_has_its_level_and_colour(kind):
 
 
 def test_a_derived_velocity_is_said_to_be_one(here):
-    synthesize("--noise", "differentiated")
+    synthesize("--noise", "differentiated", *SHORT)
     found = measured.read(here / "made" / "measured.toml")
     assert found.derived_velocity
     test = found.tests[0]
@@ -193,7 +197,7 @@ def test_the_gain_of_the_displacement():
 
 def test_an_uncertain_number_is_off_and_told(here):
     (here / "tests.toml").write_text(f"[uncertain]\nfriction_level = 0.1\n{TESTS}")
-    synthesize("--level", 0)
+    synthesize("--level", 0, *SHORT)
     factor = truth(here)["uncertain"]["friction_level"]
     assert 0.0 < abs(factor - 1.0) < 0.5
     assert measured.read(here / "made" / "measured.toml").uncertain == {"friction_level": 0.1}
@@ -201,14 +205,14 @@ def test_an_uncertain_number_is_off_and_told(here):
     more = f"[effects.friction_level]\nscale = {factor!r}\n"
     (here / "true.toml").write_text(TRUE.replace("[sweep]", f"{more}[sweep]"))
     (here / "tests.toml").write_text(TESTS)
-    synthesize("--level", 0, output="certain")
+    synthesize("--level", 0, *SHORT, output="certain")
     for name in ("test-00.csv", "test-01.csv"):
         assert contents(here / "made")[name] == contents(here / "certain")[name]
 
 
 def test_an_uncertain_distortion_is_the_same_in_all_tests_and_told(here):
     (here / "tests.toml").write_text(f"[uncertain]\ninput_distortion = 0.01\n{TESTS}")
-    synthesize("--level", 0)
+    synthesize("--level", 0, *SHORT)
     told = truth(here)["uncertain"]["input_distortion"]
     assert 0.0 < told["second"] < 0.05
     assert told["second"] != told["third"]
@@ -216,7 +220,7 @@ def test_an_uncertain_distortion_is_the_same_in_all_tests_and_told(here):
     more = "[effects.input_distortion]\n" + "".join(f"{key} = {value!r}\n" for key, value in told.items())
     (here / "true.toml").write_text(TRUE.replace("[sweep]", f"{more}[sweep]"))
     (here / "tests.toml").write_text(TESTS)
-    synthesize("--level", 0, output="certain")
+    synthesize("--level", 0, *SHORT, output="certain")
     for name in ("test-00.csv", "test-01.csv"):
         drawn, certain = (
             np.loadtxt(here / each / name, delimiter=",", skiprows=1) for each in ("made", "certain")
@@ -273,6 +277,7 @@ def test_records_of_a_length_that_none_has_write_nothing(here, option, value, me
     assert not (here / "made").exists()
 
 
+@pytest.mark.acceptance
 def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):
     tone = "[effects.stray_vibration]\nacceleration_m_per_s2 = 0.4\nfrequency_hz = 47.0\n"
     (here / "true.toml").write_text(TRUE.replace("[sweep]", f"{tone}[sweep]"))
@@ -289,9 +294,8 @@ def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):
 
 
 def test_what_is_not_steady_is_told(here):
-    told = synthesize("--settle-periods", 2)
-    assert "test[0] (20 Hz, 0.11 mm): not steady after 2 periods; raise --settle-periods" in told
-    assert "not steady" not in synthesize(output="settled")
+    told = synthesize(*SHORT)
+    assert "test[0] (20 Hz, 0.11 mm): not steady after 3 periods; raise --settle-periods" in told
 
 
 def test_tests_that_cannot_be_simulated_write_nothing(here):

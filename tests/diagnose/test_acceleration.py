@@ -81,6 +81,7 @@ def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path)
     assert (offered.power > 30.0 * offered.observations).all()
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("name", RIGS)
 def test_the_acceleration_against_the_ground_under_a_sweep(tmp_path, name):
     """Where mass and base each carry an accelerometer."""

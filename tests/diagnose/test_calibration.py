@@ -21,8 +21,9 @@ def coherent(share):
     return replace(data, spectra=tuple(replace(s, coherence=share) for s in data.spectra))
 
 
-@pytest.mark.parametrize("data", [drawn(), coherent(0.6 + 0.3j), bench(SIMULATED)])
-def test_a_sample_is_noise_about_the_fit(data):
+@pytest.mark.parametrize("make", [drawn, lambda: coherent(0.6 + 0.3j), lambda: bench(SIMULATED)])
+def test_a_sample_is_noise_about_the_fit(make):
+    data = make()
     fit = base_of(data)
     rng = np.random.default_rng(3)
     squares = []

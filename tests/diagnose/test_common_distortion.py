@@ -54,6 +54,7 @@ def free_of_start_phases(slope, phase):
     return slope - unit @ (np.swapaxes(unit, 1, 2) @ slope)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("noise", [1e-4, 0.05])
 def test_what_is_fitted_is_the_mean_of_the_posterior(noise):
     """A linear system: the data tell the harmonics where noise is small, the prior where it is not."""

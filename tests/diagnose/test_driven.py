@@ -89,6 +89,7 @@ INPUTS = {
 
 
 # Three bumps take a minute.
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("kind", "records"),
     [("sweep", 1), ("random", 1), ("bumps", 1), pytest.param("bumps", 3, marks=pytest.mark.acceptance)],
@@ -100,6 +101,7 @@ def test_a_cause_is_named_under_a_recorded_motion(tmp_path, kind, records):
     assert value == pytest.approx(4.0, rel=0.05)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["sweep", "random", pytest.param("bumps", marks=pytest.mark.acceptance)])
 def test_nothing_is_missing_where_nothing_is(tmp_path, kind):
     assert diagnosed(write(tmp_path, INPUTS[kind]()), CANDIDATES).verdict == "nothing-missing"

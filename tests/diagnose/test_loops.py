@@ -151,6 +151,7 @@ TRUTHS = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("bench", TRUTHS)
 def test_misfit_of_the_true_model_is_noise(tmp_path, bench, law):
@@ -174,6 +175,7 @@ WEAK = {
 }
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("effect", WEAK)
 def test_an_effect_of_three_times_the_noise_is_found(tmp_path, effect):
     path = write(tmp_path, WEDGE, {effect: WEAK[effect]}, motions=((2e-4, 1.5, 10.0),), noise=(1e-6, 0.01))
@@ -191,6 +193,7 @@ def test_an_effect_of_three_times_the_noise_is_found(tmp_path, effect):
     assert estimate["value"] * unit == pytest.approx(true, rel=0.05)
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("length", [3e-7, 5e-6, 3e-5])
 def test_bristles_are_found_whether_they_turn_over_within_a_sample_or_slowly(tmp_path, length):
     # Around a reversal the motion goes 2e-7 m in a sample. Nobody knows how the bristles begin.
@@ -260,6 +263,7 @@ HIDDEN = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("effect", HIDDEN)
 def test_a_hidden_effect_is_found(tmp_path, effect):
     found = diagnosed(write(tmp_path, effects={effect: HIDDEN[effect]}))
@@ -283,6 +287,7 @@ def test_a_wedge_under_an_imposed_motion(tmp_path):
     assert found.causes[0]["parameters"]["scale"]["value"] == pytest.approx(1.2, rel=0.02)
 
 
+@pytest.mark.acceptance
 def test_one_record_is_left_out_where_there_are_several(tmp_path):
     path = write(
         tmp_path,

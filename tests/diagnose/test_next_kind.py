@@ -73,6 +73,7 @@ def released(folder, truth):
     return path
 
 
+@pytest.mark.acceptance
 def test_a_loop_tells_mass_from_spring_where_no_free_motion_does(tmp_path):
     path = released(tmp_path / "first", "bolster_mass")
     found = diagnosed(path, list(RIVALS))
@@ -138,6 +139,7 @@ def test_no_kind_tells_an_explanation_from_itself(tmp_path):
     assert recommend([explained(data, DAMPED)]) is None
 
 
+@pytest.mark.acceptance
 def test_a_heavier_rig_gets_the_same_advice(tmp_path):
     """Masses, springs and forces times 4,000 move alike."""
     found = []

@@ -104,6 +104,7 @@ def test_an_accelerometer_is_compared_with_the_displacement():
     assert left.max() < 1e-7 * periodogram(a)[1].max()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pole", POLES)
 def test_the_difference_of_two_channels_is_noise_of_both(pole):
     measured = []
@@ -118,6 +119,7 @@ def test_the_difference_of_two_channels_is_noise_of_both(pole):
     assert np.mean(measured, axis=0)[each.frequency < 2.0 * NATURAL].mean() == pytest.approx(1.0, abs=0.35)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("orders", [(0, 1), (0,), (1,)])
 @pytest.mark.parametrize("pole", POLES)
 def test_noise_is_told_at_the_frequencies_of_the_motion(pole, orders):
@@ -159,6 +161,7 @@ def test_noise_shows_where_the_motion_is_over():
     assert quiet_bins(noisy(decay(0.001)[1], 0.9, rng)) is None
 
 
+@pytest.mark.acceptance
 def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     # The reason for which tests are looked at together: kinks of the velocity fall with frequency like noise.
     rng, (_, v) = np.random.default_rng(0), decay(0.04)
@@ -169,6 +172,7 @@ def test_a_record_by_itself_takes_the_skirts_of_its_kinks_for_red_noise():
     assert ratios(0.0, 0, (0, 1))[..., 1].max() < 6.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("samples", [48, 100, 200])
 def test_a_short_record_has_noise_of_some_size(samples):
     rng, (x, v) = np.random.default_rng(6), decay(0.08, samples)
@@ -186,6 +190,7 @@ def short_accelerations(pole, seed):
     return evidence, tests, clean
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_white_noise_far_above_the_motion_may_be_red_at_it(seed):
     evidence, _, clean = short_accelerations(0.9, seed)
@@ -193,6 +198,7 @@ def test_white_noise_far_above_the_motion_may_be_red_at_it(seed):
         assert evidence.bounds.most[t, 2](AT[1]) > 0.2 * power(LEVEL * each.std(), 0.9, AT[1])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_what_an_explanation_leaves_shows_that_there_is_less_noise(seed):
     evidence, tests, clean = short_accelerations(0.0, seed)
@@ -213,6 +219,7 @@ def test_what_an_explanation_leaves_shows_that_there_is_less_noise(seed):
         assert wrong[t, 2](AT[1]) <= most
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("pole", [0.0, 0.9, 0.97])
 def test_noise_does_not_hide_that_physics_is_missing(tmp_path, pole):
     path = write(tmp_path, effects={"cubic_stiffness": HIDDEN["cubic_stiffness"]}, pole=pole)

@@ -33,6 +33,7 @@ def true_power(pole):
     return STD**2 * (1.0 - pole**2) / (1.0 + pole**2 - 2.0 * pole * np.cos(AT))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pole", [0.0, 0.5, 0.9])
 def test_noise_below_a_decay_is_told_from_what_lies_above(pole):
     ratios = []
@@ -71,6 +72,7 @@ def test_what_does_not_repeat_is_noise():
     assert found.correlation == pytest.approx(0.9, abs=0.08)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_coloured_noise_is_no_cause(tmp_path, seed):
     path = write(tmp_path, pole=0.9, seed=seed)

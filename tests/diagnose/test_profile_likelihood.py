@@ -78,6 +78,7 @@ def test_the_flatter_side_of_chi2_counts():
     assert min(rises(fit)) > 0.9 * RISE
 
 
+@pytest.mark.acceptance
 def test_rugged_chi2_widens_the_interval():
     before, fit = compliance(0.3)
     assert max(rises(before)) < RISE / 2.0

@@ -113,6 +113,7 @@ def misfit(data, effects):
     return float((compared.residual**2).sum()), int(data.dof.sum())
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("quantity", ["displacement", "acceleration"])
 def test_the_misfit_of_the_truth_is_the_noise_of_responses_and_input(quantity):
     """Over seeds: the mean of Q over its degrees of freedom has a standard error of about 2 %."""
@@ -127,6 +128,7 @@ def test_the_misfit_of_the_truth_is_the_noise_of_responses_and_input(quantity):
     assert np.mean(bare) > 1.1  # so that the noise of the input does matter
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "columns",
     [
@@ -175,6 +177,7 @@ def test_of_noise_alone_hardly_any_measurement_shows_a_harmonic():
     assert np.sum(shown) <= 5
 
 
+@pytest.mark.acceptance
 def test_noise_of_the_input_is_no_harmonic_where_friction_nearly_holds():
     """There a harmonic of high order, which brings much acceleration, would change the response."""
     bench = np.repeat([6.8, 8.0], 4), 1e-3 * np.array([0.6, 0.7, 0.8, 0.9, 0.25, 0.3, 0.35, 0.4])
@@ -209,6 +212,7 @@ def stiff(seed):
     return measurement(seed, STIFF, noise=0.004, input_noise=0.08, bench=AT_ITS_RESONANCE)
 
 
+@pytest.mark.acceptance
 def test_the_noise_of_the_input_counts_as_the_right_model_passes_it_on():
     """With the covariance of the stated model the truth itself would be rejected."""
     before, after = [], []
@@ -249,6 +253,7 @@ def test_one_gain_of_the_input_serves_all_tests(of):
     np.testing.assert_allclose(fitted, AMPLITUDES, rtol=0.02)
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_noise_that_input_and_response_share_counts_with_its_sign(sign):
     """One noise in both channels, as from a common supply."""

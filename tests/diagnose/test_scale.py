@@ -47,6 +47,7 @@ class Answer:
         return inverse.effects(explanation.fit.values)
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize(
     ("effects", "size", "candidates"),
     [(GUIDE, FROUDE, OF_FRICTION), (SPRING, HEAVIER, OF_SPRINGS)],
@@ -102,6 +103,7 @@ def measured(size, tone):
     )
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("size", SIZES.values(), ids=SIZES)
 @pytest.mark.parametrize("tone", [0.6, 3.7])
 def test_a_slow_tone_is_found_where_it_is_no_drift_on_a_rig_of_that_size(size, tone):

@@ -35,6 +35,7 @@ def test_an_effect_that_is_there_scores_and_one_that_is_not_does_not():
     assert scored()["velocity_lag"].t2 < 16.0
 
 
+@pytest.mark.acceptance
 def test_the_weakest_value_is_what_the_tests_would_have_shown():
     """Even where all of the range that a fit looks in would show, or the first number is not what fades."""
     weakest = scored()

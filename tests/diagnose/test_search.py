@@ -59,6 +59,7 @@ def test_a_rough_misfit_is_not_taken_for_that_of_a_fit():
     assert fit.chi2 == pytest.approx(model.evaluate(fit.evaluation.point).chi2, rel=1e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("length", [0.9e-6, 1.03e-6, 1.5e-6])
 def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(length):
     """Faces that creep where the base model's stick: it moves only with far less friction or input.
@@ -75,6 +76,7 @@ def test_an_effect_with_which_the_base_model_fits_implausibly_starts_without_it(
     assert found.fit.values["presliding"]["length_mm"] == pytest.approx(1e3 * length, rel=0.05)
 
 
+@pytest.mark.acceptance
 def test_an_effect_is_fitted_beside_what_is_stated_where_the_base_model_needs_other_numbers():
     """Springs, mass and friction go as far as they may to make up for friction that falls with velocity."""
     stds = {"bolster_stiffness": 0.01, "wedge_stiffness": 0.01, "bolster_mass": 0.005, "friction_level": 0.03}
@@ -115,6 +117,7 @@ def clean(seed=0, effects=MappingProxyType({}), uncertain=MappingProxyType({"fri
     )
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_base_model_does_not_stop_short_of_its_uncertain_numbers(seed):
     base = base_of(clean(seed))
@@ -130,6 +133,7 @@ LARGER = [4.223, 4.434, 1.570, 1.622, 0.8115, 0.2413, 0.2499, 0.1772, 0.1797, 0.
 ASIDE = np.array([-1.2, 1.4, 0.0, -2.6, 1.1, 0.7, 2.5, 2.5, 1.2, 0.2, 0.9, -0.7]) / 100.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_inputs_do_not_make_up_for_uncertain_numbers(seed):
     data = drawn(

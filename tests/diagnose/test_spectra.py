@@ -31,6 +31,7 @@ def record(rng, frequency, periods=8.4, correlation=0.0, level=0.04, slope=0.0):
     return time, (truth @ turns).real + noise + 3.0 + slope * time, truth
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("correlation", [0.0, 0.9])
 @pytest.mark.parametrize(
     ("frequency", "periods"), [(5.0, 8.4), (11.0, 8.4), (32.0, 8.4), (11.0, 4.0), (11.0, 4.5)]
@@ -96,6 +97,7 @@ def test_lines_of_one_response_alone_neither_hide_a_tone_nor_are_one():
     ] * 12
 
 
+@pytest.mark.acceptance
 def test_the_frequency_of_a_tone_is_as_uncertain_as_it_says():
     found = [tone.find(spectra_with(np.random.default_rng(seed), 0.05)) for seed in range(30)]
     pulls = np.array([(each.frequency - 47.3) / each.std for each in found])

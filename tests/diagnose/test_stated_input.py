@@ -87,6 +87,7 @@ def closed_form(data):
     return found
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("velocity", [True, False])
 @pytest.mark.parametrize("model_error", [0.0, 0.01])
 def test_the_covariance_is_that_of_the_transfer_function(velocity, model_error):
@@ -111,6 +112,7 @@ def chi2_over_dof(data, scenario):
     return (data.compare([scenario], 1e-8)[0].residual ** 2).sum() / data.dof.sum()
 
 
+@pytest.mark.acceptance
 def test_the_misfit_of_the_truth_has_the_size_of_its_covariance():
     """Over draws: the mean of chi-squared over its degrees of freedom has a standard error of 1 %."""
     with_covariance, without = [], []
@@ -129,6 +131,7 @@ def distorted(size, seed=0, effects=None, level=0.02):
     return drawn({"input_distortion": harmonics, **(effects or {})}, seed, level, std=0.001)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("std", "level"), [(0.25 * STD, 0.02), (STD, 0.04)])
 def test_the_misfit_of_a_bench_with_friction_has_the_size_of_its_covariance(std, level):
     """Small harmonics are passed on in proportion; larger ones are not where they meet the resonance."""

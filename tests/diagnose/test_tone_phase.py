@@ -58,6 +58,7 @@ def test_the_phase_of_a_vibration_explains_what_an_unknown_phase_leaves():
     assert min(before) < 1e-6
 
 
+@pytest.mark.acceptance
 def test_the_base_model_may_contain_the_vibration():
     """Its phases are as unknown as those of one that is a cause."""
     table = f"[effects.stray_vibration]\nacceleration_m_per_s2 = {ACCELERATION}\nfrequency_hz = {TONE}\n"

@@ -142,6 +142,7 @@ HIDDEN = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("effect", HIDDEN)
 def test_a_hidden_effect_is_found(tmp_path, effect):
     found = diagnosed(write(tmp_path, effects={effect: HIDDEN[effect]}), [*HIDDEN, "friction_level"])
@@ -154,6 +155,7 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
         assert estimate["value"] * unit == pytest.approx(true, rel=0.02), key
 
 
+@pytest.mark.acceptance
 def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
     data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 2.0}})))
     names = ("viscous_damping", "directional_damping")
@@ -169,6 +171,7 @@ def test_a_start_that_one_explanation_has_found_is_tried_by_others(tmp_path):
     assert found[damper.effects].fit.chi2 == pytest.approx(damper.fit.chi2, abs=0.1)
 
 
+@pytest.mark.acceptance
 def test_a_fit_that_is_far_off_waits_until_nothing_is_adequate(tmp_path):
     data = transient_data(read(write(tmp_path, effects={"viscous_damping": {"coefficient": 20.0}})))
     search, base = base_fit(Search.of(data, ("viscous_damping", "cubic_stiffness")))
@@ -220,6 +223,7 @@ def test_a_wedge_that_is_dropped(tmp_path):
 LARGE = ((0.010, 0.0), (-0.008, 0.1), (0.012, -0.3))
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize(
     ("effect", "numbers", "keys"),
     [
@@ -237,6 +241,7 @@ def test_a_wedge_that_is_dropped_from_far_away(tmp_path, effect, numbers, keys):
         assert high - low < 0.05 * true
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("effect", "numbers", "places"),
     [
@@ -302,6 +307,7 @@ def test_a_ring_down_that_is_taken_for_steady_is_told_what_it_is(tmp_path):
         read(path)
 
 
+@pytest.mark.acceptance
 def test_a_test_with_numbers_of_its_own_is_the_same_beside_others_and_alone(tmp_path):
     """A rig that is released empty and loaded."""
     loaded = parse(OSCILLATOR.replace("mass_kg = 2.0", "mass_kg = 8.0"), "model")

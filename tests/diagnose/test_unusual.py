@@ -71,6 +71,7 @@ def measured(tmp_path):
     return tmp_path / "measured.toml"
 
 
+@pytest.mark.acceptance
 def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
     out = measured.parent / "found"
     said = invoke("diagnose", measured, "-o", out, "--effects", "preload,friction_level,wedge_stiffness")

@@ -38,6 +38,7 @@ def cramer_rao(periods, frequency, amplitudes, level):
     return level * rms / (2.0 * pi * np.sqrt(curvature))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("amplitudes", [SINE, STRONG_HARMONICS, WEAK_FUNDAMENTAL])
 @pytest.mark.parametrize("level", [0.04, 0.1])
 def test_near_the_least_error_that_is_possible(amplitudes, level):
@@ -51,6 +52,7 @@ def test_near_the_least_error_that_is_possible(amplitudes, level):
     assert np.sqrt(np.mean(np.square(errors))) < 1.3
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("correlation", [0.0, 0.9])
 @pytest.mark.parametrize("amplitudes", [SINE, STRONG_HARMONICS])
 def test_standard_errors_are_right_whatever_the_noise(amplitudes, correlation):

@@ -3,15 +3,14 @@
 import agreement
 import pytest
 
-from tests import marks
-
 # All laws and leans, preload, guide friction, forces that turn negative; 100 and 145 lock, 196 has a force
 # that is negative for a fortieth of a period.
 NUMBERS = (2, 3, 6, 10, 15, 17, 100, 145, 181, 183, 189, 196)
 LOCKED = {100, 145}
 
 
-@pytest.mark.parametrize("number", marks.each_nth(3, NUMBERS))
+@pytest.mark.few(2)
+@pytest.mark.parametrize("number", NUMBERS)
 def test_radau_and_event_driven_agree(number):
     result = agreement.compared(number)
     assert result.moved < agreement.MOVED or number in LOCKED

@@ -4,7 +4,6 @@ from math import cos, pi, sin, sqrt
 
 import pytest
 
-from tests import marks
 from tests.physics.cases import TABLE_1, steady
 from wedgesweep.systems.suspension import parameters
 
@@ -50,7 +49,9 @@ def closed_form(r, force_ratio):
     return sqrt(v**2 - (force_ratio * u) ** 2)
 
 
-@pytest.mark.parametrize(("r", "share"), marks.each_nth(3, list(ONSETS), [0.1, 0.5, 0.95]))
+@pytest.mark.few(3)
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
+@pytest.mark.parametrize("r", ONSETS)
 def test_motion_without_stops(r, share):
     force_ratio = share * ONSETS[r]
     numbers = respond(r, force_ratio)
@@ -58,12 +59,14 @@ def test_motion_without_stops(r, share):
     assert numbers["stick_fraction"] == 0.0
 
 
-@pytest.mark.parametrize("r", marks.each_nth(2, list(ONSETS)))
+@pytest.mark.few(1)
+@pytest.mark.parametrize("r", ONSETS)
 def test_onset_of_stops(r):
     assert respond(r, 0.99 * ONSETS[r])["stick_fraction"] == 0.0
     assert respond(r, 1.01 * ONSETS[r])["stick_fraction"] > 0.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("r", "expected", "stick_fraction"),
     [(0.6, 1.35193, 0.1195), (1.5, 0.16748, 0.1277), (2, 0.07010, 0.1799), (3, 0.02668, 0.2054)],

@@ -1,12 +1,11 @@
 """Energy, free decay, linear limit and similarity: what must hold whatever the numbers are."""
 
-from math import pi, sin
+from math import inf, pi, sin
 
 import numpy as np
 import pytest
 
-from tests import marks
-from tests.physics.cases import OMEGA_N, TABLE_1, evaluated, steady
+from tests.physics.cases import OMEGA_N, TABLE_1, fast, steady
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.systems.suspension import parameters
@@ -24,7 +23,9 @@ BALANCED = [
 ]
 
 
-@pytest.mark.parametrize(("case", "lean"), marks.each_nth(2, BALANCED, [4.0, -4.0]))
+@pytest.mark.few(4)
+@pytest.mark.parametrize("lean", [4.0, -4.0])
+@pytest.mark.parametrize("case", BALANCED)
 def test_energy_balance_over_a_steady_period(case, lean):
     law, beta, amplitude = case
     amplitude *= 1.0 if lean > 0 else 2.5  # the other lean holds the bolster much longer
@@ -49,13 +50,14 @@ def test_free_vibration_loses_4_f_over_k_per_cycle():
     for cycles in (1, 2, 5, 20):
         end = cycles * 2 * pi / resonance(record[0])
         record["input"]["omega"] = 2 * pi / end
-        run = radau.solve(record, Window(2 * pi / end, 1, 1, 64), 1e-8, 60.0, start=(start, 0.0))
+        run = radau.solve(record, Window(2 * pi / end, 1, 1, 64), 1e-8, inf, start=(start, 0.0))
         # After whole cycles the bolster is at rest: the window that follows begins at that extreme.
         assert run.sums["highest"][0] == pytest.approx(
             max(start - 2 * cycles * half_cycle, 0.0), rel=1e-6, abs=half_cycle / 2
         )
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("beta", [0.3, 0.9, 1.4, 3.0])
 @pytest.mark.parametrize("law", ["coulomb", "exponential"])
 def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
@@ -68,12 +70,13 @@ def test_without_friction_the_response_is_the_linear_oscillator(law, beta):
         s["bolster_mass"] + 2 * s["wedge_mass"] * ratio**2
     )
     window = Window(omega, 2, 2, 64)
-    samples = radau.solve(record, window, 1e-9, 60.0).samples
+    samples = radau.solve(record, window, 1e-9, inf).samples
     forced = share * amplitude * omega**2 / (natural**2 - omega**2)
     expected = [forced * (sin(omega * t) - omega / natural * sin(natural * t)) for t in samples.t]
     np.testing.assert_allclose(samples.x, expected, atol=1e-6 * np.ptp(expected))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("factor", [0.1, 3.0])
 def test_coulomb_friction_scales_with_gravity_and_input_together(factor):
     def ratio(scale):
@@ -105,7 +108,7 @@ def test_a_vanishing_threshold_velocity_approaches_set_valued_friction():
             friction={"dynamic": 0.0, "static": 0.0, "threshold_velocity": threshold},
             effects={"guide_friction": {"force": 1.5}},
         )
-        return steady(record, settle_periods=20)["amplitude_ratio"]
+        return fast(record, 20).numbers["amplitude_ratio"]
 
     exact = ratio("coulomb", 1e-3)
     errors = [abs(ratio("static-dynamic", threshold) / exact - 1.0) for threshold in (1e-3, 1e-4)]
@@ -113,6 +116,7 @@ def test_a_vanishing_threshold_velocity_approaches_set_valued_friction():
     assert errors[1] < 0.2 * errors[0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["coulomb", "static-dynamic", "exponential"])
 def test_a_finer_tolerance_converges(law):
     record = parameters.record(law, 3e-4, 0.6 * OMEGA_N)
@@ -124,7 +128,7 @@ def test_a_finer_tolerance_converges(law):
 
 
 def test_normal_forces_are_unknown_while_stuck_and_known_while_slipping():
-    waveforms = evaluated(parameters.record("coulomb", 1e-3, 0.4 * OMEGA_N), 10).waveforms
+    waveforms = fast(parameters.record("coulomb", 1e-3, 0.4 * OMEGA_N), 10).waveforms
     stuck = waveforms["stuck"]
     assert 0.3 < stuck.mean() < 0.5
     assert np.isnan(waveforms["normal_force_column"][stuck]).all()
@@ -134,7 +138,7 @@ def test_normal_forces_are_unknown_while_stuck_and_known_while_slipping():
 
 def test_harmonics_rebuild_the_displacement_and_its_velocity():
     record = parameters.record("exponential", 1e-3, 0.4 * OMEGA_N)
-    result = evaluated(record, 20)
+    result = fast(record, 20)
     orders = np.arange(1, 10)
     coefficients = result.spectra["displacement_harmonics"] @ (1, 1j)
     phase = 2 * pi * np.arange(result.waveforms["displacement"].size) / 256
@@ -154,7 +158,7 @@ def test_displacement_turns_from_opposite_to_in_phase_with_the_input():
     lags = {}
     for beta in (0.9, 1.14, 1.5, 3.0):
         record = parameters.record("static-dynamic", 0.5e-3, beta * OMEGA_N)
-        lags[beta] = steady(record, settle_periods=60)["phase_lag"]
+        lags[beta] = fast(record).numbers["phase_lag"]
     assert -pi < lags[0.9] < -0.85 * pi
     assert -0.75 * pi < lags[1.14] < -0.25 * pi
     assert -0.1 * pi < lags[1.5] < lags[3.0] < 0.0

@@ -1,12 +1,11 @@
 """Effects on the oscillator: each balances its energy, in both solvers; at its neutral value it is absent."""
 
-from math import pi
+from math import inf, pi
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tests import marks
 from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, M, coulomb, oscillator, steady
 from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven
@@ -54,7 +53,9 @@ def test_words_name_parts_of_the_oscillator(name):
     assert not any(part in words for part in ("bolster", "wedge", "column", "side frame", "{"))
 
 
-@pytest.mark.parametrize(("name", "law"), marks.each_nth(2, MECHANICAL, ["coulomb", "exponential"]))
+@pytest.mark.few(5)
+@pytest.mark.parametrize("law", ["coulomb", "exponential"])
+@pytest.mark.parametrize("name", MECHANICAL)
 def test_energy_balances_and_solvers_agree(name, law):
     contact = "ground" if name in GROUNDED else "base"
     # Time at rest strengthens friction only where there is some.
@@ -74,6 +75,7 @@ def test_energy_balances_and_solvers_agree(name, law):
     assert abs(found[0][changed] - without[changed]) > 1e-3 * abs(found[0][changed])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("level", [0.5, 1.5])
 def test_bent_bristles_hold_a_mass_between_the_frictions_of_both_directions(level):
     """At zero slip friction jumps by the asymmetry times what the bristles hold."""
@@ -94,7 +96,7 @@ def test_friction_by_direction_leaves_the_friction_of_the_guide(side, factor):
     record["input"]["amplitude"] = 1e-9
     for share, sticks in ((0.99, True), (1.01, False)):
         start = (side * share * (factor * 0.5 + 0.2) / K, 0.0)
-        run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, 60.0, start=start)
+        run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, inf, start=start)
         assert run.samples.sticks[0] == sticks
 
 
@@ -112,7 +114,7 @@ def test_friction_holds_the_springs_up_to_its_level(effects, held):
     record = case(contact="ground", **effects)
     record["input"]["amplitude"] = 1e-9
     for share, sticks in ((0.99, True), (1.01, False)):
-        run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, 60.0, start=(share * held, 0.0))
+        run = event_driven.solve(record, Window(OMEGA_N, 0, 2, 64), 1e-8, inf, start=(share * held, 0.0))
         assert run.samples.sticks[0] == sticks
 
 
@@ -122,7 +124,7 @@ def free(solver, x, **effects):
         "coulomb", 1e-9, OMEGA_N, oscillator(normal_force=0.0), coulomb(0.0), effects, "force"
     )
     window = Window(OMEGA_N, 0, 2, 8192)
-    return SOLVERS[solver].solve(record, window, 1e-11, 60.0, start=(x, 0.0)).samples
+    return SOLVERS[solver].solve(record, window, 1e-11, inf, start=(x, 0.0)).samples
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

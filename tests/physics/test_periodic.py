@@ -1,6 +1,7 @@
 """Steady responses from neighbouring states."""
 
 from concurrent.futures import ThreadPoolExecutor
+from math import inf
 
 import numpy as np
 import pytest
@@ -49,7 +50,7 @@ def test_it_is_what_a_long_run_ends_in(name):
     found = respond(rows)
     for i in range(len(rows)):
         row = rows[i : i + 1]
-        run = event_driven.solve(row, Window(float(row["input"]["omega"][0]), 150, 1, 256), 1e-9, 60.0)
+        run = event_driven.solve(row, Window(float(row["input"]["omega"][0]), 150, 1, 256), 1e-9, inf)
         expected = response.evaluate(run, row, 7)
         spectra = np.stack([expected.spectra[f"{each}_harmonics"] for each in ("displacement", "velocity")])
         complex_spectra = spectra[..., 0] + 1j * spectra[..., 1]
@@ -180,7 +181,7 @@ def test_sensors_turn_and_scale_the_spectra():
 
 def test_the_lagged_waveform_has_the_lagged_spectrum():
     row = parameters.record("exponential", 8e-4, 0.6 * OMEGA_N, effects={"velocity_lag": {"time": 5e-3}})
-    run = event_driven.solve(row, Window(float(row["input"]["omega"][0]), 60, 2, 256), 1e-9, 60.0)
+    run = event_driven.solve(row, Window(float(row["input"]["omega"][0]), 60, 2, 256), 1e-9, inf)
     seen = response.evaluate(run, row, 7)
     velocity = seen.waveforms["velocity"][:256]
     spectrum = np.fft.rfft(velocity)[1:8] / 128

@@ -227,6 +227,7 @@ def test_a_release_with_a_velocity_rings_down():
 
 
 # Suspensions and oscillators, three laws, effects; 12, 20, 24 and 28 of the script would compile for minutes.
+@pytest.mark.few(4)
 @pytest.mark.parametrize("number", [0, 2, 5, 6, 9, 11, 16, 17, 25, 34])
 def test_both_solvers_agree_on_random_transients(number):
     result = transients.compared(number)

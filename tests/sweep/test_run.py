@@ -1,11 +1,7 @@
 """A sweep's numbers depend on its config alone: not on jobs, threads, kills or earlier runs."""
 
-import os
-import random
-import signal
 import subprocess
 import sys
-import time
 from collections import Counter
 
 import numpy as np
@@ -91,43 +87,6 @@ def test_threads_of_numpys_libraries_change_no_bit(finished, tmp_path):
     records = np.frombuffer(found.pop(), finished[0].dtype)
     ratios = finished[1]["amplitude_ratio"].values.ravel()
     assert records["amplitude_ratio"].tolist() == ratios[::6].tolist()
-
-
-def killed_at_a_random_moment(directory, n_jobs, random_numbers) -> bool:
-    """Run the sweep and kill it, workers and all, some records later; False if it was faster."""
-    path = directory / "small.nc.partial"
-    stride = small_sweep.sweep(directory).dtype.itemsize + 4
-    size = path.stat().st_size if path.exists() else 0
-    target = size + stride * random_numbers.uniform(0.1, 4.0)
-    process = small_sweep.start("run", "c.toml", "-o", "small.nc", "--n-jobs", n_jobs, directory=directory)
-    while process.poll() is None and not (path.exists() and path.stat().st_size >= target):
-        time.sleep(0.002)
-    time.sleep(random_numbers.uniform(0.0, 0.03))
-    if process.poll() is None:
-        os.killpg(process.pid, signal.SIGKILL)
-    process.communicate()
-    return process.returncode == -signal.SIGKILL
-
-
-def test_killed_at_random_moments_it_goes_on_and_ends_with_the_same_bits(finished, tmp_path):
-    (tmp_path / "c.toml").write_text(CONFIG)
-    sweep, kept, random_numbers = small_sweep.sweep(tmp_path), {}, random.Random(20)
-    for n_jobs in (1, 2, 1):
-        if not killed_at_a_random_moment(tmp_path, n_jobs, random_numbers):
-            break
-        records = journal.read(sweep.journal_path, sweep.dtype)
-        times = dict(zip(records["index"].tolist(), records["wall_time"].tolist(), strict=True))
-        assert times.items() >= kept.items()
-        kept = times
-    assert 0 < len(kept) < CASES
-    told = []
-    ds = sweep.run(n_jobs=1, progress=lambda records, total: told.append((len(records), total)))
-    assert told[0] == (len(kept), CASES)
-    assert sum(count for count, _ in told) == CASES
-    # Not computed again: even the wall times are those of the first time.
-    assert [ds["wall_time"].values.ravel()[index] for index in kept] == list(kept.values())
-    assert_same_numbers(xr.load_dataset(sweep.out), finished[1])
-    assert {path.name for path in tmp_path.iterdir()} <= {"c.toml", "small.nc"}
 
 
 def interrupted(sweep, after):
@@ -289,7 +248,8 @@ def test_compiles_before_the_jobs_start(tmp_path, monkeypatch, solved):
     assert sum(solved.values()) == 1
 
 
-@pytest.mark.parametrize("method", ["radau", "event-driven"])
+@pytest.mark.few(1)
+@pytest.mark.parametrize("method", ["event-driven", "radau"])
 def test_the_short_run_of_a_motion_succeeds(method):
     release = '[input]\nkind = "release"\ndisplacement_mm = 3.0\nduration_s = 1.0\n'
     grid = f'[sweep]\nfriction_law = "coulomb"\nscale = 1.0\n[solver]\nmethod = "{method}"\n'

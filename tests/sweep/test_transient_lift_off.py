@@ -31,6 +31,7 @@ def solved(*args, **options):
     return ds
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("given", [RELEASE, SWEPT])
 def test_both_solvers_agree(given):
     one, other = (solved(given, "unilateral", method=method) for method in ("event-driven", "radau"))

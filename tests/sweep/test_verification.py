@@ -40,6 +40,7 @@ def run(solver, *options, cases=CASES, code=0):
     return invoke("run", "c.toml", "--n-jobs", 1, *options, code=code)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", SOLVERS)
 def test_right_results_pass(here, kind):
     told = run(SOLVERS[kind], "--verify", 3)
@@ -66,13 +67,15 @@ def broken(monkeypatch):
     monkeypatch.setattr(batch, "_fill", wrong)
 
 
-@pytest.mark.parametrize("kind", ["fixed", "steady"])
+@pytest.mark.few(1)
+@pytest.mark.parametrize("kind", ["steady", "fixed"])
 def test_a_broken_solver_is_found(here, broken, kind):
     told = run(SOLVERS[kind], "--verify", 2, "--seed", 7, code=1)
     assert "seed 7" in told
     assert "2 of 2 cases differ by more" in told
 
 
+@pytest.mark.acceptance
 def test_a_finished_dataset_is_judged_as_it_is_stored(here):
     few = CASES.replace("[0.4, 1.1]", "1.1")
     run(SOLVERS["fixed"], cases=few)

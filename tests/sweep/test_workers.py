@@ -10,7 +10,7 @@ import xarray as xr
 from joblib.externals.loky import reusable_executor
 
 from tests import small_sweep
-from tests.small_sweep import CASES, assert_same_numbers
+from tests.small_sweep import CASES, FAST, assert_same_numbers
 from tests.sweep.deadly import Task, deadly
 from wedgesweep.errors import SweepError
 from wedgesweep.outcome import Outcome
@@ -37,6 +37,7 @@ def solved(cases, size, task):
     return records[np.argsort(records["index"])]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("width", "size"), [(1, 1), (1, 5), (3, 2)])
 def test_a_deadly_case_fails_and_no_other(width, size):
     cases = np.arange(18).reshape(-1, width)
@@ -70,8 +71,8 @@ def test_a_sweep_goes_on_with_the_same_bits(tmp_path):
             killed.append(min(reusable_executor._executor._processes))
             os.kill(killed[-1], signal.SIGKILL)
 
-    sweep = small_sweep.sweep(tmp_path)
-    sweep.run(n_jobs=2, progress=kill, tell=remarks.append)
+    sweep = small_sweep.sweep(tmp_path, FAST)
+    sweep.run(n_jobs=2, backend=backend.loky, progress=kill, tell=remarks.append)
     expected = sweep.solve(np.arange(CASES))
     assert sorted(told) == list(range(CASES))
     assert remarks == [workers.TOLD]
@@ -83,7 +84,7 @@ def test_a_sweep_goes_on_with_the_same_bits(tmp_path):
 
 
 def test_what_a_lost_worker_leaves_is_solved_by_the_next_run(tmp_path, monkeypatch):
-    sweep = small_sweep.sweep(tmp_path)
+    sweep = small_sweep.sweep(tmp_path, FAST)
     few = np.arange(2)
     records = solve_cases(sweep.config.records(few), few, sweep.settings, np.inf, sweep.dtype)
     records["status"][1] = Outcome.WORKER_LOST

@@ -71,6 +71,7 @@ def test_wilson_intervals(hits, n, low, high):
     assert Share(hits, n).wilson == pytest.approx((low, high), abs=1e-4)
 
 
+@pytest.mark.acceptance
 def test_a_cause_that_uncertain_numbers_make_up_for_is_weak():
     """A wedge spring 17 % too stiff looks much like a mass and a friction that are off within reason."""
     frequencies = np.repeat([5.078, 7.837, 19.011, 23.715, 33.364], 2)

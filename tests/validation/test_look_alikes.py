@@ -35,6 +35,7 @@ def test_no_look_alike_is_left_out():
     assert {*NAMED, *NOTHING, *CLOSE} == set(look_alikes.MADE)
 
 
+@pytest.mark.acceptance
 def test_loops_of_a_damper_as_it_is_modelled():
     assert found_in("damper").verdict == "nothing-missing"
 

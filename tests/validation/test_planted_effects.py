@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from tests import marks
 from tests.validation import checks
 from tests.validation.laboratory import BENCH, CLEAN, GUIDE_FRICTION, PAPER_TESTS, diagnose, make
 from wedgesweep.diagnosis_result import DATASET, EXTENDED, JSON
@@ -17,7 +16,8 @@ FEW = BENCH[::2]
 CANDIDATES = ["guide_friction", "viscous_damping", "stribeck", "displacement_gain", "bolster_stiffness"]
 
 
-@pytest.mark.parametrize("candidates", marks.few_or_all(CANDIDATES))
+@pytest.mark.few(1)
+@pytest.mark.parametrize("candidates", [CANDIDATES, None], ids=["few", "all"])
 def test_a_strong_cause_is_named_with_its_numbers(candidates, tmp_path):
     checks.strong_cause_is_named(replace(GUIDE_FRICTION, tests=FEW), tmp_path, candidates)
 
@@ -33,7 +33,8 @@ def test_in_clean_data_nothing_is_named(tmp_path):
     assert {file.name for file in again.directory.iterdir()} == {JSON, DATASET, EXTENDED}
 
 
-@pytest.mark.parametrize("candidates", marks.few_or_all(CANDIDATES))
+@pytest.mark.few(1)
+@pytest.mark.parametrize("candidates", [CANDIDATES, None], ids=["few", "all"])
 def test_two_tests_of_unknown_amplitude_ask_for_a_third(candidates, tmp_path):
     measured, _ = make(PAPER_TESTS, tmp_path)
     found = diagnose(measured, tmp_path / "found", candidates, "--no-report")

@@ -40,6 +40,7 @@ def test_wall_friction_leads_and_predicts_the_other_recording(tmp_path):
         assert round(found.rubbing.with_damping.accuracy, 3) <= with_damping
 
 
+@pytest.mark.acceptance
 @here
 def test_an_effect_that_explains_both_recordings_and_predicts_neither_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(real_frame, "FURTHER", ("viscous_damping", "input_distortion"))

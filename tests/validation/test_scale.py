@@ -2,7 +2,6 @@
 
 import pytest
 
-from tests import marks
 from tests.scaling import FROUDE, HEAVIER
 from tests.validation import examples
 from tests.validation.laboratory import diagnose
@@ -63,7 +62,8 @@ def same_answer(name, size, candidates, folder, monkeypatch):
 
 
 @pytest.mark.skipif(not examples.TRUTH, reason="no ../shared/blind-examples beside the checkout")
-@pytest.mark.parametrize("candidates", marks.few_or_all(FEW))
+@pytest.mark.few(1)
+@pytest.mark.parametrize("candidates", [FEW, None], ids=["few", "all"])
 def test_an_example_has_the_same_answer_at_the_size_of_a_wagon(candidates, tmp_path, monkeypatch):
     same_answer(*HIDDEN, candidates, tmp_path, monkeypatch)
 
