@@ -56,7 +56,7 @@ ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/", "api.py"),  # there for annotations only
     "joblib": (
-        *("sweep/backend.py", "sweep/cluster.py", "sweep/workers.py", "sweep/verification.py"),
+        *("sweep/backend.py", "sweep/verification.py"),
         *("synthesize/", "validation/", "cli/"),
         "reproduce/chandiramani.py",
     ),
