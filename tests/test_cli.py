@@ -580,10 +580,10 @@ def clock(monkeypatch):
 def test_a_short_sweep_tells_only_its_end(capfd, clock):
     messages.begin()
     progress = ProgressReport()
-    progress(records(), 10)
+    progress.cases(records(), 10)
     for _ in range(10):
         clock[0] += 0.05
-        progress(records(0), 10)
+        progress.cases(records(0), 10)
     assert capfd.readouterr().err.splitlines() == ["10 cases", "10/10 cases, 0.5 s"]
 
 
@@ -591,10 +591,10 @@ def test_log_lines_tell_counts_failures_and_time_left(capfd, clock):
     messages.begin()
     progress = ProgressReport()
     for total, kept in ((40, 10), (20, 0)):
-        progress(records(*[0] * kept), total)
+        progress.cases(records(*[0] * kept), total)
         for done in range(kept + 1, total + 1):
             clock[0] += 1.0
-            progress(records(int(done == kept + 1)), total)
+            progress.cases(records(int(done == kept + 1)), total)
     lines = capfd.readouterr().err.splitlines()
     assert lines[0] == "40 cases, 10 of them from an earlier run"
     assert lines[1].startswith("14/40 cases, 1 failed, ")

@@ -37,5 +37,5 @@ def reproduce(ctx: click.Context, output: Path, only: str | None, n_jobs: int | 
 
     output.mkdir(parents=True, exist_ok=True)
     announce_compiling()
-    as_recorded = run_all(output, count_jobs(n_jobs), click.echo, ProgressReport(), only=only)
+    as_recorded = run_all(output, count_jobs(n_jobs), click.echo, ProgressReport().cases, only=only)
     ctx.exit(0 if as_recorded else 1)

@@ -171,7 +171,10 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> t
     print_remark(sweep.config)
     require_confirmed(sweep, options["n_jobs"], confirmed)
     started = perf_counter()
-    result = sweep.run(progress=progress, tell=log.warning, **options)
+    try:
+        result = sweep.run(progress=progress.cases, tell=log.warning, **options)
+    finally:
+        progress.stop()
     code = print_summary(result)
     click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
     return result, code
@@ -184,7 +187,6 @@ def print_remark(settings: "Config") -> None:
 
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:
-    progress.stop()
     finished = counted(progress.done, "finished case")
     kept = f"{finished} {'is' if progress.done == 1 else 'are'} stored in {sweep.journal_path}"
     click.echo(f"{reason}\n{kept}; {advice}", err=True)
