@@ -16,12 +16,12 @@ import xarray as xr
 from tests import fixture_dataset, fixture_diagnosis, small_sweep
 from tests.command import invoke
 from tests.small_sweep import CONFIG, LOCKED
-from wedgesweep import config, endings, figures
+from wedgesweep import config, figures, files
 from wedgesweep.cli import cli, messages
 from wedgesweep.cli.failure import _failure
-from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.figures import friction_laws, phase_portrait
+from wedgesweep.formatting import duration, size
 
 FEW = CONFIG.replace("1.1, ", "")
 PNG = b"\x89PNG"
@@ -254,7 +254,7 @@ def test_what_is_written_does_not_get_the_ending_of_another_format(here, command
 
 @pytest.mark.parametrize("name", ["study", "study.v2", "study.NC", "study.h5", "study.partial"])
 def test_any_other_name_of_a_dataset_will_do(name):
-    assert endings.mismatch(Path(name), endings.NETCDF) is None
+    assert files.mismatch(Path(name), files.NETCDF) is None
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

@@ -4,9 +4,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from wedgesweep.cli.compiling import seconds_compiling
-from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log, show_status, shows_status
-from wedgesweep.formatting import counted
+from wedgesweep.formatting import counted, duration
 
 if TYPE_CHECKING:
     import numpy as np

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.options import NOISES
 from wedgesweep.validation import imperfect, plan, ranges, rigs
 from wedgesweep.validation.draft import Draft
 from wedgesweep.validation.imperfect import MODEL_ERROR

@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
@@ -26,10 +27,13 @@ from wedgesweep.diagnose.noise_spectrum import (
     fit_spectra,
     of_noise,
 )
+from wedgesweep.diagnose.smoothing import MEDIAN
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
-from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import TestRecord
 
+# A step from one sample to the next is compared with the median of this many steps around it. It belongs to a
+# jump if it is off by more than so many standard deviations.
+AROUND, OFF = 9, 6.0
 # Order of an acceleration, whose jumps are no noise: derivative of the displacement.
 ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
@@ -238,3 +242,16 @@ def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> S
             noise = of_noise(left, FROM_REPEATS)
             found |= {(row, order): noise for row in rows}
     return found
+
+
+def continuous(samples: np.ndarray) -> np.ndarray:
+    """Samples (n,) without their jumps, as dry friction makes an acceleration jump where it changes its sign.
+
+    Each step of a jump is replaced by the usual one there. The power of jumps falls with frequency as that of
+    red noise does, up to the highest frequencies of a record: left in, they would be taken for noise.
+    """
+    steps = np.diff(samples)
+    usual = median_filter(steps, AROUND, mode="nearest")
+    off = np.abs(steps - usual)
+    jumps = off > OFF * max(float(np.median(off)) / MEDIAN, 1e-300)
+    return samples[0] + np.r_[0.0, np.cumsum(np.where(jumps, usual, steps))]
