@@ -22,6 +22,7 @@ from wedgesweep.diagnose.steady.harmonic_fit import (
     resolvable,
 )
 from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
+from wedgesweep.measured.cycles import SEEN
 
 # Harmonics that are simulated, and whose aliases beyond half the sampling rate count.
 SIMULATED = 127
@@ -115,6 +116,17 @@ class Spectrum:
     def sample_noise(self) -> np.ndarray:
         """Noise of one sample (channels,), in m and m/s."""
         return np.sqrt(self.variance.mean(axis=1) * self.samples / 4.0)
+
+    @property
+    def rms(self) -> np.ndarray:
+        """Of the harmonics of each channel (channels,)."""
+        return np.sqrt(0.5 * (np.abs(self.mean[:, : self.harmonics]) ** 2).sum(axis=1))
+
+    @property
+    def seen(self) -> tuple[int, ...]:
+        """Harmonics of the first channel that stand out of the noise."""
+        power = np.abs(self.mean[0, : self.harmonics]) ** 2
+        return tuple((np.flatnonzero(power > SEEN * self.variance[0, : self.harmonics]) + 1).tolist())
 
     @property
     def harmonics(self) -> int:
