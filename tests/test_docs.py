@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from tests import latex
 from wedgesweep import equations
 from wedgesweep.cli import compiling
 from wedgesweep.effects import EFFECTS, REGISTERED
-from wedgesweep.equations import latex
 from wedgesweep.reproduce.claims import CLAIMS, RECORDED, RECORDED_UNILATERAL
 
 ROOT = Path(__file__).parents[1]
