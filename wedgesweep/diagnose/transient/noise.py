@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from wedgesweep.diagnose import repeats
 from wedgesweep.diagnose.noise_bins import OwnNoise, noise_bins, quiet_bins, without_skirts
@@ -27,13 +26,12 @@ from wedgesweep.diagnose.noise_spectrum import (
     fit_spectra,
     of_noise,
 )
-from wedgesweep.diagnose.smoothing import MEDIAN
+from wedgesweep.diagnose.smoothing import unlike_steps
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
 from wedgesweep.measured import TestRecord
 
-# A step from one sample to the next is compared with the median of this many steps around it. It belongs to a
-# jump if it is off by more than so many standard deviations.
-AROUND, OFF = 9, 6.0
+# Steps around one that tell the usual size of a step.
+AROUND = 9
 # Order of an acceleration, whose jumps are no noise: derivative of the displacement.
 ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
@@ -250,8 +248,5 @@ def continuous(samples: np.ndarray) -> np.ndarray:
     Each step of a jump is replaced by the usual one there. The power of jumps falls with frequency as that of
     red noise does, up to the highest frequencies of a record: left in, they would be taken for noise.
     """
-    steps = np.diff(samples)
-    usual = median_filter(steps, AROUND, mode="nearest")
-    off = np.abs(steps - usual)
-    jumps = off > OFF * max(float(np.median(off)) / MEDIAN, 1e-300)
-    return samples[0] + np.r_[0.0, np.cumsum(np.where(jumps, usual, steps))]
+    unlike, limit = unlike_steps(samples, AROUND)
+    return samples - np.r_[0.0, np.cumsum(np.where(np.abs(unlike) > limit, unlike, 0.0))]
