@@ -17,7 +17,7 @@ import numpy as np
 from joblib.externals.loky import get_reusable_executor
 
 import wedgesweep as ws
-from wedgesweep.sweep.backend import loky
+from wedgesweep.sweep.backend import SENT_AHEAD
 from wedgesweep.sweep.cases import Chunk, compile_once, solve_chunk
 from wedgesweep.sweep.run import Sweep
 
@@ -93,12 +93,11 @@ def main():
     lines.append(line("in itself", cases, own, list(map(empty_loop, range(LOOPS)))))
     for count in (1, 2):
         began = time.process_time()
-        with loky(count, dict) as pool:
-            # joblib would solve in this process for one job: a pool of two, with one task at a time.
-            parallel = pool.parallel() if count > 1 else joblib.Parallel(2, pre_dispatch=1, batch_size=1)
-            cases = list(parallel(joblib.delayed(solved)(chunk) for chunk in chunks(sweep)))
-            own = time.process_time() - began
-            loops = list(parallel(joblib.delayed(empty_loop)(i) for i in range(LOOPS)))
+        # joblib would solve in this process for one job: a pool of two, with one task at a time.
+        parallel = joblib.Parallel(2, pre_dispatch=1 if count == 1 else SENT_AHEAD * count, batch_size=1)
+        cases = parallel(joblib.delayed(solved)(chunk) for chunk in chunks(sweep))
+        own = time.process_time() - began
+        loops = parallel(joblib.delayed(empty_loop)(i) for i in range(LOOPS))
         lines.append(line(f"{count} at a time", cases, own, loops))
         get_reusable_executor().shutdown()
     print("\n".join(lines))

@@ -7,6 +7,7 @@ inputs stick, large ones slip, and the laws differ. One case failed; large input
 import numpy as np
 import xarray as xr
 
+from wedgesweep.sweep.labels import SUSPENSION
 from wedgesweep.sweep.variables import HARMONICS, STATUSES, VARIABLES
 
 LAWS = ("coulomb", "static-dynamic", "exponential")
@@ -50,7 +51,8 @@ def build(laws=LAWS, betas=BETAS, amplitudes=AMPLITUDES, failed=FAILED) -> xr.Da
         full = (full + _blank(ds, dims)).transpose(*dims)
         text = variable.dtype == "str"
         data = np.full(full.shape, "", object) if text else full.values.astype(variable.dtype)
-        ds[variable.name] = dims, data, {"units": variable.units, "long_name": variable.long_name}
+        about = {"units": variable.units, "long_name": variable.long_name.format(**SUSPENSION)}
+        ds[variable.name] = dims, data, about
     ds["status"].attrs |= {
         "flag_values": np.arange(len(STATUSES), dtype="i1"),
         "flag_meanings": " ".join(STATUSES),

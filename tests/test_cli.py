@@ -14,12 +14,12 @@ import xarray as xr
 from tests import fixture_dataset, fixture_diagnosis, small_sweep
 from tests.command import invoke
 from tests.small_sweep import CONFIG, LOCKED
-from wedgesweep import config, endings, figures
+from wedgesweep import config, figures, files
 from wedgesweep.cli import cli, messages
 from wedgesweep.cli.failure import _failure
-from wedgesweep.cli.humanize import duration, size
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.figures import friction_laws, phase_portrait
+from wedgesweep.formatting import duration, size
 
 FEW = CONFIG.replace("1.1, ", "")
 PNG = b"\x89PNG"
@@ -252,7 +252,7 @@ def test_what_is_written_does_not_get_the_ending_of_another_format(here, command
 
 @pytest.mark.parametrize("name", ["study", "study.v2", "study.NC", "study.h5", "study.partial"])
 def test_any_other_name_of_a_dataset_will_do(name):
-    assert endings.mismatch(Path(name), endings.NETCDF) is None
+    assert files.mismatch(Path(name), files.NETCDF) is None
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
@@ -523,10 +523,10 @@ def clock(monkeypatch):
 def test_a_short_sweep_tells_only_its_end(capfd, clock):
     messages.begin()
     progress = ProgressReport()
-    progress(records(), 10)
+    progress.cases(records(), 10)
     for _ in range(10):
         clock[0] += 0.05
-        progress(records(0), 10)
+        progress.cases(records(0), 10)
     assert capfd.readouterr().err.splitlines() == ["10 cases", "10/10 cases, 0.5 s"]
 
 
@@ -534,10 +534,10 @@ def test_log_lines_tell_counts_failures_and_time_left(capfd, clock):
     messages.begin()
     progress = ProgressReport()
     for total, kept in ((40, 10), (20, 0)):
-        progress(records(*[0] * kept), total)
+        progress.cases(records(*[0] * kept), total)
         for done in range(kept + 1, total + 1):
             clock[0] += 1.0
-            progress(records(int(done == kept + 1)), total)
+            progress.cases(records(int(done == kept + 1)), total)
     lines = capfd.readouterr().err.splitlines()
     assert lines[0] == "40 cases, 10 of them from an earlier run"
     assert lines[1].startswith("14/40 cases, 1 failed, ")

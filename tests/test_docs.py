@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from tests import latex
 from wedgesweep import equations
 from wedgesweep.cli import compiling
 from wedgesweep.effects import EFFECTS, REGISTERED
-from wedgesweep.equations import latex
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])

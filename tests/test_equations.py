@@ -5,9 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests import latex
 from wedgesweep import equations
 from wedgesweep.effects import EFFECTS, NAMES, REGISTERED
-from wedgesweep.equations import latex, mathml, notation
+from wedgesweep.equations import mathml, notation
 from wedgesweep.friction import LAWS
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.friction.quantities import FRICTION

@@ -63,7 +63,7 @@ ONLY_IN = {
     "click": ("cli/",),
     "matplotlib": ("figures/", "api.py"),  # there for annotations only
     "joblib": (
-        *("sweep/backend.py", "sweep/cluster.py", "sweep/workers.py", "sweep/verification.py"),
+        *("sweep/backend.py", "sweep/verification.py"),
         *("synthesize/", "cli/"),
     ),
     "distributed": ("sweep/cluster.py",),

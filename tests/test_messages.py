@@ -5,7 +5,7 @@ import pytest
 from tests import small_sweep
 from tests.command import invoke
 from wedgesweep.cli import cli, compiling, messages
-from wedgesweep.cli.steps import StepReport
+from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.diagnose.progress import Step
 
 FEW = small_sweep.CONFIG.replace("1.1, ", "").replace("[solver]", '[solver]\nmethod = "event-driven"')
@@ -23,7 +23,7 @@ def here(tmp_path, monkeypatch):
 def clock(monkeypatch):
     """Seconds that pass where the test says so."""
     now = [0.0]
-    monkeypatch.setattr("wedgesweep.cli.steps.perf_counter", lambda: now[0])
+    monkeypatch.setattr("wedgesweep.cli.progress.perf_counter", lambda: now[0])
     monkeypatch.setattr(compiling, "perf_counter", lambda: now[0])
     return now
 
@@ -62,14 +62,14 @@ def test_quiet_keeps_warnings_and_errors(here):
 
 
 def report(stage, total, seconds, clock):
-    steps = StepReport()
+    progress = ProgressReport()
     clock[0] += 100.0
-    steps(Step(stage, 0, total))
+    progress.step(Step(stage, 0, total))
     for done in range(1, total + 1):
         clock[0] += seconds
-        steps(Step(stage, done, total))
-    steps.stop()
-    steps("held-out tests")
+        progress.step(Step(stage, done, total))
+    progress.stop()
+    progress.step("held-out tests")
 
 
 def test_progress_of_a_diagnosis_as_log_lines(capfd, clock):
@@ -77,10 +77,7 @@ def test_progress_of_a_diagnosis_as_log_lines(capfd, clock):
     report("single effects", 21, 0.5, clock)
     assert lines(capfd) == [
         "single effects: 0 of 21",
-        "single effects: 5 of 21, about 8.0 s left",
-        "single effects: 10 of 21, about 5.5 s left",
-        "single effects: 15 of 21, about 3.0 s left",
-        "single effects: 20 of 21, about 0.5 s left",
+        *(f"single effects: {n} of 21, about {(21 - n) / 2:.1f} s left" for n in range(3, 21, 3)),
         "single effects: 21 of 21",
         "held-out tests",
     ]
@@ -97,13 +94,13 @@ def test_slow_steps_are_told_one_by_one(capfd, clock):
 def test_time_left_leaves_out_what_was_compiled(capfd, clock, monkeypatch):
     messages.begin()
     monkeypatch.setattr(compiling, "_listener", compiling.listener(object))
-    steps = StepReport()
-    steps(Step("single effects", 0, 4))
+    progress = ProgressReport()
+    progress.step(Step("single effects", 0, 4))
     compiling._listener.on_start(None)
     clock[0] += 30.0
     compiling._listener.on_end(None)
     clock[0] += 2.0
-    steps(Step("single effects", 1, 4))
+    progress.step(Step("single effects", 1, 4))
     assert lines(capfd)[-1] == "single effects: 1 of 4, about 6.0 s left"
 
 

@@ -13,9 +13,9 @@ from wedgesweep.measured.noise_estimate import estimate_noise
 from wedgesweep.solvers import event_driven
 from wedgesweep.solvers.trajectory import Window
 from wedgesweep.synthesize.motion import Clock, steady
-from wedgesweep.synthesize.names import NOISES
 from wedgesweep.synthesize.noise import NOISES as BY_NAME
 from wedgesweep.synthesize.noise import white
+from wedgesweep.synthesize.options import NOISES
 from wedgesweep.systems.suspension import parameters
 
 TRUE = """\

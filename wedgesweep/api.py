@@ -11,10 +11,11 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from wedgesweep import config as configs
-from wedgesweep import endings, figures, measured
+from wedgesweep import figures, measured
 from wedgesweep.config import Config, variants
 from wedgesweep.effects import EFFECTS
 from wedgesweep.errors import InputError, SweepError
+from wedgesweep.files import NETCDF, mismatch
 from wedgesweep.hints import hint
 from wedgesweep.measured import Measurement
 from wedgesweep.sweep.backend import count_jobs
@@ -165,7 +166,7 @@ def run_sweep(
             return run_sweep(
                 config, Path(directory, "sweep.nc"), n_jobs=n_jobs, progress=progress, fail_fast=fail_fast
             )
-    if problem := endings.mismatch(Path(out), endings.NETCDF):
+    if problem := mismatch(Path(out), NETCDF):
         raise SweepError(problem)
     sweep = Sweep(config, Path(out), "wedgesweep.run_sweep")
     stored = None if fresh else sweep.stored()

@@ -10,6 +10,20 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
+# Endings of the names of files, by their format. The first of a format is its own.
+NETCDF, CSV, TOML, JSON = "netCDF", "CSV", "TOML", "JSON"
+ENDINGS = {
+    NETCDF: (".nc", ".nc4", ".cdf", ".h5", ".hdf5"),
+    CSV: (".csv", ".tsv", ".txt", ".dat"),
+    TOML: (".toml", ".txt"),
+    JSON: (".json", ".txt"),
+    "a figure": (".png", ".pdf", ".svg", ".jpg", ".jpeg"),
+    "a page": (".html", ".htm", ".md"),
+    "MATLAB": (".mat",),
+    "Parquet": (".parquet",),
+    "a workbook": (".xlsx", ".xls", ".ods"),
+}
+
 
 def regular(path: Path) -> Path:
     """Return the path of a regular file; raises OSError for anything else.
@@ -138,3 +152,12 @@ def _runs(process: int) -> bool:
     except PermissionError:
         return True
     return True
+
+
+def mismatch(path: Path, written: str) -> str | None:
+    """A message if a file that a format is written to has the ending of another; any other name will do."""
+    ending, own = path.suffix.lower(), ENDINGS[written]
+    meant = next((name for name, endings in ENDINGS.items() if ending in endings), None)
+    if meant is None or ending in own:
+        return None
+    return f"{path}: {written} is written, and {ending} is the ending of {meant}; end it in {own[0]}"

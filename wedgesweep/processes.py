@@ -6,11 +6,14 @@ import signal
 import threading
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from typing import Any
 
 KILL = getattr(signal, "SIGKILL", signal.SIGTERM)  # Windows has the latter only
+# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
+OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
 # Time (s) between two looks at the parent.
 INTERVAL = 1.0
 
@@ -18,6 +21,20 @@ INTERVAL = 1.0
 def end_with(parent: int) -> None:
     """Let this process end soon after its parent, a process id, however that has ended."""
     threading.Thread(target=_watch, args=(parent,), daemon=True).start()
+
+
+@contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def apart(function: Callable[..., Any], *arguments: Any) -> Any:

@@ -44,7 +44,7 @@ def main(given: Sequence[str] | None = None) -> int:
     announce_compiling()
     report = partial(print, flush=True)
     jobs = count_jobs(options.n_jobs)
-    return 0 if reproduce(options.output, jobs, report, ProgressReport(), options.only) else 1
+    return 0 if reproduce(options.output, jobs, report, ProgressReport().cases, options.only) else 1
 
 
 def reproduce(

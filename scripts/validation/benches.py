@@ -10,7 +10,7 @@ from validation.imperfect import MODEL_ERROR
 from validation.rigs import Rig
 from validation.sets import DataSet
 from wedgesweep.friction import LAW_NAMES
-from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.options import NOISES
 
 # Range of the relative std of stated amplitudes, and of that of an uncertain friction level.
 SPREAD, UNCERTAIN = (0.001, 0.02), (0.05, 0.10)

@@ -21,7 +21,7 @@ from wedgesweep.natural_units import FREQUENCY, LENGTH
 from wedgesweep.synthesize import plan
 from wedgesweep.synthesize.loops import loop
 from wedgesweep.synthesize.motion import NoMotion
-from wedgesweep.synthesize.names import NOISES
+from wedgesweep.synthesize.options import NOISES
 from wedgesweep.synthesize.plan import PlannedTest
 from wedgesweep.synthesize.transients import transient
 

@@ -18,7 +18,7 @@ from wedgesweep.diagnose.noise_spectrum import (
     periodogram,
 )
 from wedgesweep.diagnose.transient.from_measurement import transient_data
-from wedgesweep.diagnose.transient.jumps import continuous
+from wedgesweep.diagnose.transient.noise import continuous
 from wedgesweep.measured import MeasuredError, read
 from wedgesweep.report.sampled import NOISE, noise_source
 

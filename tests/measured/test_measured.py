@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from tests import fixture_measured
+from tests.command import invoke
 from tests.fixture_measured import FREQUENCY, MEASURED, MODEL, NOISE, csv_lines, lines, vibration
 from wedgesweep import config, measured
+from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.kinds import is_measured
 from wedgesweep.measured.channels import model_faults
 from wedgesweep.measured.declarations import PARAMETERS
@@ -353,9 +355,15 @@ def test_noise_is_what_does_not_repeat(bench):
     found = estimate_noise(test.time, test.displacement, FREQUENCY)
     assert found.std == pytest.approx(NOISE * 1e-3, rel=0.1)
     assert found.share == pytest.approx(NOISE / np.sqrt(0.5 * (1.0 + 0.3**2)), rel=0.1)
-    assert found.harmonics[:2] == (1, 3)
     velocity = estimate_noise(test.time, test.velocity, FREQUENCY)
     assert velocity.std == pytest.approx(NOISE * 2.0 * pi * FREQUENCY * 1e-3, rel=0.1)
+
+
+def test_check_prints_the_noise_that_a_diagnosis_takes(bench):
+    told = invoke("check", bench.path)
+    for own in harmonic_data(bench).spectra:
+        assert f"{1e3 * own.sample_noise[0]:.3g} mm (" in told
+        assert own.seen[:2] == (1, 3)
 
 
 def same(one, other):

@@ -12,7 +12,7 @@ import xarray as xr
 from tests import small_sweep
 from wedgesweep import config
 from wedgesweep.errors import SweepError
-from wedgesweep.sweep import dataset, provenance, variables
+from wedgesweep.sweep import dataset, labels, provenance, variables
 from wedgesweep.sweep.variables import STATUSES, VARIABLES
 
 FEW = small_sweep.CONFIG.replace("1.1, ", "")
@@ -37,7 +37,7 @@ def test_variables_have_the_declared_dimensions_units_and_names(ds):
     for variable in VARIABLES:
         found = ds[variable.name]
         assert found.dims == (*variables.GRID, *variable.dims)
-        assert found.attrs["long_name"] == variable.long_name
+        assert found.attrs["long_name"] == variable.long_name.format(**labels.SUSPENSION)
         assert found.attrs.get("units", "") == variable.units
         assert variable.dtype == "str" or found.dtype == np.dtype(variable.dtype)
 

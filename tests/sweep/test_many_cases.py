@@ -10,7 +10,7 @@ import pytest
 from tests.command import invoke, python_calls
 from wedgesweep import config
 from wedgesweep.config import Case, Config
-from wedgesweep.sweep import dataset, estimate, outcomes, variables
+from wedgesweep.sweep import dataset, estimate, labels, outcomes, variables
 from wedgesweep.sweep.chunks import CHUNK, Rows
 from wedgesweep.sweep.run import Sweep
 
@@ -168,7 +168,9 @@ def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
     records["periodicity"][:7] = 1.0
     shape, coords = sweep.config.case_coordinates()
     found = outcomes.of_dataset(
-        dataset.assemble(records, dataset.coordinates(coords, sweep.sizes), shape, {})
+        dataset.assemble(
+            records, dataset.coordinates(coords, sweep.sizes), shape, {}, labels.long_names(sweep.config)
+        )
     )
     assert {str(outcome): count for outcome, count in found.counts.items()} == {"ok": 89_998, "locked": 2}
     assert (found.unsettled, found.lifted, found.failures.tolist()) == (6, 0, [5, 70_000])

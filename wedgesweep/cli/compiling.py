@@ -3,8 +3,8 @@
 from time import perf_counter
 from typing import Any
 
-from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log
+from wedgesweep.formatting import duration
 
 # Time (s) of compilation before the first message, and between later ones.
 FIRST_AFTER, REPEATED_AFTER = 1.0, 15.0

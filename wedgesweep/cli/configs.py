@@ -13,8 +13,7 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
 from wedgesweep.cli.options import CONFIG, STANDARD_OUTPUT, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
-from wedgesweep.endings import JSON, TOML
-from wedgesweep.files import write_text
+from wedgesweep.files import JSON, TOML, write_text
 from wedgesweep.kinds import CONFIG_OR_MEASURED, DIAGNOSIS, SWEEP, is_measured, kind_of
 
 if TYPE_CHECKING:

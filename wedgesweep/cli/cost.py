@@ -6,7 +6,7 @@ import click
 
 from wedgesweep import formatting
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.humanize import duration, size
+from wedgesweep.formatting import duration, size
 
 if TYPE_CHECKING:
     from wedgesweep.sweep.run import Sweep

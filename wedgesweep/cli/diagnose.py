@@ -11,7 +11,7 @@ from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_warnings
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import N_JOBS, GivenPath, require_kind, require_place_for
-from wedgesweep.cli.steps import StepReport
+from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.files import beside
 from wedgesweep.kinds import MEASURED
 
@@ -74,13 +74,17 @@ def diagnose(
     _require_own(directory)
     processors = count_jobs(n_jobs)
     announce_compiling()
-    steps = StepReport()
+    progress = ProgressReport()
     try:
         found = api.diagnose_measurement(
-            measurement, effects=_names(effects), n_jobs=processors, progress=steps, calibrate=calibrate
+            measurement,
+            effects=_names(effects),
+            n_jobs=processors,
+            progress=progress.step,
+            calibrate=calibrate,
         )
     finally:
-        steps.stop()
+        progress.stop()
     _store(found, directory, reported, processors)
     click.echo(report.sentence(directory))
     click.echo(f"wrote {directory / report.PAGE if reported else directory}")

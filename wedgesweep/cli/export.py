@@ -8,8 +8,7 @@ import click
 
 from wedgesweep.cli.options import DATASET, STANDARD_OUTPUT, OutputPath
 from wedgesweep.cli.plot import read_dataset
-from wedgesweep.endings import CSV
-from wedgesweep.files import written
+from wedgesweep.files import CSV, written
 from wedgesweep.formatting import counted
 
 

@@ -9,6 +9,7 @@ import click
 from wedgesweep.cli.messages import log
 
 if TYPE_CHECKING:
+    from wedgesweep.diagnose.steady.spectra import Spectrum
     from wedgesweep.diagnose.transient.window import RecordWindow
     from wedgesweep.measured import Measurement, TestRecord
 
@@ -47,7 +48,7 @@ def _print_table(measurement: "Measurement") -> None:
     else:
         unit = measurement.model.amplitude_unit
         units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
-        rows = [HEADINGS, units, *(_row(test, unit.factor) for test in measurement.tests)]
+        rows = [HEADINGS, units, *_steady_rows(measurement, unit.factor)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
@@ -119,18 +120,23 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     ]
 
 
-def _row(test: "TestRecord", size: float) -> tuple[str, ...]:
-    frequency = test.refined_frequency
-    noise, harmonics = _noise(test, frequency)
-    return (
-        test.file,
-        f"{frequency:.6g}{_origin(test.frequency, frequency)}",
-        _amplitude(test, size),
-        f"{test.duration * frequency:.2f}",
-        f"{test.sampling_rate / frequency:.4g}",
-        noise,
-        harmonics,
-    )
+def _steady_rows(measurement: "Measurement", size: float) -> list[tuple[str, ...]]:
+    """What is compared of each steady test; input amplitudes are in a unit of some size."""
+    from wedgesweep.diagnose.steady.from_measurement import compared, recorded_spectra
+
+    names, spectra = compared(measurement), recorded_spectra(measurement)
+    return [
+        (
+            test.file,
+            f"{own.frequency:.6g}{_origin(test.frequency, own.frequency)}",
+            _amplitude(test, size),
+            f"{test.duration * own.frequency:.2f}",
+            f"{test.sampling_rate / own.frequency:.4g}",
+            _noise(names, own),
+            _runs(own.seen),
+        )
+        for test, own in zip(measurement.tests, spectra, strict=True)
+    ]
 
 
 def _origin(stated: float | None, used: float) -> str:
@@ -150,17 +156,14 @@ def _amplitude(test: "TestRecord", size: float) -> str:
     return f"{test.amplitude / size:.6g}{std}"
 
 
-def _noise(test: "TestRecord", frequency: float) -> tuple[str, str]:
-    """Noise per response, and the harmonics of the first one."""
+def _noise(names: "Sequence[str]", spectrum: "Spectrum") -> str:
+    """Noise per response, in its unit and as a share of the rms of the response."""
     from wedgesweep.measured.kinds import DISPLAY_UNITS
-    from wedgesweep.measured.noise_estimate import estimate_noise
 
-    found = {name: estimate_noise(test.time, each, frequency) for name, each in test.responses.items()}
-    levels = []
-    for name, noise in found.items():
-        size, unit = DISPLAY_UNITS[name]
-        levels.append(f"{noise.std / size:.3g} {unit} ({100.0 * noise.share:.2g} %)")
-    return ", ".join(levels), _runs(next(iter(found.values())).harmonics)
+    # A response that is the same signal as the one before it is not compared.
+    both = zip(names, spectrum.sample_noise, spectrum.rms, strict=False)
+    levels = [(std, std / rms, *DISPLAY_UNITS[name]) for name, std, rms in both]
+    return ", ".join(f"{std / size:.3g} {unit} ({100.0 * share:.2g} %)" for std, share, size, unit in levels)
 
 
 def _runs(orders: tuple[int, ...]) -> str:

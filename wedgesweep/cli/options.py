@@ -10,8 +10,7 @@ from typing import Any
 import click
 
 from wedgesweep.cli.failure import Failure
-from wedgesweep.endings import mismatch
-from wedgesweep.files import replaceable
+from wedgesweep.files import mismatch, replaceable
 from wedgesweep.kinds import confusion
 
 
@@ -55,7 +54,7 @@ class FiniteRange(click.FloatRange):
 
 
 class OutputPath(GivenPath):
-    """A file to write in some format (see ``endings``), checked before any work is done."""
+    """A file to write in some format (see ``files.ENDINGS``), checked before any work is done."""
 
     def __init__(self, written: str | None = None, **options: bool) -> None:
         super().__init__(dir_okay=False, writable=True, **options)

@@ -1,80 +1,83 @@
-"""Progress of a sweep on stderr: a bar on a terminal, log lines elsewhere."""
+"""Progress on stderr: a line that is written over on a terminal, log lines elsewhere."""
 
-import sys
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import click
-
-from wedgesweep.cli.humanize import duration
-from wedgesweep.cli.messages import log, shows_status
-from wedgesweep.formatting import counted
+from wedgesweep.cli.compiling import seconds_compiling
+from wedgesweep.cli.messages import log, show_status, shows_status
+from wedgesweep.formatting import counted, duration
 
 if TYPE_CHECKING:
     import numpy as np
 
-# Off a terminal there is a line for this share of the cases, but not more often than each so many seconds, or
-# after so many.
+# Off a terminal there is a line for this share of the whole, at least LEAST_SECONDS (s) after the last one,
+# and in any case after LINE_SECONDS (s).
 LINE_SHARE = 0.1
 LEAST_SECONDS, LINE_SECONDS = 1.0, 30.0
 
 
 class ProgressReport:
-    """A ``sweep.run.Progress`` that counts the cases of one sweep, or of several in turn."""
+    """Counts the cases of sweeps or the steps of a diagnosis, and estimates the time for the rest."""
 
     def __init__(self) -> None:
         self.done = self.failed = self.kept = self.total = 0
-        self._bar: Any = None
-        self._started = self._said = 0.0
+        self._began = self._said = 0.0
         self._said_done = 0
 
-    def __call__(self, records: "np.ndarray", total: int) -> None:
-        begins = self.done == self.total
-        if begins:
-            self.done = self.failed = 0
-            self.total, self.kept = total, len(records)
-        self.done += len(records)
-        self.failed += int((records["status"] != 0).sum())
-        if begins:
-            self._begin()
-        elif self._bar is not None:
-            self._bar.update(len(records), self.failed)
-        else:
-            self._log()
+    def cases(self, records: "np.ndarray", total: int) -> None:
+        """Count finished cases of a sweep (a ``sweep.run.Progress``); several sweeps may follow in turn."""
         if self.done == self.total:
+            kept = f", {len(records)} of them from an earlier run" if len(records) else ""
+            log.info(f"{counted(total, 'case')}{kept}")
+            self.failed = 0
+            self._begin(len(records), total)
+        else:
+            self.done += len(records)
+        self.failed += int((records["status"] != 0).sum())
+        if self.done > self.kept:
+            failed = f", {self.failed} failed" if self.failed else ""
+            cases = "case" if total == 1 else "cases"
+            self._show(f"{self.done}/{total} {cases}{failed}, {duration(self._elapsed())}")
+        if self.done == total:
             self.stop()
 
+    def step(self, step: str) -> None:
+        """Show a step of a diagnosis; one that is a ``diagnose.progress.Step`` tells how far its stage is."""
+        from wedgesweep.diagnose.progress import Step
+
+        if not isinstance(step, Step):
+            self.stop()
+            log.info(step)
+            return
+        if step.done == 0:
+            self._begin(0, step.total)
+        self.done = step.done
+        self._show(step)
+
     def stop(self) -> None:
-        """Close the progress bar."""
-        if self._bar is not None:
-            self._bar.render_finish()
-            self._bar = None
+        """Remove the line of the terminal."""
+        show_status("")
 
-    def _begin(self) -> None:
-        self._started = self._said = perf_counter()
-        self._said_done = self.done
-        kept = f", {self.kept} of them from an earlier run" if self.kept else ""
-        log.info(f"{counted(self.total, 'case')}{kept}")
-        if shows_status() and self.done < self.total:
-            self._bar = click.progressbar(
-                length=self.total - self.kept,
-                show_pos=True,
-                item_show_func=lambda failed: f"{failed} failed" if failed else "",
-                file=sys.stderr,
-            )
-            self._bar.render_progress()
+    def _begin(self, kept: int, total: int) -> None:
+        self.done = self.kept = self._said_done = kept
+        self.total = total
+        self._began, self._said = perf_counter() - seconds_compiling(), perf_counter()
 
-    def _log(self) -> None:
-        now = perf_counter()
-        silent = now - self._said
-        due = self.done - self._said_done >= LINE_SHARE * self.total and silent >= LEAST_SECONDS
-        if due or silent >= LINE_SECONDS or self.done == self.total:
-            self._said, self._said_done = now, self.done
-            log.info(self._line(now - self._started))
+    def _elapsed(self) -> float:
+        """Time (s) since the begin; what is compiled at first is not compiled again."""
+        return perf_counter() - seconds_compiling() - self._began
 
-    def _line(self, elapsed: float) -> str:
-        left = elapsed / max(self.done - self.kept, 1) * (self.total - self.done)
-        ahead = f", about {duration(left)} left" if left else ""
-        failed = f", {self.failed} failed" if self.failed else ""
-        cases = "case" if self.total == 1 else "cases"
-        return f"{self.done}/{self.total} {cases}{failed}, {duration(elapsed)}{ahead}"
+    def _show(self, line: str) -> None:
+        if self.kept < self.done < self.total:
+            left = self._elapsed() / (self.done - self.kept) * (self.total - self.done)
+            line = f"{line}, about {duration(left)} left"
+        if shows_status():
+            show_status(line)
+        elif self._is_due():
+            self._said, self._said_done = perf_counter(), self.done
+            log.info(line)
+
+    def _is_due(self) -> bool:
+        silent = perf_counter() - self._said
+        share = self.done - self._said_done >= LINE_SHARE * self.total
+        return self.done in (0, self.total) or (share and silent >= LEAST_SECONDS) or silent >= LINE_SECONDS

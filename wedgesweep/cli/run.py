@@ -10,14 +10,13 @@ import click
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
-from wedgesweep.cli.humanize import duration
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
-from wedgesweep.endings import NETCDF
-from wedgesweep.formatting import counted
+from wedgesweep.files import NETCDF
+from wedgesweep.formatting import counted, duration
 from wedgesweep.solvers.names import SOLVERS
 
 if TYPE_CHECKING:
@@ -171,7 +170,10 @@ def _run(sweep: "Sweep", progress: ProgressReport, options: dict[str, Any]) -> t
     print_remark(sweep.config)
     require_confirmed(sweep, options["n_jobs"], confirmed)
     started = perf_counter()
-    result = sweep.run(progress=progress, tell=log.warning, **options)
+    try:
+        result = sweep.run(progress=progress.cases, tell=log.warning, **options)
+    finally:
+        progress.stop()
     code = print_summary(result)
     click.echo(f"wall time: {duration(perf_counter() - started)}\ndataset: {sweep.out}")
     return result, code
@@ -184,7 +186,6 @@ def print_remark(settings: "Config") -> None:
 
 
 def _stopped(progress: ProgressReport, sweep: "Sweep", reason: str, advice: str) -> None:
-    progress.stop()
     finished = counted(progress.done, "finished case")
     kept = f"{finished} {'is' if progress.done == 1 else 'are'} stored in {sweep.journal_path}"
     click.echo(f"{reason}\n{kept}; {advice}", err=True)

@@ -9,7 +9,7 @@ from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, GivenPath
-from wedgesweep.synthesize.names import NOISES, QUANTITIES
+from wedgesweep.synthesize.options import NOISES, QUANTITIES
 
 SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
 

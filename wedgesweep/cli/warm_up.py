@@ -3,7 +3,7 @@
 import click
 
 from wedgesweep.cli.compiling import announce_compiling, seconds_compiling
-from wedgesweep.cli.humanize import duration
+from wedgesweep.formatting import duration
 
 
 @click.command(name="warm-up")

@@ -17,8 +17,7 @@ from wedgesweep.effects import EFFECTS, go_together, lift_off
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.inputs.kinds import made as input_of
-from wedgesweep.inputs.sampled import Input
-from wedgesweep.inputs.transient import transient as transient_of
+from wedgesweep.inputs.sampled import Input, transient_of
 from wedgesweep.natural_units import NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
 from wedgesweep.simulate import Settings, Transient

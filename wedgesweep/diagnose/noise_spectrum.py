@@ -118,10 +118,14 @@ def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (rad a sample), and power at them, under a Hann window; without 0 and the first bin."""
     place = np.arange(samples.size) - 0.5 * (samples.size - 1)
     level = samples - samples.mean() - place * (place @ samples) / (place @ place)
+    power = power_of(level)[2:]
+    return (np.arange(power.size) + 2) * 2.0 * pi / samples.size, power
+
+
+def power_of(samples: np.ndarray) -> np.ndarray:
+    """Power (n // 2 + 1,) of samples (n,) of zero mean under a Hann window, by frequency from 0 on."""
     window = np.hanning(samples.size)
-    power = np.abs(np.fft.rfft(level * window)) ** 2 / (window**2).sum()
-    frequency = np.arange(power.size) * 2.0 * pi / samples.size
-    return frequency[2:], power[2:]
+    return np.abs(np.fft.rfft(samples * window)) ** 2 / (window**2).sum()
 
 
 class Choice(NamedTuple):

@@ -12,6 +12,7 @@ from math import pi, sqrt
 import numpy as np
 from scipy import signal
 from scipy.interpolate import make_interp_spline
+from scipy.ndimage import median_filter
 from scipy.optimize import brentq
 
 from wedgesweep.measured.kinds import HIGHEST
@@ -27,6 +28,8 @@ WIDER = 2.0
 SETTLING = 2.5
 # Median of the absolute value of a normal variable over its standard deviation.
 MEDIAN = 0.6745
+# A step from one sample to the next is part of a jump if it is off by more than so many standard deviations.
+JUMP = 6.0
 # Beyond so many standard deviations a value is an outlier, which is found in so many rounds.
 OUTLIER, CLIPPINGS = 4.0, 4
 # Share of a record that must be free of outliers and their neighbours for the latter to be left out.
@@ -93,6 +96,13 @@ def derivative(values: np.ndarray, rate: float, order: int = 1) -> np.ndarray:
     """
     places = np.arange(values.shape[-1], dtype=float)
     return make_interp_spline(places, values, k=5, axis=-1)(places, order) * rate**order
+
+
+def unlike_steps(samples: np.ndarray, around: int) -> tuple[np.ndarray, float]:
+    """Steps of samples (n,), less the median of some steps ``around`` each (n - 1,); beyond what, jumps."""
+    steps = np.diff(samples)
+    unlike = steps - median_filter(steps, around, mode="nearest")
+    return unlike, JUMP * float(np.median(np.abs(unlike))) / MEDIAN
 
 
 def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:

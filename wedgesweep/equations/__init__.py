@@ -1,4 +1,4 @@
-"""Equations of effects, laws and systems: stated once, in plain text, and set as MathML or LaTeX.
+"""Equations of effects, laws and systems: stated once, in plain text, and set as MathML.
 
 A module states its own as ``EQUATIONS``, lines in the notation of ``notation.py``, the symbols that only it
 uses as ``SYMBOLS``, and what else there is to say as ``REMARK``, with equations between $ signs.

@@ -1,4 +1,4 @@
-"""An input as samples, and how its motion is stored."""
+"""An input as samples, how its motion is stored, and the run of a solver under it."""
 
 from dataclasses import dataclass
 from math import ceil, pi
@@ -7,6 +7,7 @@ import numpy as np
 
 from wedgesweep.inputs.units import SI
 from wedgesweep.sampled_input import SampledInput, from_samples
+from wedgesweep.simulate import Transient
 
 # Samples of an analytic input in a period of its highest frequency: u'' is then right to 1e-7.
 SAMPLES = 64
@@ -65,3 +66,30 @@ def faded(t: np.ndarray, fade: float) -> np.ndarray:
         return np.ones(t.size)
     share = np.clip(np.minimum(t, t[-1] - t) / fade, 0.0, 1.0)
     return 0.5 - 0.5 * np.cos(pi * share)
+
+
+def transient_of(
+    given: Input, natural: float, rate: float | None, absolute: bool, oscillator: bool, belt: float = 0.0
+) -> Transient:
+    """A run under an input.
+
+    ``natural``: the model's natural frequency (rad/s); ``rate`` (Hz) of the stored samples; ``absolute``:
+    displacements are against the ground; ``belt``: its velocity (m/s). A suspension's state is minus what
+    results are reported as.
+    """
+    sampled, sign = given.sampled(), 1.0 if oscillator else -1.0
+    start = (sign * given.start[0], sign * given.start[1])
+    samples = given.stored(natural, rate)
+    return Transient(
+        sampled, _length(given, sampled, natural, absolute, belt), natural, given.duration, samples, start
+    )
+
+
+def _length(given: Input, sampled: SampledInput, natural: float, absolute: bool, belt: float) -> float:
+    """What motions are compared with (m; under a force N): the input, or a release, or motion on a belt."""
+    knots = given.step * np.arange(given.given.size)
+    if given.quantity == "force" or absolute:
+        size = float(np.abs(sampled(knots)).max())
+    else:
+        size = float(np.abs(sampled(knots, 2)).max()) / natural**2
+    return max(size, abs(given.start[0]), abs(given.start[1]) / natural, abs(belt) / natural) or 1.0

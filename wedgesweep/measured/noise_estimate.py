@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wedgesweep.measured.cycles import SEEN, cut
+from wedgesweep.measured.cycles import cut
 
 HARMONICS = np.arange(1, 41)
 
@@ -13,14 +13,12 @@ HARMONICS = np.arange(1, 41)
 class NoiseEstimate:
     """The part of a channel that is not periodic.
 
-    ``std`` is in the channel's unit, ``share`` is relative to the rms of the periodic part; ``harmonics`` are
-    the orders that stand out of the noise; ``residual``, shape (n,), is the channel without its periodic part
-    and its mean.
+    ``std`` is in the channel's unit, ``share`` is relative to the rms of the periodic part; ``residual`` (n,)
+    is the channel without its periodic part and its mean.
     """
 
     std: float
     share: float
-    harmonics: tuple[int, ...]
     residual: np.ndarray
 
 
@@ -34,7 +32,4 @@ def estimate_noise(time: np.ndarray, signal: np.ndarray, frequency: float) -> No
         repeated += (harmonic * np.exp(1j * order * phase)).real
     left = signal - signal.mean() - (repeated - repeated.mean())
     std = float(np.sqrt(left @ left / (time.size - 2 * mean.size - 1)))
-    count = cycles.times.size
-    variance = np.sum(np.abs(cycles.harmonics - mean) ** 2, axis=0) / (count - 1)
-    seen = np.abs(mean) ** 2 * count > SEEN * variance
-    return NoiseEstimate(std, std / float(repeated.std()), tuple(cycles.orders[seen].tolist()), left)
+    return NoiseEstimate(std, std / float(repeated.std()), left)

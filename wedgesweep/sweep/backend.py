@@ -1,32 +1,33 @@
 """Backends: cases run in threads or processes of this machine; ``cluster`` adds a Dask cluster."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Protocol
 
 import joblib
-from joblib._parallel_backends import LokyBackend
 
 from wedgesweep.errors import SweepError
-from wedgesweep.processes import end_with
+from wedgesweep.processes import end_with, interrupts_ignored
 
 # Number of tasks per worker that are sent out at a time.
 SENT_AHEAD = 2
 
 
+class Solve(Protocol):
+    """Yields ``task(item)`` for each item, in the order in which they finish."""
+
+    def __call__(self, task: Callable[[Any], Any], items: Iterable[Any]) -> Generator[Any, None, None]: ...
+
+
 @dataclass(frozen=True)
 class Pool:
-    """Workers: ``parallel()`` is a joblib.Parallel on those that are there now.
+    """Workers: ``solve`` raises one of the errors ``lost`` if a worker dies; it can be called again."""
 
-    The errors ``lost`` show that a worker has died; after one of them that joblib.Parallel cannot be used
-    again.
-    """
-
-    parallel: Callable[[], joblib.Parallel]
+    solve: Solve
     n_jobs: int
     lost: tuple[type[BaseException], ...] = ()
 
@@ -39,40 +40,50 @@ class Backend(Protocol):
     ) -> AbstractContextManager[Pool]: ...
 
 
-def parallel(**options: Any) -> joblib.Parallel:
-    """Return a joblib.Parallel that yields results as they finish."""
-    # Chunks are batches already.
-    ahead = f"{SENT_AHEAD} * n_jobs"
-    return joblib.Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch=ahead, **options)
-
-
 @contextmanager
 def threads(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[Pool]:
     """Threads of this process: start at once, and suit compiled solvers, which release the GIL."""
-    yield Pool(partial(parallel, n_jobs=n_jobs, backend="threading"), n_jobs)
-
-
-class Loky(LokyBackend):
-    """joblib's processes, which end with this one also if it is killed."""
-
-    def configure(self, *arguments: Any, **options: Any) -> int:
-        own = {"initializer": end_with, "initargs": (os.getpid(),)}
-        return super().configure(*arguments, **own, **options)
+    yield Pool(_joblib(n_jobs=n_jobs, backend="threading"), n_jobs)
 
 
 @contextmanager
 def loky(n_jobs: int, fingerprint: Callable[[], dict[str, str]]) -> Iterator[Pool]:
     """Processes of this machine."""
-    yield Pool(lambda: parallel(n_jobs=n_jobs, backend=Loky()), n_jobs, (BrokenExecutor,))
+    yield Pool(_joblib(**_processes(n_jobs)), n_jobs, (BrokenExecutor,))
 
 
 def in_order(tasks: Iterable[Any], n_jobs: int) -> list[Any]:
     """Results of tasks (joblib.delayed) in processes of this machine; raises SweepError if one dies."""
     try:
-        return joblib.Parallel(n_jobs=n_jobs, backend=Loky())(tasks)
+        return joblib.Parallel(**_processes(n_jobs))(tasks)
     except BrokenExecutor as error:
         message = "a job died, killed or out of memory; run the same command again, with fewer --n-jobs"
         raise SweepError(message) from error
+
+
+def _processes(n_jobs: int) -> dict[str, Any]:
+    """Options of joblib for processes that end with this one also if it is killed."""
+    return {"n_jobs": n_jobs, "backend": "loky", "initializer": end_with, "initargs": (os.getpid(),)}
+
+
+def _joblib(**options: Any) -> Solve:
+    def solve(task: Callable[[Any], Any], items: Iterable[Any]) -> Generator[Any, None, None]:
+        # The items are chunks, which are batches already.
+        ahead = f"{SENT_AHEAD} * n_jobs"
+        unordered = {"return_as": "generator_unordered", "batch_size": 1, "pre_dispatch": ahead}
+        with interrupts_ignored():
+            results = joblib.Parallel(**unordered, **options)(joblib.delayed(task)(item) for item in items)
+        try:
+            # "yield from" would close the results outside of the filter below.
+            for result in results:  # noqa: UP028
+                yield result
+        finally:
+            with warnings.catch_warnings():
+                # joblib warns when a run is stopped early.
+                warnings.simplefilter("ignore", UserWarning)
+                results.close()
+
+    return solve
 
 
 def count_jobs(n_jobs: int | None) -> int:

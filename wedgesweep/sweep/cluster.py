@@ -2,19 +2,18 @@
 
 import importlib.util
 import logging
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Future
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from joblib._dask import Batch, DaskDistributedBackend
-
 from wedgesweep.errors import SweepError
-from wedgesweep.sweep.backend import Pool, parallel
+from wedgesweep.sweep.backend import SENT_AHEAD, Pool, Solve
 from wedgesweep.sweep.fingerprint import differences
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Future
 
 # Time (s) that a scheduler has to answer, and then to have a worker.
 TIMEOUT = 10.0
@@ -38,7 +37,7 @@ def dask(
         _require_same(client, fingerprint)
         try:
             cores = sum(client.ncores().values())
-            yield Pool(lambda: parallel(backend=_Dask(client=client)), cores, (KilledWorker,))
+            yield Pool(_solve(client, SENT_AHEAD * cores), cores, (KilledWorker,))
         except CancelledError as error:
             message = f"the Dask cluster gave up: {error}; rerun the same command to resume"
             raise SweepError(message) from error
@@ -103,22 +102,22 @@ def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -
             raise SweepError(message)
 
 
-class _Dask(DaskDistributedBackend):
-    """Corrects two cases in which joblib's own backend waits forever.
+def _solve(client: "Client", ahead: int) -> Solve:
+    """Send tasks to the workers, ``ahead`` at a time; what is left of them is cancelled at the end."""
+    from distributed import as_completed
 
-    A chunk that Dask gives up because its workers keep dying is reported as an error, and chunks are sent
-    with their task instead of scattered, which hangs while there is no worker.
-    """
+    def solve(task: Callable[[Any], Any], items: Iterable[Any]) -> Generator[Any, None, None]:
+        left = iter(items)
 
-    async def _to_func_args(self, func: Any) -> tuple[Batch, list]:
-        tasks = [(f, list(args), dict(kwargs)) for f, args, kwargs in func.items]
-        return Batch(tasks), tasks
+        def sent(count: int) -> list["Future"]:
+            return [client.submit(task, item, pure=False) for item in islice(left, count)]
 
-    def submit(self, func: Any, callback: Callable[[Any], None]) -> Future:
-        def pass_on(done: Future) -> None:
-            if error := done.exception():
-                callback(error)
+        running = as_completed(sent(ahead), loop=client.loop)
+        try:
+            for done in running:
+                running.update(sent(1))
+                yield done.result()
+        finally:
+            client.cancel(list(running.futures))
 
-        submitted = super().submit(func, callback)
-        submitted.add_done_callback(pass_on)
-        return submitted
+    return solve

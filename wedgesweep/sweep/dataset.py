@@ -3,7 +3,6 @@
 import logging
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,13 +34,13 @@ def assemble(
     coords: Mapping[str, Any],
     shape: tuple[int, ...],
     attrs: Mapping[str, Any],
-    long_names: Mapping[str, str | None] = MappingProxyType({}),
+    long_names: Mapping[str, str],
 ) -> "xr.Dataset":
     """Assemble the dataset from the records of all cases, in any order.
 
     ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), two
-    where the input does not repeat (friction_law, scale), one for a list (case). ``long_names``: those of
-    another system, by variable; None: it does not have it.
+    where the input does not repeat (friction_law, scale), one for a list (case). ``long_names``: of the
+    variables that the system has.
     """
     import xarray as xr
 
@@ -50,14 +49,14 @@ def assemble(
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
     for variable in TRANSIENT if case_dims == SCALED else VARIABLES + OF_LIFT_OFF + CONTINUED:
-        long_name = long_names.get(variable.name, variable.long_name)
-        if variable.name not in (records.dtype.names or ()) or long_name is None:
+        if variable.name not in (records.dtype.names or ()) or variable.name not in long_names:
             continue
         values = ordered[variable.name]
         if variable.dtype == "str":
             values = np.array([text.decode("utf-8", "replace") for text in values.tolist()], object)
         values = values.reshape(shape + values.shape[1:])
-        variables[variable.name] = (case_dims + variable.dims, values, _attributes(variable, long_name))
+        about = _attributes(variable, long_names[variable.name])
+        variables[variable.name] = (case_dims + variable.dims, values, about)
     return xr.Dataset(variables, coords, {"Conventions": "CF-1.13", **attrs})
 
 

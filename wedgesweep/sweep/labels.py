@@ -1,24 +1,25 @@
-"""Long names of a dataset's variables where they differ from those of a suspension with bilateral joints."""
+"""Long names of a dataset's variables, in the words of its system."""
 
 from typing import TypedDict
 
 from wedgesweep.config import Config
-from wedgesweep.sweep.variables import OF_LIFT_OFF
+from wedgesweep.sweep.variables import CONTINUED, OF_LIFT_OFF, TRANSIENT, VARIABLES
 
-# Variables that only datasets of unilateral joints have, and what others mean there.
-_OF_LIFT_OFF: dict[str, str | None] = dict.fromkeys(variable.name for variable in OF_LIFT_OFF)
-_OPEN: dict[str, str | None] = {
-    "minimum_normal_force": "smallest normal force of either face while slipping, 0 where a contact opens",
-    "lift_off_fraction": "share of time with at least one contact open",
-    "stick_fraction": "share of time stuck (coulomb) or with the column face closed and below the "
-    "threshold velocity",
+# Variables that only joints of a suspension have, and those that only unilateral ones have.
+OF_JOINTS = ("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster")
+OF_UNILATERAL = tuple(variable.name for variable in OF_LIFT_OFF)
+# Words of a suspension: ``x`` and its rates ``v`` and ``a``, of a ``body``, and its ``rest``; ``size``, over
+# which amplitudes are taken; ``source`` of energy, which counts ``per`` period.
+SUSPENSION = {
+    **{"x": "x - y", "v": "x' - y'", "a": "x'' - y''", "body": "side frame minus bolster"},
+    **{"rest": ", from frictionless rest", "size": "the input amplitude", "source": "the base"},
+    **{"per": "per forcing period", "opened": "", "lifted": "the slipping time with a negative normal force"},
+    "stuck": "stuck (coulomb) or with the column face below the threshold velocity",
 }
-# The same where the input does not repeat. ``force`` takes wedge and bolster to move together, which they do
-# not if a wedge lifts off.
-_OPEN_TRANSIENT: dict[str, str | None] = {
-    "impacts": "impacts of a wedge in all",
-    "impact_energy": "energy lost in impacts in all, beside dissipated_energy",
-    "force": None,
+# The words that are others for unilateral joints.
+UNILATERAL = {
+    **{"opened": ", 0 where a contact opens", "lifted": "time with at least one contact open"},
+    "stuck": "stuck (coulomb) or with the column face closed and below the threshold velocity",
 }
 
 
@@ -43,62 +44,29 @@ def attributes(config: Config) -> Attributes:
     }
 
 
-def long_names(config: Config) -> dict[str, str | None]:
-    """Return the long names of variables by name, None for those that the system does not have."""
-    if config.opens:
-        return _OPEN | (_OPEN_TRANSIENT if config.transient else {})
-    if config.system != "oscillator":
-        return _OF_LIFT_OFF
+def long_names(config: Config) -> dict[str, str]:
+    """Return the long names of the variables that the datasets of a config have, by name."""
+    variables = TRANSIENT if config.transient else VARIABLES + OF_LIFT_OFF + CONTINUED
+    words, absent = {**SUSPENSION, **(UNILATERAL if config.opens else {})}, OF_UNILATERAL
+    if config.system == "oscillator":
+        words, absent = SUSPENSION | _of_oscillator(config), OF_UNILATERAL + OF_JOINTS
+    elif config.opens:
+        # The force takes wedge and bolster to move together, which they do not if a wedge lifts off.
+        absent = ("force",)
     if config.transient:
-        return _of_transient(config)
-    contact = config.oscillator["contact"]
-    relative = contact == "base" and not config.forced
-    x, v = ("x - u", "x' - u'") if relative else ("x", "x'")
-    size = _reference(config)
-    return _OF_LIFT_OFF | {
-        "amplitude_ratio": f"half peak-to-peak of {x} over {size}",
-        "peak_to_peak": f"peak-to-peak of the displacement {x}",
-        "peak_velocity": f"largest magnitude of the velocity {v}",
-        "mean_displacement": f"mean of {x}",
-        "stick_fraction": "share of time stuck (set-valued laws) or slipping below the threshold velocity",
-        "displacement_harmonics": f"D_h of {x} = Re sum D_h exp(i h omega t)",
-        "velocity_harmonics": f"V_h of {v} = Re sum V_h exp(i h omega t)",
-        "phase_lag": f"lag of the fundamental of {x} behind the input",
-        "supplied_energy": "energy supplied by the input"
-        + " and the belt" * (contact == "belt")
-        + " per period",
-        "dissipated_energy": "energy dissipated by friction and dampers per period",
-        "minimum_normal_force": None,
-        "lift_off_fraction": None,
-        "normal_force_column": None,
-        "normal_force_bolster": None,
-        "periodicity": f"largest change of {x} from the last period but one to the last, over {size}",
-        "displacement": f"displacement {x} of the mass",
-        "velocity": f"velocity {v} of the mass",
-    }
+        words["per"] = "in all"
+    return {each.name: each.long_name.format(**words) for each in variables if each.name not in absent}
 
 
-def _of_transient(config: Config) -> dict[str, str | None]:
-    """Long names of an oscillator whose input does not repeat."""
+def _of_oscillator(config: Config) -> dict[str, str]:
+    """Words of an oscillator."""
     contact = config.oscillator["contact"]
-    relative = contact == "base" and not config.forced
-    x = "x - u" if relative else "x"
-    rates = ("x' - u'", "x'' - u''") if relative else ("x'", "x''")
-    return _OF_LIFT_OFF | {
-        "peak_displacement": f"largest magnitude of {x}",
-        "peak_to_peak": f"peak-to-peak of {x}",
-        "peak_velocity": f"largest magnitude of {rates[0]}",
-        "mean_displacement": f"mean of {x}",
-        "rms_displacement": f"rms of the stored samples of {x}",
-        "stick_fraction": "share of time stuck (set-valued laws) or slipping below the threshold velocity",
-        "supplied_energy": "energy supplied by the input" + " and the belt" * (contact == "belt") + " in all",
-        "displacement": f"displacement {x} of the mass",
-        "velocity": f"velocity {rates[0]} of the mass",
-        "acceleration": f"acceleration {rates[1]} of the mass",
-        "force": "force that spring, dampers and friction set against the motion of the mass",
-        **dict.fromkeys(
-            ("minimum_normal_force", "lift_off_fraction", "normal_force_column", "normal_force_bolster"), None
-        ),
+    base = " - u" if contact == "base" and not config.forced else ""
+    rates = {name: f"x{dash}{base and base + dash}" for name, dash in (("x", ""), ("v", "'"), ("a", "''"))}
+    return rates | {
+        **{"body": "the mass", "rest": "", "size": "" if config.transient else _reference(config)},
+        "source": "the input" + " and the belt" * (contact == "belt"),
+        "stuck": "stuck (set-valued laws) or slipping below the threshold velocity",
     }
 
 

@@ -17,6 +17,7 @@ from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
+from wedgesweep.processes import interrupts_ignored
 from wedgesweep.simulate import Settings
 from wedgesweep.sweep import dataset, journal, labels, provenance, transients, variables
 from wedgesweep.sweep.backend import Backend, Pool, local
@@ -24,7 +25,7 @@ from wedgesweep.sweep.cases import Chunk, compile_once, solve_cases
 from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
-from wedgesweep.sweep.workers import Workers, interrupts_ignored
+from wedgesweep.sweep.workers import Workers
 from wedgesweep.systems import has_own_mechanics, kits
 from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance

@@ -1,7 +1,7 @@
 """The variables of the datasets of sweeps, and the records of cases that hold them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,10 @@ HARMONICS = 9
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the dataset; ``dims`` follow the case dimensions."""
+    """A variable of the dataset; ``dims`` follow the case dimensions.
+
+    ``long_name`` has places for the words of a system (see ``labels.py``).
+    """
 
     name: str
     units: str
@@ -27,27 +30,21 @@ PHASE = ("phase",)
 SPECTRUM = ("harmonic", "part")
 
 VARIABLES = (
-    Variable("amplitude_ratio", "1", "half peak-to-peak of x - y over the input amplitude"),
-    Variable("peak_to_peak", "m", "peak-to-peak of the relative displacement x - y"),
-    Variable("peak_velocity", "m s-1", "largest magnitude of the relative velocity x' - y'"),
-    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
-    Variable(
-        "stick_fraction",
-        "1",
-        "share of time stuck (coulomb) or with the column face below the threshold velocity",
-    ),
+    Variable("amplitude_ratio", "1", "half peak-to-peak of {x} over {size}"),
+    Variable("peak_to_peak", "m", "peak-to-peak of {x}"),
+    Variable("peak_velocity", "m s-1", "largest magnitude of {v}"),
+    Variable("mean_displacement", "m", "mean of {x}{rest}"),
+    Variable("stick_fraction", "1", "share of time {stuck}"),
     Variable("stick_phases", "1", "number of sticking phases per forcing period"),
-    Variable("displacement_harmonics", "m", "D_h of x - y = Re sum D_h exp(i h omega t)", SPECTRUM),
-    Variable("velocity_harmonics", "m s-1", "V_h of x' - y' = Re sum V_h exp(i h omega t)", SPECTRUM),
-    Variable("phase_lag", "rad", "lag of the fundamental of x - y behind the input u"),
-    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers per forcing period"),
-    Variable("supplied_energy", "J", "energy supplied by the base per forcing period"),
-    Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping"),
-    Variable("lift_off_fraction", "1", "share of the slipping time with a negative normal force"),
+    Variable("displacement_harmonics", "m", "D_h of {x} = Re sum D_h exp(i h omega t)", SPECTRUM),
+    Variable("velocity_harmonics", "m s-1", "V_h of {v} = Re sum V_h exp(i h omega t)", SPECTRUM),
+    Variable("phase_lag", "rad", "lag of the fundamental of {x} behind the input"),
+    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers {per}"),
+    Variable("supplied_energy", "J", "energy supplied by {source} {per}"),
+    Variable("minimum_normal_force", "N", "smallest normal force of either face while slipping{opened}"),
+    Variable("lift_off_fraction", "1", "share of {lifted}"),
     Variable(
-        "periodicity",
-        "1",
-        "largest change of x - y from the last period but one to the last, over input amplitude",
+        "periodicity", "1", "largest change of {x} from the last period but one to the last, over {size}"
     ),
     Variable(
         "period",
@@ -62,14 +59,8 @@ VARIABLES = (
     Variable("steps", "1", "steps of the integrator", dtype="i8"),
     Variable("switches", "1", "located switches between slip branches", dtype="i8"),
     Variable("wall_time", "s", "wall time of the case"),
-    Variable(
-        "displacement",
-        "m",
-        "relative displacement x - y (side frame minus bolster) from frictionless rest",
-        PHASE,
-        "f4",
-    ),
-    Variable("velocity", "m s-1", "relative velocity x' - y'", PHASE, "f4"),
+    Variable("displacement", "m", "displacement {x} of {body}{rest}", PHASE, "f4"),
+    Variable("velocity", "m s-1", "velocity {v} of {body}", PHASE, "f4"),
     Variable("normal_force_column", "N", "normal force on the column face", PHASE, "f4"),
     Variable("normal_force_bolster", "N", "normal force on the bolster face", PHASE, "f4"),
     Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", PHASE, "i1"),
@@ -81,35 +72,28 @@ WAVEFORMS = tuple(variable.name for variable in VARIABLES if variable.dims == PH
 OF_LIFT_OFF = (
     Variable("column_open_fraction", "1", "share of time with the column contact open"),
     Variable("bolster_open_fraction", "1", "share of time with the bolster contact open"),
-    Variable("impacts", "1", "impacts of a wedge per forcing period"),
+    Variable("impacts", "1", "impacts of a wedge {per}"),
     Variable("largest_impulse", "N s", "largest normal impulse of an impact, on one wedge"),
-    Variable("impact_energy", "J", "energy lost in impacts per forcing period, beside dissipated_energy"),
+    Variable("impact_energy", "J", "energy lost in impacts {per}, beside dissipated_energy"),
 )
 
 # Within a case of a motion that does not repeat.
 TIME = ("time",)
-_SHARED = ("status", "message", "rate_evaluations", "steps", "switches", "wall_time")
+_SHARED = (
+    *("stick_fraction", "dissipated_energy", "supplied_energy", "minimum_normal_force", "lift_off_fraction"),
+    *("status", "message", "rate_evaluations", "steps", "switches", "wall_time"),
+)
 _NAMED = {variable.name: variable for variable in VARIABLES}
 # Variables of a dataset whose input does not repeat, after those that are the same.
 TRANSIENT = (
-    Variable("peak_displacement", "m", "largest magnitude of x - y"),
-    Variable("peak_to_peak", "m", "peak-to-peak of x - y"),
-    Variable("peak_velocity", "m s-1", "largest magnitude of x' - y'"),
-    Variable("mean_displacement", "m", "mean of x - y from its value at the frictionless rest position"),
-    Variable("rms_displacement", "m", "rms of the stored samples of x - y"),
-    _NAMED["stick_fraction"],
-    Variable("dissipated_energy", "J", "energy dissipated by friction and dampers in all"),
-    Variable("supplied_energy", "J", "energy supplied by the base in all"),
-    _NAMED["minimum_normal_force"],
-    _NAMED["lift_off_fraction"],
+    Variable("peak_displacement", "m", "largest magnitude of {x}"),
+    *(_NAMED[name] for name in ("peak_to_peak", "peak_velocity", "mean_displacement")),
+    Variable("rms_displacement", "m", "rms of the stored samples of {x}"),
     *(_NAMED[name] for name in _SHARED),
-    Variable("displacement", "m", _NAMED["displacement"].long_name, TIME),
-    Variable("velocity", "m s-1", "relative velocity x' - y'", TIME),
-    Variable("acceleration", "m s-2", "relative acceleration x'' - y''", TIME),
-    Variable("force", "N", "force that springs, dampers and friction set against x - y", TIME),
-    Variable("normal_force_column", "N", "normal force on the column face", TIME, "f4"),
-    Variable("normal_force_bolster", "N", "normal force on the bolster face", TIME, "f4"),
-    Variable("stuck", "1", "1 where stuck, as counted by stick_fraction", TIME, "i1"),
+    *(replace(_NAMED[name], dims=TIME, dtype="f8") for name in ("displacement", "velocity")),
+    Variable("acceleration", "m s-2", "acceleration {a} of {body}", TIME),
+    Variable("force", "N", "force that springs, dampers and friction set against {x}", TIME),
+    *(replace(_NAMED[name], dims=TIME) for name in ("normal_force_column", "normal_force_bolster", "stuck")),
     *OF_LIFT_OFF,
 )
 

@@ -21,7 +21,7 @@ from wedgesweep.simulate import Settings
 from wedgesweep.solvers import radau
 from wedgesweep.solvers.trajectory import CaseError, Window
 from wedgesweep.sweep import variables
-from wedgesweep.sweep.backend import loky
+from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.batch import solve_batch
 from wedgesweep.sweep.cases import compile_once
 from wedgesweep.sweep.run import Sweep
@@ -110,8 +110,7 @@ def verify(sweep: Sweep, ds: xr.Dataset, count: int, seed: int, n_jobs: int) -> 
     drawn = np.random.default_rng(seed).choice(candidates, min(count, candidates.size), replace=False)
     tasks = [_task(sweep, stored, index) for index in np.sort(drawn).tolist()]
     compile_once(Settings("radau"), sweep.kit, sweep.config.system)
-    with loky(n_jobs, dict) as pool:
-        found = list(pool.parallel()(joblib.delayed(_verified)(task) for task in tasks))
+    found = in_order((joblib.delayed(_verified)(task) for task in tasks), n_jobs)
     return Verification(seed, candidates.size, tuple(sorted(found)))
 
 

@@ -1,19 +1,15 @@
 """Chunks of cases on the workers of a backend; workers that die are replaced.
 
-joblib ends all tasks when a worker dies, and does not tell which one that worker had. Any task that was
+All tasks end when a worker dies, and nothing tells which one that worker had. Any task that was
 sent out may be the reason, so these are solved alone, one after the other, and the rest in parallel again.
 A case whose worker dies every time is a failed case.
 """
 
-import signal
-import threading
-import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import dataclass, field
 from itertools import islice
 
-import joblib
 import numpy as np
 
 from wedgesweep.errors import SweepError
@@ -27,8 +23,6 @@ from wedgesweep.sweep.cases import Chunk, solve_chunk
 TRIES, MOST_LOSSES = 2, 10
 TOLD = "a worker died, killed or out of memory; another one takes its place"
 MESSAGE = f"its worker died in each of {TRIES} tries, killed or out of memory"
-# Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
-OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
 
 Records = Generator[np.ndarray, None, None]
 RowNumbers = Sequence[int] | np.ndarray
@@ -100,17 +94,7 @@ class Workers:
         yield records
 
     def _parallel(self, parts: Iterable[np.ndarray]) -> Records:
-        with interrupts_ignored():
-            results = self.pool.parallel()(joblib.delayed(self.task)(self.chunk(rows)) for rows in parts)
-        try:
-            # "yield from" would close the results outside of the filter below.
-            for records in results:  # noqa: UP028
-                yield records
-        finally:
-            with warnings.catch_warnings():
-                # joblib warns when a run is stopped early.
-                warnings.simplefilter("ignore", UserWarning)
-                results.close()
+        return self.pool.solve(self.task, map(self.chunk, parts))
 
 
 def _without(done: list[np.ndarray], parts: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
@@ -118,17 +102,3 @@ def _without(done: list[np.ndarray], parts: Iterable[np.ndarray]) -> Iterator[np
     rows = np.concatenate(done)
     left = (part[~np.isin(part, rows)] for part in parts)
     return (part for part in left if len(part))
-
-
-@contextmanager
-def interrupts_ignored() -> Iterator[None]:
-    """Let jobs that start meanwhile ignore ctrl-C and the end of the terminal; this process ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in OF_THE_TERMINAL}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

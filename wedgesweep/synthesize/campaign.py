@@ -1,6 +1,7 @@
 """Makes a directory of measured data from a config and a plan of tests."""
 
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +19,10 @@ from wedgesweep.simulate import Settings
 from wedgesweep.solvers.trajectory import CaseError
 from wedgesweep.sweep.backend import in_order
 from wedgesweep.sweep.cases import compile_once
-from wedgesweep.synthesize import documents, files, noise, other_tables, recorded_input
+from wedgesweep.synthesize import documents, files, noise, other_tables
 from wedgesweep.synthesize.files import Table
 from wedgesweep.synthesize.motion import Motion, NoMotion, steady
-from wedgesweep.synthesize.names import FORCE, QUANTITIES
-from wedgesweep.synthesize.options import Options
+from wedgesweep.synthesize.options import FORCE, QUANTITIES, Options
 from wedgesweep.synthesize.plan import Plan
 from wedgesweep.synthesize.truth import STRAY, TrueTest, Truth, draw
 from wedgesweep.systems import kits
@@ -200,7 +200,28 @@ def _input(truth: Truth, test: TrueTest, time: np.ndarray, options: Options) -> 
     # Differences lose a sample at either end.
     first = int(options.noise == "differentiated")
     clock = test.clock(options.periods, 0)
-    exact = recorded_input.recorded(
-        truth.record(test), clock.start + first * clock.step + time, options.record_input
-    )
+    exact = _recorded(truth.record(test), clock.start + first * clock.step + time, options.record_input)
     return exact + options.input_level * exact.std() * test.random.normal(size=exact.size)
+
+
+def _recorded(record: np.ndarray, time: np.ndarray, quantity: str) -> np.ndarray:
+    """Base motion of a parameter record, shape (1,), at times (n,) from phase 0, without noise (SI units).
+
+    A force has the shape of the displacement.
+    """
+    given, distortion, stray = (record[each][0] for each in ("input", "input_distortion", "stray_vibration"))
+    a, omega = given["amplitude"], given["omega"]
+    waves = [
+        (a, omega, 0.0),
+        (a * distortion["second"], 2.0 * omega, distortion["second_phase"]),
+        (a * distortion["third"], 3.0 * omega, distortion["third_phase"]),
+    ]
+    if stray["acceleration"] != 0.0:
+        tone = 2.0 * pi * stray["frequency"]
+        waves.append((-stray["acceleration"] / tone**2, tone, stray["phase"]))
+    order = 0 if quantity == FORCE else QUANTITIES.index(quantity)
+    # Each derivative multiplies by the frequency and advances the phase by a quarter of a turn.
+    parts = [
+        size * rate**order * np.sin(rate * time + phase + 0.5 * pi * order) for size, rate, phase in waves
+    ]
+    return np.sum(parts, axis=0)

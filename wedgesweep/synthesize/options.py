@@ -2,6 +2,11 @@
 
 from dataclasses import dataclass
 
+# Kinds of noise, and recorded quantities.
+NOISES = ("white", "ar1", "adc", "differentiated")
+FORCE = "force"
+QUANTITIES = ("displacement", "velocity", "acceleration", FORCE)
+
 
 @dataclass(frozen=True)
 class Options:

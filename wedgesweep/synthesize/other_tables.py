@@ -6,8 +6,7 @@ from wedgesweep.measured.declarations import LOOP
 from wedgesweep.sampled_input import from_samples
 from wedgesweep.synthesize import loops, noise, transients
 from wedgesweep.synthesize.files import Table
-from wedgesweep.synthesize.names import FORCE, QUANTITIES
-from wedgesweep.synthesize.options import Options
+from wedgesweep.synthesize.options import FORCE, QUANTITIES, Options
 from wedgesweep.synthesize.truth import TrueTest, Truth
 
 # Default sampling rate over that of a steady test, which is shorter.

@@ -15,16 +15,14 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
-from scipy.ndimage import maximum_filter1d, median_filter
+from scipy.ndimage import maximum_filter1d
 
-from wedgesweep.diagnose.smoothing import MEDIAN, WIDER, LowPass
+from wedgesweep.diagnose.smoothing import WIDER, LowPass, unlike_steps
 
 # Support of the errors that reach a compared force, over the settling of its filter to one side.
 SUPPORT = 3.2
 # Steps of the force in a row that are alike but for jumps, and those over which a jump may be spread.
 ALIKE, SHARED = 5, 3
-# Standard deviations of a step by which a jump differs from those around it; noise makes the others differ.
-OFF = 6.0
 
 
 class Derivatives(NamedTuple):
@@ -43,11 +41,9 @@ def jumps(force: np.ndarray) -> np.ndarray:
 
     A jump may be shared by two samples, and so be in up to three steps.
     """
-    steps = np.diff(force)
-    unlike = steps - median_filter(steps, ALIKE, mode="nearest")
+    unlike, limit = unlike_steps(force, ALIKE)
     size = np.abs(unlike)
-    largest = size >= np.maximum(maximum_filter1d(size, SHARED), OFF * np.median(size) / MEDIAN)
-    largest &= size > 0.0
+    largest = (size >= np.maximum(maximum_filter1d(size, SHARED), limit)) & (size > 0.0)
     return np.r_[np.where(largest, np.abs(np.convolve(unlike, np.ones(SHARED), mode="same")), 0.0), 0.0]
 
 

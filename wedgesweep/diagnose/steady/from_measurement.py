@@ -31,12 +31,7 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
     if measurement.recorded_input is not None:
         return _under_recorded_input(measurement)
     tests = measurement.tests
-    signals = [_channels(test, measurement.derived_velocity) for test in tests]
-    records = [(test.time, s, test.refined_frequency) for test, s in zip(tests, signals, strict=True)]
-    lowest = tone.LOWEST * measurement.model.natural_units().ratio(FREQUENCY)
-    known = tone.of(acting(measurement.model.effects))
-    found = known or tone.find([fitted(*each) for each in records], lowest)
-    spectra = tuple(spectrum(*each, found.frequency if found else None) for each in records)
+    found, spectra = _with_tone(measurement)
     std = [test.amplitude_std if test.amplitude is not None else np.inf for test in tests]
     data = HarmonicData(
         model=measurement.model,
@@ -52,6 +47,35 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         model_error=measurement.model_error,
     )
     return with_uncertain_harmonics(data, measurement.input_harmonics_std)
+
+
+def recorded_spectra(measurement: Measurement) -> tuple[Spectrum, ...]:
+    """Spectra of the responses of all tests, by the names of ``compared``, in the units of the records."""
+    if measurement.recorded_input is None:
+        return _with_tone(measurement)[1]
+    names = compared(measurement)
+    signals = [np.array([test.responses[name] for name in names]) for test in measurement.tests]
+    both = zip(measurement.tests, signals, strict=True)
+    return tuple(fitted(test.time, own, test.refined_frequency) for test, own in both)
+
+
+def compared(measurement: Measurement) -> list[str]:
+    """Names of the responses that are compared: a velocity that was derived from a displacement is none."""
+    names = ("displacement", "velocity", "acceleration")
+    derived = ("velocity",) if measurement.derived_velocity else ()
+    return [name for name in names if name in measurement.columns and name not in derived]
+
+
+def _with_tone(measurement: Measurement) -> tuple[tone.Tone | None, tuple[Spectrum, ...]]:
+    """The spurious tone under stated inputs, and the spectra of all tests."""
+    records = [
+        (test.time, _channels(test, measurement.derived_velocity), test.refined_frequency)
+        for test in measurement.tests
+    ]
+    lowest = tone.LOWEST * measurement.model.natural_units().ratio(FREQUENCY)
+    known = tone.of(acting(measurement.model.effects))
+    found = known or tone.find([fitted(*each) for each in records], lowest)
+    return found, tuple(spectrum(*each, found.frequency if found else None) for each in records)
 
 
 def _models(measurement: Measurement) -> tuple | None:
@@ -73,7 +97,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
     """Harmonics of responses, as displacement and velocity relative to the base, and those of the input."""
     quantity = measurement.recorded_input
     assert quantity is not None
-    named = _compared(measurement)
+    named = _converted(measurement)
     motions = [channel_factors(measurement.model, of) for *_, of in named]
     read = [_read_test(test, named, motions, quantity) for test in measurement.tests]
     spectra = tuple(each[0] for each in read)
@@ -120,15 +144,13 @@ def _hidden_effects(as_measured: set[str], converted: bool) -> tuple[str, ...]:
 Channel = tuple[str, str, str]
 
 
-def _compared(measurement: Measurement) -> list[Channel]:
+def _converted(measurement: Measurement) -> list[Channel]:
     """The compared channels: the first one is compared as a displacement, a second one as a velocity."""
-    named = [
-        name
-        for name in ("displacement", "velocity", "acceleration")
-        if name in measurement.columns and not (name == "velocity" and measurement.derived_velocity)
-    ]
     slots = ("displacement", "velocity")
-    return [(name, slots[i], measurement.columns[name].get("of", "relative")) for i, name in enumerate(named)]
+    return [
+        (name, slots[i], measurement.columns[name].get("of", "relative"))
+        for i, name in enumerate(compared(measurement))
+    ]
 
 
 def _read_test(

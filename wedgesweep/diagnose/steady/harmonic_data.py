@@ -13,7 +13,7 @@ import numpy as np
 
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import Evaluator, FitData
-from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone, tone_phase
+from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
@@ -252,7 +252,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         effects, point = model.effects, evaluation.point
         if not self.has_tone(effects) or len(self.nuisances(effects, point)) > 1:
             return None
-        return model.best_nuisances(tone_phase.points(point, self.extra_nuisances(effects)))
+        return model.best_nuisances(tone.phases(point, self.extra_nuisances(effects)))
 
     def aligned_to(self, evaluation: Evaluation) -> Self:
         return replace(self, input_phase=evaluation.response.phase)

@@ -6,12 +6,12 @@ Pintelon and Schoukens, System Identification, 2012, ch. 4).
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import gammaincc
 
 from wedgesweep.diagnose.steady import noise_psd
-from wedgesweep.diagnose.steady.aliasing import AliasMap, alias_map
 from wedgesweep.diagnose.steady.harmonic_fit import (
     REMOVED,
     RESOLVED,
@@ -22,6 +22,7 @@ from wedgesweep.diagnose.steady.harmonic_fit import (
     resolvable,
 )
 from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
+from wedgesweep.measured.cycles import SEEN
 
 # Harmonics that are simulated, and whose aliases beyond half the sampling rate count.
 SIMULATED = 127
@@ -36,6 +37,25 @@ DOUBLED = 1e-4
 # Intermodulation lines of a tone and the harmonics hide the noise as close as this (resolutions); they are
 # left out if this share of the lines remains.
 TONE_LINE_WIDTH, LEAST_CLEAR_SHARE = 0.8, 0.3
+
+
+class AliasMap(NamedTuple):
+    """Aliases: what K harmonics D_k add to the amplitudes that a fit reads.
+
+    A motion that sticks and slips has kinks, and so harmonics at all orders. Sampling shows those above half
+    its rate at other frequencies; if the rate is nearly a multiple of the input's frequency, these are so
+    close to lower harmonics that no record can separate them. (Slip pulses at 31.3 Hz, sampled 63.05 times a
+    period at 4 % noise: 62 in chi-squared.) A low-pass filter ahead of the sampling removes them.
+
+    ``direct`` and ``mirrored`` (columns, K): complex factors of D_k, and of their conjugates.
+    """
+
+    direct: np.ndarray
+    mirrored: np.ndarray
+
+    def __call__(self, harmonics: np.ndarray) -> np.ndarray:
+        """What harmonics (..., C, K) at the first sample add to those that are read (..., C, columns)."""
+        return harmonics @ self.direct.T + harmonics.conj() @ self.mirrored.T
 
 
 @dataclass(frozen=True)
@@ -96,6 +116,17 @@ class Spectrum:
     def sample_noise(self) -> np.ndarray:
         """Noise of one sample (channels,), in m and m/s."""
         return np.sqrt(self.variance.mean(axis=1) * self.samples / 4.0)
+
+    @property
+    def rms(self) -> np.ndarray:
+        """Of the harmonics of each channel (channels,)."""
+        return np.sqrt(0.5 * (np.abs(self.mean[:, : self.harmonics]) ** 2).sum(axis=1))
+
+    @property
+    def seen(self) -> tuple[int, ...]:
+        """Harmonics of the first channel that stand out of the noise."""
+        power = np.abs(self.mean[0, : self.harmonics]) ** 2
+        return tuple((np.flatnonzero(power > SEEN * self.variance[0, : self.harmonics]) + 1).tolist())
 
     @property
     def harmonics(self) -> int:
@@ -259,4 +290,8 @@ def _alias_map(
     if (SIMULATED + REMOVED) * frequency * time[-1] < time.size - 1:
         return None
     phasors = phasors_of(time, frequency, SIMULATED)
-    return alias_map(design.read(inverse @ design.matrix.T), phasors, design.removed)
+    read = design.read(inverse @ design.matrix.T)
+    direct, mirrored = 0.5 * read @ phasors.T, 0.5 * read @ phasors.conj().T
+    # The harmonics that are part of the fit have no aliases.
+    direct[:, : design.removed] = mirrored[:, : design.removed] = 0.0
+    return AliasMap(direct, mirrored)

@@ -5,11 +5,12 @@ from math import pi
 import numpy as np
 from scipy.optimize import root_scalar
 
+from wedgesweep.compiled import compiled
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.steady.accelerations import accelerations
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.effects import EFFECTS, acting
 from wedgesweep.excitation import has_series
+from wedgesweep.hybrid.interface import cycle, initial_mode, rate
 from wedgesweep.systems import compact, driven_mass, has_own_mechanics, is_oscillator, moving_mass
 
 PHASES = 256
@@ -136,6 +137,19 @@ def _about_mean_position(row: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.nd
     position = root_scalar(mean, x0=0.0, x1=FIRST_MEAN * np.ptp(x), method="secant", maxiter=20).root
     mean(position)
     return acceleration
+
+
+@compiled
+def accelerations(parameters: np.ndarray, x: np.ndarray, v: np.ndarray, out: np.ndarray) -> None:
+    """Write z'' (m/s^2) of the model in states x (m) and v (m/s), even over one period from phase 0.
+
+    ``parameters``: a record of the base model, shape (1,); a bolster that friction holds has none.
+    """
+    p = parameters[0]
+    for i in range(x.size):
+        t = cycle(p) * i / x.size
+        mode, _ = initial_mode(t, (x[i], v[i]), p)
+        out[i] = rate(t, (x[i], v[i]), mode, p)[0][1]
 
 
 def _wiener_weight(data: HarmonicData) -> np.ndarray:

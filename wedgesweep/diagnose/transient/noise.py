@@ -26,10 +26,12 @@ from wedgesweep.diagnose.noise_spectrum import (
     fit_spectra,
     of_noise,
 )
+from wedgesweep.diagnose.smoothing import unlike_steps
 from wedgesweep.diagnose.transient.channel_differences import Difference, differences
-from wedgesweep.diagnose.transient.jumps import continuous
 from wedgesweep.measured import TestRecord
 
+# Steps around one that tell the usual size of a step.
+AROUND = 9
 # Order of an acceleration, whose jumps are no noise: derivative of the displacement.
 ACCELERATION = 2
 # Sampling rates that differ by less than this are the same.
@@ -238,3 +240,13 @@ def from_repeats(tests: Sequence[TestRecord], channels: Sequence[Channels]) -> S
             noise = of_noise(left, FROM_REPEATS)
             found |= {(row, order): noise for row in rows}
     return found
+
+
+def continuous(samples: np.ndarray) -> np.ndarray:
+    """Samples (n,) without their jumps, as dry friction makes an acceleration jump where it changes its sign.
+
+    Each step of a jump is replaced by the usual one there. The power of jumps falls with frequency as that of
+    red noise does, up to the highest frequencies of a record: left in, they would be taken for noise.
+    """
+    unlike, limit = unlike_steps(samples, AROUND)
+    return samples - np.r_[0.0, np.cumsum(np.where(np.abs(unlike) > limit, unlike, 0.0))]

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import signal
 
 from wedgesweep.diagnose.noise_bins import noise_of_record
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, power_of
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
@@ -123,9 +123,8 @@ def no_input(span: float) -> SampledInput:
 
 
 def _power(samples: np.ndarray) -> np.ndarray:
-    """Periodogram (n // 2 + 1,) of samples (n,) under a Hann window, averaged over neighbours."""
-    window = np.hanning(samples.size)
-    power = np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 / (window**2).sum()
+    """Power (n // 2 + 1,) of samples (n,) by frequency, averaged over neighbours."""
+    power = power_of(samples - samples.mean())
     width = max(int(AVERAGED * power.size), 3)
     kernel = np.ones(2 * width + 1)
     return np.convolve(power, kernel, mode="same") / np.convolve(np.ones(power.size), kernel, mode="same")

@@ -1,4 +1,4 @@
-"""Equations as LaTeX, which the documentation holds."""
+"""Equations as LaTeX, which docs/physics.md holds: tests compare it with the equations of the code."""
 
 from itertools import pairwise
 
