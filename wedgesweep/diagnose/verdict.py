@@ -280,5 +280,17 @@ def on_held_out_tests(
     return Finding(CONSISTENT if finding.verdict == NAMED else INSUFFICIENT, finding.best, finding.rivals)
 
 
+def as_far_as_done(finding: Finding, searched: bool, confirmed: bool) -> Finding:
+    """The finding of a diagnosis that may have ended early.
+
+    ``searched``: whether all rivals were tried; ``confirmed``: whether held-out tests were predicted.
+    """
+    if finding.verdict == NAMED and not (searched and confirmed):
+        return replace(finding, verdict=CONSISTENT)
+    if finding.verdict == NONE and not searched:
+        return replace(finding, verdict=INSUFFICIENT)
+    return finding
+
+
 def _unexplained(base: Explanation) -> str:
     return NONE if base.fit.model.data.tests >= FEWEST_TESTS else INSUFFICIENT

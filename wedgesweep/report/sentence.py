@@ -14,9 +14,18 @@ NAMES_LISTED = 3
 
 def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
-    return (
-        TEMPLATES[result.verdict](result).removesuffix(".") + _never_steady(result) + _untried(result) + "."
-    )
+    answer = TEMPLATES[result.verdict](result).removesuffix(".")
+    return answer + _never_steady(result) + _untried(result) + unfinished(result) + "."
+
+
+def unfinished(result: DiagnosisResult) -> str:
+    """Steps of the diagnosis without a result, by the reason; empty for most diagnoses."""
+    steps: dict[str, list[str]] = {}
+    for each in result.document.get("unfinished", []):
+        steps.setdefault(each["reason"], []).append(each["step"])
+    for each in result.document.get("failed", []):
+        steps.setdefault(each["reason"], []).append(f"fit of {each['effect']}")
+    return "".join(f"; without a result: {phrases.listing(names)} ({why})" for why, names in steps.items())
 
 
 def _never_steady(result: DiagnosisResult) -> str:
