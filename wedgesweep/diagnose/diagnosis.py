@@ -265,8 +265,11 @@ def _all_steps(course: Course, effects: Sequence[str], calibrated: bool) -> None
 
     def rated() -> Diagnosis:
         found = course.found
-        rough = rough_ladder(search, found.base, found.explanations)
-        return replace(found, ladder=ladder(search, rough, predict))
+        levels = ladder(search, rough_ladder(search, found.base, found.explanations), predict)
+        found = replace(found, ladder=levels, decided=verdict.by_accuracy(found.decided, levels))
+        return (
+            found if found.decided == course.found.decided else _with_leading_effect(search, found, predict)
+        )
 
     def scored() -> Diagnosis:
         found = score_test.scores(search, course.found.base.fit, course.explained.scans)
@@ -284,6 +287,26 @@ def _all_steps(course: Course, effects: Sequence[str], calibrated: bool) -> None
     course.step(ACCURACY, rated)
     course.step(SCORES, scored)
     course.step(NEXT, next_test)
+
+
+def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
+    """The diagnosis with numbers, intervals and gain of the effect that is by far the most accurate.
+
+    It is fitted with the weights of its accuracy: those of noise alone would make the intervals too narrow.
+    """
+    rated = found.ladder[1].best
+    strict = rated.explanation.fit.model.data
+    data = strict.with_model_error(rated.accuracy)
+    fit = minimise(rated.fit.model.on(data), data.compared_again(rated.fit.evaluation))
+    fit = profile_likelihood(tight_refit(fit), search.each)
+    again = strict.compared_again(fit.evaluation)
+    best = search.explanation(replace(fit, model=fit.model.on(strict), evaluation=again))
+    others = [each for each in found.explanations if each.effects != best.effects]
+    gain = cross_validate(found.base.fit, best.fit, predict)
+    decided = replace(found.decided, best=best)
+    return replace(
+        found, decided=decided, explanations=tuple(best_of_each([best, *others], penalised)), gain=gain
+    )
 
 
 def _calibrated(course: Course, effects: Sequence[str]) -> Diagnosis:

@@ -1,6 +1,6 @@
 """The content of diagnosis.json."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from math import isfinite
 from signal import SIGINT
@@ -38,6 +38,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
     hidden = _not_testable(found)
     return {
         "verdict": finding.verdict,
+        "reason": {"code": finding.reason.code, **_finite(finding.numbers)},
         "causes": _causes(finding.cause),
         "rivals": [
             {"effects": list(each.effects), "gap": finite(each.penalised - best.penalised)}
@@ -72,6 +73,10 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
+
+
+def _finite(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: finite(value) if isinstance(value, float) else value for key, value in numbers.items()}
 
 
 def _ended(found: Diagnosis) -> dict[str, Any] | None:
