@@ -9,7 +9,6 @@ import numpy as np
 
 from tests.scaling import BENCH_SIZE
 from wedgesweep import config
-from wedgesweep.diagnose.next_test.designs import offered
 from wedgesweep.diagnose.next_test.offer import recommended
 from wedgesweep.diagnose.next_test.sensors import sensors
 from wedgesweep.diagnose.next_test.steady import sines
@@ -106,12 +105,12 @@ def base_of(data):
     return base_fit(Search.of(data, ())).base.fit
 
 
-def steady_offer(fits):
+def steady_tests(fits):
     """Steady tests to choose from for fits to steady tests."""
     data = fits[0].model.data
-    return offered(sines(fits[0], sensors(data), data), fits)
+    return sines(fits[0], sensors(data), data)
 
 
 def steady_test(fits):
     """The steady test that separates most fits to steady tests; None if there is none."""
-    return recommended(steady_offer(fits), fits[0])
+    return recommended(steady_tests(fits), fits)

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LEANING, drawn, searched, steady_offer, steady_test
+from tests.diagnose.synthetic import LEANING, drawn, searched, steady_test, steady_tests
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
+from wedgesweep.diagnose.next_test.designs import offered
 from wedgesweep.diagnose.next_test.offer import SEPARATED, choice
 from wedgesweep.diagnose.next_test.recommend import recommend
-from wedgesweep.diagnose.next_test.sensors import sensors
-from wedgesweep.diagnose.next_test.steady import ACCELERATIONS, FREQUENCIES, sines
+from wedgesweep.diagnose.next_test.steady import ACCELERATIONS, FREQUENCIES
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.solvers.periodic import at_rest
 
@@ -58,7 +58,7 @@ def test_the_next_test_makes_every_suspect_move(suspects):
 
 def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     locking = explained("directional_friction", {"asymmetry": 0.4}, 0.01)
-    assert not any(fit is locking for fit in steady_offer([*suspects, locking]).fits)
+    assert not any(fit is locking for fit in offered(steady_tests(suspects), [*suspects, locking]).fits)
     assert steady_test([*suspects, locking]) == steady_test(suspects)
     assert steady_test([suspects[0], locking]) is None
 
@@ -94,7 +94,9 @@ def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     *_, singles = searched(data, "velocity_lag", "displacement_gain")
     found = [each.fit for each in singles]
     usual, undetermined = (
-        steady_offer([replace(fit, covariance=factor * fit.covariance) for fit in found]).distances
+        offered(
+            steady_tests(found), [replace(fit, covariance=factor * fit.covariance) for fit in found]
+        ).distances
         for factor in (1.0, 1e30)
     )
     assert (usual > 0.0).all()
@@ -106,9 +108,7 @@ def test_what_a_model_may_be_wrong_by_separates_no_explanations(suspects):
     """An error of 5 % of the response is far more than what noise of 4 % of a sample leaves in a harmonic."""
     fit = suspects[0]
     exact, wrong = (replace(fit.model.data, model_error=error) for error in (0.0, 0.05))
-    both = [
-        sines(replace(fit, model=fit.model.on(data)), sensors(data), data).data for data in (exact, wrong)
-    ]
+    both = [steady_tests([replace(fit, model=fit.model.on(data))]).data for data in (exact, wrong)]
     moves = np.abs(both[0].measured[:, 0, 0]) > 0.0
     assert moves.mean() > 0.5
     assert (both[1].weight[moves] < both[0].weight[moves] / 5.0).all()

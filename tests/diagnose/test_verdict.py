@@ -435,28 +435,31 @@ def rated(accuracy, *effects, held_out=None):
 
 
 @pytest.mark.parametrize(
-    ("base", "best", "rival", "pair", "expected"),
+    ("base", "best", "rival", "pair", "with_it", "expected"),
     [
-        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, "consistent-with"),
-        ((np.inf, None), (0.004, 0.016), 0.26, 0.008, "consistent-with"),
-        ((0.62, 0.65), (0.056, 0.06), 0.18, 0.06, "consistent-with"),
-        ((0.47, 0.70), (0.004, 0.016), 0.011, 0.008, "none-of-mine"),
-        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, "none-of-mine"),
-        ((0.47, 0.70), (0.004, 0.3), 0.26, 0.008, "none-of-mine"),
-        ((0.47, 0.70), (0.004, None), 0.26, 0.008, "none-of-mine"),
-        ((0.011, 0.70), (0.004, 0.016), 0.26, 0.008, "none-of-mine"),
-        ((2.0, 2.0), (0.3, 0.3), 1.0, 0.8, "none-of-mine"),
-        ((0.011, 0.02), (0.0, 0.0), 0.0, 0.0, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
+        ((np.inf, None), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
+        ((0.62, 0.65), (0.056, 0.06), 0.18, 0.06, 0.03, "consistent-with"),
+        ((0.47, 0.70), (0.004, 0.016), 0.011, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.3), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, None), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.001, "none-of-mine"),
+        ((0.011, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((2.0, 2.0), (0.3, 0.3), 1.0, 0.8, 0.003, "none-of-mine"),
+        ((0.011, 0.02), (0.0, 0.0), 0.0, 0.0, 0.0, "none-of-mine"),
     ],
 )
-def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(base, best, rival, pair, expected):
-    """Though none reaches the noise; not if a pair without it does as well, or held-out tests disagree."""
+def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
+    base, best, rival, pair, with_it, expected
+):
+    """Though none reaches the noise; not if a pair does better, or held-out tests disagree."""
     unexplained = verdict_of(explained(5000.0), explained(1500.0, "ageing"))
     single = rated(best[0], "ageing", held_out=best[1])
     levels = (
         Level((rated(base[0], held_out=base[1]),)),
         Level((single, rated(rival, "stribeck"))),
-        Level((rated(0.001, "ageing", "preload"), rated(pair, "stribeck", "preload"))),
+        Level((rated(with_it, "ageing", "preload"), rated(pair, "stribeck", "preload"))),
     )
     found = verdict.by_accuracy(unexplained, levels)
     assert found.verdict == expected

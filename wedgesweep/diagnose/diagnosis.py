@@ -62,11 +62,7 @@ DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]
 }
 
 
-# Steps of a diagnosis after the fit of the base model; any of them may fail or be cut off.
-SINGLES, REFINED, PAIRS, INTERVALS = "single effects", "refinement of single effects", "pairs", "intervals"
-HELD_OUT, ACCURACY, SCORES, NEXT = "held-out tests", "accuracy", "scores", "next test"
-CALIBRATION = "calibration"
-STEPS = (SINGLES, REFINED, PAIRS, INTERVALS, HELD_OUT, ACCURACY, SCORES, NEXT)
+# Why a step has no result while the diagnosis goes on, or after it was killed.
 NOT_REACHED = "not reached"
 
 
@@ -101,8 +97,8 @@ class Diagnosis:
     @property
     def finding(self) -> Finding:
         """The verdict, which claims no more than the steps that were done allow."""
-        searched = not {SINGLES, PAIRS} & self.unfinished.keys()
-        return verdict.as_far_as_done(self.decided, searched, HELD_OUT not in self.unfinished)
+        searched = not {"single effects", "pairs"} & self.unfinished.keys()
+        return verdict.as_far_as_done(self.decided, searched, "held-out tests" not in self.unfinished)
 
     @property
     def extended(self) -> Fit:
@@ -122,35 +118,29 @@ class Course:
         self, measurement: Measurement, explained: Explained, steps: Sequence[str], reached: Reached
     ) -> None:
         self.explained, self._reached = explained, reached
-        thresholds = verdict.thresholds_for(explained.search.data)
+        self.predict = Predictor(explained.search.each)
+        data, base = cast("Data", explained.search.data), explained.base
+        thresholds = verdict.thresholds_for(data)
+        decided = verdict.decide(base, [], thresholds)
         unfinished = dict.fromkeys(steps, NOT_REACHED)
-        decided = verdict.decide(explained.base, [], thresholds)
-        data = cast("Data", explained.search.data)
-        base = explained.base
         self.found = Diagnosis(measurement, data, base, decided, thresholds, unfinished=unfinished)
-        self._take(explained)
+        self.found = self.explained_by(explained)
         reached(self.found)
 
-    def search(self, step: str, function: Callable[[Explained], Explained]) -> None:
-        """A step of the search; explanations that it had finished are kept if it fails."""
+    @property
+    def search(self) -> Search:
+        return self.explained.search
 
-        def searched() -> Diagnosis:
-            self._take(function(self.explained))
-            return self.found
-
-        self.step(step, searched)
-
-    def step(self, step: str, function: Callable[[], Diagnosis]) -> None:
-        """A step, which returns what is known after it; one that fails leaves its place empty."""
-        search = self.explained.search
-        search.progress(step)
+    def take(self, step: str, function: Callable[["Course"], Diagnosis]) -> None:
+        """Take a step, which returns what is known after it; one that fails leaves its place empty."""
+        self.search.progress(step)
         unfinished = dict(self.found.unfinished)
         try:
-            self.found = function()
+            self.found = function(self)
             del unfinished[step]
         except Exception as error:  # no step may take the results of the others with it
             log.debug(traceback.format_exc())
-            search.progress(f"{step}: failed ({_described(error)}); the diagnosis goes on without")
+            self.search.progress(f"{step}: failed ({_described(error)}); the diagnosis goes on without")
             self._take_finished()
             unfinished[step] = _described(error)
         self.found = replace(self.found, unfinished=unfinished)
@@ -167,17 +157,16 @@ class Course:
 
     def _take_finished(self) -> None:
         """Take over what a stage of the search has fitted before it was cut off."""
-        search = self.explained.search
-        finished = [each for each in search.finished if each.fit.model.data is search.data]
+        finished = [each for each in self.search.finished if each.fit.model.data is self.search.data]
         if finished:
             known = best_of_each([*finished, *self.explained.explanations], penalised)
-            self._take(self.explained._replace(explanations=known))
+            self.found = self.explained_by(self.explained._replace(explanations=known))
 
-    def _take(self, explained: Explained) -> None:
-        """Decide on the explanations of a search, and rate them where their fits ended."""
+    def explained_by(self, explained: Explained) -> Diagnosis:
+        """The diagnosis by the explanations of a search, rated where their fits ended."""
         search, base, explanations, _ = self.explained = explained
         search.finished.clear()
-        self.found = replace(
+        return replace(
             self.found,
             data=cast("Data", search.data),
             base=base,
@@ -236,57 +225,49 @@ def diagnose(
     """
     effects = _candidates(effects, measurement, progress)
     explained = base_model(Search.of(data_of(measurement), effects, threads, progress))
-    course = Course(measurement, explained, (*STEPS, *((CALIBRATION,) if calibrated else ())), reached)
+    steps = {name: step for name, step in STEPS.items() if calibrated or step is not _calibrated}
+    course = Course(measurement, explained, tuple(steps), reached)
     try:
         with work.limited(time_used):
-            _all_steps(course, effects, calibrated)
+            for name, step in steps.items():
+                course.take(name, step)
     except KeyboardInterrupt as interrupt:
         return course.end(interrupt)
     return course.found
 
 
-def _all_steps(course: Course, effects: Sequence[str], calibrated: bool) -> None:
-    """All steps after the fit of the base model, in their order."""
-    course.search(SINGLES, single_effects)
-    course.search(REFINED, refined)
-    course.search(PAIRS, further_explained)
-    search = course.explained.search
-    predict = Predictor(search.each)
+def _calibrated(course: Course) -> Diagnosis:
+    """The diagnosis with thresholds from simulations of its tests, which are not part of the budget."""
+    found, search = course.found, course.search
+    effects, best = (*search.effects, *search.undetected), found.decided.best
+    result = work.uncounted(
+        lambda: calibrate(search, found.base, best, lambda sample: explain(sample)[1:3], effects)
+    ).result
+    thresholds = verdict.thresholds_for(search.data, result.thresholds)
+    decided = verdict.decide(found.base, found.explanations, thresholds)
+    return replace(found, decided=decided, thresholds=thresholds, calibration=result.as_dict())
 
-    def intervals() -> Diagnosis:
-        found = course.found
-        known = list(found.explanations)
-        finding, known = refit_cause(search, found.base, found.decided, known, found.thresholds)
-        return replace(found, decided=finding, explanations=tuple(known))
 
-    def held_out() -> Diagnosis:
-        finding, gain = on_held_out_tests(search, course.found.base, course.found.decided, predict)
-        return replace(course.found, decided=finding, gain=gain)
+def _with_intervals(course: Course) -> Diagnosis:
+    found = course.found
+    known = list(found.explanations)
+    decided, known = refit_cause(course.search, found.base, found.decided, known, found.thresholds)
+    return replace(found, decided=decided, explanations=tuple(known))
 
-    def rated() -> Diagnosis:
-        found = course.found
-        levels = ladder(search, rough_ladder(search, found.base, found.explanations), predict)
-        found = replace(found, ladder=levels, decided=verdict.by_accuracy(found.decided, levels))
-        return (
-            found if found.decided == course.found.decided else _with_leading_effect(search, found, predict)
-        )
 
-    def scored() -> Diagnosis:
-        found = score_test.scores(search, course.found.base.fit, course.explained.scans)
-        return replace(course.found, scores=tuple(found))
+def _held_out(course: Course) -> Diagnosis:
+    found = course.found
+    decided, gain = on_held_out_tests(course.search, found.base, found.decided, course.predict)
+    return replace(found, decided=decided, gain=gain)
 
-    def next_test() -> Diagnosis:
-        found = course.found
-        fits = _undecided(found.finding, found.explanations, found.thresholds)
-        return replace(found, next_test=recommend(fits))
 
-    if calibrated:
-        course.step(CALIBRATION, lambda: _calibrated(course, effects))
-    course.step(INTERVALS, intervals)
-    course.step(HELD_OUT, held_out)
-    course.step(ACCURACY, rated)
-    course.step(SCORES, scored)
-    course.step(NEXT, next_test)
+def _rated(course: Course) -> Diagnosis:
+    """The diagnosis with the refined ladder, and with the effect that is by far the most accurate, if any."""
+    found, search = course.found, course.search
+    levels = ladder(search, rough_ladder(search, found.base, found.explanations), course.predict)
+    found, before = replace(found, ladder=levels), found.decided
+    found = replace(found, decided=verdict.by_accuracy(before, levels))
+    return found if found.decided is before else _with_leading_effect(search, found, course.predict)
 
 
 def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
@@ -304,22 +285,19 @@ def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -
     others = [each for each in found.explanations if each.effects != best.effects]
     gain = cross_validate(found.base.fit, best.fit, predict)
     decided = replace(found.decided, best=best)
-    return replace(
-        found, decided=decided, explanations=tuple(best_of_each([best, *others], penalised)), gain=gain
-    )
+    known = tuple(best_of_each([best, *others], penalised))
+    return replace(found, decided=decided, explanations=known, gain=gain)
 
 
-def _calibrated(course: Course, effects: Sequence[str]) -> Diagnosis:
-    """The diagnosis with thresholds from simulations of its tests, which are not part of the budget."""
-    found, search = course.found, course.explained.search
-    result = work.uncounted(
-        lambda: calibrate(
-            search, found.base, found.decided.best, lambda sample: explain(sample)[1:3], effects
-        )
-    ).result
-    thresholds = verdict.thresholds_for(search.data, result.thresholds)
-    decided = verdict.decide(found.base, found.explanations, thresholds)
-    return replace(found, decided=decided, thresholds=thresholds, calibration=result.as_dict())
+def _scored(course: Course) -> Diagnosis:
+    scores = score_test.scores(course.search, course.found.base.fit, course.explained.scans)
+    return replace(course.found, scores=tuple(scores))
+
+
+def _with_next_test(course: Course) -> Diagnosis:
+    found = course.found
+    fits = _undecided(found.finding, found.explanations, found.thresholds)
+    return replace(found, next_test=recommend(fits))
 
 
 def data_of(measurement: Measurement) -> Data:
@@ -478,3 +456,17 @@ def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds
     adequate = finding.alternatives
     closest = adequate if len(adequate) > 1 else verdict.ranked(explanations, thresholds.gap)
     return [each.fit for each in closest[:COMPARED]]
+
+
+# Steps of a diagnosis after the fit of the base model, in their order; any of them may fail or be cut off.
+STEPS: dict[str, Callable[[Course], Diagnosis]] = {
+    "single effects": lambda course: course.explained_by(single_effects(course.explained)),
+    "refinement of single effects": lambda course: course.explained_by(refined(course.explained)),
+    "pairs": lambda course: course.explained_by(further_explained(course.explained)),
+    "calibration": _calibrated,
+    "intervals": _with_intervals,
+    "held-out tests": _held_out,
+    "accuracy": _rated,
+    "scores": _scored,
+    "next test": _with_next_test,
+}

@@ -365,19 +365,23 @@ def as_far_as_done(finding: Finding, searched: bool, confirmed: bool) -> Finding
 def by_accuracy(finding: Finding, levels: "Sequence[Level]") -> Finding:
     """The finding where no explanation reaches the noise, but one effect is by far the most accurate.
 
-    It must be more accurate than the base model and every other effect by the factor CLEAR, no less accurate
-    than pairs without it, and beat the base model on held-out tests by that factor as well.
+    It must be more accurate than the base model and every other effect by the factor CLEAR, and beat the base
+    model on held-out tests by that factor as well. No pair without it may be more accurate, and none with it
+    by that factor.
     """
     base, *higher = levels
     if finding.verdict != NONE or not higher:
         return finding
     single, size = higher[0].best, higher[0].best.accuracy
     next_best = min((each.accuracy for each in higher[0].rivals), default=inf)
-    without_it = [each for level in higher for each in level.rated if single.effects[0] not in each.effects]
+    pairs = [each for level in higher[1:] for each in level.rated]
     # A base model that has no response predicts nothing.
     predicted, before = (inf if each.held_out is None else each.held_out for each in (single, base.best))
     leads = CLEAR * size <= min(base.best.accuracy, next_best, CLEAR * MOST_LEFT)
-    leads = leads and all(size <= each.accuracy for each in without_it)
+    without = [
+        each.accuracy if single.effects[0] not in each.effects else CLEAR * each.accuracy for each in pairs
+    ]
+    leads = leads and size <= min(without, default=inf)
     # One that reaches the noise over all tests was refused for what it leaves in some of them.
     if not (leads and size > 0.0 and predicted < inf and CLEAR * predicted <= before):
         return finding

@@ -11,9 +11,12 @@ from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.jacobian import accurate_jacobian
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance
 from wedgesweep.diagnose.sampled_data import SampledData
 
+# Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
+PREDICTED = 0.5
+# Largest standard deviation of a parameter, in its scales.
+WIDEST = 10.0
 # A mass sticks if the power of its motion is less than this many times that of its noise.
 MOVES = 10.0
 # Gauss-Newton steps of a test that is looked at closely.
@@ -56,19 +59,26 @@ class _Prediction(NamedTuple):
     moves: np.ndarray
 
 
+class Offer(NamedTuple):
+    """The tests of a design, with distances (pairs, A, B) of every two of the fits that predict them."""
+
+    design: Design
+    fits: Sequence[Fit]
+    distances: np.ndarray
+
+    def adapted(self, test: int) -> np.ndarray:
+        """Distances (pairs,) in a test, by its index, with the explanations fitted to one another."""
+        own = self.design.data.subset(np.array([test]))
+        return np.array([_adapted(own, *pair) for pair in combinations(self.fits, 2)])
+
+
 def offered(design: Design, fits: Sequence[Fit]) -> Offer:
     """The tests of a design, with the distances of the explanations that predict them."""
     predicted = [(fit, _predicted(fit, design.data)) for fit in fits]
     predicted = [each for each in predicted if each[1].evaluation.found_tests.mean() >= PREDICTED]
     pairs = combinations([each for _, each in predicted], 2)
     distances = [_distances(*pair).reshape(design.shape) for pair in pairs]
-    kept = [fit for fit, _ in predicted]
-
-    def adapted(test: int) -> np.ndarray:
-        own = design.data.subset(np.array([test]))
-        return np.array([_adapted(own, *pair) for pair in combinations(kept, 2)])
-
-    return Offer(design.kind, design.motion, kept, np.array(distances), design.numbers, adapted)
+    return Offer(design, [fit for fit, _ in predicted], np.array(distances))
 
 
 def _predicted(fit: Fit, data: FitData, moved: _Moved | None = None) -> _Prediction:
@@ -143,3 +153,23 @@ def _distances(one: _Prediction, other: _Prediction) -> np.ndarray:
     return np.array(
         [least_distance(*each) if ok else 0.0 for *each, ok in zip(gap, columns, both, strict=True)]
     )
+
+
+def covariance_root(fit: Fit) -> np.ndarray:
+    """Root (k + u, k + u) of the covariance of a fit, in which no parameter is wider than its range."""
+    std = np.sqrt(np.diag(fit.covariance))
+    share = np.minimum(1.0, WIDEST * fit.model.scale / np.maximum(std, 1e-300))
+    values, vectors = np.linalg.eigh(fit.covariance * np.outer(share, share))
+    return vectors * np.sqrt(np.maximum(values, 0.0))
+
+
+def least_distance(gap: np.ndarray, columns: np.ndarray) -> float:
+    """Squared distance of two predictions when their parameters change so that it is least.
+
+    The squared changes of parameters, in standard deviations, are part of it. ``gap`` (m,): whitened
+    difference of the predictions; ``columns`` (m, j): its changes by a standard deviation of each parameter.
+    """
+    matrix = np.concatenate([columns, np.eye(columns.shape[1])])
+    aim = np.concatenate([gap, np.zeros(columns.shape[1])])
+    change = np.linalg.lstsq(matrix, aim, rcond=None)[0]
+    return float(((aim - matrix @ change) ** 2).sum())

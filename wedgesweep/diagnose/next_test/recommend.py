@@ -6,7 +6,7 @@ from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.designs import Design, offered
+from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.loops import loops
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest, recommended
 from wedgesweep.diagnose.next_test.sensors import Sensors, sensors
@@ -66,7 +66,7 @@ def _worth(test: NextTest) -> tuple[int, float]:
 
 def _of_kind(kind: str, fits: Sequence[Fit], parts: Sequence[FitData]) -> NextTest | None:
     design = DESIGNS[kind](fits, parts)
-    return None if design is None else recommended(offered(design, fits), fits[0])
+    return None if design is None else recommended(design, fits)
 
 
 def _steady(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design:
