@@ -150,6 +150,15 @@ def test_the_command_ends_with_its_own_exit_code(tmp_path):
     assert diagnosis_result.read(tmp_path / "found").document["ended"]["by"] == "time limit"
 
 
+def test_a_report_that_fails_does_not_take_the_result_with_it(failed, tmp_path, monkeypatch):
+    monkeypatch.setattr(api, "diagnose_measurement", lambda *given, **more: failed[0])
+    monkeypatch.setattr(report, "write", raising(ZeroDivisionError("by nothing")))
+    told = invoke("diagnose", BENCH, "-o", tmp_path / "found")
+    assert "no report (ZeroDivisionError: by nothing)" in told
+    assert told.endswith(f"wrote {tmp_path / 'found'}\n")
+    assert diagnosis_result.read(tmp_path / "found").document == failed[0].document
+
+
 @pytest.mark.parametrize("given", ["60", "-1s", "0s", "1 day", "nans", "infs", "s"])
 def test_a_time_limit_has_a_unit(given):
     assert "is not a time such as 60s" in invoke("diagnose", BENCH, "--time-limit", given, code=2)

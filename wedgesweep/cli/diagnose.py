@@ -98,9 +98,9 @@ def diagnose(
     if ended is not None:
         failure.answer()
         log.info(f"ended early ({ended['by']}); the result so far is written")
-    results.complete(found, processors if options["reported"] else 0)
+    reported = results.complete(found, processors if options["reported"] else 0)
     click.echo(report.sentence(directory))
-    click.echo(f"wrote {directory / report.PAGE if options['reported'] else directory}")
+    click.echo(f"wrote {directory / report.PAGE if reported else directory}")
     if ended is not None:
         ctx.exit(128 + ended["signal"] if ended["signal"] else failure.OUT_OF_TIME)
 
@@ -135,13 +135,22 @@ class Results:
             self._store(found)
         elif not self._begun:
             error, size = phrases.error_of(found, "base"), found.document["ladder"][0]["accuracy"]
-            log.info(f"base model: error {error} times the noise, {phrases.accuracy(size)} of the response")
+            share = f", {phrases.accuracy(size)} of the response" if size else ""
+            log.info(f"base model: error {error} times the noise{share}")
 
-    def complete(self, found: "DiagnosisResult", n_jobs: int) -> None:
-        """Write the last result, then with report and figures if any ``n_jobs`` processes draw them."""
+    def complete(self, found: "DiagnosisResult", n_jobs: int) -> bool:
+        """Write the last result, then its report and figures if any ``n_jobs`` processes draw them.
+
+        Returns whether there is a report.
+        """
         self._store(found)
         if n_jobs:
-            self._store(found, n_jobs)
+            try:
+                self._store(found, n_jobs)
+            except Exception as error:  # the result is there all the same
+                log.warning(f"no report ({type(error).__name__}: {error}); 'wedgesweep report' tries again")
+                return False
+        return n_jobs > 0
 
     def _store(self, found: "DiagnosisResult", n_jobs: int = 0) -> None:
         """Write a result beside its directory, and replace an earlier one only when all is written."""

@@ -24,7 +24,7 @@ def unfinished(result: DiagnosisResult) -> str:
         steps.setdefault(each["reason"], []).append(each["step"])
     for each in result.document.get("failed", []):
         steps.setdefault(each["reason"], []).append(f"fit of {each['effect']}")
-    return "".join(f"; without a result: {phrases.listing(names)} ({why})" for why, names in steps.items())
+    return "".join(f"; unfinished: {phrases.listing(names)} ({why})" for why, names in steps.items())
 
 
 def _never_steady(result: DiagnosisResult) -> str:
