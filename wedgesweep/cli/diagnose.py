@@ -94,7 +94,7 @@ def diagnose(
         )
     finally:
         steps.stop()
-    ended = found.document["ended"]
+    ended = found.document.get("ended")
     if ended is not None:
         failure.answer()
         log.info(f"ended early ({ended['by']}); the result so far is written")

@@ -264,7 +264,7 @@ def _held_out(course: Course) -> Diagnosis:
 def _rated(course: Course) -> Diagnosis:
     """The diagnosis with the refined ladder, and with the effect that is by far the most accurate, if any."""
     found, search = course.found, course.search
-    levels = ladder(search, rough_ladder(search, found.base, found.explanations), course.predict)
+    levels = ladder(search, found.base, found.explanations, course.predict)
     found, before = replace(found, ladder=levels), found.decided
     found = replace(found, decided=verdict.by_accuracy(before, levels))
     return found if found.decided is before else _with_leading_effect(search, found, course.predict)

@@ -68,11 +68,14 @@ def rough_ladder(search: Search, base: Explanation, explanations: Sequence[Expla
     return tuple(Level(tuple(each for each in rated if len(each.effects) == size)) for size in sizes)
 
 
-def ladder(search: Search, rough: Sequence[Level], predict: Predictor) -> tuple[Level, ...]:
-    """The ladder with its leading explanations refined.
+def ladder(
+    search: Search, base: Explanation, explanations: Sequence[Explanation], predict: Predictor
+) -> tuple[Level, ...]:
+    """Rate the base model and every eligible explanation, and refine the leading ones.
 
     The best one of each level also predicts tests that are left out of its fit.
     """
+    rough = rough_ladder(search, base, explanations)
     return tuple(_refined_level(search, level.rated, predict) for level in rough)
 
 
