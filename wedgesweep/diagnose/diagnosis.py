@@ -3,6 +3,7 @@
 import logging
 import traceback
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import cast
 
@@ -125,7 +126,6 @@ class Course:
         unfinished = dict.fromkeys(steps, NOT_REACHED)
         self.found = Diagnosis(measurement, data, base, decided, thresholds, unfinished=unfinished)
         self.found = self.explained_by(explained)
-        reached(self.found)
 
     @property
     def search(self) -> Search:
@@ -158,8 +158,10 @@ class Course:
     def _take_finished(self) -> None:
         """Take over what a stage of the search has fitted before it was cut off."""
         finished = [each for each in self.search.finished if each.fit.model.data is self.search.data]
-        if finished:
-            known = best_of_each([*finished, *self.explained.explanations], penalised)
+        if not finished:
+            return
+        known = best_of_each([*finished, *self.explained.explanations], penalised)
+        with suppress(Exception):  # what made the stage fail may fail here as well
             self.found = self.explained_by(self.explained._replace(explanations=known))
 
     def explained_by(self, explained: Explained) -> Diagnosis:
@@ -228,6 +230,7 @@ def diagnose(
     steps = {name: step for name, step in STEPS.items() if calibrated or step is not _calibrated}
     course = Course(measurement, explained, tuple(steps), reached)
     try:
+        reached(course.found)
         with work.limited(time_used):
             for name, step in steps.items():
                 course.take(name, step)
