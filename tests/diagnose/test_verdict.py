@@ -419,6 +419,8 @@ def test_an_uncertain_number_at_its_limit_is_the_cause():
     assert (found.verdict, found.reason, found.best) == ("consistent-with", Reason.AT_LIMIT, best)
     assert found.numbers["standard_deviations"] == pytest.approx(5.0)
     assert on_held_out_tests(found, base, -0.1, [-0.3, 0.1]) is found
+    strong = explained(5000.0, far=("friction_level",))
+    assert verdict_of(strong, best).verdict == "named"
 
 
 QUARTER = {"friction_level": {"scale": 0.75}}

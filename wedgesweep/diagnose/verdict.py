@@ -219,16 +219,22 @@ def _weigh(
     if nearly := _nearly_sufficient_component(order, best):
         larger = {"model_error": LARGER * best.fit.model.data.model_error}
         return Finding(CONSISTENT, Reason.PAIR_LEAVES_LESS, nearly, (best, *alternatives), larger)
-    if best.effects[0] in base.fit.implausible and len(best.effects) == 1 and not best.fit.implausible:
-        off = {"effect": best.effects[0], "standard_deviations": deviations(best)[best.effects[0]]}
-        return Finding(CONSISTENT, Reason.AT_LIMIT, best, (), off)
     if base.fit.excess < thresholds.strong:
-        return Finding(CONSISTENT, Reason.WEAK_EXCESS, best, (), {"excess": base.fit.excess})
+        return _weak(base, best)
     if p < ADEQUATE:
         return Finding(CONSISTENT, against, best, (), numbers)
     if alternatives:
         return Finding(CONSISTENT, Reason.OTHERS_ADEQUATE, best, alternatives)
     return Finding(NAMED, Reason.ALONE, best)
+
+
+def _weak(base: Explanation, best: Explanation) -> Finding:
+    """The finding on a small excess, which a base model may have made small by a number far from stated."""
+    (effect, *others), fit = best.effects, best.fit
+    if effect in base.fit.implausible and not (others or fit.implausible):
+        off = {"effect": effect, "standard_deviations": deviations(best)[effect]}
+        return Finding(CONSISTENT, Reason.AT_LIMIT, best, (), off)
+    return Finding(CONSISTENT, Reason.WEAK_EXCESS, best, (), {"excess": base.fit.excess})
 
 
 def _with_numbers_as_stated(base: Explanation, order: Sequence[Explanation]) -> Finding:

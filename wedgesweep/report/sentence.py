@@ -88,11 +88,8 @@ def _consistent(result: DiagnosisResult) -> str:
         stated = f"{off} standard deviations from what is stated"
         without = "with it as stated the model does not fit"
         return f"The tests are consistent with {_causes(result)}, {stated}; {without}."
-    weakness = f" ({why})" if (why := _weakness(result)) else ""
-    causes = _causes(result)
-    return (
-        f"The tests are consistent with {causes}, but the evidence is weak{weakness}; {_improvement(result)}."
-    )
+    weak = f"the evidence is weak ({why})" if (why := _reservation(result)) else "the evidence is weak"
+    return f"The tests are consistent with {_causes(result)}, but {weak}; {_improvement(result)}."
 
 
 def _most_accurate(result: DiagnosisResult) -> str:
@@ -106,29 +103,20 @@ def _most_accurate(result: DiagnosisResult) -> str:
     )
 
 
-def _weakness(result: DiagnosisResult) -> str:
-    """Why the evidence for a cause is weak."""
-    why = result.document.get("reason", {})
+def _reservation(result: DiagnosisResult) -> str:
+    """What speaks against an explanation, by the reason of the verdict."""
+    why, rivals = result.document.get("reason", {}), result.document["rivals"]
     match result.reason:
         case Reason.PAIR_LEAVES_LESS:
-            pair, larger = phrases.combination(result.document["rivals"][0]["effects"]), why["model_error"]
-            alone = f"by itself it explains the tests only under a model error of {phrases.accuracy(larger)}"
-            return f"{alone}; {pair} leave less"
+            pair, larger = phrases.combination(rivals[0]["effects"]), phrases.accuracy(why["model_error"])
+            return f"by itself it explains the tests only under a model error of {larger}; {pair} leave less"
         case Reason.OTHERS_ADEQUATE:
-            rivals = [phrases.combination(each["effects"]) for each in result.document["rivals"]]
-            return f"{phrases.listing(rivals)} would also leave only noise{_next_test(result, 'them')}"
+            names = phrases.listing([phrases.combination(each["effects"]) for each in rivals])
+            return f"{names} would also leave only noise{_next_test(result, 'them')}"
         case Reason.WEAK_EXCESS:
             return f"the misfit exceeds noise by only {formatting.number(why['excess'])}"
         case Reason.UNCHECKED:
             return "not all rivals and held-out tests were tried"
-        case _:
-            return _against(result)
-
-
-def _against(result: DiagnosisResult) -> str:
-    """The strongest evidence against an explanation."""
-    why = result.document.get("reason", {})
-    match result.reason:
         case Reason.VARIES:
             constant = phrases.p_value(why["p"])
             return f"{why['parameter']} would have to differ from test to test, {constant} for one value"
@@ -136,6 +124,16 @@ def _against(result: DiagnosisResult) -> str:
             return f"it leaves more than noise in the tests that show it, {phrases.p_value(why['p'])}"
         case Reason.UNCONFIRMED:
             return "held-out tests do not confirm it"
+        case Reason.CONFOUNDED:
+            return "an error in a model parameter that is no candidate could look like these two"
+        case Reason.NEARLY_TOLERABLE:
+            allowed = result.document["method"].get("model_error")
+            return "a model error could have its shape" if allowed else "it hardly fits better"
+        case Reason.COMPONENT_SUFFICES:
+            half = phrases.combination(why["effects"])
+            return f"{half} alone leaves hardly more, with parameters that differ from test to test"
+        case Reason.FEW_TESTS:
+            return "so few tests cannot confirm it"
         case _:
             return ""
 
@@ -161,12 +159,9 @@ def _insufficient(result: DiagnosisResult) -> str:
             share = formatting.short(result.document["reason"]["power_over_noise"], 2)
             return f"{tests.capitalize()} hold hardly more than noise: {share} times its power."
         case Reason.UNCHECKED:
-            return f"{_wrong(result)}, and not everything was tried that may explain it{_so_far(result)}."
+            so_far = "".join(f"; so far, {clause}" for clause in ladder.clauses(result))
+            return f"{_wrong(result)}, and not everything was tried that may explain it{so_far}."
     return f"{_wrong(result)}, but {tests} cannot show what{_adequate(result)}{_next_test(result)}."
-
-
-def _so_far(result: DiagnosisResult) -> str:
-    return "".join(f"; so far, {clause}" for clause in ladder.clauses(result))
 
 
 def _wrong(result: DiagnosisResult) -> str:
@@ -183,27 +178,10 @@ def _adequate(result: DiagnosisResult) -> str:
         case []:
             return ""
         case [only]:
-            explanation = phrases.combination(only["effects"])
-            return f": {explanation} would leave only noise, but {_doubt(result)}"
+            but = f", but {doubt}" if (doubt := _reservation(result)) else ""
+            return f": {phrases.combination(only['effects'])} would leave only noise{but}"
         case many:
             return f": {len(many)} explanations would each leave only noise"
-
-
-def _doubt(result: DiagnosisResult) -> str:
-    """Why the only adequate explanation is not named."""
-    match result.reason:
-        case Reason.CONFOUNDED:
-            return "an error in a model parameter that is no candidate could look like these two"
-        case Reason.NEARLY_TOLERABLE:
-            allowed = result.document["method"].get("model_error")
-            return "a model error could have its shape" if allowed else "it hardly fits better"
-        case Reason.COMPONENT_SUFFICES:
-            half = phrases.combination(result.document["reason"]["effects"])
-            return f"{half} alone leaves hardly more, with parameters that differ from test to test"
-        case Reason.UNCONFIRMED:
-            return "held-out tests do not confirm it"
-        case _:
-            return "so few tests cannot confirm it"
 
 
 def _none(result: DiagnosisResult) -> str:
@@ -226,7 +204,7 @@ def _unexplained(result: DiagnosisResult) -> str:
 def _attempt(result: DiagnosisResult) -> str:
     if not result.added:
         return ""
-    against = f" ({doubt})" if (doubt := _against(result)) else ""
+    against = f" ({doubt})" if (doubt := _reservation(result)) else ""
     left = f"still leaves an error of {_error(result, 'extended')}"
     return f"; the best attempt, {phrases.combination(result.added)}, {left}{against}"
 
