@@ -97,8 +97,9 @@ def diagnose(
     ended = found.document.get("ended")
     if ended is not None:
         failure.answer()
-        log.info(f"ended early ({ended['by']}); the result so far is written")
     reported = results.complete(found, processors if options["reported"] else 0)
+    if ended is not None:
+        log.info(f"ended early ({ended['by']}); this is the result so far")
     click.echo(report.sentence(directory))
     click.echo(f"wrote {directory / report.PAGE if reported else directory}")
     if ended is not None:
