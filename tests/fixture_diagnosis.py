@@ -40,6 +40,14 @@ DETECTABLE = {
     "fixture_resonance": {"frequency_hz": 310.0},
 }
 NOT_TESTABLE = ["cross_slip", "ageing"]
+REASONS = {
+    "nothing-missing": {"code": "only-noise"},
+    "named": {"code": "alone"},
+    "consistent-with": {"code": "weak-excess", "excess": 300.0},
+    "tied": {"code": "equally-good"},
+    "data-insufficient": {"code": "few-tests"},
+    "none-of-mine": {"code": "unexplained"},
+}
 # Per verdict: share of the missing cut that the extended model has, its effects, rivals, tests.
 CASES = {
     "nothing-missing": (1.0, [], [], 12),
@@ -169,6 +177,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
     held_out = _held_out(data) if attempt and data.sizes["test"] > 2 else []
     return {
         "verdict": verdict,
+        "reason": REASONS[verdict],
         "causes": [_cause(name, numbers) for name in causes],
         "rivals": rivals,
         "misfit": {

@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from wedgesweep import config as configs
@@ -210,6 +212,8 @@ def diagnose_measurement(
     n_jobs: int | None = None,
     progress: Callable[[str], None] | None = None,
     calibrate: bool = False,
+    time_limit_s: float = inf,
+    reached: Callable[[DiagnosisResult], None] | None = None,
 ) -> DiagnosisResult:
     """Find what the base model of a measurement misses, or say why that cannot be found.
 
@@ -225,10 +229,16 @@ def diagnose_measurement(
         Called with a short text at each step.
     calibrate : bool
         Take the thresholds of the verdict from simulations of these tests (minutes), not the general ones.
+    time_limit_s : float, optional
+        The fits end after this time (s), and the result is what was found by then: ``document["unfinished"]``
+        lists the steps without a result. The base model is always fitted.
+    reached : callable, optional
+        Called with the result so far after the fit of the base model and after each later step.
 
     Returns
     -------
     DiagnosisResult
+        After an interrupt or the time limit, what was found by then.
         ``verdict``, ``causes``, the whole content of diagnosis.json (``document``) and the data behind it
         (``data``, SI units). ``write(directory)`` stores them as ``wedgesweep diagnose`` does.
 
@@ -246,9 +256,17 @@ def diagnose_measurement(
     from wedgesweep.diagnose import diagnosis
     from wedgesweep.diagnose.result import result_of
 
-    chosen = _candidates(effects)
-    report = progress or (lambda step: None)
-    return result_of(diagnosis.diagnose(measurement, chosen, count_jobs(n_jobs), report, calibrate))
+    began = perf_counter()
+    found = diagnosis.diagnose(
+        measurement,
+        _candidates(effects),
+        count_jobs(n_jobs),
+        progress or (lambda step: None),
+        calibrate,
+        reached=(lambda found: reached(result_of(found))) if reached else (lambda found: None),
+        time_used=lambda: (perf_counter() - began) / time_limit_s,
+    )
+    return result_of(found)
 
 
 def _candidates(effects: Sequence[str] | None) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,36 @@ JSON, DATASET, EXTENDED = "diagnosis.json", "diagnosis.nc", "extended.toml"
 # Dataset of the tests of one kind among several.
 PARTS = {kind: f"diagnosis-{kind}.nc" for kind in ("steady", "transient", "loop")}
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")
+
+
+class Reason(StrEnum):
+    """Why a diagnosis has its verdict; diagnosis.json has the numbers beside it."""
+
+    ONLY_NOISE = "the base model leaves noise only"
+    ALONE = "no other explanation leaves noise only"
+    EQUALLY_GOOD = "other explanations fit as well"
+    WEAK_EXCESS = "small excess over noise"
+    LEAVES_MORE = "more than noise in the tests that show the cause"
+    VARIES = "a parameter that differs from test to test"
+    OTHERS_ADEQUATE = "other explanations leave noise only"
+    PAIR_LEAVES_LESS = "a pair leaves less"
+    UNCONFIRMED = "not confirmed on held-out tests"
+    UNCHECKED = "ended before all rivals and held-out tests were tried"
+    AT_LIMIT = "an uncertain number far from what is stated"
+    MORE_ACCURATE = "by far the most accurate explanation, though above the noise"
+    FEW_TESTS = "too few tests"
+    CONFOUNDED = "two effects that another parameter may imitate"
+    COMPONENT_SUFFICES = "one effect of the pair nearly suffices"
+    NEARLY_TOLERABLE = "hardly better than the base model"
+    NO_SIGNAL = "noise as large as the response"
+    UNEXPLAINED = "no explanation leaves noise only"
+
+    @property
+    def code(self) -> str:
+        """The reason in diagnosis.json."""
+        return self.name.lower().replace("_", "-")
+
+
 # Status of candidates whose fit gave no meaningful parameters.
 FAILED, NO_BETTER = "failed", "no better"
 KEYS = (
@@ -68,6 +99,12 @@ class DiagnosisResult:
     @property
     def verdict(self) -> str:
         return self.document["verdict"]
+
+    @property
+    def reason(self) -> Reason | None:
+        """Why it is this verdict; None in results of versions that did not store it."""
+        stored = self.document.get("reason", {}).get("code")
+        return next((each for each in Reason if each.code == stored), None)
 
     @property
     def causes(self) -> list[dict[str, Any]]:

@@ -10,8 +10,10 @@ import numpy as np
 from tests.scaling import BENCH_SIZE
 from wedgesweep import config
 from wedgesweep.diagnose.next_test.offer import recommended
+from wedgesweep.diagnose.next_test.sensors import sensors
+from wedgesweep.diagnose.next_test.steady import sines
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
-from wedgesweep.diagnose.steady import next_test, simulation
+from wedgesweep.diagnose.steady import simulation
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.steady.noise_psd import SmoothPSD
 from wedgesweep.diagnose.steady.spectra import Spectrum
@@ -103,6 +105,12 @@ def base_of(data):
     return base_fit(Search.of(data, ())).base.fit
 
 
+def steady_tests(fits):
+    """Steady tests to choose from for fits to steady tests."""
+    data = fits[0].model.data
+    return sines(fits[0], sensors(data), data)
+
+
 def steady_test(fits):
     """The steady test that separates most fits to steady tests; None if there is none."""
-    return recommended(next_test.offer(fits, next_test.rig_of(fits[0].model.data)), fits[0])
+    return recommended(steady_tests(fits), fits)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose import test_loops, test_transients
-from tests.diagnose.synthetic import drawn
+from tests.diagnose.synthetic import drawn, steady_test
 from tests.diagnose.test_loops import CELLS, RATE, diagnosed
 from wedgesweep import toml
 from wedgesweep.config import parse
@@ -17,12 +17,11 @@ from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.designs import offered
-from wedgesweep.diagnose.next_test.offer import SEPARATED, recommended
+from wedgesweep.diagnose.next_test.offer import SEPARATED
 from wedgesweep.diagnose.next_test.recommend import recommend
 from wedgesweep.diagnose.next_test.sensors import sensors
 from wedgesweep.diagnose.next_test.transients import releases, sweeps
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.steady import next_test
 from wedgesweep.effects import merge
 from wedgesweep.measured import read
 from wedgesweep.solvers import imposed_motion
@@ -124,7 +123,7 @@ def test_a_steady_measurement_may_be_told_another_kind():
     model = parse(SPRING_AND_MASS.replace("normal_force_N = 1.0", "normal_force_N = 0.05"), "model")
     data = replace(drawn(), model=model, law="coulomb", uncertain=FRICTION)
     fits = [explained(data, {name: each}, std=np.array([1e-3, 0.3])) for name, each in RIVALS.items()]
-    steady = recommended(next_test.offer(fits, next_test.rig_of(data)), fits[0])
+    steady = steady_test(fits)
     assert steady is None or steady.distance < SEPARATED
     found = recommend(fits)
     assert found.kind == "loop"

@@ -5,14 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.diagnose.synthetic import LAG, LEANING, drawn, searched, steady_test
+from tests.diagnose.synthetic import LEANING, drawn, searched, steady_test, steady_tests
 from wedgesweep import config
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Fit, Model
+from wedgesweep.diagnose.next_test.designs import offered
 from wedgesweep.diagnose.next_test.offer import SEPARATED, choice
 from wedgesweep.diagnose.next_test.recommend import recommend
-from wedgesweep.diagnose.steady import next_test, simulation
-from wedgesweep.diagnose.steady.next_test import ACCELERATIONS, FREQUENCIES, Conditions, rig_of
+from wedgesweep.diagnose.next_test.steady import ACCELERATIONS, FREQUENCIES
+from wedgesweep.diagnose.steady import simulation
 from wedgesweep.solvers.periodic import at_rest
 
 SHAPE = (ACCELERATIONS.size, FREQUENCIES.size)
@@ -57,9 +58,7 @@ def test_the_next_test_makes_every_suspect_move(suspects):
 
 def test_a_suspect_whose_wedge_locks_is_not_in_the_way(suspects):
     locking = explained("directional_friction", {"asymmetry": 0.4}, 0.01)
-    assert not next_test._predict(
-        locking, Conditions(np.array([60.0]), np.array([1e-3])), rig_of(locking.model.data)
-    ).found.any()
+    assert not any(fit is locking for fit in offered(steady_tests(suspects), [*suspects, locking]).fits)
     assert steady_test([*suspects, locking]) == steady_test(suspects)
     assert steady_test([suspects[0], locking]) is None
 
@@ -94,22 +93,22 @@ def test_what_the_tests_leave_open_only_makes_a_next_test_tell_less():
     data = drawn({"velocity_lag": {"time": 3e-4}}, known=False)
     *_, singles = searched(data, "velocity_lag", "displacement_gain")
     found = [each.fit for each in singles]
-    tests = Conditions(2.0 * np.pi * np.array([6.0, 12.0, 24.0]), 1e-3 * np.array([1.0, 0.2, 0.1]))
-    distances = []
-    for factor in (1.0, 1e30):
-        fits = [replace(fit, covariance=factor * fit.covariance) for fit in found]
-        one, other = (next_test._predict(fit, tests, rig_of(data)) for fit in fits)
-        weight = next_test._weights(rig_of(data), [one, other])
-        distances.append(next_test._distances(one, other, weight))
-        np.testing.assert_allclose(next_test._distances(one, one, weight), 0.0, atol=1e-6)
-    usual, undetermined = distances
-    assert (undetermined > 0.0).all()
-    assert (undetermined < usual).all()
+    usual, undetermined = (
+        offered(
+            steady_tests(found), [replace(fit, covariance=factor * fit.covariance) for fit in found]
+        ).distances
+        for factor in (1.0, 1e30)
+    )
+    assert (usual > 0.0).all()
+    assert (undetermined <= usual).all()
+    assert undetermined.mean() < 0.9 * usual.mean()
 
 
-def test_what_a_model_may_be_wrong_by_separates_no_explanations():
+def test_what_a_model_may_be_wrong_by_separates_no_explanations(suspects):
     """An error of 5 % of the response is far more than what noise of 4 % of a sample leaves in a harmonic."""
-    data = drawn(LAG)
-    exact, wrong = (rig_of(replace(data, model_error=error)).noise for error in (0.0, 0.05))
-    assert wrong == pytest.approx(np.hypot(exact, 0.05 / np.sqrt(data.shape[1])))
-    assert wrong > 5.0 * exact
+    fit = suspects[0]
+    exact, wrong = (replace(fit.model.data, model_error=error) for error in (0.0, 0.05))
+    both = [steady_tests([replace(fit, model=fit.model.on(data))]).data for data in (exact, wrong)]
+    moves = np.abs(both[0].measured[:, 0, 0]) > 0.0
+    assert moves.mean() > 0.5
+    assert (both[1].weight[moves] < both[0].weight[moves] / 5.0).all()

@@ -8,8 +8,10 @@ from scipy.stats import chi2
 
 from wedgesweep.diagnose import diagnosis, verdict
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation
+from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.parameter_constancy import Constancy
 from wedgesweep.diagnose.verdict import Thresholds, decide, on_held_out_tests, p_where_it_shows
+from wedgesweep.diagnosis_result import Reason
 
 DOF, PENALTY, MODEL_ERROR = 700, 12.6, 0.02
 
@@ -26,17 +28,20 @@ def explained(
     error=0.0,
     far=(),
     relaxed=None,
+    power=100.0,
 ):
     """An explanation.
 
     ``values``: numbers of its effects; ``far``: uncertain ones that are far from stated; ``relaxed``: its
-    misfit if model errors are larger than allowed.
+    misfit if model errors are larger than allowed; ``power``: of the response, over that of noise.
     """
     data = SimpleNamespace(
         model=SimpleNamespace(effects={}),
         tests=tests,
         uncertain=uncertain or {},
         dof=np.full(tests, DOF / tests),
+        observations=np.full(tests, DOF / tests),
+        power=np.full(tests, power * DOF / tests),
         model_misfit=np.full(tests, error * DOF / tests),
         model_error=0.0 if relaxed is None else MODEL_ERROR,
         with_model_error=lambda size: SimpleNamespace(
@@ -395,3 +400,97 @@ def test_a_rival_whose_fit_had_not_ended_is_followed_before_the_gap_to_it_counts
     assert early.verdict != "tied"
     found, _ = diagnosis.refit_cause(search, base, early, [first, second], verdict.DEFAULT)
     assert found.verdict == "tied"
+
+
+def test_noise_as_large_as_the_response_is_not_nothing_missing():
+    for power, expected in ((1.9, "data-insufficient"), (2.1, "nothing-missing")):
+        base = explained(705.0, power=power)
+        assert verdict_of(base, explained(704.0, "stribeck")).verdict == expected
+        weak = verdict_of(explained(830.0, power=power), explained(780.0, "stribeck"))
+        unconfirmed = on_held_out_tests(weak, explained(830.0, power=power), 0.5, [-0.3, 1.0])
+        assert unconfirmed.verdict == expected
+
+
+def test_an_uncertain_number_at_its_limit_is_the_cause():
+    """The base model takes it there and fits, so that nothing is gained on held-out tests."""
+    base = explained(745.0, far=("friction_level",))
+    best = explained(705.0, "friction_level", uncertain={"friction_level": 0.05}, values=QUARTER)
+    found = verdict_of(base, best, explained(740.0, "preload", far=("friction_level",)))
+    assert (found.verdict, found.reason, found.best) == ("consistent-with", Reason.AT_LIMIT, best)
+    assert found.numbers["standard_deviations"] == pytest.approx(5.0)
+    assert on_held_out_tests(found, base, -0.1, [-0.3, 0.1]) is found
+    strong = explained(5000.0, far=("friction_level",))
+    assert verdict_of(strong, best).verdict == "named"
+
+
+QUARTER = {"friction_level": {"scale": 0.75}}
+
+
+@pytest.mark.parametrize(("relaxed", "expected"), [(None, "none-of-mine"), (650.0, "consistent-with")])
+def test_a_model_error_that_is_met_is_not_refused_by_a_second_test(relaxed, expected):
+    best = explained(705.0, "stribeck", constant=1e-4, relaxed=relaxed)
+    assert verdict_of(explained(5000.0, relaxed=relaxed), best).verdict == expected
+
+
+def rated(accuracy, *effects, held_out=None):
+    return Rated(explained(5000.0 * accuracy, *effects), accuracy, None, held_out)
+
+
+@pytest.mark.parametrize(
+    ("base", "best", "rival", "pair", "with_it", "expected"),
+    [
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
+        ((np.inf, None), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
+        ((0.62, 0.65), (0.056, 0.06), 0.18, 0.06, 0.03, "consistent-with"),
+        ((0.47, 0.70), (0.004, 0.016), 0.011, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.3), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, None), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.001, "none-of-mine"),
+        ((0.011, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((2.0, 2.0), (0.3, 0.3), 1.0, 0.8, 0.003, "none-of-mine"),
+        ((0.011, 0.02), (0.0, 0.0), 0.0, 0.0, 0.0, "none-of-mine"),
+    ],
+)
+def test_one_effect_that_is_far_more_accurate_than_all_others_is_the_cause(
+    base, best, rival, pair, with_it, expected
+):
+    """Though none reaches the noise; not if a pair does better, or held-out tests disagree."""
+    unexplained = verdict_of(explained(5000.0), explained(1500.0, "ageing"))
+    single = rated(best[0], "ageing", held_out=best[1])
+    levels = (
+        Level((rated(base[0], held_out=base[1]),)),
+        Level((single, rated(rival, "stribeck"))),
+        Level((rated(with_it, "ageing", "preload"), rated(pair, "stribeck", "preload"))),
+    )
+    found = verdict.by_accuracy(unexplained, levels)
+    assert found.verdict == expected
+    if expected == "consistent-with":
+        assert (found.reason, found.cause) == (Reason.MORE_ACCURATE, single.explanation)
+        assert found.numbers["next_best"] == rival
+    named = verdict_of(explained(5000.0), explained(705.0, "stribeck"))
+    assert verdict.by_accuracy(named, levels) is named
+
+
+@pytest.mark.parametrize(
+    ("found", "searched", "confirmed", "expected"),
+    [
+        ("named", True, True, "named"),
+        ("named", False, True, "consistent-with"),
+        ("named", True, False, "consistent-with"),
+        ("none-of-mine", True, False, "none-of-mine"),
+        ("none-of-mine", False, False, "data-insufficient"),
+        ("tied", False, False, "tied"),
+    ],
+)
+def test_a_verdict_claims_no_more_than_was_done(found, searched, confirmed, expected):
+    others = {
+        "named": [explained(705.0, "stribeck")],
+        "none-of-mine": [explained(1500.0, "stribeck")],
+        "tied": [explained(705.0, "stribeck"), explained(709.0, "preload")],
+    }
+    before = verdict_of(explained(5000.0), *others[found])
+    assert before.verdict == found
+    after = verdict.as_far_as_done(before, searched, confirmed)
+    assert (after.verdict, after.best) == (expected, before.best)
+    assert (after.reason is Reason.UNCHECKED) == (expected != found)

@@ -27,6 +27,16 @@ def tolerant(request, tmp_path_factory):
     return CAUSES[request.param], found.document
 
 
+@pytest.mark.parametrize(("name", "reason"), [("ageing-022", "more-accurate"), ("friction-054", "at-limit")])
+def test_the_right_cause_is_told_beside_a_misfit(name, reason):
+    if not (FOLDER / name).is_dir():
+        pytest.skip(f"needs {name}")
+    truth = json.loads((FOLDER / "truth.json").read_text())[name]
+    found = api.diagnose_measurement(api.read_measurement(FOLDER / name / "measured.toml"), n_jobs=2)
+    assert (found.verdict, found.document["reason"]["code"]) == ("consistent-with", reason)
+    assert [each["effect"] for each in found.causes] == truth["truth"]
+
+
 def test_the_cause_is_told_though_no_model_is_right(tolerant):
     cause, document = tolerant
     assert document["verdict"] in ("named", "consistent-with")

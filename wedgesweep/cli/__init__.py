@@ -8,7 +8,7 @@ import click
 from wedgesweep import __version__
 from wedgesweep.cli.case import case
 from wedgesweep.cli.configs import check, init, schema
-from wedgesweep.cli.diagnose import diagnose
+from wedgesweep.cli.diagnose import diagnose, write_report
 from wedgesweep.cli.export import export
 from wedgesweep.cli.failure import Commands
 from wedgesweep.cli.messages import with_verbosity
@@ -20,7 +20,8 @@ from wedgesweep.cli.warm_up import warm_up
 
 EPILOG = """\
 Exit codes: 0 success; 1 some cases failed, or Radau disagrees (run --verify);
-2 bad input; 130 interrupted (129 by SIGHUP, 143 by SIGTERM).
+2 bad input; 3 ended by --time-limit; 130 interrupted (129 by SIGHUP, 143 by
+SIGTERM).
 
 Shell completion: add eval "$(_WEDGESWEEP_COMPLETE=bash_source wedgesweep)" to ~/.bashrc (zsh_source and
 fish_source for the other shells).
@@ -31,7 +32,10 @@ fish_source for the other shells).
     cls=Commands,
     commands=[
         with_verbosity(command)
-        for command in (init, schema, check, run, status, case, plot, export, synthesize, diagnose, warm_up)
+        for command in (
+            *(init, schema, check, run, status, case, plot, export, synthesize),
+            *(diagnose, write_report, warm_up),
+        )
     ],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=EPILOG,

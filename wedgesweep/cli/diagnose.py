@@ -1,16 +1,18 @@
 """diagnose: find what the model of measured data misses, or say why that cannot be found."""
 
 from functools import partial
+from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from wedgesweep.cli import failure
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
-from wedgesweep.cli.measurement import print_warnings
+from wedgesweep.cli.measurement import print_noise, print_warnings
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import N_JOBS, GivenPath, require_kind, require_place_for
+from wedgesweep.cli.options import N_JOBS, Duration, GivenPath, require_kind, require_place_for
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.files import beside
 from wedgesweep.kinds import MEASURED
@@ -49,18 +51,22 @@ OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrog
     help="Whether to write report.html and the figures (default) besides the data.",
 )
 @click.option("--calibrate", is_flag=True, help="Calibrate the thresholds by simulation (minutes).")
+@click.option(
+    "--time-limit",
+    type=Duration(),
+    default=inf,
+    show_default="none",
+    help="End the fits after this time (60s, 10min, 1h) and report what was found by then.",
+)
+@click.pass_context
 def diagnose(
-    measured: Path,
-    model: Path | None,
-    output: Path | None,
-    n_jobs: int | None,
-    effects: str | None,
-    reported: bool,
-    calibrate: bool,
+    ctx: click.Context, measured: Path, model: Path | None, output: Path | None, **options: Any
 ) -> None:
     """Find the physical effects that a model misses.
 
     MEASURED is a measured.toml with its CSV files, or the same as one netCDF file; it names the model.
+    The result is written as it is reached: an interrupt (ctrl-C) or the time limit ends in a report of what
+    was found.
     """
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs
@@ -72,36 +78,93 @@ def diagnose(
     directory = output or Path(f"{_name(measured)}-diagnosis")
     require_place_for(directory)
     _require_own(directory)
-    processors = count_jobs(n_jobs)
+    print_noise(measurement)
+    processors, results = count_jobs(options["n_jobs"]), Results(directory)
     announce_compiling()
     progress = ProgressReport()
     try:
         found = api.diagnose_measurement(
             measurement,
-            effects=_names(effects),
+            effects=_names(options["effects"]),
             n_jobs=processors,
             progress=progress.step,
-            calibrate=calibrate,
+            calibrate=options["calibrate"],
+            time_limit_s=options["time_limit"],
+            reached=results,
         )
     finally:
         progress.stop()
-    _store(found, directory, reported, processors)
+    ended = found.document.get("ended")
+    if ended is not None:
+        failure.answer()
+    reported = results.complete(found, processors if options["reported"] else 0)
+    if ended is not None:
+        log.info(f"ended early ({ended['by']}); this is the result so far")
     click.echo(report.sentence(directory))
     click.echo(f"wrote {directory / report.PAGE if reported else directory}")
+    if ended is not None:
+        ctx.exit(128 + ended["signal"] if ended["signal"] else failure.OUT_OF_TIME)
 
 
-def _store(found: "DiagnosisResult", directory: Path, reported: bool, n_jobs: int) -> None:
-    """Write a result beside its directory, and replace an earlier one only when all is written."""
+@click.command("report")
+@click.argument("directory", metavar="DIR", type=GivenPath(exists=True, file_okay=False))
+@N_JOBS
+def write_report(directory: Path, n_jobs: int | None) -> None:
+    """Write the report of a diagnosis again, or of one that was killed.
+
+    DIR is the directory of a diagnosis; its diagnosis.json holds what was known when it ended.
+    """
     from wedgesweep import report
+    from wedgesweep.sweep.backend import count_jobs
 
-    target = directory.resolve()
-    target.parent.mkdir(parents=True, exist_ok=True)
-    with beside(target) as made:
-        found.write(made)
-        if reported:
-            _draw(found, made, n_jobs)
-            report.write(made, n_jobs)
-        _move(made, target)
+    file = report.write(directory, count_jobs(n_jobs))
+    click.echo(report.sentence(directory))
+    click.echo(f"wrote {file}")
+
+
+class Results:
+    """The result of a diagnosis in its directory, replaced whenever more is known."""
+
+    def __init__(self, directory: Path) -> None:
+        self._target, self._begun = directory.resolve(), False
+
+    def __call__(self, found: "DiagnosisResult") -> None:
+        """Tell the misfit of the base model first; write the result once single effects are fitted."""
+        from wedgesweep.report import phrases
+
+        if len(found.document["ladder"]) > 1:
+            self._store(found)
+        elif not self._begun:
+            error, size = phrases.error_of(found, "base"), found.document["ladder"][0]["accuracy"]
+            share = f", {phrases.accuracy(size)} of the response" if size else ""
+            log.info(f"base model: error {error} times the noise{share}")
+
+    def complete(self, found: "DiagnosisResult", n_jobs: int) -> bool:
+        """Write the last result, then its report and figures if any ``n_jobs`` processes draw them.
+
+        Returns whether there is a report.
+        """
+        self._store(found)
+        if n_jobs:
+            try:
+                self._store(found, n_jobs)
+            except Exception as error:  # the result is there all the same
+                log.warning(f"no report ({type(error).__name__}: {error}); 'wedgesweep report' tries again")
+                return False
+        return n_jobs > 0
+
+    def _store(self, found: "DiagnosisResult", n_jobs: int = 0) -> None:
+        """Write a result beside its directory, and replace an earlier one only when all is written."""
+        from wedgesweep import report
+
+        self._target.parent.mkdir(parents=True, exist_ok=True)
+        with beside(self._target) as made:
+            found.write(made)
+            if n_jobs:
+                _draw(found, made, n_jobs)
+                report.write(made, n_jobs)
+            _move(made, self._target, self._begun)
+        self._begun = True
 
 
 def _names(listed: str | None) -> list[str] | None:
@@ -129,13 +192,18 @@ def _result_files() -> tuple[str, ...]:
     return (*data, *diagnosis_result.PARTS.values(), report.PAGE, *FIGURE_FILES.values())
 
 
-def _move(made: Path, directory: Path) -> None:
-    """Replace an earlier result by a complete one; between the two there is no verdict."""
+def _move(made: Path, directory: Path, renews: bool = False) -> None:
+    """Replace an earlier result.
+
+    Between the result of another diagnosis and this one there is no verdict; one that ``renews`` its own
+    earlier result leaves that until the new one is there.
+    """
     first, *others = _result_files()
     directory.mkdir(exist_ok=True)
     # If this process is killed now, the next one still sees that the files are from a diagnosis.
     (directory / REPLACING).touch()
-    (directory / first).unlink(missing_ok=True)
+    if not renews:
+        (directory / first).unlink(missing_ok=True)
     for name in (*others, first):
         if (made / name).exists():
             (made / name).replace(directory / name)

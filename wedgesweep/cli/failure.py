@@ -4,7 +4,6 @@ import os
 import signal
 import socket
 import threading
-import time
 from types import FrameType
 from typing import Any
 
@@ -15,9 +14,12 @@ from wedgesweep.errors import InputError, SweepError
 
 # Time (s) that a command has to end by itself after a signal.
 GRACE = 30.0
-SOME_FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+SOME_FAILED, BAD_INPUT, OUT_OF_TIME, INTERRUPTED = 1, 2, 3, 130
 # Signals that end a command as ctrl-C does; Windows has no SIGHUP.
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+_answered = threading.Event()
 
 
 class Terminated(KeyboardInterrupt):
@@ -47,10 +49,15 @@ def _insist(reading: socket.socket, writing: socket.socket) -> None:
     """End the process some time after a signal that should have done so; ``writing`` stays open for it."""
     handled = (_terminate, signal.default_int_handler)
     while number := int.from_bytes(reading.recv(1)):
-        if signal.getsignal(number) in handled:
-            time.sleep(GRACE)
+        if signal.getsignal(number) in handled and not _answered.wait(GRACE):
             os.write(2, b"interrupted at once; rerun the same command to resume\n")
             os._exit(128 + number)
+        _answered.clear()
+
+
+def answer() -> None:
+    """Let a command that was interrupted take its time to write what it has found."""
+    _answered.set()
 
 
 def _terminate(number: int, frame: FrameType | None) -> None:

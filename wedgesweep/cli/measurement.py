@@ -23,6 +23,10 @@ TRANSIENT_HEADINGS = (
 TRANSIENT_UNITS = ("", "s", "", "natural", "", "mm", "of first response", "to the next sample", "")
 
 
+# Tests of a kind whose noise a diagnosis prints.
+NOISE_LINES = 12
+
+
 def print_measurement(measurement: "Measurement") -> None:
     """Print what was read, and a table of the tests."""
     click.echo(f"{measurement.path}: valid\ntitle: {measurement.title}")
@@ -39,16 +43,29 @@ def print_measurement(measurement: "Measurement") -> None:
     print_warnings(measurement)
 
 
+def _table(measurement: "Measurement") -> list[tuple[str, ...]]:
+    """Headings, units and a row for each of the tests of one kind."""
+    if measurement.kind == "loop":
+        return [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
+    if measurement.kind == "transient":
+        return [TRANSIENT_HEADINGS, TRANSIENT_UNITS, *_transient_rows(measurement)]
+    unit = measurement.model.amplitude_unit
+    units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
+    return [HEADINGS, units, *_steady_rows(measurement, unit.factor)]
+
+
+def print_noise(measurement: "Measurement") -> None:
+    """Print the noise of each test, as it is in the table."""
+    for kind in measurement.kinds:
+        headings, units, *rows = _table(measurement.of_kind(kind))
+        place = headings.index("noise")
+        for row in rows[:NOISE_LINES]:
+            log.info(f"{row[0]}: noise {row[place]} {units[place]}")
+
+
 def _print_table(measurement: "Measurement") -> None:
     """Print the tests of one kind."""
-    if measurement.kind == "loop":
-        rows = [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
-    elif measurement.kind == "transient":
-        rows = [TRANSIENT_HEADINGS, TRANSIENT_UNITS, *_transient_rows(measurement)]
-    else:
-        unit = measurement.model.amplitude_unit
-        units = ("", "Hz", unit.unit, "", "per period", "of responses", "")
-        rows = [HEADINGS, units, *_steady_rows(measurement, unit.factor)]
+    rows = _table(measurement)
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))

@@ -3,9 +3,9 @@
 import os
 import shlex
 import sys
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import click
 
@@ -51,6 +51,25 @@ class FiniteRange(click.FloatRange):
         if not isfinite(found):
             self.fail(f"{value} is not a finite number.", param, ctx)
         return found
+
+
+class Duration(click.ParamType):
+    """A time with its unit, converted to seconds: 60s, 10min, 1h."""
+
+    name = "duration"
+    UNITS: ClassVar = {"s": 1.0, "min": 60.0, "h": 3600.0}
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, float):
+            return value
+        number = value.rstrip("abcdefghijklmnopqrstuvwxyz ")
+        try:
+            seconds = float(number) * self.UNITS[value[len(number) :].strip()]
+        except (ValueError, KeyError):
+            seconds = 0.0
+        if not 0.0 < seconds < inf:
+            self.fail(f"{value!r} is not a time such as 60s, 10min or 1h.", param, ctx)
+        return seconds
 
 
 class OutputPath(GivenPath):

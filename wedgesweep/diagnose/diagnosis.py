@@ -1,7 +1,10 @@
 """The workflow of a diagnosis: from measured tests to a verdict."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+import logging
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from typing import cast
 
 from wedgesweep.diagnose import score_test, verdict, work
@@ -9,7 +12,7 @@ from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.ladder import Level, ladder
+from wedgesweep.diagnose.ladder import Level, ladder, rough_ladder
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise, tight_refit
 from wedgesweep.diagnose.loop.from_measurement import loop_data
 from wedgesweep.diagnose.loop.loop_data import LoopData
@@ -44,6 +47,7 @@ from wedgesweep.effects import EFFECTS, SCALES, acting
 from wedgesweep.measured import Measurement
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
+log = logging.getLogger(__name__)
 # Explanations that a next test should separate where the verdict abstains.
 COMPARED = 6
 # Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
@@ -59,29 +63,43 @@ DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]
 }
 
 
+# Why a step has no result while the diagnosis goes on, or after it was killed.
+NOT_REACHED = "not reached"
+
+
 @dataclass(frozen=True)
 class Diagnosis:
-    """Everything that was found; ``explanations`` are sorted, the best first.
+    """Everything that was found so far; ``explanations`` are sorted, the best first.
 
     ``scores``: of every candidate effect. ``gain``: on held-out tests, None without an explanation.
     ``ladder``: accuracy by number of effects. ``calibration``: None unless thresholds were calibrated.
     ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects that were not
-    fitted at all.
+    fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
+    raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early.
     """
 
     measurement: Measurement
     data: Data
     base: Explanation
-    explanations: tuple[Explanation, ...]
-    scores: tuple[Score, ...]
-    finding: Finding
-    gain: Gain | None
-    next_test: NextTest | None
+    decided: Finding
     thresholds: Thresholds
-    ladder: tuple[Level, ...]
+    explanations: tuple[Explanation, ...] = ()
+    scores: tuple[Score, ...] = ()
+    gain: Gain | None = None
+    next_test: NextTest | None = None
+    ladder: tuple[Level, ...] = ()
     calibration: dict[str, float | None] | None = None
     untried: tuple[Untried, ...] = ()
     never_tried: tuple[tuple[str, ...], ...] = ()
+    unfinished: Mapping[str, str] = field(default_factory=dict)
+    failed: Mapping[str, str] = field(default_factory=dict)
+    ended: KeyboardInterrupt | None = None
+
+    @property
+    def finding(self) -> Finding:
+        """The verdict, which claims no more than the steps that were done allow."""
+        searched = not {"single effects", "pairs"} & self.unfinished.keys()
+        return verdict.as_far_as_done(self.decided, searched, "held-out tests" not in self.unfinished)
 
     @property
     def extended(self) -> Fit:
@@ -90,12 +108,92 @@ class Diagnosis:
         return self.base.fit if best is None else best.fit
 
 
+# Called with everything that is known whenever a step has ended.
+Reached = Callable[[Diagnosis], None]
+
+
+class Course:
+    """A diagnosis on its way from step to step; ``found`` is what is known so far."""
+
+    def __init__(
+        self, measurement: Measurement, explained: Explained, steps: Sequence[str], reached: Reached
+    ) -> None:
+        self.explained, self._reached = explained, reached
+        self.predict = Predictor(explained.search.each)
+        data, base = cast("Data", explained.search.data), explained.base
+        thresholds = verdict.thresholds_for(data)
+        decided = verdict.decide(base, [], thresholds)
+        unfinished = dict.fromkeys(steps, NOT_REACHED)
+        self.found = Diagnosis(measurement, data, base, decided, thresholds, unfinished=unfinished)
+        self.found = self.explained_by(explained)
+
+    @property
+    def search(self) -> Search:
+        return self.explained.search
+
+    def take(self, step: str, function: Callable[["Course"], Diagnosis]) -> None:
+        """Take a step, which returns what is known after it; one that fails leaves its place empty."""
+        self.search.progress(step)
+        unfinished = dict(self.found.unfinished)
+        try:
+            self.found = function(self)
+            del unfinished[step]
+        except Exception as error:  # no step may take the results of the others with it
+            log.debug(traceback.format_exc())
+            self.search.progress(f"{step}: failed ({_described(error)}); the diagnosis goes on without")
+            self._take_finished()
+            unfinished[step] = _described(error)
+        self.found = replace(self.found, unfinished=unfinished)
+        self._reached(self.found)
+
+    def end(self, interrupt: KeyboardInterrupt) -> Diagnosis:
+        """What is known where an interrupt or the time limit ends the diagnosis."""
+        self._take_finished()
+        reason = "time limit" if isinstance(interrupt, work.OutOfTime) else "interrupted"
+        unfinished = {
+            step: reason if why == NOT_REACHED else why for step, why in self.found.unfinished.items()
+        }
+        return replace(self.found, unfinished=unfinished, ended=interrupt)
+
+    def _take_finished(self) -> None:
+        """Take over what a stage of the search has fitted before it was cut off."""
+        finished = [each for each in self.search.finished if each.fit.model.data is self.search.data]
+        if not finished:
+            return
+        known = best_of_each([*finished, *self.explained.explanations], penalised)
+        with suppress(Exception):  # what made the stage fail may fail here as well
+            self.found = self.explained_by(self.explained._replace(explanations=known))
+
+    def explained_by(self, explained: Explained) -> Diagnosis:
+        """The diagnosis by the explanations of a search, rated where their fits ended."""
+        search, base, explanations, _ = self.explained = explained
+        search.finished.clear()
+        return replace(
+            self.found,
+            data=cast("Data", search.data),
+            base=base,
+            explanations=tuple(explanations),
+            decided=verdict.decide(base, explanations, self.found.thresholds),
+            ladder=rough_ladder(search, base, explanations),
+            untried=tuple(search.budget.untried),
+            never_tried=search.budget.never_tried,
+            failed={effect: _described(error) for effect, error in search.failed.items()},
+        )
+
+
+def _described(error: Exception) -> str:
+    return ": ".join(filter(None, (type(error).__name__, str(error))))
+
+
 def diagnose(
     measurement: Measurement,
     effects: Sequence[str] = tuple(EFFECTS),
     threads: int = 1,
     progress: Callable[[str], None] = quiet,
     calibrated: bool = False,
+    *,
+    reached: Reached = lambda found: None,
+    time_used: Callable[[], float] = work.unlimited,
 ) -> Diagnosis:
     """Name what the base model misses, or say why it cannot be named.
 
@@ -111,49 +209,98 @@ def diagnose(
         Called with each step.
     calibrated : bool
         Take the thresholds of the verdict from simulations of these very tests.
+    reached : callable
+        Called with everything that is known whenever a step has ended.
+    time_used : callable
+        Returns the share of a time limit that is used up; the fits end at 1. The base model is always fitted.
 
     Returns
     -------
     Diagnosis
-        Verdict, fits, scores, gain on held-out tests and the recommended next test.
+        Verdict, fits, scores, gain on held-out tests and the recommended next test. After an interrupt or the
+        time limit, what was known by then.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Before the base model is fitted.
     """
-    data = data_of(measurement)
     effects = _candidates(effects, measurement, progress)
-    search, base, explanations, scans = explain(Search.of(data, effects, threads, progress))
-    thresholds, calibration = verdict.thresholds_for(search.data), None
-    finding = verdict.decide(base, explanations, thresholds)
-    if calibrated:
-        # What it simulates is not part of the search's budget.
-        result = work.uncounted(
-            lambda: calibrate(search, base, finding.best, lambda sample: explain(sample)[1:3], effects)
-        ).result
-        thresholds = verdict.thresholds_for(search.data, result.thresholds)
-        calibration = result.as_dict()
-        finding = verdict.decide(base, explanations, thresholds)
-    finding, explanations = refit_cause(search, base, finding, explanations, thresholds)
-    progress("scores")
-    scores = score_test.scores(search, base.fit, scans)
-    predict = Predictor(search.each)
-    finding, gain = on_held_out_tests(search, base, finding, predict)
-    progress("accuracy")
-    levels = ladder(search, base, explanations, predict)
-    progress("next test")
-    next_test = recommend(_undecided(finding, explanations, thresholds))
-    return Diagnosis(
-        measurement=measurement,
-        data=cast("Data", search.data),
-        base=base,
-        explanations=tuple(explanations),
-        scores=tuple(scores),
-        finding=finding,
-        gain=gain,
-        next_test=next_test,
-        thresholds=thresholds,
-        ladder=levels,
-        calibration=calibration,
-        untried=tuple(search.budget.untried),
-        never_tried=search.budget.never_tried,
-    )
+    explained = base_model(Search.of(data_of(measurement), effects, threads, progress))
+    steps = {name: step for name, step in STEPS.items() if calibrated or step is not _calibrated}
+    course = Course(measurement, explained, tuple(steps), reached)
+    try:
+        reached(course.found)
+        with work.limited(time_used):
+            for name, step in steps.items():
+                course.take(name, step)
+    except KeyboardInterrupt as interrupt:
+        return course.end(interrupt)
+    return course.found
+
+
+def _calibrated(course: Course) -> Diagnosis:
+    """The diagnosis with thresholds from simulations of its tests, which are not part of the budget."""
+    found, search = course.found, course.search
+    effects, best = (*search.effects, *search.undetected), found.decided.best
+    result = work.uncounted(
+        lambda: calibrate(search, found.base, best, lambda sample: explain(sample)[1:3], effects)
+    ).result
+    thresholds = verdict.thresholds_for(search.data, result.thresholds)
+    decided = verdict.decide(found.base, found.explanations, thresholds)
+    return replace(found, decided=decided, thresholds=thresholds, calibration=result.as_dict())
+
+
+def _with_intervals(course: Course) -> Diagnosis:
+    found = course.found
+    known = list(found.explanations)
+    decided, known = refit_cause(course.search, found.base, found.decided, known, found.thresholds)
+    return replace(found, decided=decided, explanations=tuple(known))
+
+
+def _held_out(course: Course) -> Diagnosis:
+    found = course.found
+    decided, gain = on_held_out_tests(course.search, found.base, found.decided, course.predict)
+    return replace(found, decided=decided, gain=gain)
+
+
+def _rated(course: Course) -> Diagnosis:
+    """The diagnosis with the refined ladder, and with the effect that is by far the most accurate, if any."""
+    found, search = course.found, course.search
+    levels = ladder(search, found.base, found.explanations, course.predict)
+    found, before = replace(found, ladder=levels), found.decided
+    found = replace(found, decided=verdict.by_accuracy(before, levels))
+    return found if found.decided is before else _with_leading_effect(search, found, course.predict)
+
+
+def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -> Diagnosis:
+    """The diagnosis with numbers, intervals and gain of the effect that is by far the most accurate.
+
+    It is fitted with the weights of its accuracy: those of noise alone would make the intervals too narrow.
+    """
+    rated = found.ladder[1].best
+    strict = rated.explanation.fit.model.data
+    data = strict.with_model_error(rated.accuracy)
+    fit = minimise(rated.fit.model.on(data), data.compared_again(rated.fit.evaluation))
+    fit = profile_likelihood(tight_refit(fit), search.each)
+    again = strict.compared_again(fit.evaluation)
+    best = search.explanation(replace(fit, model=fit.model.on(strict), evaluation=again))
+    others = [each for each in found.explanations if each.effects != best.effects]
+    gain = cross_validate(found.base.fit, best.fit, predict)
+    decided = replace(found.decided, best=best)
+    known = tuple(best_of_each([best, *others], penalised))
+    return replace(found, decided=decided, explanations=known, gain=gain)
+
+
+def _scored(course: Course) -> Diagnosis:
+    scores = score_test.scores(course.search, course.found.base.fit, course.explained.scans)
+    return replace(course.found, scores=tuple(scores))
+
+
+def _with_next_test(course: Course) -> Diagnosis:
+    found = course.found
+    fits = _undecided(found.finding, found.explanations, found.thresholds)
+    return replace(found, next_test=recommend(fits))
 
 
 def data_of(measurement: Measurement) -> Data:
@@ -177,7 +324,7 @@ def of_each_kind(found: Diagnosis) -> dict[str, Diagnosis]:
             found,
             data=cast("Data", part),
             base=replace(found.base, fit=base[part.kind]),
-            finding=replace(found.finding, best=best and replace(best, fit=extended[part.kind])),
+            decided=replace(found.finding, best=best and replace(best, fit=extended[part.kind])),
         )
         for part in found.data.present
     }
@@ -209,7 +356,6 @@ def refit_cause(
         finding = verdict.decide(base, found, thresholds)
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
-        search.progress(f"final fit of {' + '.join(finding.best.effects)}")
         fit = tight_refit(from_other_nuisances(finding.best.fit))
         # Without a cause there is no interval to report.
         if finding.cause is not None or search.budget.left > 0.0:
@@ -236,7 +382,6 @@ def on_held_out_tests(
     """The finding after cross-validation, and the gain on held-out tests; None without an explanation."""
     if finding.best is None or search.data.tests < 2:
         return finding, None
-    search.progress("held-out tests")
     gain = cross_validate(base.fit, finding.best.fit, predict)
     finding = verdict.on_held_out_tests(finding, base, gain.excess_removed, gain.interval)
     return finding, gain if finding.best is not None else None
@@ -247,9 +392,25 @@ def explain(search: Search) -> Explained:
 
     Each stage may renew the search: its data (records aligned, covariance renewed) and its ranges.
     """
+    return further_explained(refined(single_effects(base_model(search))))
+
+
+def base_model(search: Search) -> Explained:
+    """The fit of the base model."""
     search.progress("base model")
     search, base = base_fit(search)
-    search, found, scans = single_fits(search, base.fit)
+    return Explained(search, base, [], {})
+
+
+def single_effects(explained: Explained) -> Explained:
+    """The fit of every candidate effect by itself."""
+    search, found, scans = single_fits(explained.search, explained.base.fit)
+    return Explained(search, explained.base, found, scans)
+
+
+def refined(explained: Explained) -> Explained:
+    """The base model and the single effects fitted again from where another of these fits ended."""
+    search, base, found, scans = explained
     sharing = search.data.shares_nuisances
     if sharing and verdict.none_adequate(found):
         found = followed(search, found)
@@ -260,7 +421,12 @@ def explain(search: Search) -> Explained:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
     found = from_shared_nuisances(search, from_special_cases(search, found))
-    search, base, found, scans = with_renewed_covariance(Explained(search, better, found, scans))
+    return with_renewed_covariance(Explained(search, better, found, scans))
+
+
+def further_explained(explained: Explained) -> Explained:
+    """Where no single effect is adequate, pairs, and single effects from further starts."""
+    search, base, found, scans = explained
     if verdict.none_adequate([base]):
         found = refit_best(search, found)
     if verdict.none_adequate([base, *found]):
@@ -273,7 +439,7 @@ def explain(search: Search) -> Explained:
             search, found = followed_beyond(search, base, found)
         if verdict.none_adequate(found):
             found = found + multistart(search, scans)
-        if sharing and verdict.none_adequate(found):
+        if search.data.shares_nuisances and verdict.none_adequate(found):
             found = refit_best(search, found)
     found = from_shared_nuisances(search, best_of_each(found, penalised))
     search, base = refit_base(search, base, found)
@@ -293,3 +459,17 @@ def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds
     adequate = finding.alternatives
     closest = adequate if len(adequate) > 1 else verdict.ranked(explanations, thresholds.gap)
     return [each.fit for each in closest[:COMPARED]]
+
+
+# Steps of a diagnosis after the fit of the base model, in their order; any of them may fail or be cut off.
+STEPS: dict[str, Callable[[Course], Diagnosis]] = {
+    "single effects": lambda course: course.explained_by(single_effects(course.explained)),
+    "refinement of single effects": lambda course: course.explained_by(refined(course.explained)),
+    "pairs": lambda course: course.explained_by(further_explained(course.explained)),
+    "calibration": _calibrated,
+    "intervals": _with_intervals,
+    "held-out tests": _held_out,
+    "accuracy": _rated,
+    "scores": _scored,
+    "next test": _with_next_test,
+}

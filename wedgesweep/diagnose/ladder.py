@@ -60,19 +60,23 @@ class Level:
         return rival / best
 
 
+def rough_ladder(search: Search, base: Explanation, explanations: Sequence[Explanation]) -> tuple[Level, ...]:
+    """Rate the base model and every eligible explanation where its fit ended, without simulations."""
+    allowed = [base, *filter(verdict.eligible, explanations)]
+    rated = sorted(search.each(_rated_where_it_ended, allowed), key=_by_accuracy)
+    sizes = sorted({len(each.effects) for each in rated})
+    return tuple(Level(tuple(each for each in rated if len(each.effects) == size)) for size in sizes)
+
+
 def ladder(
     search: Search, base: Explanation, explanations: Sequence[Explanation], predict: Predictor
 ) -> tuple[Level, ...]:
-    """Rate the base model and every eligible explanation: a level for each number of effects.
+    """Rate the base model and every eligible explanation, and refine the leading ones.
 
     The best one of each level also predicts tests that are left out of its fit.
     """
-    allowed = [base, *filter(verdict.eligible, explanations)]
-    rough = search.each(_rated_where_it_ended, allowed)
-    sizes = sorted({len(each.effects) for each in rough})
-    return tuple(
-        _level(search, [each for each in rough if len(each.effects) == size], predict) for size in sizes
-    )
+    rough = rough_ladder(search, base, explanations)
+    return tuple(_refined_level(search, level.rated, predict) for level in rough)
 
 
 def _rated_where_it_ended(each: Explanation) -> Rated:
@@ -80,12 +84,12 @@ def _rated_where_it_ended(each: Explanation) -> Rated:
     return Rated(each, accuracy.of_response(fit.model.data, fit.evaluation, fit.dof), fit)
 
 
-def _level(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
+def _refined_level(search: Search, rough: Sequence[Rated], predict: Predictor) -> Level:
     """The explanations of one size, best first.
 
     The leading ones are refined; so is any other that would rank among the COMPARED best without it.
     """
-    waiting, done = sorted(rough, key=_by_accuracy), list[Rated]()
+    waiting, done = list(rough), list[Rated]()
     chosen = [each for each in waiting[:REFINED] if each.accuracy <= FACTOR * waiting[0].accuracy]
     while chosen:
         done = sorted([*done, *search.each(_refined, chosen)], key=_by_accuracy)

@@ -298,4 +298,6 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     known = [job.base, *(job.singles[effect].fit for effect in subset.effects)]
     starts = [replace(model.start(fit, subset.x[: model.size]), x=subset.x) for fit in known]
     start = replace(starts[0], nuisance=model.best_nuisances(starts))
-    return job.search.explanation(minimise(model, model.evaluate(start)))
+    found = job.search.explanation(minimise(model, model.evaluate(start)))
+    job.search.finished.append(found)
+    return found

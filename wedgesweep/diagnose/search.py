@@ -3,6 +3,7 @@
 Each stage is a function of what earlier stages returned; nothing is kept in between.
 """
 
+import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -76,7 +77,8 @@ class Search:
     ``effects``: candidates; ``undetected``: those of which the records show nothing, so that there is nothing
     to fit. ``progress`` is called with each step. ``budget``: what may be simulated; base model and single
     effects are fitted whatever that takes. ``wider``: effects whose best numbers lie outside of the range
-    that is searched, see beyond_range.py.
+    that is searched, see beyond_range.py. ``finished``: fits of the present stage that are done, for the case
+    that it does not end; ``failed``: effects whose own fits raised an error, with the error.
     """
 
     data: FitData
@@ -86,6 +88,8 @@ class Search:
     progress: Callable[[str], None] = quiet
     budget: work.Budget = field(default_factory=work.Budget, compare=False)
     wider: tuple[str, ...] = ()
+    finished: list[Explanation] = field(default_factory=list, compare=False)
+    failed: dict[str, Exception] = field(default_factory=dict, compare=False)
 
     @classmethod
     def of(
@@ -113,7 +117,7 @@ class Search:
 
     def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         """Results of a function for all items, in their order."""
-        return self._each(function, list(items), inf)
+        return self._each(function, list(items))
 
     def each_affordable(
         self,
@@ -127,24 +131,30 @@ class Search:
         ``what``: name of the stage, under which items that were left out are reported; ``effects``: gives
         the effects of an item.
         """
-        found = self._each(function, items, self.budget.left, what)
+        found = self._each(function, items, what, self.budget.left)
         self.budget.ended(what, len(found), [effects(item) for item in items])
         return found
 
     def _each(
-        self, function: Callable[[Any], Any], items: Sequence[Any], limit: float, what: str = ""
+        self, function: Callable[[Any], Any], items: Sequence[Any], what: str = "", limit: float | None = None
     ) -> list[Any]:
-        """Results for the first items, up to the one at which their work reaches a limit.
+        """Results for the first items, up to the one at which their work, or the time, reaches a limit.
 
         Threads may finish further items; their results are dropped, or they would depend on timing.
-        ``what``: name of the stage whose progress is reported; "" reports nothing.
+        ``what``: name of the stage whose progress is reported; "" reports nothing. Without ``limit`` only the
+        end of the whole diagnosis stops it.
         """
         spent, finished = np.zeros(len(items)), count(1)
+        used, ended = work.time_used(), threading.Event()
+
+        def affordable(place: int) -> bool:
+            return limit is None or (spent[:place].sum() < limit and used() < work.SEARCH_SHARE)
 
         def one(place: int) -> work.Uncounted | None:
             outcome = None
-            if spent[:place].sum() < limit:
-                outcome = work.uncounted(lambda: function(items[place]))
+            if affordable(place):
+                with work.limited(lambda: inf if ended.is_set() else used()):
+                    outcome = work.uncounted(lambda: function(items[place]))
                 spent[place] = outcome.work
             if what:
                 self.progress(Step(what, next(finished), len(items)))
@@ -156,16 +166,21 @@ class Search:
             outcomes = [one(place) for place in range(len(items))]
         else:
             with ThreadPoolExecutor(self.threads) as pool:
-                outcomes = list(pool.map(one, range(len(items))))
+                try:
+                    outcomes = list(pool.map(one, range(len(items))))
+                except BaseException:
+                    ended.set()  # the other threads stop at their next simulation
+                    raise
         before = np.cumsum(np.r_[0.0, spent])[:-1]
-        kept = [each for each, earlier in zip(outcomes, before, strict=True) if each and earlier < limit]
+        beyond = inf if limit is None else limit
+        kept = [each for each, earlier in zip(outcomes, before, strict=True) if each and earlier < beyond]
         work.add(sum(each.work for each in kept))
         return [each.result for each in kept]
 
     def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
         """Results of a function for every candidate effect, in their order; the slowest begin first."""
         order = sorted(self.effects, key=lambda effect: effect not in SLOWEST)
-        found = dict(zip(order, self._each(function, order, inf, "single effects"), strict=True))
+        found = dict(zip(order, self._each(function, order, "single effects"), strict=True))
         return {effect: found[effect] for effect in self.effects}
 
 
@@ -243,11 +258,21 @@ def _aligned(fit: Fit) -> Fit:
 
 
 def single_fits(search: Search, base: Fit) -> SingleFits:
-    """Fit every candidate effect by itself."""
-    found: dict[str, SingleFit] = search.each_effect(lambda effect: single_fit(search, effect, base))
+    """Fit every candidate effect by itself; one whose fit raises an error is no candidate any more."""
+
+    def fitted(effect: str) -> SingleFit | None:
+        try:
+            one = single_fit(search, effect, base)
+        except Exception as error:  # one odd effect must not take the others with it
+            search.failed[effect] = error
+            return None
+        search.finished.append(one.explanation)
+        return one
+
+    found: dict[str, SingleFit] = {k: one for k, one in search.each_effect(fitted).items() if one}
     aligned = [one.data for effect, one in found.items() if search.data.brings_nuisances(effect)]
     return SingleFits(
-        replace(search, data=aligned[-1]) if aligned else search,
+        replace(search, effects=tuple(found), data=aligned[-1] if aligned else search.data),
         [one.explanation for one in found.values()],
         {effect: one.scan for effect, one in found.items()},
     )

@@ -1,22 +1,54 @@
 """A clock that counts simulations instead of seconds, and a budget by it.
 
 What a search tries is then the same on every machine, with any number of threads. The unit is the work of
-simulating one forcing period of the base model; each thread has a clock of its own.
+simulating one forcing period of the base model; each thread has a clock of its own. A time limit ends a
+search earlier: every simulation looks at it.
 """
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
 Result = TypeVar("Result")
 
 
+# Share of a time limit after which nothing is added to a search: intervals and held-out tests take time, too.
+SEARCH_SHARE = 0.5
+
+
+class OutOfTime(KeyboardInterrupt):
+    """The time limit is reached; no handler of errors takes it for one."""
+
+
+def unlimited() -> float:
+    """Share of the time that is used up where there is no limit."""
+    return 0.0
+
+
 class _Clock(threading.local):
     reading = 0.0
+    # The share of the time limit that is used up; from 1 on, simulations raise OutOfTime.
+    time_used: Callable[[], float] = staticmethod(unlimited)
 
 
 _clock = _Clock()
+
+
+def time_used() -> Callable[[], float]:
+    """The function that tells this thread which share of its time limit is used up."""
+    return _clock.time_used
+
+
+@contextmanager
+def limited(used: Callable[[], float]) -> Iterator[None]:
+    """A time limit for the simulations of this thread; ``used`` returns the share that is used up."""
+    before, _clock.time_used = _clock.time_used, used
+    try:
+        yield
+    finally:
+        _clock.time_used = before
 
 
 def done() -> float:
@@ -25,8 +57,10 @@ def done() -> float:
 
 
 def add(work: float) -> None:
-    """Count work for this thread, whichever thread has done it."""
+    """Count work for this thread, whichever thread has done it; raises OutOfTime beyond a time limit."""
     _clock.reading += work
+    if _clock.time_used() >= 1.0:
+        raise OutOfTime
 
 
 class Uncounted(NamedTuple, Generic[Result]):

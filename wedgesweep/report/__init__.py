@@ -4,7 +4,7 @@ from pathlib import Path
 
 from wedgesweep import diagnosis_result
 from wedgesweep.files import write_text
-from wedgesweep.report import sentence as sentences
+from wedgesweep.report.sentence import sentence as sentence_of
 
 PAGE = "report.html"
 
@@ -38,4 +38,4 @@ def write(directory: Path, n_jobs: int = 1) -> Path:
 
 def sentence(directory: Path) -> str:
     """Return the answer of the diagnosis in a directory as one sentence of plain text."""
-    return sentences.sentence(diagnosis_result.read(directory))
+    return sentence_of(diagnosis_result.read(directory))

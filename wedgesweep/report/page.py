@@ -22,14 +22,6 @@ from wedgesweep.report.html import Markup
 from wedgesweep.report.inline_figures import InlineFigures
 from wedgesweep.report.sentence import sentence
 
-MEANINGS = {
-    "nothing-missing": "the misfit is noise",
-    "named": "a cause is named",
-    "consistent-with": "one explanation fits, but the evidence for it is weak",
-    "tied": "two or more explanations fit equally well",
-    "data-insufficient": "something is wrong, and these tests cannot show what",
-    "none-of-mine": "something is wrong, and no candidate explains it",
-}
 CONTENTS = {
     "candidates": "Candidates",
     "accuracy": "Accuracy",
@@ -84,9 +76,8 @@ def _of_one_kind(result: DiagnosisResult, draw: InlineFigures, place: str) -> Ma
 
 
 def _answer(result: DiagnosisResult) -> Markup:
-    verdict = html.join(
-        ["Verdict: ", html.element("strong", result.verdict), f" ({MEANINGS[result.verdict]})"], ""
-    )
+    why = f" ({result.reason.value})" if result.reason else ""
+    verdict = html.join(["Verdict: ", html.element("strong", result.verdict), why], "")
     return html.element(
         "div",
         html.paragraph(summary.lead(result), class_="lead"),

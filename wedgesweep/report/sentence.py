@@ -1,11 +1,10 @@
 """The answer of a diagnosis in one sentence, with its numbers and intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from wedgesweep import formatting
-from wedgesweep.diagnosis_result import DiagnosisResult
-from wedgesweep.effects import confounded
+from wedgesweep.diagnosis_result import DiagnosisResult, Reason
 from wedgesweep.report import ladder, phrases
 
 # Tests that a sentence names.
@@ -14,9 +13,18 @@ NAMES_LISTED = 3
 
 def sentence(result: DiagnosisResult) -> str:
     """Return the sentence as plain text; each verdict has its template."""
-    return (
-        TEMPLATES[result.verdict](result).removesuffix(".") + _never_steady(result) + _untried(result) + "."
-    )
+    answer = TEMPLATES[result.verdict](result).removesuffix(".")
+    return answer + _never_steady(result) + _untried(result) + unfinished(result) + "."
+
+
+def unfinished(result: DiagnosisResult) -> str:
+    """Steps of the diagnosis without a result, by the reason; empty for most diagnoses."""
+    steps: dict[str, list[str]] = {}
+    for each in result.document.get("unfinished", []):
+        steps.setdefault(each["reason"], []).append(each["step"])
+    for each in result.document.get("failed", []):
+        steps.setdefault(each["reason"], []).append(f"fit of {each['effect']}")
+    return "".join(f"; unfinished: {phrases.listing(names)} ({why})" for why, names in steps.items())
 
 
 def _never_steady(result: DiagnosisResult) -> str:
@@ -73,45 +81,61 @@ def _named(result: DiagnosisResult) -> str:
 
 
 def _consistent(result: DiagnosisResult) -> str:
+    if result.reason is Reason.MORE_ACCURATE:
+        return _most_accurate(result)
+    if result.reason is Reason.AT_LIMIT:
+        off = formatting.short(result.document["reason"]["standard_deviations"], 2)
+        stated = f"{off} standard deviations from what is stated"
+        without = "with it as stated the model does not fit"
+        return f"The tests are consistent with {_causes(result)}, {stated}; {without}."
+    weak = f"the evidence is weak ({why})" if (why := _reservation(result)) else "the evidence is weak"
+    return f"The tests are consistent with {_causes(result)}, but {weak}; {_improvement(result)}."
+
+
+def _most_accurate(result: DiagnosisResult) -> str:
+    """The cause that does not reach the noise, but explains much more than anything else."""
+    why = result.document.get("reason", {})
+    size, base, held_out = (phrases.accuracy(why[key]) for key in ("accuracy", "base", "held_out"))
+    rivals = f"next best: {phrases.accuracy(why['next_best'])}; held-out tests: {held_out}"
     return (
-        f"The tests are consistent with {_causes(result)}, but the evidence is weak ({_weakness(result)}); "
-        f"{_improvement(result)}."
+        f"To {size} of the response {_causes(result)} explains all tests (without it: {base}; {rivals}), "
+        f"though no explanation reaches the noise: {_improvement(result)}."
     )
 
 
-def _weakness(result: DiagnosisResult) -> str:
-    if pair := _pair_that_leaves_less(result):
-        larger = phrases.accuracy(result.document["method"]["larger_model_error"])
-        return f"by itself it explains the tests only under a model error of {larger}; {pair} leave less"
-    if rivals := result.document["rivals"]:
-        others = phrases.listing([phrases.combination(each["effects"]) for each in rivals])
-        return f"{others} would also leave only noise{_next_test(result, 'them')}"
-    if _unconfirmed(result):
-        return "held-out tests do not confirm it"
-    misfit, method = result.document["misfit"], result.document["method"]
-    # No threshold: no excess is large enough. No excess: the base model has no steady response.
-    strong, excess = method["strong_excess"], misfit["excess_base"]
-    if excess is not None and (strong is None or excess < strong):
-        return f"the misfit exceeds noise by only {formatting.number(excess)}"
-    if _varies(misfit):
-        constant = phrases.p_value(misfit["p_constant"])
-        return f"{misfit['least_constant']} would have to differ from test to test, {constant} for one value"
-    p = min(misfit["p_extended"], misfit["p_where_it_shows"])
-    return f"it leaves more than noise in the tests that show it, {phrases.p_value(p)}"
-
-
-def _pair_that_leaves_less(result: DiagnosisResult) -> str | None:
-    """The pair that leaves less than the cause, one of its two effects."""
-    pairs = [
-        each["effects"] for each in result.document["rivals"] if set(each["effects"]) > set(result.added)
-    ]
-    return phrases.combination(pairs[0]) if pairs else None
-
-
-def _varies(misfit: Mapping[str, Any]) -> bool:
-    """Whether the strongest evidence against a fit is a parameter that differs between tests."""
-    constant = misfit["p_constant"]
-    return constant is not None and constant < min(misfit["p_extended"], misfit["p_where_it_shows"])
+def _reservation(result: DiagnosisResult) -> str:
+    """What speaks against an explanation, by the reason of the verdict."""
+    why, rivals = result.document.get("reason", {}), result.document["rivals"]
+    match result.reason:
+        case Reason.PAIR_LEAVES_LESS:
+            pair, larger = phrases.combination(rivals[0]["effects"]), phrases.accuracy(why["model_error"])
+            return f"by itself it explains the tests only under a model error of {larger}; {pair} leave less"
+        case Reason.OTHERS_ADEQUATE:
+            names = phrases.listing([phrases.combination(each["effects"]) for each in rivals])
+            return f"{names} would also leave only noise{_next_test(result, 'them')}"
+        case Reason.WEAK_EXCESS:
+            return f"the misfit exceeds noise by only {formatting.number(why['excess'])}"
+        case Reason.UNCHECKED:
+            return "not all rivals and held-out tests were tried"
+        case Reason.VARIES:
+            constant = phrases.p_value(why["p"])
+            return f"{why['parameter']} would have to differ from test to test, {constant} for one value"
+        case Reason.LEAVES_MORE:
+            return f"it leaves more than noise in the tests that show it, {phrases.p_value(why['p'])}"
+        case Reason.UNCONFIRMED:
+            return "held-out tests do not confirm it"
+        case Reason.CONFOUNDED:
+            return "an error in a model parameter that is no candidate could look like these two"
+        case Reason.NEARLY_TOLERABLE:
+            allowed = result.document["method"].get("model_error")
+            return "a model error could have its shape" if allowed else "it hardly fits better"
+        case Reason.COMPONENT_SUFFICES:
+            half = phrases.combination(why["effects"])
+            return f"{half} alone leaves hardly more, with parameters that differ from test to test"
+        case Reason.FEW_TESTS:
+            return "so few tests cannot confirm it"
+        case _:
+            return ""
 
 
 def _tied(result: DiagnosisResult) -> str:
@@ -130,6 +154,13 @@ def _rival(rival: Mapping[str, Any], document: Mapping[str, Any]) -> str:
 
 def _insufficient(result: DiagnosisResult) -> str:
     tests = phrases.these_tests(result)
+    match result.reason:
+        case Reason.NO_SIGNAL:
+            share = formatting.short(result.document["reason"]["power_over_noise"], 2)
+            return f"{tests.capitalize()} hold hardly more than noise: {share} times its power."
+        case Reason.UNCHECKED:
+            so_far = "".join(f"; so far, {clause}" for clause in ladder.clauses(result))
+            return f"{_wrong(result)}, and not everything was tried that may explain it{so_far}."
     return f"{_wrong(result)}, but {tests} cannot show what{_adequate(result)}{_next_test(result)}."
 
 
@@ -147,42 +178,15 @@ def _adequate(result: DiagnosisResult) -> str:
         case []:
             return ""
         case [only]:
-            explanation = phrases.combination(only["effects"])
-            return f": {explanation} would leave only noise, but {_doubt(result, only)}"
+            but = f", but {doubt}" if (doubt := _reservation(result)) else ""
+            return f": {phrases.combination(only['effects'])} would leave only noise{but}"
         case many:
             return f": {len(many)} explanations would each leave only noise"
-
-
-def _doubt(result: DiagnosisResult, only: Mapping[str, Any]) -> str:
-    if confounded(only["effects"]):
-        return "an error in a model parameter that is no candidate could look like these two"
-    if result.document["misfit"].get("implausible"):
-        allowed = result.document["method"].get("model_error")
-        return "a model error could have its shape" if allowed else "it hardly fits better"
-    if half := _adequate_half(result, only["effects"]):
-        return f"{half} alone leaves hardly more, with parameters that differ from test to test"
-    who = "held-out tests do not" if _unconfirmed(result) else "so few tests cannot"
-    return f"{who} confirm it"
-
-
-def _adequate_half(result: DiagnosisResult, pair: Sequence[str]) -> str | None:
-    """Effect of a pair that leaves only noise without the other; None if there is none."""
-    adequate = result.document["method"]["adequate_p"]
-    halves = [
-        each for each in result.document["candidates"] if each["effects"] and set(each["effects"]) < set(pair)
-    ]
-    return next((each["effects"][0] for each in halves if (each["p"] or 0.0) >= adequate), None)
 
 
 def _none(result: DiagnosisResult) -> str:
     strict = f"{_wrong(result)}, and {_unexplained(result)}{_attempt(result)}"
     return "; ".join([strict, *ladder.clauses(result)]) + "."
-
-
-def _unconfirmed(result: DiagnosisResult) -> bool:
-    """Whether the extension may increase the error on held-out tests."""
-    gain = result.gain
-    return gain is not None and (gain["ci95"] or [gain["excess_removed"]])[0] < 0.0
 
 
 def _unexplained(result: DiagnosisResult) -> str:
@@ -200,18 +204,9 @@ def _unexplained(result: DiagnosisResult) -> str:
 def _attempt(result: DiagnosisResult) -> str:
     if not result.added:
         return ""
-    misfit = result.document["misfit"]
-    against = [f"still leaves an error of {_error(result, 'extended')}"]
-    if _varies(misfit):
-        constant = phrases.p_value(misfit["p_constant"])
-        against.append(
-            f"needs a {misfit['least_constant']} that differs from test to test ({constant} for one value)"
-        )
-    elif misfit["p_where_it_shows"] < misfit["p_extended"]:
-        against[0] += f" ({phrases.p_value(misfit['p_where_it_shows'])} in the tests that show it)"
-    if _unconfirmed(result):
-        against.append("may increase the error on held-out tests")
-    return f"; the best attempt, {phrases.combination(result.added)}, {phrases.listing(against)}"
+    against = f" ({doubt})" if (doubt := _reservation(result)) else ""
+    left = f"still leaves an error of {_error(result, 'extended')}"
+    return f"; the best attempt, {phrases.combination(result.added)}, {left}{against}"
 
 
 TEMPLATES = {

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from wedgesweep import formatting
-from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.diagnosis_result import DiagnosisResult, Reason
 from wedgesweep.report import html, ladder, next_test, phrases
 from wedgesweep.report.html import Markup, Spanning
 
@@ -17,6 +17,11 @@ def lead(result: DiagnosisResult) -> str:
             return "The model misses nothing that these tests show."
         case "named":
             return f"Missing or wrong in the model: {causes}."
+        case "consistent-with" if result.reason is Reason.MORE_ACCURATE:
+            left = phrases.accuracy(result.document["reason"]["accuracy"])
+            return (
+                f"Probably missing or wrong in the model: {causes}; with it {left} of the response is left."
+            )
         case "consistent-with":
             return f"Probably missing or wrong in the model: {causes}; the evidence is weak."
         case "tied":
@@ -27,6 +32,10 @@ def lead(result: DiagnosisResult) -> str:
             return (
                 f"Missing or wrong in the model: {either}; {phrases.these_tests(result)} cannot tell which."
             )
+        case "data-insufficient" if result.reason is Reason.NO_SIGNAL:
+            return f"{phrases.these_tests(result).capitalize()} show hardly any response."
+        case "data-insufficient" if result.reason is Reason.UNCHECKED:
+            return "The model misses something, and the diagnosis ended before all causes were tried."
         case "data-insufficient":
             return f"The model misses something, and {phrases.these_tests(result)} cannot show what."
         case _:

@@ -8,11 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.jacobian import accurate_jacobian
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.offer import PREDICTED, Offer, covariance_root, least_distance
 from wedgesweep.diagnose.sampled_data import SampledData
 
+# Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
+PREDICTED = 0.5
+# Largest standard deviation of a parameter, in its scales.
+WIDEST = 10.0
 # A mass sticks if the power of its motion is less than this many times that of its noise.
 MOVES = 10.0
 # Gauss-Newton steps of a test that is looked at closely.
@@ -22,11 +26,14 @@ FREE = 1e4
 
 
 class Design(NamedTuple):
-    """Tests to choose from: ``data`` of A B tests, and the ``numbers`` of each; ``shape``: (A, B)."""
+    """Tests to choose from: ``data`` of A B tests, and the ``numbers`` of each; ``shape``: (A, B).
+
+    The data are what the best explanation predicts.
+    """
 
     kind: str
     motion: str | None
-    data: SampledData
+    data: FitData
     numbers: Sequence[Mapping[str, float]]
     shape: tuple[int, int]
 
@@ -52,22 +59,29 @@ class _Prediction(NamedTuple):
     moves: np.ndarray
 
 
+class Offer(NamedTuple):
+    """The tests of a design, with distances (pairs, A, B) of every two of the fits that predict them."""
+
+    design: Design
+    fits: Sequence[Fit]
+    distances: np.ndarray
+
+    def adapted(self, test: int) -> np.ndarray:
+        """Distances (pairs,) in a test, by its index, with the explanations fitted to one another."""
+        own = self.design.data.subset(np.array([test]))
+        return np.array([_adapted(own, *pair) for pair in combinations(self.fits, 2)])
+
+
 def offered(design: Design, fits: Sequence[Fit]) -> Offer:
     """The tests of a design, with the distances of the explanations that predict them."""
     predicted = [(fit, _predicted(fit, design.data)) for fit in fits]
     predicted = [each for each in predicted if each[1].evaluation.found_tests.mean() >= PREDICTED]
     pairs = combinations([each for _, each in predicted], 2)
-    distances = [_distances(design.data, *pair).reshape(design.shape) for pair in pairs]
-    kept = [fit for fit, _ in predicted]
-
-    def adapted(test: int) -> np.ndarray:
-        own = design.data.subset(np.array([test]))
-        return np.array([_adapted(own, *pair) for pair in combinations(kept, 2)])
-
-    return Offer(design.kind, design.motion, kept, np.array(distances), design.numbers, adapted)
+    distances = [_distances(*pair).reshape(design.shape) for pair in pairs]
+    return Offer(design, [fit for fit, _ in predicted], np.array(distances))
 
 
-def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Prediction:
+def _predicted(fit: Fit, data: FitData, moved: _Moved | None = None) -> _Prediction:
     model, root = fit.model.on(data), covariance_root(fit)
     point = Point(fit.x, *data.start())
     if moved is not None:
@@ -81,12 +95,19 @@ def _predicted(fit: Fit, data: SampledData, moved: _Moved | None = None) -> _Pre
     size = np.linalg.norm(by_nuisance, axis=1)
     free = FREE / np.where(size > 0.0, size, FREE)  # what has no influence keeps its size
     std = np.where(np.isinf(std), free, std)
-    moves = replace(data, resampled=here.response).power > MOVES * data.observations  # type: ignore[type-var]
+    moves = _power(data, here) > MOVES * data.observations
     spread, adapted = by_parameter @ root, by_nuisance * std[:, None]
     return _Prediction(here, spread, adapted, std, moves & here.found_tests)
 
 
-def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
+def _power(data: FitData, here: Evaluation) -> np.ndarray:
+    """Squared size (T,) of simulated motions over their noise."""
+    if isinstance(data, SampledData):
+        return replace(data, resampled=here.response).power  # type: ignore[type-var]
+    return (np.abs(here.response.whitened) ** 2).sum(axis=(-2, -1))
+
+
+def _adapted(data: FitData, one: Fit, other: Fit) -> float:
     """Squared distance of two predictions of a single test, by Gauss-Newton steps.
 
     Derivatives alone overestimate it where predictions are far from linear in what is uncertain.
@@ -100,7 +121,7 @@ def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
         std = its.std[0]
         spent = np.r_[first.parameters, second.parameters, np.zeros(data.eliminated)]
         spent = np.r_[spent, second.nuisances / std[data.eliminated :]]
-        gap = data.response_change(mine.evaluation, its.evaluation)[0]
+        gap = (mine.evaluation.residual - its.evaluation.residual)[0]
         # Derivatives are those of residuals, which fall as responses rise.
         columns = np.concatenate([mine.spread, -its.spread, -its.adapted], axis=2)[0]
         zero = its.adapted[0, :, : data.eliminated]
@@ -115,19 +136,40 @@ def _adapted(data: SampledData, one: Fit, other: Fit) -> float:
     return found
 
 
-def _unmoved(data: SampledData, fit: Fit) -> np.ndarray:
+def _unmoved(data: FitData, fit: Fit) -> np.ndarray:
     """No step of the nuisance parameters that are fitted beside an explanation, shape (L,)."""
     return np.zeros(len(data.nuisances(fit.effects, Point(fit.x, *data.start()))))
 
 
-def _distances(data: SampledData, one: _Prediction, other: _Prediction) -> np.ndarray:
+def _distances(one: _Prediction, other: _Prediction) -> np.ndarray:
     """Squared distances (T,), 0 where a prediction does not exist or a mass sticks.
 
-    Of the two, one is what happens; the other adapts its start, and whatever else is unknown of a test.
+    Of the two, one is what happens; the other adapts its start, and whatever else is unknown of a test. Both
+    residuals are relative to the best explanation, so that their difference is that of the responses.
     """
-    gap = data.response_change(one.evaluation, other.evaluation)
+    gap = one.evaluation.residual - other.evaluation.residual
     columns = np.concatenate([one.spread, other.spread, other.adapted], axis=2)
     both = one.moves & other.moves
     return np.array(
         [least_distance(*each) if ok else 0.0 for *each, ok in zip(gap, columns, both, strict=True)]
     )
+
+
+def covariance_root(fit: Fit) -> np.ndarray:
+    """Root (k + u, k + u) of the covariance of a fit, in which no parameter is wider than its range."""
+    std = np.sqrt(np.diag(fit.covariance))
+    share = np.minimum(1.0, WIDEST * fit.model.scale / np.maximum(std, 1e-300))
+    values, vectors = np.linalg.eigh(fit.covariance * np.outer(share, share))
+    return vectors * np.sqrt(np.maximum(values, 0.0))
+
+
+def least_distance(gap: np.ndarray, columns: np.ndarray) -> float:
+    """Squared distance of two predictions when their parameters change so that it is least.
+
+    The squared changes of parameters, in standard deviations, are part of it. ``gap`` (m,): whitened
+    difference of the predictions; ``columns`` (m, j): its changes by a standard deviation of each parameter.
+    """
+    matrix = np.concatenate([columns, np.eye(columns.shape[1])])
+    aim = np.concatenate([gap, np.zeros(columns.shape[1])])
+    change = np.linalg.lstsq(matrix, aim, rcond=None)[0]
+    return float(((aim - matrix @ change) ** 2).sum())

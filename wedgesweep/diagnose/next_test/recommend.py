@@ -1,18 +1,17 @@
 """The next test over all kinds: one like those that were made, or of another kind where they tell nothing."""
 
 from collections.abc import Callable, Sequence
-from math import hypot
 
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.loop.loop_data import LoopData
 from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.next_test.designs import offered
+from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.loops import loops
-from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest, Offer, recommended
+from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest, recommended
 from wedgesweep.diagnose.next_test.sensors import Sensors, sensors
+from wedgesweep.diagnose.next_test.steady import sines
 from wedgesweep.diagnose.next_test.transients import RELEASE, SWEEP, releases, sweeps
-from wedgesweep.diagnose.steady import next_test as steady
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.measured.declarations import LOOP, STEADY
@@ -66,38 +65,30 @@ def _worth(test: NextTest) -> tuple[int, float]:
 
 
 def _of_kind(kind: str, fits: Sequence[Fit], parts: Sequence[FitData]) -> NextTest | None:
-    offer = OFFERS[kind](fits, parts)
-    return None if offer is None else recommended(offer, fits[0])
+    design = DESIGNS[kind](fits, parts)
+    return None if design is None else recommended(design, fits)
 
 
-def _steady(fits: Sequence[Fit], parts: Sequence[FitData]) -> Offer | None:
-    own = next((part for part in parts if isinstance(part, HarmonicData)), None)
-    return steady.offer(fits, steady.rig_of(own) if own is not None else _rig(parts))
+def _steady(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design:
+    measured = next((part for part in parts if isinstance(part, HarmonicData)), None)
+    return sines(fits[0], _known(parts, HarmonicData), measured)
 
 
-def _rig(parts: Sequence[FitData]) -> steady.Rig:
-    """What a steady test would be like where none was made."""
-    known = sensors(parts[0])
-    noise = steady.noise_of(known.share, known.rate / known.omega)
-    noise = hypot(noise, steady.error_of(parts[0].model_error, steady.HARMONICS))
-    return steady.Rig(known.model, known.law, parts[0].units, len(known.spectra), noise)
-
-
-def _release(fits: Sequence[Fit], parts: Sequence[FitData]) -> Offer | None:
+def _release(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design | None:
     known = _known(parts, TransientData)
     # Without a spring the mass stays where it is.
     if known.model.system == "oscillator" and known.model.oscillator["spring"] == 0.0:
         return None
-    return offered(releases(fits[0], known), fits)
+    return releases(fits[0], known)
 
 
-def _sweep(fits: Sequence[Fit], parts: Sequence[FitData]) -> Offer | None:
-    return offered(sweeps(fits[0], _known(parts, TransientData)), fits)
+def _sweep(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design | None:
+    return sweeps(fits[0], _known(parts, TransientData))
 
 
-def _loop(fits: Sequence[Fit], parts: Sequence[FitData]) -> Offer | None:
+def _loop(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design | None:
     measured = next((part for part in parts if isinstance(part, LoopData)), None)
-    return offered(loops(fits[0], _known(parts, LoopData), measured), fits)
+    return loops(fits[0], _known(parts, LoopData), measured)
 
 
 def _known(parts: Sequence[FitData], kind: type[FitData]) -> Sensors:
@@ -107,7 +98,7 @@ def _known(parts: Sequence[FitData], kind: type[FitData]) -> Sensors:
     return own._replace(travel=max(each.travel for each in found))
 
 
-OFFERS: dict[str, Callable[[Sequence[Fit], Sequence[FitData]], Offer | None]] = {
+DESIGNS: dict[str, Callable[[Sequence[Fit], Sequence[FitData]], Design | None]] = {
     STEADY: _steady,
     RELEASE: _release,
     SWEEP: _sweep,

@@ -1,8 +1,9 @@
 """The content of diagnosis.json."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from math import isfinite
+from signal import SIGINT
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from wedgesweep.diagnose.sampled_data import SampledData
 from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
+from wedgesweep.diagnose.work import OutOfTime
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
 from wedgesweep.effects import EFFECTS
 
@@ -36,6 +38,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
     hidden = _not_testable(found)
     return {
         "verdict": finding.verdict,
+        "reason": {"code": finding.reason.code, **_finite(finding.numbers)},
         "causes": _causes(finding.cause),
         "rivals": [
             {"effects": list(each.effects), "gap": finite(each.penalised - best.penalised)}
@@ -53,6 +56,9 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "never_tried": [list(each) for each in found.never_tried],
+        "unfinished": [{"step": step, "reason": why} for step, why in found.unfinished.items()],
+        "failed": [{"effect": effect, "reason": why} for effect, why in found.failed.items()],
+        "ended": _ended(found),
         "title": found.measurement.title,
         "kind": data.kind,
         "model": {
@@ -67,6 +73,19 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
+
+
+def _finite(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: finite(value) if isinstance(value, float) else value for key, value in numbers.items()}
+
+
+def _ended(found: Diagnosis) -> dict[str, Any] | None:
+    """What ended the diagnosis early: the time limit, or a signal by its number."""
+    if found.ended is None:
+        return None
+    if isinstance(found.ended, OutOfTime):
+        return {"by": "time limit", "signal": None}
+    return {"by": "interrupt", "signal": int(getattr(found.ended, "number", SIGINT))}
 
 
 def _surface(model: Config) -> dict[str, Any]:
