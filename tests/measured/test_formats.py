@@ -87,7 +87,7 @@ FAULTS = {
     "stray quote": (
         [*lines()[:5], '"' + lines()[5], *lines()[6:]],
         "",
-        "one.csv:6: 1 cells; the header has 3",
+        'one.csv:6: t: "0.0040,5.21427,-218.618" is not a finite number',
     ),
     "huge": ([lines()[0], "0.0000,1e200,1", *lines()[2:]], "", "displacement: 1e+197 in SI"),
     "tiny": (["t,d,v", *(f"{i / 1000:.3f},{i % 7}e-200,{i % 5}" for i in range(600))], "", "is constant"),
@@ -110,7 +110,7 @@ def test_doubts_and_faults_are_named(tmp_path, fault):
 @pytest.mark.parametrize(
     ("beginning", "words"),
     [
-        (b"PK\x03\x04\0\0", "a zip archive, as workbooks of Excel are; export it as CSV"),
+        (b"PK\x03\x04\0\0", "a zip archive; a workbook of Excel must end in .xlsx"),
         (b"\x1f\x8b\0", "compressed by gzip; unpack it"),
         (b"\x89HDF\r\n\x1a\n\0", "end its name with .h5"),
         (b"\x89PNG\r\n\x1a\n\0\0\0\xff\xd8", "no text"),
@@ -181,7 +181,7 @@ def test_channels_in_a_struct(tmp_path, plain, name, inside):
 def test_a_matrix_is_no_channel(tmp_path):
     savemat(tmp_path / "one.mat", {"t": np.eye(3), "d": np.arange(9.0), "v": np.arange(9.0)})
     path = fixture_measured.write(tmp_path, MEASURED.replace("one.csv", "one.mat"))
-    with pytest.raises(measured.MeasuredError, match="holds 3 x 3 numbers; store each channel"):
+    with pytest.raises(measured.MeasuredError, match="holds 3 x 3 numbers; name one column of a matrix"):
         measured.read(path)
 
 

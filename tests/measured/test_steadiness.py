@@ -7,7 +7,6 @@ from tests import fixture_measured
 from tests.command import invoke
 from tests.fixture_measured import FREQUENCY, MEASURED, csv_lines, vibration
 from wedgesweep import measured
-from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.measured.quality import warnings
 from wedgesweep.measured.stationarity import stationarity
 
@@ -121,8 +120,6 @@ def test_keys_of_a_test_mend_its_record(tmp_path):
     (test,) = measured.read(path).tests
     assert (test.time[0], test.time[-1]) == pytest.approx((0.4, 0.9))
     assert warnings(test) == ["0.501 s of 1.014 s are used (from_s, to_s)"]
-    write_netcdf(measured.read(path), tmp_path / "cut.nc")
-    np.testing.assert_allclose(measured.read(tmp_path / "cut.nc").tests[0].time, test.time)
     assert told(written(tmp_path, ODD["drift"][0], "detrend = true\n")) == []
 
 

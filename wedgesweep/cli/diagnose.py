@@ -60,7 +60,7 @@ def diagnose(
 ) -> None:
     """Find the physical effects that a model misses.
 
-    MEASURED is a measured.toml with its CSV files, or the same as one netCDF file; it names the model.
+    MEASURED is a measured.toml, which names the model and the files of the tests.
     """
     from wedgesweep import api, report
     from wedgesweep.sweep.backend import count_jobs

@@ -1,4 +1,4 @@
-"""measured.toml and its CSV files."""
+"""measured.toml and its data files."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,16 +6,15 @@ from typing import Any
 
 from wedgesweep import toml
 from wedgesweep.config import Config
-from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.errors import InputError
 from wedgesweep.files import missing
-from wedgesweep.hints import shortened, show
-from wedgesweep.measured import arrays, channels, overrides, repeated
-from wedgesweep.measured.build import Channels, build_record
+from wedgesweep.hints import shortened
+from wedgesweep.measured import channels, overrides, repeated
+from wedgesweep.measured.build import build_record
 from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
-from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
+from wedgesweep.measured.signals import read_signals
 
 MODEL = "give the path of a config, from here"
 
@@ -106,7 +105,7 @@ def _tests(
     """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
     by_kind = _columns_by_kind(measurement)
-    complete = columns.keys() > {"time"} and all(
+    complete = bool(columns.keys() - {"time"}) and all(
         {"column", "unit"} <= each.keys() for each in columns.values()
     )
     tests: list[TestRecord] = []
@@ -125,39 +124,21 @@ def _tests(
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
         problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, own, model))
+        changed = {name: {**each, **given.get("columns", {}).get(name, {})} for name, each in own.items()}
         if complete and own:
-            tests += _test(path.parent / file, at, given, {**measurement, "columns": own}, problems)
+            tests += _test(path.parent, at, given, {**measurement, "columns": changed}, problems)
     return tests
 
 
 def _test(
-    file: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
+    folder: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
 ) -> list[TestRecord]:
+    file = folder / given["file"]
     if reason := missing(file):
         problems.append(f"{at}.file: {shortened(file)}: {reason}; give the path of a data file, from here")
         return []
-    columns = measurement["columns"]
-    wanted = {channel: each["column"] for channel, each in columns.items()}
-    units = {channel: each["unit"] for channel, each in columns.items()}
-    stated = measurement.get("csv", {})
-    reader = arrays.reader(file)
-    content = reader(file, wanted, problems) if reader else csv_columns.read(file, wanted, problems, stated)
-    if not content.columns:
+    signals, remarks = read_signals(folder, given, measurement, problems)
+    if not signals:
         return []
-    faults = _unit_faults(content.units, units, file)
-    problems.extend(faults)
-    if faults:
-        return []
-    found = Channels(content.columns, units, str(file), content.where(file), content.form)
-    test = build_record(file.stem, given, found, at, problems)
+    test = build_record(file.stem, given, signals, remarks, str(file), at, problems)
     return [test] if test else []
-
-
-def _unit_faults(written: Mapping[str, str], stated: Mapping[str, str], file: Path) -> list[str]:
-    """Units in the file that are not the stated ones."""
-    return [
-        f"{file}: {channel}: the file says {show(written[channel])}, its unit is stated as {show(unit)}; "
-        "correct one of them"
-        for channel, unit in stated.items()
-        if written.get(channel, unit) in units_of(channel) and written.get(channel, unit) != unit
-    ]
