@@ -126,6 +126,13 @@ def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch):
     assert "Error: small.nc: " in invoke("status", "small.nc", code=2)
 
 
+def test_an_empty_file_is_replaced_where_that_is_asked_for(here):
+    (here / "small.nc").touch()
+    assert "small.nc: empty file; --fresh replaces it" in invoke("run", "small.toml", code=2)
+    invoke("run", "small.toml", "--fresh")
+    assert (here / "small.nc").stat().st_size > 0
+
+
 def test_a_null_character_in_a_path(here):
     text = fixture_measured.MEASURED.replace("one.csv", "one\\u0000.csv").replace("model.t", "model\\u0000.t")
     (here / "measured.toml").write_text(text)

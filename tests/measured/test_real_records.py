@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.command import invoke
 from wedgesweep import measured
 
 REAL = Path(__file__).parents[3] / "shared" / "real"
@@ -114,3 +115,41 @@ def test_each_set_is_read_as_delivered(tmp_path, name):
     for test in found.tests:
         assert all(np.isfinite(samples).all() for samples in test.channels.values())
     assert words in "; ".join(found.tests[0].remarks)
+
+
+# What is said of each small set that was made worse in one way: refused with these words, or read with them.
+SMALL = {
+    "delay-loop": (True, "force seems to be late by 0.9"),
+    "delay-steady": (True, "delay_ms = -4.0"),
+    "excel-days": (False, 'looks like days of Excel; write unit = "excel"'),
+    "force-negated-one-loop": (True, "test-01.csv: force gives out energy"),
+    "input-negated": (True, "write sign = -1 at input in [measurement.columns]"),
+    "iso-time": (True, "time stamps are dates"),
+    "jitter": (True, "time stamps scatter by 2.7 % of a step"),
+    "lost-sample": (False, "a step of phase of 6.3 degrees near 0.49"),
+    "nan-outside-selection": (True, "0.7925 s of 1.19"),
+    "stated-amplitude-sign": (
+        True,
+        "test-01.csv, test-03.csv, test-05.csv: the second harmonic has the other",
+    ),
+    "two-rates": (True, "of input (recorded at 2000 Hz)"),
+    "units-row-unknown": (False, 'displacement: the file says "in", its unit is stated as "mm"'),
+}
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_what_is_wrong_with_a_set_is_told(name):
+    valid, words = SMALL[name]
+    told = invoke("check", REAL / "small" / name / "measured.toml", code=0 if valid else 2)
+    assert words in told
+    assert ("valid" in told) == valid
+
+
+def test_days_are_read_as_days(tmp_path):
+    for file in (REAL / "small" / "excel-days").iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    path = tmp_path / "measured.toml"
+    path.write_text(path.read_text().replace('unit = "s"', 'unit = "excel"', 1))
+    days = measured.read(path).tests[0]
+    assert days.time[0] == pytest.approx(0.0, abs=1e-6)
+    assert days.sampling_rate == pytest.approx(400.0, rel=1e-4)

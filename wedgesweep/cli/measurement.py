@@ -56,11 +56,13 @@ def _print_table(measurement: "Measurement") -> None:
 
 def print_warnings(measurement: "Measurement") -> None:
     """Print what is odd in records that are usable all the same."""
-    from wedgesweep.measured.quality import warnings
+    from wedgesweep.measured import consistency, quality
 
     for test in measurement.tests:
-        for warning in warnings(test):
+        for warning in quality.warnings(test):
             log.warning(f"warning: {test.file}: {warning}")
+    for warning in consistency.warnings(measurement):
+        log.warning(f"warning: {warning}")
 
 
 def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:

@@ -6,6 +6,8 @@ import numpy as np
 
 # Deviation from the grid that counts as none, over the step, besides the rounding of the stamps.
 EVEN = 0.01
+# Deviation by rounding, over the resolution of the stamps: 0.5, and the error of the fit.
+ROUNDED = 0.6
 # Largest deviation of stamps that belong to a grid of an even rate, over the step.
 SCATTERED = 0.5
 # A distance above this many steps may be a gap; the level of the stamps is compared over NEAR stamps at
@@ -66,7 +68,7 @@ def _fitted(stamps: np.ndarray, index: np.ndarray, resolution: np.ndarray) -> Cl
     step = float(about @ stamps / (about @ about))
     start = float(stamps.mean() - step * index.mean())
     off = (stamps - start - step * index) / step
-    exact = bool((np.abs(off) <= EVEN + resolution / step).all())
+    exact = bool((np.abs(off) <= EVEN + ROUNDED * resolution / step).all())
     return Clock(start, step, index, off, exact)
 
 

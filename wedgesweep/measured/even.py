@@ -127,8 +127,7 @@ def _cleaned(name: str, signal: Signal, remarks: list[str]) -> Signal:
         fault = f"{signal.time[row + 1]:.12g} s follows {signal.time[row]:.12g} s"
         mend = "put the samples in order, or choose a part (from_s, to_s)"
         raise ClockError(signal.where(row + 1), f"time goes back ({fault}); {mend}")
-    step = typical_step(signal.time)
-    if (steps > 0.0).all() or (step and float(np.median(signal.resolution)) >= COARSE * step):
+    if (steps > 0.0).all() or (typical_step(signal.time) and fit_clock(signal.time, signal.resolution).exact):
         return signal
     stamps, place, count = np.unique(signal.time, return_inverse=True, return_counts=True)
     if stamps.size < FEWEST:

@@ -233,7 +233,10 @@ def selected(signals: Signals, given: Mapping[str, Any], file: str, at: str, pro
             problems.append(f"{at}.{key}: {value:g}, but {span}")
             return signals
         signals = {name: _between(each, start, end) for name, each in signals.items()}
-    faults = {each.where(row): fault for each in signals.values() for row, fault in each.faults.items()}
+    faults: dict[str, str] = {}
+    for each in signals.values():
+        for row, fault in each.faults.items():
+            faults.setdefault(each.where(row), fault)
     listed = [f"{place}: {fault}" for place, fault in faults.items()]
     problems.extend(listed[:LISTED])
     if len(listed) > LISTED:
