@@ -4,7 +4,8 @@ INCH, FOOT, POUND, GRAVITY = 0.0254, 0.3048, 4.4482216152605, 9.80665
 PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
 TURN = 6.283185307179586
 # Units of time whose zero is a date: ISO 8601 texts, serial days of Excel, seconds since 1970.
-DATES = {"datetime": 1.0, "excel": 86400.0, "epoch": 1.0}
+DAY = 86400.0
+DATES = {"datetime": 1.0, "excel": DAY, "epoch": 1.0}
 
 
 def _prefixed(unit: str, prefixes: str) -> dict[str, float]:
@@ -14,7 +15,7 @@ def _prefixed(unit: str, prefixes: str) -> dict[str, float]:
 
 # Sizes in SI of the units of each quantity; angles, of an oscillator that turns, stand in place of lengths.
 UNITS = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "d": 86400.0, **DATES},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, **DATES},
     "displacement": {
         **_prefixed("m", "mucnk"),
         **{"in": INCH, "mil": 1e-3 * INCH, "ft": FOOT},
@@ -48,7 +49,7 @@ SPELLINGS = {
     "\u00b7": " ",
 }
 WORDS = {
-    **{"sec": "s", "secs": "s", "seconds": "s", "second": "s", "msec": "ms", "days": "d", "Nm": "N m"},
+    **{"sec": "s", "secs": "s", "seconds": "s", "second": "s", "msec": "ms", "Nm": "N m"},
     **{
         "\u00b0": "deg",
         "\u00b0/s": "deg/s",

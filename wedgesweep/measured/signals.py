@@ -14,7 +14,7 @@ from wedgesweep.measured.clock import resolution
 from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.readers import ReadError, Table
 from wedgesweep.readers.table import DATETIME, Channel
-from wedgesweep.units import DATES, UNITS, usual
+from wedgesweep.units import DATES, DAY, UNITS, usual
 
 # Number of faulty samples that are listed per file; the others are counted.
 LISTED = 3
@@ -183,7 +183,7 @@ def _stamps(
     if time.get("interval"):
         values = np.cumsum(values) - values[:1]
     if unit in DATES and finite.size:
-        day = UNITS["time"]["d"] / size
+        day = DAY / size
         values = values - day * floor(finite[0] / day)
     return values * size, rounding, column.faults
 

@@ -23,7 +23,7 @@ FULL_SCALE = {
 
 def npz(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     """Arrays by name; each is one channel, or a matrix of which ``name[2]`` is a column."""
-    with np.load(file, allow_pickle=False) as opened:
+    with file.open("rb") as stream, np.load(stream, allow_pickle=False) as opened:
         return {
             name: Channel(opened[name]) if wanted(name, number) else None
             for number, name in enumerate(opened.files, 1)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep.hints import hint, show
+from wedgesweep.units import DAY
 
 # A column by its name or by its number, from 1.
 Name = str | int
@@ -18,7 +19,6 @@ ISO = re.compile(r"\s*\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 # The second of several columns with a name, and a column of a matrix.
 REPEATED, OF_A_MATRIX = re.compile(r"(.*)#(\d+)"), re.compile(r"(.*)\[(\d+)\]")
 BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
-DAY = 86400.0
 
 
 class ReadError(ValueError):
