@@ -199,7 +199,9 @@ def test_binary_files_hold_variables(tmp_path, plain, name, write):
     with pytest.raises(measured.MeasuredError, match=r"no variable .*dd"):
         measured.read(path)
     (tmp_path / name).write_bytes((tmp_path / name).read_bytes()[:100])
-    with pytest.raises(measured.MeasuredError, match=r"cannot be read|give the path|no variable .*valid here: $"):
+    with pytest.raises(
+        measured.MeasuredError, match=r"cannot be read|give the path|no variable .*valid here: $"
+    ):
         measured.read(path)
 
 

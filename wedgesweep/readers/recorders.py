@@ -2,9 +2,11 @@
 
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from wedgesweep.processes import apart
 from wedgesweep.readers.extras import module
 from wedgesweep.readers.table import Channel, Wanted
 
@@ -45,14 +47,23 @@ def uff(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
 
 def mdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     """Channels by name, each with the clock of its raster; several of a name as ``name#2``."""
+    return apart(_mdf, module("asammdf"), file, wanted)
+
+
+def _mdf(asammdf: Any, file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     found: dict[str, Channel | None] = {}
-    with module("asammdf").MDF(file) as opened:
-        number, times = 0, Counter[str]()
-        for group, members in enumerate(opened.groups):
-            for index, channel in enumerate(members.channels):
-                number += 1
-                times[channel.name] += 1
-                name = channel.name if times[channel.name] == 1 else f"{channel.name}#{times[channel.name]}"
-                signal = opened.get(group=group, index=index) if wanted(name, number) else None
-                found[name] = signal and Channel(signal.samples, str(signal.unit or ""), signal.timestamps)
+    times = Counter[str]()
+    with asammdf.MDF(file) as opened:
+        places = [
+            (group, index, channel.name)
+            for group, members in enumerate(opened.groups)
+            for index, channel in enumerate(members.channels)
+        ]
+        for number, (group, index, name) in enumerate(places, 1):
+            times[name] += 1
+            name = name if times[name] == 1 else f"{name}#{times[name]}"
+            found[name] = None
+            if wanted(name, number):
+                signal = opened.get(group=group, index=index)
+                found[name] = Channel(signal.samples, str(signal.unit or ""), signal.timestamps)
     return found
