@@ -81,6 +81,15 @@ def test_missing_samples_are_interpolated(tmp_path, cell):
     assert any("1 sample lost" in remark for remark in test.remarks)
 
 
+def test_a_number_that_stands_for_missing_samples_is_told(tmp_path):
+    d, v = at(EVEN)
+    d[100:900:80] = -9999.0
+    with pytest.raises(
+        measured.MeasuredError, match=r'-9999 occurs 10 times, .* write missing = \["-9999"\]'
+    ):
+        read(tmp_path, rows_of(EVEN, d, v))
+
+
 def test_channels_of_other_rates_meet_on_the_clock_of_the_response(tmp_path):
     fast = np.arange(5000) / 5000.0
     rows = [(t, f"{d:.9g}", "") for t, d in zip(EVEN, at(EVEN)[0], strict=True)]

@@ -177,6 +177,15 @@ def test_a_half_without_any_motion():
     assert found.level_ratio > 100.0
 
 
+def test_where_there_is_no_noise_rounding_makes_no_outliers(tmp_path):
+    t = np.arange(1015) / 1000.0
+    phase = 2.0 * np.pi * FREQUENCY * t
+    d = np.round(np.cos(phase), 5)
+    d[500] += 1e-4
+    rows = csv_lines(t, d, -2.0 * np.pi * FREQUENCY * np.sin(phase))
+    assert told(fixture_measured.write(tmp_path, csv=rows)) == []
+
+
 def test_check_prints_the_warnings(tmp_path):
     printed = invoke("check", written(tmp_path, spiked))
     assert "warning: one.csv: displacement: 1 sample is far" in printed

@@ -106,7 +106,14 @@ def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each loop."""
     from wedgesweep.diagnose.loop.from_measurement import loop_data
+    from wedgesweep.measured.quality import NOISY
 
+    recordings = loop_data(measurement).recordings
+    for test, own in zip(measurement.tests, recordings, strict=True):
+        share = own.noise / float(own.force.std())
+        if share > NOISY:
+            mend = "average it down, or lower lowpass_hz"
+            log.warning(f"warning: {test.file}: noise is {100.0 * share:.0f} % of the force; {mend}")
     return [
         (
             test.file,
@@ -117,7 +124,7 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
             f"{1e3 * own.motion.noise[1]:.3g} mm/s",
             f"{len(own.blocks)}",
         )
-        for test, own in zip(measurement.tests, loop_data(measurement).recordings, strict=True)
+        for test, own in zip(measurement.tests, recordings, strict=True)
     ]
 
 

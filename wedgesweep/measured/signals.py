@@ -21,6 +21,8 @@ LISTED = 3
 # Stamps between these numbers (1954 to 2119 as days of Excel) that are closer than FASTEST are no seconds:
 # vibrations are not sampled at over 500 kHz.
 EXCEL, FASTEST = (2e4, 8e4), 2e-6
+# Distance from the median, over that of all other samples, of a number that may stand for a missing one.
+FAR = 10.0
 CLOCK = "write the column time in [measurement.columns], or rate_hz in [measurement]"
 
 
@@ -123,7 +125,9 @@ class _FileOfSignals:
                 faults.append(f"{self.file}: variables of different numbers of samples: {sizes}")
                 continue
             late = 1e-3 * channel.get("delay_ms", 0.0)
-            samples = _missing(found.values, channel) * _size(name, channel)
+            values = _missing(found.values, channel)
+            faults += [f"{self.file}: {name}: {fault}" for fault in _stand_in_faults(values)]
+            samples = values * _size(name, channel)
             signals[name] = Signal(
                 time - late if late else time, samples, rounding, table.where, {**found.faults, **odd}
             )
@@ -196,6 +200,18 @@ def _missing(values: np.ndarray, channel: Mapping[str, Any]) -> np.ndarray:
         except ValueError:
             continue
     return values
+
+
+def _stand_in_faults(values: np.ndarray) -> list[str]:
+    """A number that is repeated far from all others, as some loggers write it for a missing sample."""
+    numbers = values[np.isfinite(values)]
+    for number in (numbers.min(), numbers.max()) if numbers.size else ():
+        others = numbers[numbers != number]
+        count, middle = numbers.size - others.size, float(np.median(others)) if others.size else 0.0
+        if count > 1 and others.size > count and abs(number - middle) > FAR * np.abs(others - middle).max():
+            fault = f"{number:.12g} occurs {count} times, far from all other samples"
+            return [f'{fault}; if it stands for a missing sample, write missing = ["{number:.12g}"]']
+    return []
 
 
 def _size(name: str, channel: Mapping[str, Any]) -> float:
