@@ -156,6 +156,32 @@ def test_keys_of_one_test_override_those_of_the_channel(tmp_path):
     np.testing.assert_allclose(test.velocity, 1e-3 * at(test.time)[1], atol=1e-9)
 
 
+def test_runs_side_by_side_in_one_file_are_tests_of_their_own(tmp_path):
+    d, v = at(EVEN)
+    short = 800  # the second run ends early
+    first = [f"{t},{a},{b}" for t, a, b in zip(EVEN, d, v, strict=True)]
+    second = [
+        f"{t},{-a},{-b}" if i < short else ",," for i, (t, a, b) in enumerate(zip(EVEN, d, v, strict=True))
+    ]
+    rows = [f"{left},{right}" for left, right in zip(first, second, strict=True)]
+    path = fixture_measured.write(tmp_path, csv=["t,d,v,t,d,v", *rows])
+    text = MEASURED
+    for name in "tdv":
+        text = text.replace(f'"{name}"', f'"{name}#1"')
+    channels = zip(("time", "displacement", "velocity"), "tdv", strict=True)
+    keys = "".join(f'columns.{channel}.column = "{name}#2"\n' for channel, name in channels)
+    path.write_text(f'{text}[[measurement.test]]\nfile = "one.csv"\n{keys}')
+    one, two = measured.read(path).tests
+    assert (one.file, two.file) == ("one.csv", "one.csv#2")
+    assert (one.time.size, two.time.size) == (1000, short)
+    np.testing.assert_allclose(two.displacement, -one.displacement[:short], atol=1e-12)
+
+
+def test_an_override_of_a_channel_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(measured.MeasuredError, match=r"test\[0\].columns.force: no such channel"):
+        read(tmp_path, rows_of(EVEN, *at(EVEN)), "columns.force.sign = -1\n")
+
+
 KEYS = {
     "sign": ("sign = 0.5", "velocity.sign: 0.5 is out of range; it must be 1 or -1"),
     "scale": ("scale = 0", "velocity.scale: 0 is out of range; it must be another number than 0"),

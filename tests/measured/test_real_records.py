@@ -40,10 +40,6 @@ TORSION = """
 time = { column = "Time (s) Run #1", unit = "s" }
 displacement = { column = "Angle, Ch 1+2 (rad) Run #1", unit = "rad" }
 """
-SECOND = """
-columns.time.column = "Time (s) Run #2"
-columns.displacement.column = "Angle, Ch 1+2 (rad) Run #2"
-"""
 SPRING = """
 time = { column = 1, unit = "s" }
 displacement = { column = 2, unit = "mm" }
@@ -76,13 +72,6 @@ SETS = {
         "1500 Hz",
     ),
     "torsion": (TORSION, "transient", "", ["torsion-oscillator/free-decays.csv"], "decimal commas"),
-    "torsion, second run": (
-        TORSION,
-        "transient",
-        SECOND,
-        ["torsion-oscillator/free-decays.csv"],
-        "semicolon",
-    ),
     "torsion, magnet": (
         TORSION,
         "transient",
@@ -115,6 +104,21 @@ def test_each_set_is_read_as_delivered(tmp_path, name):
     for test in found.tests:
         assert all(np.isfinite(samples).all() for samples in test.channels.values())
     assert words in "; ".join(found.tests[0].remarks)
+
+
+def test_ten_runs_side_by_side_are_ten_tests(tmp_path):
+    (tmp_path / "model.toml").write_text(MODEL)
+    tests = "".join(
+        f'[[measurement.test]]\nfile = "{REAL}/torsion-oscillator/free-decays.csv"\nkind = "transient"\n'
+        f'columns.time.column = "Time (s) Run #{run}"\n'
+        f'columns.displacement.column = "Angle, Ch 1+2 (rad) Run #{run}"\n'
+        for run in range(1, 11)
+    )
+    text = f'[measurement]\nmodel = "model.toml"\n[measurement.columns]{TORSION}{tests}'
+    (tmp_path / "measured.toml").write_text(text)
+    found = measured.read(tmp_path / "measured.toml")
+    assert len(found.tests) == 10
+    assert all(test.sampling_rate == pytest.approx(20.0) for test in found.tests)
 
 
 # What is said of each small set that was made worse in one way: refused with these words, or read with them.

@@ -1,6 +1,7 @@
 """measured.toml and its data files."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -109,25 +110,38 @@ def _tests(
         {"column", "unit"} <= each.keys() for each in columns.values()
     )
     tests: list[TestRecord] = []
-    seen: dict[str, int] = {}
+    before: list[dict[str, Any]] = []
     for i, given in enumerate(measurement.get("test", ())):
         at = f"{path}: measurement.test[{i}]"
-        file = given.get("file")
-        if file is None:
+        if "file" not in given:
             continue
-        if file in seen:
-            problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
+        earlier = [other for other in before if other["file"] == given["file"]]
+        if any(_part(other) == _part(given) for other in earlier):
+            fault = (
+                f"repeats test[{before.index(earlier[0])}].file; each test has its own file, columns or part"
+            )
+            problems.append(f"{at}.file: {fault}")
             continue
-        seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in repeated.faults(given, measurement["test"][:i]))
+        number = f"#{len(earlier) + 1}" if earlier else ""
+        problems.extend(f"{at}.{fault}" for fault in repeated.faults(given, before))
+        before.append({**given, "name": f"{given['file']}{number}"})
         own = by_kind[given.get("kind", STEADY)]
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
         problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, own, model))
-        changed = {name: {**each, **given.get("columns", {}).get(name, {})} for name, each in own.items()}
+        changes = given.get("columns", {})
+        unknown = [name for name in changes if name not in own]
+        problems.extend(f"{at}.columns.{name}: no such channel; declare it above" for name in unknown)
+        changed = {name: {**each, **changes.get(name, {})} for name, each in own.items()}
         if complete and own:
-            tests += _test(path.parent, at, given, {**measurement, "columns": changed}, problems)
+            found = _test(path.parent, at, given, {**measurement, "columns": changed}, problems)
+            tests += [replace(each, name=each.name + number, file=each.file + number) for each in found]
     return tests
+
+
+def _part(given: Mapping[str, Any]) -> tuple:
+    """What a test uses of its file."""
+    return given.get("columns"), given.get("from_s"), given.get("to_s")
 
 
 def _test(
