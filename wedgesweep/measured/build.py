@@ -44,7 +44,7 @@ def build_record(
     recorded = max(map(_span, signals.values()))
     signals = selected(signals, given, file, at, problems)
     used = max(map(_span, signals.values()))
-    problems.extend(f"{file}: {fault}" for fault in _size_faults(signals))
+    problems.extend(f"{file}: {fault}" for fault in dict.fromkeys(_size_faults(signals)))
     if len(problems) > before:
         return None
     try:
@@ -104,10 +104,8 @@ FAULTS = {STEADY: _steady_faults, TRANSIENT: transient_faults, LOOP: loop_faults
 
 def _size_faults(signals: Signals) -> Iterator[str]:
     """Signals of sizes that no vibration has, whose squares might not even be numbers."""
-    times = {id(each.time): each.time for each in signals.values()}
-    sizes = [("time", time) for time in times.values()] + [
-        (name, each.samples) for name, each in signals.items()
-    ]
+    sizes = [("time", each.time) for each in signals.values()]
+    sizes += [(name, each.samples) for name, each in signals.items()]
     for name, values in sizes:
         samples = values[np.isfinite(values)]
         largest = float(np.abs(samples).max(initial=0.0))

@@ -1,10 +1,10 @@
 """Channels of a test as they are in their files: samples in SI at time stamps of their own."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import floor, inf
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,7 +30,8 @@ CLOCK = "write the column time in [measurement.columns], or rate_hz in [measurem
 class Signal:
     """Samples (n,) in SI at stamps (n,) in s that are rounded to ``resolution`` (s), shape (n,).
 
-    NaN where missing. ``where`` names the place of a sample in its file; ``faults`` are those of samples.
+    NaN where missing. ``where`` names the place of a sample in its file; ``faults`` are those of samples;
+    ``dated``: whether time counts from a date.
     """
 
     time: np.ndarray
@@ -38,6 +39,7 @@ class Signal:
     resolution: np.ndarray
     where: Callable[[int], str]
     faults: Mapping[int, str] = field(default_factory=dict)
+    dated: bool = False
 
     def of(self, rows: np.ndarray) -> "Signal":
         """Some of the samples, by their indices; the same signal if these are all."""
@@ -66,130 +68,116 @@ def read_signals(
     """
     columns = dict(measurement["columns"])
     time = columns.pop("time", None)
-    by_file: dict[str, dict[str, Any]] = {}
+    files: dict[str, dict[str, Any]] = {}
     for name, channel in columns.items():
-        by_file.setdefault(channel.get("file", given["file"]), {})[name] = channel
+        files.setdefault(channel.get("file", given["file"]), {})[name] = channel
     signals: Signals = {}
     remarks: list[str] = []
-    before = len(problems)
-    for file, own in by_file.items():
+    faults: list[str] = []
+    for file, own in files.items():
         # The clock of another file than the test's may count in another unit.
         clock = time and {**time, "own_unit": file != given["file"]}
         try:
-            signals |= _FileOfSignals(folder / file, own, clock, measurement).read(problems, remarks)
+            signals |= _signals_of(folder / file, own, clock, measurement, faults, remarks)
         except ReadError as error:
-            problems.extend(error.problems)
-    if len(problems) > before:
+            faults.extend(error.problems)
+    problems.extend(faults)
+    if faults:
         return {}, []
-    if any(remark == DATETIME for remark in remarks) or (time and time["unit"] in DATES):
-        origin = next(iter(signals.values())).time
-        origin = origin[np.isfinite(origin)][:1]
-        signals = {name: _later(each, -origin.sum()) for name, each in signals.items()}
-    return signals, [each for each in dict.fromkeys(remarks) if each != DATETIME]
+    starts = [each.time[np.isfinite(each.time)][:1].sum() for each in signals.values() if each.dated]
+    return {
+        name: replace(each, time=each.time - starts[0]) if each.dated else each
+        for name, each in signals.items()
+    }, list(dict.fromkeys(remarks))
 
 
-def _later(signal: Signal, delay: float) -> Signal:
-    return Signal(signal.time + delay, signal.samples, signal.resolution, signal.where, signal.faults)
+def _signals_of(
+    file: Path,
+    channels: Mapping[str, Mapping[str, Any]],
+    time: Mapping[str, Any] | None,
+    measurement: Mapping[str, Any],
+    faults: list[str],
+    remarks: list[str],
+) -> Signals:
+    """Signals of the channels in one file; raises ReadError."""
+    timed = time is not None and not all("rate_hz" in channel for channel in channels.values())
+    read = {**channels, "time": time} if time is not None and timed else dict(channels)
+    missing = [text for channel in read.values() for text in channel.get("missing", ())]
+    stated = {**measurement.get("csv", {}), "missing": missing}
+    table = readers.read(file, [channel["column"] for channel in read.values()], stated)
+    remarks.append(table.form)
+    columns = {name: table.channels[channel["column"]] for name, channel in read.items()}
+    found = [fault for name in read for fault in _unit_faults(name, columns[name], read[name], remarks)]
+    signals = {}
+    try:
+        stamps = _stamps(columns["time"], read["time"], remarks) if timed else None
+        for name, channel in channels.items():
+            rate = channel.get("rate_hz") or (None if timed else measurement.get("rate_hz"))
+            signals[name] = _signal(name, channel, columns[name], (stamps, rate), table)
+    except ValueError as error:
+        found.append(str(error))
+    faults.extend(f"{file}: {fault}" for fault in found)
+    return signals
 
 
-@dataclass(frozen=True)
-class _FileOfSignals:
-    """A file, the channels that are in it, and the column of the time (None: there is none)."""
-
-    file: Path
-    channels: Mapping[str, Mapping[str, Any]]
-    time: Mapping[str, Any] | None
-    measurement: Mapping[str, Any]
-
-    def read(self, problems: list[str], remarks: list[str]) -> Signals:
-        table = self._table()
-        remarks.append(table.form)
-        timed = {"time": self.time} if self.time is not None and self._timed else {}
-        faults = [
-            f"{self.file}: {fault}"
-            for name, channel in {**self.channels, **timed}.items()
-            for fault in _unit_faults(name, table.channels[channel["column"]], channel, remarks)
-        ]
-        clocks: dict[Any, tuple[np.ndarray, np.ndarray, Mapping[int, str]]] = {}
-        signals = {}
-        for name, channel in self.channels.items():
-            found = table.channels[channel["column"]]
-            key = channel.get("rate_hz") or (self._timed or id(found.clock))
-            try:
-                time, rounding, odd = clocks.setdefault(key, self._clock(table, found, channel, remarks))
-            except ValueError as error:
-                faults.append(f"{self.file}: {error}")
-                break
-            if time.size != found.values.size:
-                sizes = f"{channel['column']} {found.values.size}, time {time.size}"
-                faults.append(f"{self.file}: variables of different numbers of samples: {sizes}")
-                continue
-            late = 1e-3 * channel.get("delay_ms", 0.0)
-            values = _missing(found.values, channel)
-            faults += [f"{self.file}: {name}: {fault}" for fault in _stand_in_faults(values)]
-            samples = values * _size(name, channel)
-            signals[name] = Signal(
-                time - late if late else time, samples, rounding, table.where, {**found.faults, **odd}
-            )
-        problems.extend(faults)
-        return {} if faults else signals
-
-    @property
-    def _timed(self) -> bool:
-        """Whether a column of the file holds the time."""
-        return self.time is not None and not all("rate_hz" in each for each in self.channels.values())
-
-    def _table(self) -> Table:
-        names = [channel["column"] for channel in self.channels.values()]
-        specs = list(self.channels.values())
-        if self.time is not None and self._timed:
-            names.append(self.time["column"])
-            specs.append(self.time)
-        missing = [text for spec in specs for text in spec.get("missing", ())]
-        return readers.read(self.file, names, {**self.measurement.get("csv", {}), "missing": missing})
-
-    def _clock(
-        self, table: Table, found: Channel, channel: Mapping[str, Any], remarks: list[str]
-    ) -> tuple[np.ndarray, np.ndarray, Mapping[int, str]]:
-        """Stamps (s), their rounding (s) and the faults of single ones; raises ValueError."""
-        rate = channel.get("rate_hz")
-        if rate is None and self.time is not None:
-            return _stamps(table.channels[self.time["column"]], self.time, remarks)
-        if rate is None and found.clock is not None:
-            return found.clock, np.zeros(found.clock.size), {}
-        rate = rate or self.measurement.get("rate_hz")
-        if rate is None:
-            fault = f"holds no time; {CLOCK}"
-            raise ValueError(fault)
-        time = np.arange(found.values.size) / rate
-        return time, np.zeros(time.size), {}
+def _signal(
+    name: str,
+    channel: Mapping[str, Any],
+    column: Channel,
+    clock: tuple["_Stamps | None", float | None],
+    table: Table,
+) -> Signal:
+    """A channel in SI by the stamps of the file, a rate (Hz) or its own clock; raises ValueError."""
+    stamps, rate = clock
+    values = _missing(column.values, channel)
+    _refuse_stand_ins(name, values)
+    own = np.arange(values.size) / rate if rate else column.clock
+    if own is not None and (rate or stamps is None):
+        stamps = _Stamps(own, np.zeros(own.size))
+    if stamps is None:
+        fault = f"holds no time; {CLOCK}"
+        raise ValueError(fault)
+    if stamps.time.size != values.size:
+        sizes = f"{channel['column']} {values.size}, time {stamps.time.size}"
+        fault = f"variables of different numbers of samples: {sizes}"
+        raise ValueError(fault)
+    late = 1e-3 * channel.get("delay_ms", 0.0)
+    size = units_of(name)[channel["unit"]] * channel.get("scale", 1.0) * channel.get("sign", 1.0)
+    faults = {**column.faults, **stamps.faults}
+    return Signal(stamps.time - late, size * values, stamps.resolution, table.where, faults, stamps.dated)
 
 
-def _stamps(
-    column: Channel, time: Mapping[str, Any], remarks: list[str]
-) -> tuple[np.ndarray, np.ndarray, Mapping[int, str]]:
-    """Stamps (s), their rounding (s), and the faults of single ones; raises ValueError."""
+class _Stamps(NamedTuple):
+    """Stamps (n,) in s, their rounding (n,) in s, faults by sample, and whether they count from a date."""
+
+    time: np.ndarray
+    resolution: np.ndarray
+    faults: Mapping[int, str] = {}
+    dated: bool = False
+
+
+def _stamps(column: Channel, time: Mapping[str, Any], remarks: list[str]) -> _Stamps:
+    """The stamps in a column; raises ValueError."""
     unit = usual(column.unit) if time["own_unit"] and usual(column.unit) in UNITS["time"] else time["unit"]
     values = _missing(column.values, time)
     if column.unit == DATETIME:
-        remarks += [DATETIME, "time stamps are dates"] if unit != DATETIME else [DATETIME]
-        return values, np.full(values.size, 1e-6), column.faults
+        remarks.append("" if unit == DATETIME else "time stamps are dates")
+        return _Stamps(values, np.full(values.size, 1e-6), column.faults, dated=True)
     if unit == DATETIME:
         fault = 'time: unit = "datetime", but its cells are no ISO 8601 dates; write another unit'
         raise ValueError(fault)
-    finite = values[np.isfinite(values)]
-    steps = np.diff(finite[[0, -1]]) * UNITS["time"][unit] / finite.size if finite.size else np.ones(1)
-    if unit not in DATES and EXCEL[0] < finite[:1].sum() < EXCEL[1] and abs(steps[0]) < FASTEST:
-        fault = f'time: {finite[0]:.12g} looks like days of Excel; write unit = "excel" for the time'
-        raise ValueError(fault)
     size, rounding = UNITS["time"][unit], np.zeros(values.size)
+    finite = values[np.isfinite(values)]
     rounding[np.isfinite(values)] = resolution(finite) * size
+    first, span = (float(finite[0]), float(np.ptp(finite)) * size) if finite.size else (0.0, 0.0)
+    if unit not in DATES and EXCEL[0] < first < EXCEL[1] and span < FASTEST * finite.size:
+        fault = f'time: {first:.12g} looks like days of Excel; write unit = "excel" for the time'
+        raise ValueError(fault)
     if time.get("interval"):
         values = np.cumsum(values) - values[:1]
-    if unit in DATES and finite.size:
-        day = DAY / size
-        values = values - day * floor(finite[0] / day)
-    return values * size, rounding, column.faults
+    if unit in DATES:
+        values = values - DAY / size * floor(first * size / DAY)
+    return _Stamps(values * size, rounding, column.faults, unit in DATES)
 
 
 def _missing(values: np.ndarray, channel: Mapping[str, Any]) -> np.ndarray:
@@ -202,22 +190,17 @@ def _missing(values: np.ndarray, channel: Mapping[str, Any]) -> np.ndarray:
     return values
 
 
-def _stand_in_faults(values: np.ndarray) -> list[str]:
-    """A number that is repeated far from all others, as some loggers write it for a missing sample."""
+def _refuse_stand_ins(name: str, values: np.ndarray) -> None:
+    """Raise ValueError for a number far from all others, as some loggers write it for a missing sample."""
     numbers = values[np.isfinite(values)]
     for number in (numbers.min(), numbers.max()) if numbers.size else ():
         others = numbers[numbers != number]
         count, middle = numbers.size - others.size, float(np.median(others)) if others.size else 0.0
         if count > 1 and others.size > count and abs(number - middle) > FAR * np.abs(others - middle).max():
-            fault = f"{number:.12g} occurs {count} times, far from all other samples"
-            return [f'{fault}; if it stands for a missing sample, write missing = ["{number:.12g}"]']
-    return []
-
-
-def _size(name: str, channel: Mapping[str, Any]) -> float:
-    """Size in SI of 1 in the file."""
-    unit: float = units_of(name)[channel["unit"]]
-    return unit * float(channel.get("scale", 1.0)) * float(channel.get("sign", 1.0))
+            fault = f"{name}: {number:.12g} occurs {count} times, far from all other samples"
+            mend = f'if it stands for a missing sample, write missing = ["{number:.12g}"]'
+            message = f"{fault}; {mend}"
+            raise ValueError(message)
 
 
 def _unit_faults(name: str, column: Channel, channel: Mapping[str, Any], remarks: list[str]) -> list[str]:
