@@ -107,18 +107,24 @@ def test_attributes_of_the_wrong_kind(here):
         assert f"other.nc: not the dataset of a sweep: its attribute {name}" in said
 
 
-@pytest.mark.parametrize(("command", "file"), [("status", "small.nc"), ("check", "measured.nc")])
-def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch, command, file):
+def test_whatever_netcdf4_raises_the_file_is_damaged(here, monkeypatch):
     """A file with a damaged dimension ended in an AttributeError of the library."""
     import netCDF4
 
-    (here / file).write_bytes(b"\x89HDF\r\n\x1a\n")
+    (here / "small.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
 
     def raises(*arguments, **options):
         raise AttributeError("'NoneType' object has no attribute 'dimensions'")  # noqa: EM101
 
     monkeypatch.setattr(netCDF4, "Dataset", raises)
-    assert f"Error: {file}: " in invoke(command, file, code=2)
+    assert "Error: small.nc: " in invoke("status", "small.nc", code=2)
+
+
+def test_an_empty_file_is_replaced_where_that_is_asked_for(here):
+    (here / "small.nc").touch()
+    assert "small.nc: empty file; --fresh replaces it" in invoke("run", "small.toml", code=2)
+    invoke("run", "small.toml", "--fresh")
+    assert (here / "small.nc").stat().st_size > 0
 
 
 def test_a_null_character_in_a_path(here):

@@ -38,8 +38,8 @@ FORBIDDEN = {
     ("solvers/",): tuple(f"wedgesweep.{name}" for name in (*MECHANICS, "systems.suspension")),
     ("friction/", "effects/"): ("wedgesweep.systems", "wedgesweep.solvers"),
     ("systems/",): ("wedgesweep.solvers", "wedgesweep.response"),
-    ("config/", "inputs/", "csv_files/"): ("xarray", "joblib", "wedgesweep.sweep", "wedgesweep.measured"),
-    ("inputs/", "csv_files/", "toml.py", "hints.py"): ("wedgesweep.config",),
+    ("config/", "inputs/", "readers/"): ("xarray", "joblib", "wedgesweep.sweep", "wedgesweep.measured"),
+    ("inputs/", "readers/", "toml.py", "hints.py"): ("wedgesweep.config",),
     ("measured/",): (
         "xarray",
         *(f"wedgesweep.{name}" for name in ("simulate", "solvers", "sweep", "synthesize")),

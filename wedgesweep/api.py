@@ -188,7 +188,7 @@ def read_measurement(path: str | Path, model: str | Path | None = None) -> Measu
     Parameters
     ----------
     path : str or Path
-        A measured.toml with a CSV file per test, or the same as one netCDF file.
+        A measured.toml, which names the files of the tests.
     model : str or Path, optional
         Config of the base model, instead of the one that the measurement names.
 

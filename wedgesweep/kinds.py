@@ -24,7 +24,6 @@ WANTED = {
 }
 # netCDF 4 is HDF5.
 NETCDF = (b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-NETCDF_SUFFIXES = (".nc", ".nc4")
 # Also found in a file that is not valid TOML, so that its errors are those of measured data.
 MEASURED_TABLE = rb"""^(?:\xef\xbb\xbf)?\s*(\[+\s*["']?measurement\b|["']?measurement["']?\s*[.=])"""
 TABLES = {MEASURED: MEASURED_TABLE, CONFIG: rb"^(?:\xef\xbb\xbf)?\s*\[\[?sweep\b"}
@@ -41,9 +40,7 @@ def confusion(path: Path, wanted: str) -> str | None:
 
 
 def is_measured(path: Path) -> bool:
-    """Whether a file holds measured data and not a config, by its suffix or its table [measurement]."""
-    if path.suffix in NETCDF_SUFFIXES:
-        return True
+    """Whether a file holds measured data and not a config, by its table [measurement]."""
     try:
         return re.search(MEASURED_TABLE, read_bytes(path), re.MULTILINE) is not None
     except OSError:
@@ -73,8 +70,6 @@ def _kind_of_netcdf(path: Path) -> str | None:
 
     try:
         with netCDF4.Dataset(path) as found:
-            if "tests" in found.groups:
-                return MEASURED
             return SWEEP if "beta" in found.variables else DATASET
     except (OSError, RuntimeError, AttributeError):  # netCDF4 raises any of them
         return DATASET

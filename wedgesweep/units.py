@@ -1,20 +1,69 @@
 """Units of recorded channels."""
 
-# Sizes in SI of the units of each quantity.
+INCH, FOOT, POUND, GRAVITY = 0.0254, 0.3048, 4.4482216152605, 9.80665
+PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
+TURN = 6.283185307179586
+# Units of time whose zero is a date: ISO 8601 texts, serial days of Excel, seconds since 1970.
+DAY = 86400.0
+DATES = {"datetime": 1.0, "excel": DAY, "epoch": 1.0}
+
+
+def _prefixed(unit: str, prefixes: str) -> dict[str, float]:
+    """Sizes in SI of a unit of SI alone, and behind each of the ``prefixes``."""
+    return {unit: 1.0} | {f"{prefix}{unit}": PREFIXES[prefix] for prefix in prefixes}
+
+
+# Sizes in SI of the units of each quantity; angles, of an oscillator that turns, stand in place of lengths.
 UNITS = {
-    "time": {"s": 1.0, "ms": 1e-3},
-    "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
-    "velocity": {"m/s": 1.0, "mm/s": 1e-3},
-    "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": 9.80665},
-    "force": {"N": 1.0, "kN": 1e3},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, **DATES},
+    "displacement": {
+        **_prefixed("m", "mucnk"),
+        **{"in": INCH, "mil": 1e-3 * INCH, "ft": FOOT},
+        **{"rad": 1.0, "mrad": 1e-3, "deg": TURN / 360.0},
+    },
+    "velocity": {
+        **_prefixed("m/s", "mucnk"),
+        **{"km/h": 1.0 / 3.6, "in/s": INCH, "ft/s": FOOT},
+        **{"rad/s": 1.0, "deg/s": TURN / 360.0, "rpm": TURN / 60.0},
+    },
+    "acceleration": {
+        **_prefixed("m/s^2", "muc"),
+        **{"g": GRAVITY, "mg": 1e-3 * GRAVITY, "in/s^2": INCH, "ft/s^2": FOOT},
+        **{"rad/s^2": 1.0, "deg/s^2": TURN / 360.0},
+    },
+    "force": {
+        **_prefixed("N", "mukM"),
+        **{"lbf": POUND, "lb": POUND, "kip": 1e3 * POUND, "kgf": GRAVITY, "gf": 1e-3 * GRAVITY},
+        **{"N m": 1.0, "mN m": 1e-3, "kN m": 1e3},
+    },
 }
 
 # Other spellings, and those used here.
-SPELLINGS = {"/s2": "/s^2", "\u00b2": "^2", "\u00b5": "u", "\u03bc": "u"}
+SPELLINGS = {
+    "/sec": "/s",
+    "/s2": "/s^2",
+    "/s/s": "/s^2",
+    "\u00b2": "^2",
+    "\u00b5": "u",
+    "\u03bc": "u",
+    "\u00b7": " ",
+}
+WORDS = {
+    **{"sec": "s", "secs": "s", "seconds": "s", "second": "s", "msec": "ms", "Nm": "N m"},
+    **{
+        "\u00b0": "deg",
+        "\u00b0/s": "deg/s",
+        "inch": "in",
+        "inches": "in",
+        "G": "g",
+        "lbs": "lb",
+        "rev/min": "rpm",
+    },
+}
 
 
 def usual(unit: str) -> str:
     """A unit in the spelling used here: m/s2 is m/s^2, and a micro sign is u."""
     for other, own in SPELLINGS.items():
         unit = unit.replace(other, own)
-    return unit
+    return WORDS.get(unit, unit)

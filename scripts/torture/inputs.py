@@ -182,9 +182,12 @@ def _array(samples: np.ndarray, draw: Random) -> object:
 
 
 def netcdf(given: Specimens, place: Path, draw: Random) -> Command:
-    """Measured data as one netCDF file."""
-    _netcdf(place / "measured.nc", given.netcdf, draw)
-    return ["check", "measured.nc"]
+    """A netCDF file with odd variables, or of damaged bytes."""
+    _measurement(given, place)
+    text = mutations.toml(given.measured[0]).replace("one.csv", "one.nc")
+    (place / "measured.toml").write_text(text)
+    _netcdf(place / "one.nc", given.netcdf, draw)
+    return ["check", "measured.toml"]
 
 
 def dataset(given: Specimens, place: Path, draw: Random) -> Command:

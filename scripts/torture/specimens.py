@@ -130,28 +130,35 @@ def _csv(samples: np.ndarray) -> str:
 def make(directory: Path, diagnosis: dict[str, bytes]) -> Specimens:
     """Make all specimens; ``diagnosis`` holds the files of a diagnosis by name."""
     from torture.mutations import toml
-    from wedgesweep import config, measured
-    from wedgesweep.measured.netcdf import write_netcdf
+    from wedgesweep import config
     from wedgesweep.sweep.run import Sweep
 
     document = configs()[-1]
     settings = config.parse(toml(document))
     sweep = Sweep(settings, directory / "whole.nc")
     sweep.run(n_jobs=1)
-    (directory / "measured.toml").write_text(toml(MEASURED))
-    (directory / "model.toml").write_text(toml(MODEL))
-    for name, content in csv_files().items():
-        (directory / name).write_text(content)
-    write_netcdf(measured.read(directory / "measured.toml"), directory / "measured.nc")
     return Specimens(
         configs=configs(),
         measured=[MEASURED, RECORDED, TRANSIENT, LOOP],
         csv=csv_files(),
         dataset=(directory / "whole.nc").read_bytes(),
         journal=_journal(Sweep(settings, directory / "half.nc")),
-        netcdf=(directory / "measured.nc").read_bytes(),
+        netcdf=_netcdf(directory / "one.nc"),
         diagnosis=diagnosis,
     )
+
+
+def _netcdf(path: Path) -> bytes:
+    """Return the vibration as the variables of a netCDF file."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w") as root:
+        root.createDimension("sample", SAMPLES)
+        for name, unit, samples in zip("tdv", ("s", "mm", "mm/s"), vibration().T, strict=True):
+            variable = root.createVariable(name, "f8", ("sample",))
+            variable.setncattr("units", unit)
+            variable[:] = samples
+    return path.read_bytes()
 
 
 def _journal(sweep: Any) -> bytes:

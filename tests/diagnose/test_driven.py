@@ -14,7 +14,6 @@ from wedgesweep.diagnose.transient.input_noise import InputNoise, cosines
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput
 from wedgesweep.effects import merge
 from wedgesweep.measured import MeasuredError, read
-from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.sampled_input import from_samples, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
@@ -173,14 +172,6 @@ def test_a_gain_error_of_the_input_is_in_a_motion_that_was_converted_with_it(tmp
     assert gains == pytest.approx(1.03, abs=0.003)
     # What the sensor shows is not what is compared: its own errors cannot be told.
     assert data.candidates(["displacement_gain", "viscous_damping"]) == ("viscous_damping",)
-
-
-def test_the_same_from_one_netcdf_file(tmp_path):
-    path = write(tmp_path, [4e-3 * chirp()])
-    write_netcdf(read(path), tmp_path / "all.nc")
-    again = read(tmp_path / "all.nc")
-    assert again.recorded_input == "displacement"
-    assert again.tests[0].input == pytest.approx(read(path).tests[0].input)
 
 
 def test_a_test_without_input_says_so(tmp_path):

@@ -17,7 +17,6 @@ from wedgesweep.diagnose.smoothing import LowPass, derivative, highest_cutoff, m
 from wedgesweep.effects import merge
 from wedgesweep.errors import InputError
 from wedgesweep.measured import MeasuredError, read
-from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.solvers import imposed_motion
 
 OSCILLATOR = """
@@ -297,16 +296,6 @@ def test_one_record_is_left_out_where_there_are_several(tmp_path):
     found = diagnosed(path, ["viscous_damping", "cubic_stiffness"])
     assert found.gain["scheme"] == "leave-one-record-out"
     assert found.verdict == "named"
-
-
-def test_the_same_from_one_netcdf_file(tmp_path):
-    path = write(tmp_path, effects={"viscous_damping": {"coefficient": 6.0}}, more="")
-    measurement = read(path)
-    write_netcdf(measurement, tmp_path / "all.nc")
-    again = read(tmp_path / "all.nc")
-    assert again.kind == "loop"
-    assert again.tests[0].force == pytest.approx(measurement.tests[0].force)
-    assert again.tests[0].cutoff == measurement.tests[0].cutoff
 
 
 def test_files_figures_and_report(tmp_path):

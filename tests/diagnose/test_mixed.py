@@ -13,7 +13,6 @@ from wedgesweep.diagnose.jacobian import jacobian
 from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.diagnose.steady import simulation
 from wedgesweep.measured import MeasuredError, read
-from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.solvers.periodic import at_rest
 
 MODEL = test_transients.OSCILLATOR
@@ -73,8 +72,6 @@ def test_a_cause_is_named_over_all_kinds(tmp_path):
     assert {"loops.png", "decays.png"} <= {each.name for each in out.iterdir()}
     assert "No figure" not in (out / "report.html").read_text()
     assert "natural" in invoke("check", path)
-    write_netcdf(read(path), tmp_path / "all.nc")
-    assert read(tmp_path / "all.nc").kinds == ("transient", "loop")
 
 
 def test_gains_of_inputs_belong_to_the_tests_that_have_one(tmp_path):

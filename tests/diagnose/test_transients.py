@@ -23,7 +23,6 @@ from wedgesweep.diagnose.search import (
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.effects import EFFECTS, merge
 from wedgesweep.measured import MeasuredError, read
-from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import state_count
 
@@ -272,8 +271,6 @@ def test_files_figures_and_report(tmp_path):
     assert "viscous_damping" in invoke("diagnose", path, "-o", out, "--effects", "viscous_damping")
     assert {"decays.png", "report.html", "gain.png"} <= {each.name for each in out.iterdir()}
     assert "No figure" not in (out / "report.html").read_text()
-    write_netcdf(read(path), tmp_path / "all.nc")
-    assert read(tmp_path / "all.nc").kind == "transient"
 
 
 def test_a_motion_that_does_not_decay_is_refused(tmp_path):

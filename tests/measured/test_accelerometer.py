@@ -5,8 +5,6 @@ import re
 import numpy as np
 
 from tests.command import invoke
-from wedgesweep import measured
-from wedgesweep.measured.netcdf import write_netcdf
 
 MODEL = """\
 [oscillator]
@@ -47,10 +45,3 @@ def test_its_noise_is_told_in_its_unit(tmp_path):
     std, share = re.search(r"([\d.]+) m/s\^2 \(([\d.]+) %\)", invoke("check", write(tmp_path))).groups()
     assert 0.8 * NOISE < float(std) < 1.3 * NOISE
     assert 0.8 * NOISE / 3.2 < 0.01 * float(share) < 1.3 * NOISE / 3.2
-
-
-def test_a_netcdf_file_holds_the_same(tmp_path):
-    path = write(tmp_path)
-    write_netcdf(measured.read(path), tmp_path / "drop.nc")
-    text, binary = (invoke("check", file).partition("tests: ")[2] for file in (path, tmp_path / "drop.nc"))
-    assert text == binary

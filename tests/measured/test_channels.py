@@ -1,13 +1,11 @@
 """Recorded inputs, further channels and numbers that differ from test to test."""
 
-import netCDF4
 import numpy as np
 import pytest
 
 from tests import fixture_measured
 from tests.fixture_measured import MEASURED, vibration
 from wedgesweep import measured
-from wedgesweep.measured.netcdf import write_netcdf
 
 RECORDED = (
     MEASURED.replace("amplitude_mm = 0.3\namplitude_std = 0.01\n", "")
@@ -55,29 +53,12 @@ def test_units_are_read_in_any_spelling_and_written_in_one(tmp_path, unit):
     found = read(tmp_path, text)
     assert found.columns["acceleration"]["unit"] == "m/s^2"
     np.testing.assert_allclose(found.tests[0].acceleration, vibration()[1], rtol=1e-5)
-    write_netcdf(found, tmp_path / "all.nc")
-    with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:
-        assert file["tests/0000/acceleration"].units == "m/s^2"
-        file["tests/0000/acceleration"].units = unit
-    again = measured.read(tmp_path / "all.nc")
-    np.testing.assert_array_equal(again.tests[0].acceleration, found.tests[0].acceleration)
 
 
 def test_a_test_has_numbers_of_its_own(tmp_path):
     found = read(tmp_path, RECORDED + 'model = { "suspension.bolster_mass_kg" = 1.4 }\n')
     assert found.model_of(found.tests[0]).suspension["bolster_mass"] == 1.4
     assert found.model.suspension["bolster_mass"] == 0.7
-
-
-def test_one_netcdf_file_holds_the_same(tmp_path):
-    found = read(tmp_path, RECORDED + 'model = { "suspension.bolster_mass_kg" = 1.4 }\n')
-    write_netcdf(found, tmp_path / "all.nc")
-    again = measured.read(tmp_path / "all.nc")
-    assert again.input_gain_std == 0.02
-    assert again.recorded_input == "acceleration"
-    assert again.columns["displacement"]["of"] == "relative"
-    assert dict(again.tests[0].model) == {"suspension.bolster_mass_kg": 1.4}
-    np.testing.assert_array_equal(again.tests[0].input, found.tests[0].input)
 
 
 @pytest.mark.parametrize(
@@ -143,12 +124,6 @@ def test_harmonics_of_a_stated_input_are_uncertain_where_that_is_stated(tmp_path
     assert read(tmp_path, MEASURED).input_harmonics_std == 0.0
     found = read(tmp_path, STATED)
     assert found.input_harmonics_std == 0.004
-    write_netcdf(found, tmp_path / "all.nc")
-    assert measured.read(tmp_path / "all.nc").input_harmonics_std == 0.004
-    write_netcdf(read(tmp_path, MEASURED), tmp_path / "none.nc")
-    assert measured.read(tmp_path / "none.nc").input_harmonics_std == 0.0
-    with netCDF4.Dataset(tmp_path / "none.nc") as file:
-        assert "input_harmonics_std" not in file.ncattrs()
 
 
 BAD_STDS = [
@@ -167,16 +142,6 @@ def test_a_wrong_uncertainty_of_harmonics_is_told(tmp_path, value, words):
     assert f"measurement.input_harmonics_std: {words}" in told
 
 
-@pytest.mark.parametrize("name", ["input_harmonics_std", "input_gain_std"])
-@pytest.mark.parametrize("value", [-0.1, 1.0, "small", np.array([0.1, 0.2])])
-def test_a_wrong_uncertainty_in_a_netcdf_file_is_told(tmp_path, name, value):
-    write_netcdf(read(tmp_path, STATED), tmp_path / "all.nc")
-    with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:
-        file.setncattr(name, value)
-    with pytest.raises(measured.MeasuredError, match=f"all.nc: {name}: .* is (out of range|not a finite)"):
-        measured.read(tmp_path / "all.nc")
-
-
 def test_only_steady_tests_have_harmonics_of_a_stated_input(tmp_path):
     text = STATED.replace(
         "frequency_hz = 20.0\namplitude_mm = 0.3\namplitude_std = 0.01\n", 'kind = "transient"\n'
@@ -190,8 +155,6 @@ COMMON = "[measurement.uncertain]\ninput_distortion = 0.004\n"
 def test_harmonics_of_a_stated_input_may_be_the_same_in_all_tests(tmp_path):
     found = read(tmp_path, COMMON + MEASURED)
     assert found.uncertain == {"input_distortion": 0.004}
-    write_netcdf(found, tmp_path / "all.nc")
-    assert measured.read(tmp_path / "all.nc").uncertain == {"input_distortion": 0.004}
 
 
 @pytest.mark.parametrize(
@@ -211,11 +174,3 @@ def test_harmonics_of_a_stated_input_may_be_the_same_in_all_tests(tmp_path):
 )  # fmt: skip
 def test_only_stated_inputs_have_the_same_harmonics(tmp_path, text, words):
     assert f"measurement.uncertain.input_distortion: {words}" in problems(tmp_path, COMMON + text)
-
-
-def test_a_recorded_input_in_a_netcdf_file_has_its_harmonics(tmp_path):
-    write_netcdf(read(tmp_path, RECORDED), tmp_path / "all.nc")
-    with netCDF4.Dataset(tmp_path / "all.nc", "a") as file:
-        file.setncattr("input_harmonics_std", 0.004)
-    with pytest.raises(measured.MeasuredError, match="input_harmonics_std: the input is recorded"):
-        measured.read(tmp_path / "all.nc")

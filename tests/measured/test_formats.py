@@ -1,12 +1,15 @@
 """The same vibration in every form that people have it in is the same record, and its form is told."""
 
+import sys
+
+import netCDF4
 import numpy as np
 import pytest
-from scipy.io import savemat
+from scipy.io import savemat, wavfile
 
 from tests import fixture_measured
 from tests.command import invoke
-from tests.fixture_measured import MEASURED, lines, vibration
+from tests.fixture_measured import MEASURED, csv_lines, lines, vibration
 from wedgesweep import measured
 from wedgesweep.measured.decimation import shortened
 
@@ -87,7 +90,7 @@ FAULTS = {
     "stray quote": (
         [*lines()[:5], '"' + lines()[5], *lines()[6:]],
         "",
-        "one.csv:6: 1 cells; the header has 3",
+        'one.csv:6: t: "0.0040,5.21427,-218.618" is not a finite number',
     ),
     "huge": ([lines()[0], "0.0000,1e200,1", *lines()[2:]], "", "displacement: 1e+197 in SI"),
     "tiny": (["t,d,v", *(f"{i / 1000:.3f},{i % 7}e-200,{i % 5}" for i in range(600))], "", "is constant"),
@@ -110,7 +113,7 @@ def test_doubts_and_faults_are_named(tmp_path, fault):
 @pytest.mark.parametrize(
     ("beginning", "words"),
     [
-        (b"PK\x03\x04\0\0", "a zip archive, as workbooks of Excel are; export it as CSV"),
+        (b"PK\x03\x04\0\0", "a zip archive; a workbook of Excel must end in .xlsx"),
         (b"\x1f\x8b\0", "compressed by gzip; unpack it"),
         (b"\x89HDF\r\n\x1a\n\0", "end its name with .h5"),
         (b"\x89PNG\r\n\x1a\n\0\0\0\xff\xd8", "no text"),
@@ -134,6 +137,40 @@ def write_parquet(path, columns):
     pytest.importorskip("pyarrow.parquet").write_table(arrow.table(columns), path)
 
 
+def write_netcdf(path, columns):
+    with netCDF4.Dataset(path, "w", format="NETCDF3_CLASSIC" if path.stem == "old" else "NETCDF4") as root:
+        root.createDimension("sample", columns["t"].size)
+        for (name, values), unit in zip(columns.items(), ("s", "mm", "mm s-1"), strict=True):
+            variable = root.createVariable(name, "f8", ("sample",))
+            variable.setncattr("units", unit.replace(" s-1", "/s"))
+            variable[:] = values
+
+
+def write_xlsx(path, columns):
+    book = pytest.importorskip("openpyxl").Workbook()
+    book.active.append(list(columns))
+    book.active.append(["s", "mm", "mm/s"])
+    for row in zip(*columns.values(), strict=True):
+        book.active.append([float(value) for value in row])
+    book.save(path)
+
+
+def write_tdms(path, columns):
+    nptdms = pytest.importorskip("nptdms")
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment([nptdms.ChannelObject("bench", name, each) for name, each in columns.items()])
+
+
+def write_mdf(path, columns):
+    asammdf = pytest.importorskip("asammdf")
+    with asammdf.MDF(version="4.10") as file:
+        file.append(
+            [asammdf.Signal(values, columns["t"], name=name) for name, values in columns.items()],
+            common_timebase=True,
+        )
+        file.save(path)
+
+
 @pytest.mark.parametrize(
     ("name", "write"),
     [
@@ -141,13 +178,19 @@ def write_parquet(path, columns):
         ("new.mat", write_hdf5),
         ("one.h5", write_hdf5),
         ("one.parquet", write_parquet),
+        ("one.npz", lambda path, columns: np.savez(path, **columns)),
+        ("one.nc", write_netcdf),
+        ("old.nc", write_netcdf),
+        ("one.xlsx", write_xlsx),
+        ("one.tdms", write_tdms),
+        ("one.mf4", write_mdf),
     ],
 )
 def test_binary_files_hold_variables(tmp_path, plain, name, write):
     t, d, v = vibration()
     write(tmp_path / name, {"t": np.round(t, 4), "d": d, "v": v})
     text = MEASURED.replace("one.csv", name)
-    if name.endswith(".h5"):
+    if name.endswith((".h5", ".tdms")):
         for column in "tdv":
             text = text.replace(f'column = "{column}"', f'column = "bench/{column}"')
     path = fixture_measured.write(tmp_path, text)
@@ -156,7 +199,9 @@ def test_binary_files_hold_variables(tmp_path, plain, name, write):
     with pytest.raises(measured.MeasuredError, match=r"no variable .*dd"):
         measured.read(path)
     (tmp_path / name).write_bytes((tmp_path / name).read_bytes()[:100])
-    with pytest.raises(measured.MeasuredError, match=r"cannot be read|give the path"):
+    with pytest.raises(
+        measured.MeasuredError, match=r"cannot be read|give the path|no variable .*valid here: $"
+    ):
         measured.read(path)
 
 
@@ -181,8 +226,168 @@ def test_channels_in_a_struct(tmp_path, plain, name, inside):
 def test_a_matrix_is_no_channel(tmp_path):
     savemat(tmp_path / "one.mat", {"t": np.eye(3), "d": np.arange(9.0), "v": np.arange(9.0)})
     path = fixture_measured.write(tmp_path, MEASURED.replace("one.csv", "one.mat"))
-    with pytest.raises(measured.MeasuredError, match="holds 3 x 3 numbers; store each channel"):
+    with pytest.raises(measured.MeasuredError, match="holds 3 x 3 numbers; name one column of a matrix"):
         measured.read(path)
+
+
+def read_with(path, *changes):
+    text = MEASURED
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return measured.read(fixture_measured.write(path, text)).tests[0]
+
+
+NUMBERED = [('"t"', "1"), ('"d"', "2"), ('"v"', "3")]
+
+
+def test_columns_of_one_array_by_number_and_of_a_matrix_by_name(tmp_path, plain):
+    columns = np.column_stack(vibration())
+    np.save(tmp_path / "one.npy", columns)
+    found = read_with(tmp_path, ("one.csv", "one.npy"), *NUMBERED)
+    np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-5)
+    np.savez(tmp_path / "one.npz", t=columns[:, 0], q=columns)
+    found = read_with(tmp_path, ("one.csv", "one.npz"), ('"d"', '"q[2]"'), ('"v"', '"q[3]"'))
+    np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-5)
+    with pytest.raises(measured.MeasuredError, match=r'variable "q" holds \d+ x 3 numbers, and no column 4'):
+        read_with(tmp_path, ("one.csv", "one.npz"), ('"d"', '"q[4]"'))
+
+
+CLOCKLESS = ('time = { column = "t", unit = "s" }\n', "")
+
+
+@pytest.mark.parametrize(("kind", "scale"), [("i2", 32768.0), ("f4", 1.0), ("u1", 128.0)])
+def test_sound_has_a_clock_and_full_scale_is_one(tmp_path, kind, scale):
+    _, d, v = vibration()
+    full = np.abs(v).max()
+    tracks = np.column_stack([(d - 5.0) / 2.0, v / full]) * (scale if kind == "f4" else 0.99 * scale)
+    wavfile.write(tmp_path / "one.wav", 1000, (tracks + (128.0 if kind == "u1" else 0.0)).astype(kind))
+    size = 1.0 if kind == "f4" else 1.0 / 0.99
+    keys = [('"d", unit = "mm"', f'1, unit = "mm", scale = {2.0 * size}')]
+    keys += [('"v", unit = "mm/s"', f'2, unit = "mm/s", scale = {full * size}')]
+    found = read_with(tmp_path, ("one.csv", "one.wav"), CLOCKLESS, *keys)
+    assert found.sampling_rate == pytest.approx(1000.0)
+    np.testing.assert_allclose(
+        found.displacement, 1e-3 * (d - 5.0), atol=2e-3 / min(scale, 128.0) + 1e-9 * scale
+    )
+
+
+def test_universal_files_hold_numbered_sets(tmp_path, plain):
+    pyuff = pytest.importorskip("pyuff")
+    t, d, v = vibration()
+    file = pyuff.UFF(str(tmp_path / "one.uff"))
+    for values in (d, v):
+        entry = pyuff.prepare_58(
+            binary=0, func_type=1, ver_num=0, load_case_id=0, rsp_node=1, rsp_dir=1, ref_node=1, ref_dir=1,
+            ord_data_type=4, num_pts=t.size, abscissa_spacing=1, abscissa_min=0.0, abscissa_inc=0.001,
+            z_axis_value=0.0, data=values, x=t, id1="a", id2="b", id3="c", id4="d", id5="e",
+            rsp_ent_name="r", ref_ent_name="s", abscissa_spec_data_type=17, ordinate_spec_data_type=8,
+            orddenom_spec_data_type=0, z_axis_spec_data_type=0,
+        )  # fmt: skip
+        file.write_sets(entry, "add")
+    found = read_with(tmp_path, ("one.csv", "one.uff"), CLOCKLESS, ('"d"', "1"), ('"v"', "2"))
+    np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-4)
+
+
+def test_columns_of_a_workbook_by_letter_and_sheet(tmp_path, plain):
+    book = pytest.importorskip("openpyxl").Workbook()
+    book.create_sheet("Run 2")
+    for row in zip(*vibration(), strict=True):
+        book["Run 2"].append([None, *map(float, row)])
+    book.save(tmp_path / "one.xlsx")
+    sheet = [(f'"{name}"', f'"Run 2!{letter}"') for name, letter in zip("tdv", "BCD", strict=True)]
+    found = read_with(tmp_path, ("one.csv", "one.xlsx"), *sheet)
+    np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("ending", "library", "extra"),
+    [
+        ("xlsx", "openpyxl", "xlsx"),
+        ("tdms", "nptdms", "tdms"),
+        ("uff", "pyuff", "uff"),
+        ("mf4", "asammdf", "mdf"),
+        ("h5", "h5py", "hdf5"),
+        ("parquet", "pyarrow.parquet", "parquet"),
+    ],
+)
+def test_a_library_that_is_absent_is_named(tmp_path, monkeypatch, ending, library, extra):
+    monkeypatch.setitem(sys.modules, library, None)
+    (tmp_path / f"one.{ending}").touch()
+    with pytest.raises(measured.MeasuredError, match=rf"pip install 'wedgesweep\[{extra}\]'"):
+        read_with(tmp_path, ("one.csv", f"one.{ending}"))
+
+
+def cells_of(rows):
+    return [row.split(",") for row in rows[1:]]
+
+
+def headerless(rows):
+    return [row.replace(",", "\t") for row in rows[1:]]
+
+
+def of_a_logger(rows):
+    """Lines of text, a repeated time column, units of which one is not known, and rows that end early."""
+    head = [
+        "Time,2020-03-16,Time,2020-03-16",
+        "Interval,0.001,Interval,0.001",
+        "Name,d,Name,v",
+        "Unit,V,Unit,mm/s",
+    ]
+    cells = cells_of(rows)
+    return head + [f"{t},{d},{t},{v}" for t, d, v in cells] + [f"{cells[-1][0]},{cells[-1][1]}"]
+
+
+MORE_FORMS = {
+    "headerless": (headerless, NUMBERED),
+    "numbers behind a header": (list, NUMBERED),
+    "trailing separators": (lambda rows: [f"{row},," for row in rows], []),
+    "units behind names": (lambda rows: ["t [s],d (mm),v [mm/s]", *rows[1:]], []),
+    "logger by number": (of_a_logger, [('"t"', "1"), ('"d"', "2"), ('"v"', "4")]),
+    "logger by name": (of_a_logger, [('"t"', '"Name#2"')]),
+    "two header rows": (lambda rows: ["t,-,-", "-,d,v", *rows[1:]], []),
+    "thousands": (
+        lambda rows: [
+            rows[0],
+            *(f"{t},{f'{1e3 * float(d):,.2f}'.replace(',', chr(39))},{v}" for t, d, v in cells_of(rows)),
+        ],
+        [
+            ('unit = "mm" ', 'unit = "um" '),
+            ("[[measurement.test]]", '[measurement.csv]\nthousands = "apostrophe"\n[[measurement.test]]'),
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("form", MORE_FORMS)
+def test_columns_are_found_in_any_layout(tmp_path, plain, form):
+    edit, changes = MORE_FORMS[form]
+    path = fixture_measured.write(tmp_path, csv=edit(lines()))
+    text = MEASURED
+    for old, new in changes:
+        text = text.replace(old, new)
+    path.write_text(text)
+    found = measured.read(path).tests[0]
+    assert np.abs(found.displacement - plain.displacement).max() < 1e-12
+    assert np.abs(found.velocity - plain.velocity).max() < 1e-12
+
+
+def test_a_unit_that_is_unknown_is_told(tmp_path):
+    found = measured.read(fixture_measured.write(tmp_path, csv=["t [s],d (V),v", *lines()[1:]])).tests[0]
+    assert found.remarks == ('displacement: unit "V" of the file is unknown, and not compared with mm',)
+    with pytest.raises(measured.MeasuredError, match='the file says "in", its unit is stated as "mm"'):
+        measured.read(fixture_measured.write(tmp_path, csv=["t [s],d (in),v", *lines()[1:]]))
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"), [("in", 0.0254), ("cm", 0.01), ("mil", 2.54e-5), ("ft", 0.3048), ("nm", 1e-9)]
+)
+def test_units_have_their_sizes(tmp_path, unit, size):
+    t, d, v = vibration()
+    path = fixture_measured.write(
+        tmp_path, MEASURED.replace('unit = "mm" ', f'unit = "{unit}" '), csv=csv_lines(t, 1e-3 * d / size, v)
+    )
+    np.testing.assert_allclose(measured.read(path).tests[0].displacement, 1e-3 * d, rtol=1e-4)
 
 
 def test_long_records_are_decimated_and_their_harmonics_stay():

@@ -7,7 +7,6 @@ from tests import fixture_measured
 from tests.command import invoke
 from tests.fixture_measured import FREQUENCY, MEASURED, csv_lines, vibration
 from wedgesweep import measured
-from wedgesweep.measured.netcdf import write_netcdf
 from wedgesweep.measured.quality import warnings
 from wedgesweep.measured.stationarity import stationarity
 
@@ -121,8 +120,6 @@ def test_keys_of_a_test_mend_its_record(tmp_path):
     (test,) = measured.read(path).tests
     assert (test.time[0], test.time[-1]) == pytest.approx((0.4, 0.9))
     assert warnings(test) == ["0.501 s of 1.014 s are used (from_s, to_s)"]
-    write_netcdf(measured.read(path), tmp_path / "cut.nc")
-    np.testing.assert_allclose(measured.read(tmp_path / "cut.nc").tests[0].time, test.time)
     assert told(written(tmp_path, ODD["drift"][0], "detrend = true\n")) == []
 
 
@@ -178,6 +175,15 @@ def test_a_half_without_any_motion():
     found = stationarity(np.where(t < 0.5, np.cos(2.0 * np.pi * 20.0 * t), 0.0), 1000.0)
     assert np.isnan(found.moved)
     assert found.level_ratio > 100.0
+
+
+def test_where_there_is_no_noise_rounding_makes_no_outliers(tmp_path):
+    t = np.arange(1015) / 1000.0
+    phase = 2.0 * np.pi * FREQUENCY * t
+    d = np.round(np.cos(phase), 5)
+    d[500] += 1e-4
+    rows = csv_lines(t, d, -2.0 * np.pi * FREQUENCY * np.sin(phase))
+    assert told(fixture_measured.write(tmp_path, csv=rows)) == []
 
 
 def test_check_prints_the_warnings(tmp_path):

@@ -57,7 +57,7 @@ def schema(output: Path) -> None:
 @click.command()
 @CONFIG
 def check(config_path: Path) -> None:
-    """Check a config, or measured data (measured.toml or .nc).
+    """Check a config, or measured data (measured.toml).
 
     For a config, a few timed cases give an estimate of the time and memory that a run needs. For measured
     data, the tests are listed with their frequencies and noise.

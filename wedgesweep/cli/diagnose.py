@@ -64,7 +64,7 @@ def diagnose(
 ) -> None:
     """Find the physical effects that a model misses.
 
-    MEASURED is a measured.toml with its CSV files, or the same as one netCDF file; it names the model.
+    MEASURED is a measured.toml, which names the model and the files of the tests.
     The result is written as it is reached: an interrupt (ctrl-C) or the time limit ends in a report of what
     was found.
     """

@@ -74,11 +74,13 @@ def _print_table(measurement: "Measurement") -> None:
 
 def print_warnings(measurement: "Measurement") -> None:
     """Print what is odd in records that are usable all the same."""
-    from wedgesweep.measured.quality import warnings
+    from wedgesweep.measured import consistency, quality
 
     for test in measurement.tests:
-        for warning in warnings(test):
+        for warning in quality.warnings(test):
             log.warning(f"warning: {test.file}: {warning}")
+    for warning in consistency.warnings(measurement):
+        log.warning(f"warning: {warning}")
 
 
 def _transient_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
@@ -122,7 +124,14 @@ def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each loop."""
     from wedgesweep.diagnose.loop.from_measurement import loop_data
+    from wedgesweep.measured.quality import NOISY
 
+    recordings = loop_data(measurement).recordings
+    for test, own in zip(measurement.tests, recordings, strict=True):
+        share = own.noise / float(own.force.std())
+        if share > NOISY:
+            mend = "average it down, or lower lowpass_hz"
+            log.warning(f"warning: {test.file}: noise is {100.0 * share:.0f} % of the force; {mend}")
     return [
         (
             test.file,
@@ -133,7 +142,7 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
             f"{1e3 * own.motion.noise[1]:.3g} mm/s",
             f"{len(own.blocks)}",
         )
-        for test, own in zip(measurement.tests, loop_data(measurement).recordings, strict=True)
+        for test, own in zip(measurement.tests, recordings, strict=True)
     ]
 
 

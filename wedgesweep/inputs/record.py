@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.errors import ConfigError
 from wedgesweep.files import read_bytes
 from wedgesweep.hints import shortened
 from wedgesweep.inputs.sampled import Input
 from wedgesweep.inputs.units import RECORDED
+from wedgesweep.readers import ReadError, text
 
 # Distances between samples may differ by this share.
 EVEN = 1e-3
@@ -33,11 +33,16 @@ def digest(file: Path) -> str:
 
 def columns(given: Mapping[str, Any]) -> tuple[np.ndarray, float]:
     """Samples (SI units) and step (s) of the file of a table [input]; raises ConfigError."""
-    problems: list[str] = []
     wanted = {"input": given["column"]} | ({"time": given["time"]} if "time" in given else {})
-    found = csv_columns.read(Path(given["file"]), wanted, problems).columns
-    if problems:
-        raise ConfigError([f"input: {problem}" for problem in problems])
+    try:
+        table = text.read(Path(given["file"]), tuple(wanted.values()))
+    except ReadError as error:
+        raise ConfigError([f"input: {problem}" for problem in error.problems]) from error
+    found = {key: table.channels[name].values for key, name in wanted.items()}
+    for key, samples in found.items():
+        if not np.isfinite(samples).all():
+            place = table.where(int(np.argmin(np.isfinite(samples))))
+            raise ConfigError([f"input: {place}: {wanted[key]} is not a finite number; write one"])
     values = found["input"] * RECORDED[given["quantity"]][given["unit"]]
     if values.size < 2:
         raise ConfigError([f"input.file: {given['file']}: holds {values.size} samples; it must be 2 or more"])

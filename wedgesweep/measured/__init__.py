@@ -1,9 +1,8 @@
-"""Measured vibration: a measured.toml with one CSV per test, or the same as one netCDF file."""
+"""Measured vibration: a measured.toml and the files of its tests."""
 
 from pathlib import Path
 
-from wedgesweep.kinds import NETCDF_SUFFIXES
-from wedgesweep.measured import netcdf, toml_and_csv
+from wedgesweep.measured import document
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.plausibility import amplitude_faults, noise_faults
 
@@ -16,7 +15,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     Parameters
     ----------
     path : Path
-        A measured.toml or a netCDF file.
+        A measured.toml.
     model : Path, optional
         Config of the base model, instead of the one that the data name.
 
@@ -30,8 +29,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
     MeasuredError
         Lists everything that is wrong: in the file, in the data of each test and in the model.
     """
-    reader = netcdf if path.suffix in NETCDF_SUFFIXES else toml_and_csv
-    measurement = reader.read(path, model)
+    measurement = document.read(path, model)
     if faults := noise_faults(measurement) or amplitude_faults(measurement):
         raise MeasuredError([f"{path}: {fault}" for fault in faults])
     return measurement

@@ -1,13 +1,12 @@
 """Builds the record of a test in SI units from the numbers in a file; faults name their place."""
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from math import inf, nan
+from collections.abc import Iterator, Mapping
+from math import nan
 from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured import decimation, sampling
+from wedgesweep.measured import decimation
 from wedgesweep.measured.cycles import slope_of_means
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
@@ -16,102 +15,76 @@ from wedgesweep.measured.declarations import (
     LOOP,
     STEADY,
     TRANSIENT,
-    units,
 )
+from wedgesweep.measured.even import ClockError, evened
 from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
 from wedgesweep.measured.kinds import loop_faults, transient_faults
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.quality import trend_faults
+from wedgesweep.measured.signals import Signal, Signals, selected
 from wedgesweep.measured.stationarity import stationarity_faults, without_trend
 from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
-from wedgesweep.units import UNITS
 
 # Bounds of a channel in SI units, and the variation that is rounding, over its size.
 LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13
 
 
-@dataclass(frozen=True)
-class Channels:
-    """Columns of a test as in its file, shape (n,) each, with their units.
-
-    ``file`` names the file and ``where`` the place of a sample in it; ``form`` says how it is written where
-    that is unusual.
-    """
-
-    columns: Mapping[str, np.ndarray]
-    units: Mapping[str, str]
-    file: str
-    where: Callable[[int], str]
-    form: str = ""
-
-    def si(self, channel: str) -> np.ndarray | None:
-        """Samples of a channel in SI units, or None."""
-        if channel not in self.columns:
-            return None
-        return self.columns[channel] * units(channel)[self.units[channel]]
-
-    def between(self, start: float, end: float) -> "Channels":
-        """The samples of a span of time (s)."""
-        kept = np.flatnonzero((self.seconds >= start) & (self.seconds <= end))
-        columns = {name: samples[kept] for name, samples in self.columns.items()}
-        return replace(self, columns=columns, where=lambda sample: self.where(int(kept[sample])))
-
-    def without_trend(self, frequency: float) -> "Channels":
-        """The same without the drift of channels that vibrate at a frequency (Hz; NaN: at none)."""
-        time = self.seconds
-        straight = {
-            name: _straightened(time, samples, frequency)
-            for name, samples in self.columns.items()
-            if name != "time"
-        }
-        return replace(self, columns={**self.columns, **straight})
-
-    @property
-    def seconds(self) -> np.ndarray:
-        """The time stamps (n,) in s."""
-        return self.columns["time"] * UNITS["time"][self.units["time"]]
-
-
 def build_record(
-    name: str, given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]
+    name: str,
+    given: Mapping[str, Any],
+    signals: Signals,
+    remarks: list[str],
+    file: str,
+    at: str,
+    problems: list[str],
 ) -> TestRecord | None:
     """Build the record of a test from its checked keys ``given``, found at ``at``; None after a fault."""
     before = len(problems)
-    recorded, channels = channels, _selected(given, channels, at, problems)
-    problems.extend(f"{channels.file}: {fault}" for fault in _size_faults(channels))
+    recorded = max(map(_span, signals.values()))
+    signals = selected(signals, given, file, at, problems)
+    used = max(map(_span, signals.values()))
+    problems.extend(f"{file}: {fault}" for fault in dict.fromkeys(_size_faults(signals)))
     if len(problems) > before:
         return None
-    grid = sampling.even_grid(channels.columns["time"], channels.where, problems)
-    if len(problems) > before:
+    try:
+        even = evened(signals)
+    except ClockError as error:
+        problems.append(str(error))
         return None
-    frequency = _frequency(given, channels, grid)
+    time, columns = even.time, dict(even.columns)
+    frequency = _frequency(given, columns, time)
     if given.get("detrend", False):
-        channels = channels.without_trend(frequency)
-    cut = channels.seconds.size != recorded.seconds.size
-    channels, grid, thinned = _shortened(given, channels, grid, frequency)
+        columns = {each: _straightened(time, samples, frequency) for each, samples in columns.items()}
+    columns, time, thinned = _shortened(given, columns, time, frequency)
     amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
-        file=given.get("file", channels.file),
+        file=given.get("file", file),
         frequency=given.get("frequency_hz"),
         amplitude=amplitudes[0] if amplitudes else None,
         amplitude_std=given.get("amplitude_std", 0.0),
-        time=grid * UNITS["time"][channels.units["time"]],
-        displacement=channels.si("displacement"),
-        velocity=channels.si("velocity"),
-        acceleration=channels.si("acceleration"),
-        input=channels.si(INPUT),
+        time=time,
+        displacement=columns.get("displacement"),
+        velocity=columns.get("velocity"),
+        acceleration=columns.get("acceleration"),
+        input=columns.get(INPUT),
         model=given.get("model", {}),
         kind=given.get("kind", STEADY),
-        force=channels.si("force"),
+        force=columns.get("force"),
         cutoff=given.get("lowpass_hz"),
-        recorded_s=float(np.ptp(recorded.seconds)) if cut else None,
+        recorded_s=recorded if used < recorded else None,
         repeat_of=given.get("repeat_of"),
-        remarks=tuple(filter(None, (channels.form, thinned))),
+        remarks=tuple(filter(None, (*remarks, *even.remarks, thinned))),
     )
-    problems.extend(FAULTS[test.kind](test, channels.file, at))
+    problems.extend(FAULTS[test.kind](test, file, at))
     return None if len(problems) > before else test
+
+
+def _span(signal: Signal) -> float:
+    """Length (s) of a signal."""
+    times = signal.time[np.isfinite(signal.time)]
+    return float(np.ptp(times)) if times.size else 0.0
 
 
 def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
@@ -129,56 +102,39 @@ def _steady_faults(test: TestRecord, file: str, at: str) -> list[str]:
 FAULTS = {STEADY: _steady_faults, TRANSIENT: transient_faults, LOOP: loop_faults}
 
 
-def _selected(given: Mapping[str, Any], channels: Channels, at: str, problems: list[str]) -> Channels:
-    """The part of the record that the keys of a test select."""
-    start, end = given.get("from_s", -inf), given.get("to_s", inf)
-    if (start, end) == (-inf, inf) or not start < end:  # the latter is a fault of the keys
-        return channels
-    first, last = channels.seconds.min(), channels.seconds.max()
-    if not (start < last and end > first):
-        key, value = ("to_s", end) if end <= first else ("from_s", start)
-        span = f"{channels.file} goes from {first:.6g} to {last:.6g} s; choose a time within"
-        problems.append(f"{at}.{key}: {value:g}, but {span}")
-        return channels
-    return channels.between(start, end)
-
-
-def _size_faults(channels: Channels) -> Iterator[str]:
-    """Channels of sizes that no vibration has, whose squares might not even be numbers."""
-    for channel, column in channels.columns.items():
-        samples = column * units(channel)[channels.units[channel]]
+def _size_faults(signals: Signals) -> Iterator[str]:
+    """Signals of sizes that no vibration has, whose squares might not even be numbers."""
+    sizes = [("time", each.time) for each in signals.values()]
+    sizes += [(name, each.samples) for name, each in signals.items()]
+    for name, values in sizes:
+        samples = values[np.isfinite(values)]
         largest = float(np.abs(samples).max(initial=0.0))
         if largest > LARGEST:
-            yield f"{channel}: {largest:.3g} in SI units is too large; correct the unit or the file"
-        elif samples.size and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
-            yield f"{channel} is constant; there is no vibration in it"
+            yield f"{name}: {largest:.3g} in SI units is too large; correct the unit or the file"
+        elif samples.size and name != "time" and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
+            yield f"{name} is constant; there is no vibration in it"
 
 
-def _frequency(given: Mapping[str, Any], channels: Channels, grid: np.ndarray) -> float:
+def _frequency(given: Mapping[str, Any], columns: Mapping[str, np.ndarray], time: np.ndarray) -> float:
     """Frequency (Hz) of a steady record where its drift or its length matters, else NaN."""
-    if given.get("kind", STEADY) != STEADY or not (given.get("detrend") or grid.size > MOST_SAMPLES):
+    if given.get("kind", STEADY) != STEADY or not (given.get("detrend") or time.size > MOST_SAMPLES):
         return nan
-    names = [name for name in channels.columns if name != "time"]
-    leading = channels.columns[INPUT if INPUT in names else names[0]][:MOST_SAMPLES]
-    seconds = UNITS["time"][channels.units["time"]]
+    leading = columns[INPUT] if INPUT in columns else next(iter(columns.values()))
     stated: float | None = given.get("frequency_hz")
-    return stated or estimate_frequency(grid[:MOST_SAMPLES] * seconds, without_trend(leading))
+    return stated or estimate_frequency(time[:MOST_SAMPLES], without_trend(leading[:MOST_SAMPLES]))
 
 
 def _straightened(time: np.ndarray, samples: np.ndarray, frequency: float) -> np.ndarray:
-    """Samples less their drift about the middle of the record."""
+    """Samples less their drift about the middle of the record; ``frequency`` in Hz, NaN: unknown."""
     if not FEWEST_CYCLES <= frequency * (time[-1] - time[0]) <= 0.25 * time.size:
         return without_trend(samples)
     return samples - slope_of_means(time, samples, frequency) * (time - time.mean())
 
 
 def _shortened(
-    given: Mapping[str, Any], channels: Channels, grid: np.ndarray, frequency: float
-) -> tuple[Channels, np.ndarray, str]:
+    given: Mapping[str, Any], columns: dict[str, np.ndarray], time: np.ndarray, frequency: float
+) -> tuple[dict[str, np.ndarray], np.ndarray, str]:
     """A steady record of at most MOST_SAMPLES, the times, and a remark if samples were left out."""
-    if grid.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
-        return channels, grid, ""
-    columns = {name: samples for name, samples in channels.columns.items() if name != "time"}
-    seconds = UNITS["time"][channels.units["time"]]
-    columns, grid, remark = decimation.shortened(columns, grid, frequency * seconds, MOST_SAMPLES)
-    return replace(channels, columns={"time": grid, **columns}), grid, remark
+    if time.size <= MOST_SAMPLES or given.get("kind", STEADY) != STEADY:
+        return columns, time, ""
+    return decimation.shortened(columns, time, frequency, MOST_SAMPLES)

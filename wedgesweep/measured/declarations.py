@@ -1,17 +1,17 @@
 """Declaration of every key of measured.toml."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, nan
 from typing import Any
 
 from wedgesweep import toml
 from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Unit, Whole
 from wedgesweep.config.tables import Table, TableList, table
-from wedgesweep.csv_files.dialect import DECIMALS, DELIMITERS
 from wedgesweep.effects import EFFECTS, OF_THE_MODEL, SCALES
 from wedgesweep.hints import show
 from wedgesweep.quantity import Quantity
+from wedgesweep.readers.dialect import DECIMALS, DELIMITERS, THOUSANDS
 from wedgesweep.uncertain import DISTORTION
 from wedgesweep.units import UNITS
 
@@ -69,7 +69,17 @@ MODEL_ERROR = Quantity(
 
 @dataclass(frozen=True, kw_only=True)
 class Inline(Table):
-    """A table that is written inline, in braces."""
+    """A channel, which is written inline, in braces."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
+        read = super().read(value, path, problems)
+        for key, valid in (
+            ("sign", read.get("sign") in (None, 1.0, -1.0)),
+            ("scale", read.get("scale") != 0.0),
+        ):
+            if not valid:
+                problems.append(f"{path}.{key}: {read[key]:g} is out of range; it must be {VALID[key]}")
+        return read
 
     @property
     def written(self) -> str:
@@ -96,6 +106,37 @@ class Overrides(Key):
 
     def shape(self) -> dict[str, Any]:
         return {"type": "object", "additionalProperties": {"type": "number"}}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column(Key):
+    """A column by its name or by its number, from 1."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> str | int | None:
+        if isinstance(value, int) and not isinstance(value, bool) and value >= 1:
+            return value
+        if isinstance(value, str) and value and "\0" not in value:
+            return value
+        fault = f'{show(value)} is no column; write its name in "quotes", or its number from 1'
+        problems.append(f"{path}: {fault}")
+        return None
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": ["string", "integer"], "minimum": 1}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Texts(Key):
+    """A list of strings."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> list[str] | None:
+        if isinstance(value, list) and all(isinstance(each, str) for each in value):
+            return value
+        problems.append(f'{path}: {show(value)} is no list of strings; write ["NA", "-9999"]')
+        return None
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": "array", "items": {"type": "string"}}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,15 +185,42 @@ def units(channel: str, quantity: str | None = None) -> dict[str, float]:
     return {name: size for each in QUANTITIES for name, size in UNITS[each].items()}
 
 
+SCALE = Quantity("scale", nan, "unit per number in the file: 200 where it holds volts, at 200 N/V")
+SIGN = Quantity("sign", nan, "1, or -1 for a channel of the other sign", minimum=-1.0, maximum=1.0)
+DELAY = Quantity("delay_ms", nan, "time by which this channel is late")
+RATE = Quantity("rate_hz", nan, "sampling rate, where no column holds the time", above=0.0)
+VALID = {"sign": "1 or -1", "scale": "another number than 0"}
+# Keys that every channel has beside its column and its unit.
+COMMON = (
+    Text(key="file", meaning="file of this channel; by default that of the test", optional=True),
+    Number.of(SCALE, optional=True),
+    Number.of(SIGN, optional=True),
+    Number.of(DELAY, optional=True),
+    Number.of(RATE, optional=True),
+    Texts(key="missing", meaning="texts of missing samples, beside NA, NaN, #N/A", optional=True),
+)
+INTERVAL = Flag(
+    key="interval", meaning="whether the column holds the time since the row before", default=False
+)
+
+
 def _channel(name: str, meaning: str, column: str, unit: str, *more: Key, optional: bool = False) -> Inline:
     keys = (
-        Text(key="column", meaning="header name in the CSV files", example=column),
+        Column(key="column", meaning="name of the column, or its number", example=column),
         Unit(key="unit", meaning="its unit", choices=tuple(units(name)), example=unit),
         *more,
+        *((INTERVAL, COMMON[-1]) if name == "time" else COMMON),
     )
     groups = tuple((key,) for key in keys)
     kind = Input if name == INPUT else Inline
     return kind(key=name, meaning=meaning, groups=groups, optional=optional)
+
+
+def _override(channel: Key) -> Table:
+    """The same channel in one test: every key is optional there."""
+    assert isinstance(channel, Table)
+    groups = tuple((replace(key, optional=True, default=None),) for key in channel.keys.values())
+    return replace(channel, groups=groups, optional=True)
 
 
 def _uncertain(name: str) -> Number:
@@ -189,8 +257,8 @@ DERIVED = Flag(key="derived", meaning="whether it is computed from the displacem
 
 COLUMNS = table(
     "columns",
-    "header name and unit of each channel",
-    _channel("time", "time at a constant sampling rate", "t", "s"),
+    "column and unit of each channel",
+    _channel("time", "time stamps", "t", "s", optional=True),
     _channel("displacement", "side frame minus bolster, x - y", "d", "mm", OF, optional=True),
     _channel("velocity", "relative velocity, x' - y'", "v", "mm/s", DERIVED, OF, optional=True),
     _channel("acceleration", "relative acceleration, x'' - y''", "a", "m/s^2", OF, optional=True),
@@ -204,6 +272,7 @@ DIALECT = table(
     "how the CSV files are written; what is left out is detected",
     Choice(key="delimiter", meaning="separator of the columns", choices=tuple(DELIMITERS), optional=True),
     Choice(key="decimal", meaning="decimal sign", choices=tuple(DECIMALS), optional=True),
+    Choice(key="thousands", meaning="sign between thousands", choices=tuple(THOUSANDS), optional=True),
     Whole.of(Quantity("skip_rows", 0, "lines above the header", minimum=0)),
     Text(key="encoding", meaning="encoding of the text", optional=True, example="latin-1"),
     default={},
@@ -217,7 +286,7 @@ TEST = RecordTable(
     key="test",
     meaning="one record",
     groups=(
-        (Text(key="file", meaning="CSV file, relative to this one", example="20hz.csv"),),
+        (Text(key="file", meaning="file, relative to this one", example="20hz.csv"),),
         (
             Choice(
                 key="kind",
@@ -242,6 +311,14 @@ TEST = RecordTable(
             ),
         ),
         (UNDRIVEN,),
+        (
+            table(
+                "columns",
+                "keys of channels that differ in this test",
+                *map(_override, COLUMNS.keys.values()),
+                optional=True,
+            ),
+        ),
         (Overrides(key="model", meaning="numbers of the model in this test", optional=True),),
     ),
 )
@@ -252,6 +329,7 @@ MEASUREMENT = table(
     Text(key="title", meaning="title of the measurement", default="measurement"),
     Text(key="model", meaning="the base model: a config, relative to this file", example="model.toml"),
     Number.of(MODEL_ERROR),
+    Number.of(RATE, optional=True),
     COLUMNS,
     DIALECT,
     Number.of(INPUT_GAIN_STD),

@@ -16,6 +16,8 @@ TREND, DRIFT, MOST_TREND = 0.02, 0.1, 0.3
 # Distance of an outlier from the periodic part, over the robust standard deviation of the noise. What
 # occurs as often as once in two periods is a part of the response.
 FAR, RARE = 10.0, 0.5
+# Noise over the rms of a response below which there is none, and nothing to measure an outlier by.
+NO_NOISE = 1e-4
 # Times that outliers are looked for, the worst ones first.
 MOST_TRIES = 30
 # Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
@@ -121,7 +123,7 @@ def _far_off(test: TestRecord, samples: np.ndarray, noise: NoiseEstimate) -> tup
     mended = samples
     for _ in range(MOST_TRIES):
         left = noise.residual - np.median(noise.residual)
-        std = 1.4826 * float(np.median(np.abs(left)))
+        std = max(1.4826 * float(np.median(np.abs(left))), NO_NOISE * float(mended.std()))
         worst = np.abs(left) > max(FAR * std, 0.5 * np.abs(left).max())
         if not std or not worst.any():
             break

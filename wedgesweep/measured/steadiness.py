@@ -2,10 +2,12 @@
 
 from math import isnan
 
+from wedgesweep.formatting import counted
 from wedgesweep.measured import frequency
 from wedgesweep.measured.frequency import FrequencyEstimate
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
+from wedgesweep.measured.phase_step import find_step
 
 FEWEST_PERIODS = 4
 # A period that lacks less than this share counts as complete, as frequencies are rounded.
@@ -41,7 +43,8 @@ def frequency_faults(test: TestRecord, file: str, at: str) -> list[str]:
         fault = f"covers {periods:.3g} periods of {found:.6g} Hz; at least {FEWEST_PERIODS} are needed"
         return [f"{file}: {fault}: record longer, or correct the unit of time"]
     estimate = frequency.estimate_near(test.time, test.leading, found, frequency.LOBE / periods)
-    return _drift(estimate, periods, file) or _contradiction(test, estimate, file, at)
+    faults = _drift(estimate, periods, file) or _contradiction(test, estimate, file, at)
+    return faults and (_lost_samples(test, found, estimate.frequency, file) or faults)
 
 
 def _contradiction(test: TestRecord, estimate: FrequencyEstimate, file: str, at: str) -> list[str]:
@@ -58,6 +61,17 @@ def _contradiction(test: TestRecord, estimate: FrequencyEstimate, file: str, at:
     if abs(actual / stated - 1.0) < frequency.NEGLIGIBLE:
         return []
     return [f"{at}.frequency_hz: {stated:.6g}, but {file} vibrates at {actual:.6g} Hz; correct one of them"]
+
+
+def _lost_samples(test: TestRecord, stated: float, other: float, file: str) -> list[str]:
+    """A step of phase that explains a record much better than another frequency (Hz)."""
+    found = find_step(test.time, test.leading, stated)
+    if not found.lost or WORSE * found.left**2 > _noise(test, other).std ** 2:
+        return []
+    samples = counted(abs(found.lost), "lost sample" if found.lost > 0 else "doubled sample")
+    turn = abs(found.lost) / test.sampling_rate * stated * 360.0
+    fault = f"a step of phase of {turn:.2g} degrees near {found.time:.4g} s, as {samples} would make"
+    return [f"{file}: {fault}; choose the part before or after it (from_s, to_s), or mend the time stamps"]
 
 
 def _worse(test: TestRecord, stated: float, other: float) -> bool:

@@ -124,10 +124,13 @@ def read(path: Path) -> "xr.Dataset":
     if problem := confusion(path, SWEEP):
         raise SweepError(problem)
     try:
-        regular(path)
+        empty = regular(path).stat().st_size == 0
     except OSError as error:
         message = f"{path}: {str(error.strerror).lower()}"
         raise SweepError(message) from error
+    if empty:
+        message = f"{path}: empty file; --fresh replaces it"
+        raise SweepError(message)
     import xarray as xr
 
     try:

@@ -125,9 +125,9 @@ class Sweep:
     def discard(self) -> None:
         """Delete the journal of earlier runs; their dataset stays until another one takes its place.
 
-        Raises SweepError if ``out`` is not the dataset of a sweep.
+        Raises SweepError if ``out`` is neither empty nor the dataset of a sweep.
         """
-        if self.out.exists():
+        if self.out.exists() and not (self.out.is_file() and self.out.stat().st_size == 0):
             _read_sweep(self.out)
         journal.discard(self.journal_path)
 

@@ -1,21 +1,21 @@
-"""measured.toml and its CSV files."""
+"""measured.toml and its data files."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from wedgesweep import toml
 from wedgesweep.config import Config
-from wedgesweep.csv_files import columns as csv_columns
 from wedgesweep.errors import InputError
 from wedgesweep.files import missing
-from wedgesweep.hints import shortened, show
-from wedgesweep.measured import arrays, channels, overrides, repeated
-from wedgesweep.measured.build import Channels, build_record
+from wedgesweep.hints import shortened
+from wedgesweep.measured import channels, overrides, repeated
+from wedgesweep.measured.build import build_record
 from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
-from wedgesweep.measured.declarations import units as units_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
+from wedgesweep.measured.signals import read_signals
 
 MODEL = "give the path of a config, from here"
 
@@ -106,58 +106,53 @@ def _tests(
     """The tests whose keys and data are valid; without valid columns no test can be read."""
     columns = measurement.get("columns", {})
     by_kind = _columns_by_kind(measurement)
-    complete = columns.keys() > {"time"} and all(
+    complete = bool(columns.keys() - {"time"}) and all(
         {"column", "unit"} <= each.keys() for each in columns.values()
     )
     tests: list[TestRecord] = []
-    seen: dict[str, int] = {}
+    before: list[dict[str, Any]] = []
     for i, given in enumerate(measurement.get("test", ())):
         at = f"{path}: measurement.test[{i}]"
-        file = given.get("file")
-        if file is None:
+        if "file" not in given:
             continue
-        if file in seen:
-            problems.append(f"{at}.file: repeats test[{seen[file]}].file; each test has its own file")
+        earlier = [other for other in before if other["file"] == given["file"]]
+        if any(_part(other) == _part(given) for other in earlier):
+            fault = (
+                f"repeats test[{before.index(earlier[0])}].file; each test has its own file, columns or part"
+            )
+            problems.append(f"{at}.file: {fault}")
             continue
-        seen[file] = i
-        problems.extend(f"{at}.{fault}" for fault in repeated.faults(given, measurement["test"][:i]))
+        number = f"#{len(earlier) + 1}" if earlier else ""
+        problems.extend(f"{at}.{fault}" for fault in repeated.faults(given, before))
+        before.append({**given, "name": f"{given['file']}{number}"})
         own = by_kind[given.get("kind", STEADY)]
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
         problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, own, model))
+        changes = given.get("columns", {})
+        unknown = [name for name in changes if name not in own]
+        problems.extend(f"{at}.columns.{name}: no such channel; declare it above" for name in unknown)
+        changed = {name: {**each, **changes.get(name, {})} for name, each in own.items()}
         if complete and own:
-            tests += _test(path.parent / file, at, given, {**measurement, "columns": own}, problems)
+            found = _test(path.parent, at, given, {**measurement, "columns": changed}, problems)
+            tests += [replace(each, name=each.name + number, file=each.file + number) for each in found]
     return tests
 
 
+def _part(given: Mapping[str, Any]) -> tuple:
+    """What a test uses of its file."""
+    return given.get("columns"), given.get("from_s"), given.get("to_s")
+
+
 def _test(
-    file: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
+    folder: Path, at: str, given: dict[str, Any], measurement: dict[str, Any], problems: list[str]
 ) -> list[TestRecord]:
+    file = folder / given["file"]
     if reason := missing(file):
         problems.append(f"{at}.file: {shortened(file)}: {reason}; give the path of a data file, from here")
         return []
-    columns = measurement["columns"]
-    wanted = {channel: each["column"] for channel, each in columns.items()}
-    units = {channel: each["unit"] for channel, each in columns.items()}
-    stated = measurement.get("csv", {})
-    reader = arrays.reader(file)
-    content = reader(file, wanted, problems) if reader else csv_columns.read(file, wanted, problems, stated)
-    if not content.columns:
+    signals, remarks = read_signals(folder, given, measurement, problems)
+    if not signals:
         return []
-    faults = _unit_faults(content.units, units, file)
-    problems.extend(faults)
-    if faults:
-        return []
-    found = Channels(content.columns, units, str(file), content.where(file), content.form)
-    test = build_record(file.stem, given, found, at, problems)
+    test = build_record(file.stem, given, signals, remarks, str(file), at, problems)
     return [test] if test else []
-
-
-def _unit_faults(written: Mapping[str, str], stated: Mapping[str, str], file: Path) -> list[str]:
-    """Units in the file that are not the stated ones."""
-    return [
-        f"{file}: {channel}: the file says {show(written[channel])}, its unit is stated as {show(unit)}; "
-        "correct one of them"
-        for channel, unit in stated.items()
-        if written.get(channel, unit) in units_of(channel) and written.get(channel, unit) != unit
-    ]

@@ -1,1 +1,0 @@
-"""Reads CSV files of many dialects."""

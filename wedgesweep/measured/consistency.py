@@ -1,0 +1,202 @@
+"""Signs and delays of channels that no passive system explains, told from power and correlation alone."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from math import log, sqrt
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+from wedgesweep.measured.cycles import cut
+from wedgesweep.measured.declarations import INPUT, STEADY
+from wedgesweep.measured.frequency import estimate_frequency
+from wedgesweep.measured.measurement import Measurement, TestRecord
+
+# A force gives out energy if it correlates with velocity by less than this, or by at least a LITTLE and SURE
+# standard errors of the power in BLOCKS parts of the record.
+GIVES_OUT, SURE, LITTLE, BLOCKS = -0.3, 4.0, 0.02, 8
+# Motion and force are compared up to HIGHEST times the frequency of the motion, after SHARE of the record at
+# either end, where a filter of this order settles.
+HIGHEST, SHARE, ORDER, FEWEST = 12.0, 0.05, 4, 64
+# Longest delay over a period and shortest over a sampling interval that is told; number of delays that are
+# tried in each of ROUNDS; residual with the delay over that without, and over the force, that tell it.
+LONGEST, SHORTEST, TRIED, ROUNDS, GAIN, MOST_LEFT = 0.12, 0.5, 40, 2, 0.6, 0.1
+TINY = 1e-300
+# Standard error of a second harmonic over its size; distance of frequencies (in logarithm) within which
+# shapes are alike, and how alike (cosine) they must be once their signs are right.
+CLEAR, ALIKE, SUPPORT = 0.25, 0.15, 0.5
+
+
+def warnings(measurement: Measurement) -> list[str]:
+    """What signs or delays of channels to look at, as "file: what; how to mend it"."""
+    driven = [test for test in measurement.tests if _force(test, measurement) is not None]
+    if measurement.model.system == "oscillator" and measurement.model.oscillator["contact"] == "belt":
+        driven = []  # a belt gives out energy
+    negated = [test for test in driven if _gives_out(test, measurement)]
+    found = [] if len(negated) == len(driven) else _delay_warnings(driven, measurement)
+    if not found:
+        found = [_sign_warning(test, measurement, len(negated) == len(driven)) for test in negated]
+        found += _delay_warnings([test for test in driven if test not in negated], measurement)
+    return found + _shape_warnings(
+        [test for test in measurement.tests if test.kind == STEADY and test.input is None]
+    )
+
+
+def _force(test: TestRecord, measurement: Measurement) -> np.ndarray | None:
+    """The recorded force on the mass (n,), if there is one and a motion that it moves."""
+    force = test.force if test.force is not None else test.input if measurement.model.forced else None
+    return force if test.displacement is not None or test.velocity is not None else None
+
+
+def _motion(test: TestRecord, measurement: Measurement) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement and velocity (n,) of the mass in the direction of the force."""
+    name = "displacement" if test.displacement is not None else "velocity"
+    relative = measurement.columns[name].get("of", "relative") == "relative"
+    sign = -1.0 if measurement.model.system == "suspension" and relative else 1.0
+    step = 1.0 / test.sampling_rate
+    if test.displacement is None:
+        assert test.velocity is not None
+        return sign * step * np.cumsum(test.velocity - test.velocity.mean()), sign * test.velocity
+    measured = test.velocity is not None and not measurement.derived_velocity
+    velocity = test.velocity if measured else np.gradient(test.displacement, step)
+    assert velocity is not None
+    return sign * test.displacement, sign * velocity
+
+
+def _gives_out(test: TestRecord, measurement: Measurement) -> bool:
+    """Whether the force, less that of a spring, takes energy out of the motion."""
+    displacement, velocity = _motion(test, measurement)
+    force = _force(test, measurement)
+    assert force is not None
+    spring = np.column_stack([np.ones(force.size), displacement])
+    left = force - spring @ np.linalg.lstsq(spring, force, rcond=None)[0]
+    power = left * velocity
+    correlation = power.mean() / max(float(left.std() * velocity.std()), TINY)
+    parts = np.array([part.mean() for part in np.array_split(power, BLOCKS)])
+    surely = parts.mean() < -SURE * parts.std(ddof=1) / np.sqrt(BLOCKS)
+    return bool(correlation < GIVES_OUT or (surely and correlation < -LITTLE))
+
+
+def _sign_warning(test: TestRecord, measurement: Measurement, everywhere: bool) -> str:
+    name = "force" if test.force is not None else INPUT
+    fault = (
+        f"{test.file}: {name} gives out energy, which a passive system takes in: its sign is the other one"
+    )
+    line = f"columns.{name}.sign = -1 in [[measurement.test]]"
+    mend = f"sign = -1 at {name} in [measurement.columns]" if everywhere else line
+    return f"{fault}, or that of the motion; write {mend}"
+
+
+def _delay_warnings(tests: Sequence[TestRecord], measurement: Measurement) -> list[str]:
+    """The delay of the force at which one mass, spring, damper and friction fit all tests much better."""
+    fits = [_delayed_force(test, measurement) for test in tests if not test.model]
+    pairs = [fit for fit in fits if fit is not None]
+    if not pairs:
+        return []
+    longest = LONGEST * min(period for _, period in pairs)
+    delay, reach = 0.0, longest
+    for _ in range(ROUNDS):
+        delays = delay + np.linspace(-reach, reach, TRIED + 1)
+        left = np.array([_unexplained([rows(each) for rows, _ in pairs]) for each in delays])
+        delay, least, reach = float(delays[left.argmin()]), float(left.min()), 2.0 * reach / TRIED
+    without = _unexplained([rows(0.0) for rows, _ in pairs])
+    shortest = SHORTEST / max(test.sampling_rate for test in tests)
+    if least > min(GAIN * without, MOST_LEFT) or not shortest < abs(delay) < longest:
+        return []
+    name = "force" if tests[0].force is not None else INPUT
+    late = f"{name} seems to be {'late' if delay > 0.0 else 'early'} by {1e3 * abs(delay):.3g} ms"
+    fits_better = f"a mass, spring, damper and friction then leave {100.0 * least:.2g} % of it"
+    mend = f"if it was the recorder and no presliding or play, write delay_ms = {1e3 * delay:.3g} at {name}"
+    return [f"{late}: {fits_better}, without a delay {100.0 * without:.2g} %; {mend}"]
+
+
+# Parts (m, 4) of a force by mass, spring, damper and friction, and the force (m,), over its rms.
+Rows = tuple[np.ndarray, np.ndarray]
+
+
+def _delayed_force(
+    test: TestRecord, measurement: Measurement
+) -> tuple[Callable[[float], Rows], float] | None:
+    """Parts and force of a test as they are without a delay (s) of the force, and the period (s)."""
+    displacement, velocity = _motion(test, measurement)
+    force = _force(test, measurement)
+    assert force is not None
+    if test.kind == STEADY:
+        frequency = test.refined_frequency
+        pair = [complex(cut(test.time, each, frequency).harmonics[:, 0].mean()) for each in (velocity, force)]
+        return partial(_of_fundamental, 2.0 * np.pi * frequency, pair[0], pair[1]), 1.0 / frequency
+    frequency = estimate_frequency(test.time, displacement)
+    if not frequency > 0.0 or 5.0 * frequency > test.sampling_rate or test.time.size < FEWEST:
+        return None
+    low_pass = partial(
+        sosfiltfilt, butter(ORDER, _cutoff(frequency, test), fs=test.sampling_rate, output="sos")
+    )
+    parts = np.array(
+        [np.gradient(low_pass(velocity), 1.0 / test.sampling_rate), *map(low_pass, (displacement, velocity))]
+    )
+    parts = np.vstack([parts, low_pass(np.sign(parts[2]))])
+    return partial(_of_samples, test.time, parts, low_pass(force), 1.0 / frequency), 1.0 / frequency
+
+
+def _cutoff(frequency: float, test: TestRecord) -> float:
+    return min(HIGHEST * frequency, 0.4 * test.sampling_rate)
+
+
+def _of_fundamental(omega: float, velocity: complex, force: complex, delay: float) -> Rows:
+    """Real and imaginary part of the force's fundamental in the phase of the velocity."""
+    turned = force * np.exp(1j * omega * delay) * np.conj(velocity) / abs(velocity) / abs(force)
+    size, none = abs(velocity) / abs(force), 0.0
+    in_phase = [none, none, size, 1.0 / abs(force)]
+    across = [omega * size, -size / omega, none, none]
+    return np.array([in_phase, across]), np.array([turned.real, turned.imag])
+
+
+def _of_samples(time: np.ndarray, parts: np.ndarray, force: np.ndarray, period: float, delay: float) -> Rows:
+    """Samples of parts and force away from the ends, where a filter settles."""
+    edge = SHARE * (time[-1] - time[0]) + LONGEST * period
+    kept = (time > time[0] + edge) & (time < time[-1] - edge)
+    weight = 1.0 / (max(float(force.std()), TINY) * sqrt(max(int(kept.sum()), 1)))
+    late, inside = np.interp(time[kept] + delay, time, force), parts[:, kept]
+    return weight * (inside - inside.mean(axis=1, keepdims=True)).T, weight * (late - late.mean())
+
+
+def _unexplained(rows: Sequence[Rows]) -> float:
+    """Share (rms) of the forces that one mass, spring, damper and friction leave."""
+    design, force = np.vstack([row[0] for row in rows]), np.concatenate([row[1] for row in rows])
+    design = design / np.maximum(np.linalg.norm(design, axis=0), TINY)
+    left = force - design @ np.linalg.lstsq(design, force, rcond=None)[0]
+    return float(np.linalg.norm(left) / max(float(np.linalg.norm(force)), TINY))
+
+
+def _shape_warnings(tests: Sequence[TestRecord]) -> list[str]:
+    """Tests whose second harmonic has the other sign than in tests of about the same frequency."""
+    phases, logs, used = [], [], []
+    for test in tests:
+        cycles = cut(test.time, list(test.responses.values())[-1], test.refined_frequency)
+        mean, count = cycles.harmonics.mean(axis=0), len(cycles.times)
+        if mean.size < 2 or count < 4:
+            continue
+        error = cycles.harmonics[:, 1].std() / np.sqrt(count)
+        if error < CLEAR * abs(mean[1]):
+            phases.append(np.angle(mean[1] / mean[0] ** 2))
+            logs.append(log(test.refined_frequency))
+            used.append(test)
+    apart = np.subtract.outer(logs, logs) / ALIKE
+    alike = np.exp(-(apart**2)) * np.cos(np.subtract.outer(phases, phases)) * (1.0 - np.eye(len(used)))
+    signs = np.ones(len(used))
+    for _ in used:
+        gains = -signs * (alike @ signs)
+        if not len(used) or gains.max() <= 0.0:
+            break
+        signs[gains.argmax()] *= -1.0
+    odd = signs == (-1.0 if signs.sum() >= 0.0 else 1.0)
+    support = (
+        signs * (alike @ signs) / np.maximum(np.exp(-(apart**2)).sum(axis=1) - 1.0, TINY) if used else signs
+    )
+    files = [
+        test.file for test, other, sure in zip(used, odd, support, strict=True) if other and sure > SUPPORT
+    ]
+    if not files:
+        return []
+    fault = "the second harmonic has the other sign than in the other tests, as if the sensor were turned"
+    return [f"{', '.join(files)}: {fault}; if it was, write columns.displacement.sign = -1 in these tests"]

@@ -1,0 +1,81 @@
+"""Arrays of numpy (.npy, .npz), sound (.wav) and variables of MATLAB (.mat)."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.processes import apart
+from wedgesweep.readers import hdf5
+from wedgesweep.readers.table import Channel, Wanted
+
+HDF5_MARK = b"\x89HDF\r\n\x1a\n"
+# A v7.3 file of MATLAB is HDF5 behind a header of this length.
+MATLAB_HEADER = 512
+# Greatest size of integer samples, so that full scale is 1; 8-bit samples are counted from 128.
+FULL_SCALE = {
+    "i": lambda dtype: -float(np.iinfo(dtype).min),
+    "u": lambda dtype: 128.0,
+    "f": lambda dtype: 1.0,
+}
+
+
+def npz(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Arrays by name; each is one channel, or a matrix of which ``name[2]`` is a column."""
+    with file.open("rb") as stream, np.load(stream, allow_pickle=False) as opened:
+        return {
+            name: Channel(opened[name]) if wanted(name, number) else None
+            for number, name in enumerate(opened.files, 1)
+        }
+
+
+def npy(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Columns of one array by number, or the fields of a structured one by name."""
+    array = np.load(file, allow_pickle=False)
+    if array.dtype.names:
+        return {name: Channel(array[name]) for name in array.dtype.names}
+    columns = array.reshape(array.shape[0], -1).T
+    return {f"column {number}": Channel(column) for number, column in enumerate(columns, 1)}
+
+
+def wav(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Tracks by number, with the clock of the file; full scale is 1."""
+    from scipy.io import wavfile
+
+    rate, samples = apart(wavfile.read, file)
+    samples = samples[:, None] if samples.ndim == 1 else samples
+    size = FULL_SCALE[samples.dtype.kind](samples.dtype)
+    zero = 128.0 if samples.dtype.kind == "u" else 0.0
+    clock = np.arange(len(samples)) / rate
+    return {
+        f"track {number}": Channel((track - zero) / size, "", clock)
+        for number, track in enumerate(samples.T, 1)
+    }
+
+
+def matlab(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Variables, and fields of structs as struct.field."""
+    with file.open("rb") as opened:
+        beginning = opened.read(MATLAB_HEADER + len(HDF5_MARK))
+    if beginning.startswith(HDF5_MARK) or beginning.endswith(HDF5_MARK):
+        return hdf5.hdf5(file, wanted)
+    return apart(_matlab_5, file, wanted)
+
+
+def _matlab_5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    from scipy.io import loadmat, whosmat
+
+    classes = {name: kind for name, _, kind in whosmat(file)}
+    names = [name for i, (name, kind) in enumerate(classes.items(), 1) if wanted(name, i) or kind == "struct"]
+    found = {name: Channel(each) for name, each in _fields(loadmat(file, variable_names=names))}
+    listed: dict[str, Channel | None] = dict.fromkeys(classes)
+    return listed | {name: each for name, each in found.items() if not name.startswith("__")}
+
+
+def _fields(variables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    """Variables, and the fields of structs among them as struct.field."""
+    for name, value in variables.items():
+        yield path + name, value
+        if isinstance(value, np.ndarray) and value.dtype.names and value.size == 1:
+            yield from _fields({each: value[each].item() for each in value.dtype.names}, f"{path}{name}.")

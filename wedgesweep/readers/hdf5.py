@@ -1,0 +1,50 @@
+"""Variables of HDF5 (.h5, .hdf5) and netCDF (.nc, .nc4) by their paths, group/variable."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from wedgesweep.processes import apart
+from wedgesweep.readers.extras import module
+from wedgesweep.readers.table import Channel, Wanted
+
+
+def hdf5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Datasets, with the unit in their attribute ``units`` or ``unit``."""
+    h5py = module("h5py")
+    with h5py.File(file, "r") as opened:
+        names: list[str] = []
+        opened.visititems(lambda name, each: names.append(name) if isinstance(each, h5py.Dataset) else None)
+        return {
+            name: Channel(opened[name][()], _text(opened[name].attrs)) if wanted(name, number) else None
+            for number, name in enumerate(names, 1)
+        }
+
+
+def _text(attributes: Any) -> str:
+    unit = attributes.get("units", attributes.get("unit", ""))
+    return unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
+
+
+def netcdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    """Variables in a process apart: its library may end the process that reads a damaged file."""
+    return apart(_netcdf, file, wanted)
+
+
+def _netcdf(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
+    import netCDF4
+
+    with netCDF4.Dataset(file) as root:
+        return {
+            name: Channel(variable[...], str(getattr(variable, "units", "")))
+            if wanted(name, number)
+            else None
+            for number, (name, variable) in enumerate(_variables(root), 1)
+        }
+
+
+def _variables(group: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    for name, variable in group.variables.items():
+        yield path + name, variable
+    for name, inner in group.groups.items():
+        yield from _variables(inner, f"{path}{name}/")

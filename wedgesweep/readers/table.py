@@ -1,0 +1,177 @@
+"""What a reader finds in a file: channels by the names that were asked for."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.hints import hint, show
+from wedgesweep.units import DAY
+
+# A column by its name or by its number, from 1.
+Name = str | int
+# The unit of time stamps that are dates; their values are seconds since midnight of the first day.
+DATETIME = "datetime"
+ISO = re.compile(r"\s*\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+# The second of several columns with a name, and a column of a matrix.
+REPEATED, OF_A_MATRIX = re.compile(r"(.*)#(\d+)"), re.compile(r"(.*)\[(\d+)\]")
+BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
+
+
+class ReadError(ValueError):
+    """A file that cannot be read; ``problems`` name the file."""
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        super().__init__("\n".join(problems))
+        self.problems = tuple(problems)
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """Samples (n,), NaN where missing; the unit that the file names, and a clock (s) of the channel's own.
+
+    ``faults``: of single samples, by their index.
+    """
+
+    values: np.ndarray
+    unit: str = ""
+    clock: np.ndarray | None = None
+    faults: Mapping[int, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Channels by name or number, the place of a sample in the file, and the form of an unusual file."""
+
+    channels: Mapping[Name, Channel]
+    where: Callable[[int], str]
+    form: str = ""
+
+
+def place_of(name: Name, cells: Sequence[str]) -> int | None:
+    """Index of a column among the names in a header, None if it is not there; raises ValueError.
+
+    ``d`` is also the column ``d [mm]`` or ``d (mm)``, and ``d#2`` the second one called ``d``.
+    """
+    if isinstance(name, int):
+        return name - 1 if name <= len(cells) else None
+    repeated = REPEATED.fullmatch(name)
+    for spelled in (list(cells), [split_unit(cell)[0] for cell in cells]):
+        found = [place for place, cell in enumerate(spelled) if cell == name]
+        if len(found) > 1:
+            fault = f"column {show(name)} occurs {len(found)} times; write {show(name + '#2')} for the second"
+            raise ValueError(fault)
+        if not found and repeated:
+            found = [place for place, cell in enumerate(spelled) if cell == repeated[1]]
+            found = found[int(repeated[2]) - 1 :][:1] if int(repeated[2]) else []
+        if found:
+            return found[0]
+    return None
+
+
+def split_unit(header: str) -> tuple[str, str]:
+    """Name and unit of a header such as ``d [mm]``."""
+    found = BRACKETS.fullmatch(header)
+    return (found[1].strip(), found[2].strip()) if found and found[1].strip() else (header, "")
+
+
+def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]:
+    """Seconds (n,) since midnight of the first day, and faults: of ISO 8601 texts, dates or None."""
+    first: datetime | None = None
+    seconds, faults = np.full(len(values), np.nan), {}
+    for row, value in enumerate(values):
+        if value is None or value in ("", "nan") or value != value:
+            continue
+        try:
+            stamp = value if isinstance(value, datetime) else datetime.fromisoformat(str(value).strip())
+        except ValueError:
+            faults[row] = f"{show(str(value))} is no ISO 8601 date"
+            continue
+        stamp = stamp.astimezone(UTC) if stamp.tzinfo else stamp.replace(tzinfo=UTC)
+        first = first or stamp.replace(hour=0, minute=0, second=0, microsecond=0)
+        since = stamp - first
+        seconds[row] = since.days * DAY + since.seconds + 1e-6 * since.microseconds
+    return seconds, faults
+
+
+def channel_of(values: Any, unit: str = "", clock: np.ndarray | None = None) -> Channel:
+    """A list, row or column of real numbers or dates; raises ValueError."""
+    array = np.ma.filled(values, np.nan) if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+    if max(array.shape, default=0) != array.size:
+        shape = " x ".join(map(str, array.shape))
+        fault = f"holds {shape} numbers; name one column of a matrix, as in [2]"
+        raise ValueError(fault)
+    array = array.ravel()
+    if array.dtype.kind == "M":
+        micro = array.astype("datetime64[us]")
+        days = micro - micro[:1].astype("datetime64[D]")
+        return Channel(days / np.timedelta64(1, "s"), DATETIME, clock)
+    if array.dtype.kind in "OUS" and array.size and (isinstance(array[0], datetime) or _is_iso(array[0])):
+        seconds, faults = seconds_of_dates(list(array))
+        return Channel(seconds, DATETIME, clock, faults)
+    if array.dtype.kind not in "fiu" or not array.size:
+        fault = "is no list of real numbers"
+        raise ValueError(fault)
+    numbers = array.astype(float)
+    infinite = np.flatnonzero(np.isinf(numbers)).tolist()
+    return Channel(numbers, unit, clock, {row: f"{numbers[row]} is not a finite number" for row in infinite})
+
+
+def _is_iso(value: Any) -> bool:
+    return ISO.match(value.decode("latin-1") if isinstance(value, bytes) else str(value)) is not None
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Variables that are asked for, out of those of a binary file."""
+
+    names: tuple[Name, ...]
+
+    def __call__(self, variable: str, number: int) -> bool:
+        """Whether a variable, the given one of the file from 1, is asked for; a dot may be a slash."""
+        bases = [OF_A_MATRIX.sub(r"\1", name) for name in self.names if isinstance(name, str)]
+        asked = {*self.names, *bases}
+        return number in asked or variable in asked or variable.replace("/", ".") in asked
+
+    def picked(self, variables: Mapping[str, Channel | None]) -> dict[Name, Channel]:
+        """The channels by their names, of variables as stored; None where a variable is not asked for."""
+        found, faults = {}, []
+        for name in self.names:
+            try:
+                found[name] = _picked(name, variables)
+            except ValueError as error:
+                faults.append(str(error))
+        if faults:
+            raise ReadError(faults)
+        return found
+
+
+def _picked(name: Name, variables: Mapping[str, Channel | None]) -> Channel:
+    listed, column = list(variables), None
+    spelled = {variable.replace("/", "."): variable for variable in listed} | {each: each for each in listed}
+    matrix = OF_A_MATRIX.fullmatch(name) if isinstance(name, str) and name not in spelled else None
+    if matrix:
+        name, column = matrix[1], int(matrix[2])
+    key = listed[name - 1 : name] if isinstance(name, int) else [spelled[name]] if name in spelled else []
+    stored = variables[key[0]] if key else None
+    if not key:
+        fault = f"no variable {show(name)}; {hint(str(name), listed)}"
+        raise ValueError(fault)
+    try:
+        values = None if stored is None else stored.values
+        if column is not None:
+            values = _column(np.asarray(values), column)
+        return channel_of(values, stored.unit if stored else "", stored.clock if stored else None)
+    except ValueError as error:
+        message = f"variable {show(name)} {error}"
+        raise ValueError(message) from error
+
+
+def _column(matrix: np.ndarray, number: int) -> np.ndarray:
+    if matrix.ndim != 2 or not 1 <= number <= matrix.shape[1]:
+        fault = f"holds {' x '.join(map(str, matrix.shape))} numbers, and no column {number}"
+        raise ValueError(fault)
+    return matrix[:, number - 1]

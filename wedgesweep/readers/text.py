@@ -1,0 +1,116 @@
+"""Numbers of the columns of a CSV or text file; faults name their line."""
+
+from collections.abc import Mapping, Sequence
+from math import isinf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wedgesweep.files import read_bytes
+from wedgesweep.hints import hint, show
+from wedgesweep.readers import dialect as csv_dialect
+from wedgesweep.readers.dialect import Dialect
+from wedgesweep.readers.table import DATETIME, ISO, Channel, Name, ReadError, Table, seconds_of_dates
+
+
+def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = None) -> Table:
+    """Read columns by their names or numbers.
+
+    ``stated`` is the table measurement.csv, and ``missing`` further texts of missing samples. Raises
+    ReadError.
+    """
+    stated = stated or {}
+    try:
+        text, encoding = csv_dialect.decode(read_bytes(path), stated.get("encoding"))
+        lines = csv_dialect.LINE_END.split(text)
+        dialect = csv_dialect.detect(lines, encoding, names, stated)
+    except OSError as error:
+        raise ReadError([f"{path}: {error.strerror}; give the path of a CSV file"]) from error
+    except ValueError as error:
+        raise ReadError([f"{path}: {error}"]) from error
+    if dialect is None:
+        raise ReadError([f"{path}:{fault}" for fault in _header_faults(lines, names, stated)])
+    filled = [line for line in range(dialect.first, len(lines)) if not csv_dialect.is_skipped(lines[line])]
+    if not filled:
+        raise ReadError([f"{path}: no data below the header; write one line per sample"])
+    columns, wide = _columns([lines[line] for line in filled], dialect)
+    if wide:
+        row, count = wide
+        fault = f"{count} cells; the header has {dialect.width}, and so must each line"
+        raise ReadError([f"{path}:{filled[row] + 1}: {fault}"])
+    missing = {*csv_dialect.MISSING, *stated.get("missing", ())}
+    thousands = csv_dialect.THOUSANDS.get(stated.get("thousands", ""), "")
+    channels = {
+        name: _channel(cells, dialect.names[place], unit, (dialect.decimal, thousands), missing)
+        for name, cells, place, unit in zip(names, columns, dialect.places, dialect.units, strict=True)
+    }
+    return Table(channels, lambda sample: f"{path}:{filled[sample] + 1}", dialect.described())
+
+
+def _header_faults(lines: Sequence[str], names: Sequence[Name], stated: Mapping[str, Any]) -> list[str]:
+    """Faults of the header as "line: fault"."""
+    place, header = csv_dialect.header(lines, stated)
+    if not any(header):
+        return [f"{place + 1}: empty; the first line must hold the names of the columns"]
+    if all(csv_dialect.DECIMAL.fullmatch(name) for name in header) and not all(
+        isinstance(n, int) for n in names
+    ):
+        named = ", ".join(str(name) for name in names)
+        advice = f"write the names of the columns above them, such as {named}, or give columns by number"
+        return [f"{place + 1}: numbers, where the header is expected; {advice}"]
+    if len(header) == 1 and len(names) > 1:
+        advice = "separate columns by commas, semicolons or tabs"
+        return [f"{place + 1}: only one column, {show(header[0])}; {advice}"]
+    absent = [name for name in names if csv_dialect.place_of(name, header) is None]
+    return [
+        f"{place + 1}: no column {show(name)}; {hint(str(name), [each for each in header if each])}"
+        for name in absent
+    ] or [f"{place + 1}: no line of numbers in the columns that are given by number"]
+
+
+def _columns(lines: Sequence[str], dialect: Dialect) -> tuple[list[list[str]], tuple[int, int] | None]:
+    """Cells of each wanted column, empty where a row ends early; and the place and width of a long row."""
+    columns: list[list[str]] = [[] for _ in dialect.places]
+    pairs = list(zip(columns, dialect.places, strict=True))
+    for row, line in enumerate(lines):
+        cells = csv_dialect.split(line, dialect.delimiter)
+        if len(cells) > dialect.width and any(cells[dialect.width :]):
+            return columns, (row, len(cells))
+        for column, place in pairs:
+            column.append(cells[place] if place < len(cells) else "")
+    return columns, None
+
+
+def _channel(cells: list[str], name: str, unit: str, signs: tuple[str, str], missing: set[str]) -> Channel:
+    """Numbers or dates in the cells of a column; ``signs``: of decimals and of thousands."""
+    first = next((cell for cell in cells if cell not in missing), "")
+    if ISO.match(first):
+        seconds, faults = seconds_of_dates(["" if cell in missing else cell for cell in cells])
+        return Channel(seconds, DATETIME, faults={row: f"{name}: {fault}" for row, fault in faults.items()})
+    decimal, thousands = signs
+    plain = [cell.replace(thousands, "") for cell in cells] if thousands else cells
+    if decimal == ",":
+        plain = [cell.replace(",", ".") for cell in plain]
+    try:
+        values = np.array(plain, float)
+    except ValueError:
+        values = np.array([_number(cell) for cell in plain])
+    faults = {
+        row: f"{name}: {show(cells[row])} is not a finite number; write one"
+        for row in np.flatnonzero(~np.isfinite(values)).tolist()
+        if cells[row] not in missing
+    }
+    for row in (
+        np.flatnonzero([cell in missing for cell in cells]) if missing - {*csv_dialect.MISSING} else ()
+    ):
+        values[row] = np.nan
+    return Channel(values, unit, faults=faults)
+
+
+def _number(cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        return np.nan
+    return np.nan if isinf(value) else value
