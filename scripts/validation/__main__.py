@@ -112,7 +112,8 @@ def _write(sets: Sets, text: str, out: Path) -> None:
 
 
 def _draw(sets: Sets, file: Path) -> None:
-    if bins := tables.recovery(sets):
+    bins = tables.recovery(sets)
+    if any(share.n >= figure.FEWEST for found in bins for share in found.shares.values()):
         figures.save(figure.draw(bins), file)
 
 
