@@ -16,7 +16,7 @@ KERNELS = ROOT / ".kernels"
 # Threads of numpy's libraries stand in each other's way on a busy machine.
 os.environ.update(dict.fromkeys(THREADS, "1"))
 # Before wedgesweep.compiled is imported, which reads it. Its folders in there are named for the sources.
-os.environ.update(dict.fromkeys(("WEDGESWEEP_CACHE_DIR", "XDG_CACHE_HOME"), str(KERNELS)))
+os.environ["WEDGESWEEP_CACHE_DIR"] = str(KERNELS)
 
 
 def _compile_once() -> None:

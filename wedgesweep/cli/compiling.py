@@ -8,7 +8,7 @@ from wedgesweep.formatting import duration
 
 # Time (s) of compilation before the first message, and between later ones.
 FIRST_AFTER, REPEATED_AFTER = 1.0, 15.0
-FIRST = "compiling the solver (once: 15 s of CPU time, for a diagnosis half a minute; warm-up does it ahead)"
+FIRST = "compiling the solver (once: 15 s of CPU time, for a diagnosis half a minute)"
 
 _listener: Any = None
 

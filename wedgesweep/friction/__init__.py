@@ -18,7 +18,6 @@ import numpy as np
 from wedgesweep import kernels
 from wedgesweep.compiled import by_record, function_of, inlined
 from wedgesweep.effects import hooks
-from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 
 # The laws by name; a law's place is its code in parameter records. ``register`` adds another.
@@ -63,12 +62,11 @@ def _of_the_law(function: Callable) -> Callable:
 
     def choose(fields: Mapping[str, Any]) -> Callable:
         _compiled[:] = LAWS
-        own = [name for name in LAWS if OSCILLATOR in fields or name not in OSCILLATOR_LAWS]
-        calls = {name: f"f{code(name)}({', '.join(arguments)})" for name in own}
-        *others, chosen = calls.values()
-        for name, call in reversed([*zip(own[:-1], others, strict=True)]):
-            chosen = f"{call} if p.friction.law == {code(name)} else ({chosen})"
-        functions = {f"f{code(name)}": getattr(LAWS[name], function.__name__) for name in own}
+        calls = [f"f{i}({', '.join(arguments)})" for i in range(len(LAWS))]
+        chosen = calls[-1]
+        for i in reversed(range(len(LAWS) - 1)):
+            chosen = f"{calls[i]} if p.friction.law == {i} else ({chosen})"
+        functions = {f"f{i}": getattr(law, function.__name__) for i, law in enumerate(LAWS.values())}
         return function_of(arguments, chosen, **functions)
 
     return by_record(function, choose)

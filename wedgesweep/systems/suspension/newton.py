@@ -152,7 +152,7 @@ def reactions(load, mu, p):
         normal -= inertia_into * outward
 
     # Acceleration of the side frame: A = base + base_per_column N_c + base_per_bolster N_b.
-    base, base_per_column, base_per_bolster = load.base, 0.0, 0.0
+    base, base_per_column, base_per_bolster, mass = load.base, 0.0, 0.0, 1.0
     along_base = s.wedge_mass * (g.cos_column - g.column_ratio)
     into_base = s.wedge_mass * g.sin_column
     if fixture_resonance.acts(p):
@@ -177,6 +177,8 @@ def reactions(load, mu, p):
     if fixture_resonance.acts(p):
         frame += base_per_column * column + base_per_bolster * bolster
     z2 = vertical * mobility - frame + (2.0 * lift * mobility) * bolster
+    # A light side frame whose columns lean outward has a negative ``mass``: the determinant is divided by it.
+    determinant *= mass
     return Forces(z2, outward + outward_per_force * column, frame - load.base, column, bolster), determinant
 
 
