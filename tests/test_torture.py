@@ -20,6 +20,8 @@ TRIED = {
     "csv": 25,
     "matlab": 8,
     "netcdf": 12,
+    "stored": 12,
+    "clock": 12,
     "dataset": 8,
 }
 FEW = {"matlab": 8, "dataset": 8, "journal": 6, "figure": 1, "diagnosis": 1, "options": 6}

@@ -83,7 +83,7 @@ def _gives_out(test: TestRecord, measurement: Measurement) -> bool:
 
 
 def _sign_warnings(negated: Sequence[TestRecord], everywhere: bool) -> list[str]:
-    """The tests in which the force gives out energy; ``everywhere``: whether they are all that have a force."""
+    """Tests in which the force gives out energy; ``everywhere``: whether it does so in all tests."""
     if not negated:
         return []
     name = "force" if negated[0].force is not None else INPUT
