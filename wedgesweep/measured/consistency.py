@@ -26,8 +26,8 @@ LONGEST, SHORTEST, TRIED, ROUNDS, GAIN, MOST_LEFT = 0.12, 0.5, 40, 2, 0.6, 0.1
 LEAST, FEWEST_ROWS = 1e-3, 8
 TINY = 1e-300
 # Standard error of a second harmonic over its size; distance of frequencies (in logarithm) within which
-# shapes are alike, and how alike (cosine) they must be once their signs are right.
-CLEAR, ALIKE, SUPPORT = 0.25, 0.15, 0.5
+# shapes are alike, how alike (cosine) they must be once their signs are right, and to how many other tests.
+CLEAR, ALIKE, SUPPORT, OTHERS = 0.25, 0.15, 0.5, 1.2
 
 
 def warnings(measurement: Measurement) -> list[str]:
@@ -190,22 +190,21 @@ def _shape_warnings(tests: Sequence[TestRecord]) -> list[str]:
             phases.append(np.angle(mean[1] / mean[0] ** 2))
             logs.append(log(test.refined_frequency))
             used.append(test)
-    apart = np.subtract.outer(logs, logs) / ALIKE
-    alike = np.exp(-(apart**2)) * np.cos(np.subtract.outer(phases, phases)) * (1.0 - np.eye(len(used)))
+    if not used:
+        return []
+    near = np.exp(-((np.subtract.outer(logs, logs) / ALIKE) ** 2)) - np.eye(len(used))
+    alike = near * np.cos(np.subtract.outer(phases, phases))
     signs = np.ones(len(used))
     for _ in used:
         gains = -signs * (alike @ signs)
-        if not len(used) or gains.max() <= 0.0:
+        if gains.max() <= 0.0:
             break
         signs[gains.argmax()] *= -1.0
     odd = signs == (-1.0 if signs.sum() >= 0.0 else 1.0)
-    support = (
-        signs * (alike @ signs) / np.maximum(np.exp(-(apart**2)).sum(axis=1) - 1.0, TINY) if used else signs
-    )
-    files = [
-        test.file for test, other, sure in zip(used, odd, support, strict=True) if other and sure > SUPPORT
-    ]
+    others = near.sum(axis=1)
+    clear = (others > OTHERS) & (signs * (alike @ signs) > SUPPORT * others)
+    files = [test.file for test, told in zip(used, odd & clear, strict=True) if told]
     if not files:
         return []
     fault = "the second harmonic has the other sign than in the other tests, as if the sensor were turned"
-    return [f"{', '.join(files)}: {fault}; if it was, write columns.displacement.sign = -1 in these tests"]
+    return [f"{', '.join(files)}: {fault}; if it was, write sign = -1 at its channels in these tests"]
