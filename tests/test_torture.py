@@ -12,7 +12,7 @@ from tests import fixture_diagnosis
 from tests.small_sweep import CONFIG
 
 # Inputs of each kind; those that are solved or drawn take longest.
-TRIED = {"config": 8, "run": 1, "measured": 10, "model": 5, "csv": 10, "netcdf": 8}
+TRIED = {"config": 8, "run": 1, "measured": 10, "model": 5, "csv": 10, "netcdf": 8, "stored": 8, "clock": 8}
 FEW = {"matlab": 3, "dataset": 4, "journal": 4, "figure": 1, "diagnosis": 1, "options": 4}
 
 

@@ -190,6 +190,50 @@ def netcdf(given: Specimens, place: Path, draw: Random) -> Command:
     return ["check", "measured.toml"]
 
 
+def stored(given: Specimens, place: Path, draw: Random) -> Command:
+    """A file of another format, of damaged bytes."""
+    _measurement(given, place)
+    ending = draw.choice(list(given.stored))
+    text = mutations.toml(given.measured[0]).replace("one.csv", f"one{ending}")
+    for number, name in enumerate("tdv", 1):
+        column = {".tdms": f'"x/{name}"', ".npy": f"{number}", ".wav": f"{number}"}.get(ending, f'"{name}"')
+        text = text.replace(f'column = "{name}"', f"column = {column}")
+    (place / "measured.toml").write_text(text)
+    content = given.stored[ending]
+    (place / f"one{ending}").write_bytes(mutations.raw(content, draw) if draw.random() < 0.9 else content)
+    return ["check", "measured.toml"]
+
+
+def clock(given: Specimens, place: Path, draw: Random) -> Command:
+    """A CSV file whose clock is odd: scatter, gaps, doubled stamps, missing cells, other units."""
+    document = draw.choice(given.measured)
+    _measurement(given, place)
+    name = document["measurement"]["test"][0]["file"]
+    header, *lines = given.csv[name].splitlines()
+    rows = [line.split(",") for line in lines]
+    unit, size = draw.choice(
+        (("s", 1.0), ("ms", 1e3), ("us", 1e6), ("min", 1 / 60), ("excel", 1 / 86400), ("epoch", 1.0))
+    )
+    start, scatter = draw.choice((0.0, -3.0, 1e9, 45592.0)), draw.choice((0.0, 1e-5, 1e-4, 1e-3, 0.1))
+    for row in rows:
+        time = start + size * (float(row[0]) + scatter * draw.gauss(0.0, 1.0))
+        row[0] = f"{time:.{draw.choice((3, 6, 12)) if scatter > 0.01 else 9}f}"
+    for _ in range(draw.choice((0, 1, 3, 40))):
+        place_of_fault = draw.randrange(len(rows))
+        kind = draw.randrange(4)
+        if kind == 0:
+            del rows[place_of_fault : place_of_fault + draw.choice((1, 2, 30, 200))]
+        elif kind == 1:
+            rows.insert(place_of_fault, list(rows[place_of_fault]))
+        else:
+            rows[place_of_fault][draw.randrange(3)] = draw.choice(("", "NA", "-9999", "1e30", rows[0][0]))
+        rows = rows or [["0", "0", "0"]]
+    (place / name).write_text("\n".join([header, *(",".join(row) for row in rows)]) + "\n")
+    text = mutations.toml(document).replace('unit = "s"', f'unit = "{unit}"')
+    (place / "measured.toml").write_text(text)
+    return ["check", "measured.toml"]
+
+
 def dataset(given: Specimens, place: Path, draw: Random) -> Command:
     """The dataset of a sweep, for status."""
     _netcdf(place / "out.nc", given.dataset, draw)
@@ -352,7 +396,9 @@ KINDS: dict[Kind, float] = {
     model: 5.0,
     csv: 20.0,
     matlab: 7.0,
-    netcdf: 8.0,
+    netcdf: 6.0,
+    stored: 5.0,
+    clock: 5.0,
     dataset: 5.0,
     figure: 1.0,
     journal: 5.0,

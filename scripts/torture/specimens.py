@@ -1,11 +1,13 @@
 """Valid inputs of every kind, from which hostile ones are made."""
 
 import tomllib
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.io import wavfile
 
 # Name of a config without anything unusual.
 PLAIN = "quick"
@@ -86,6 +88,7 @@ class Specimens:
     dataset: bytes
     journal: bytes
     netcdf: bytes
+    stored: dict[str, bytes]
     diagnosis: dict[str, bytes]
 
 
@@ -144,6 +147,7 @@ def make(directory: Path, diagnosis: dict[str, bytes]) -> Specimens:
         dataset=(directory / "whole.nc").read_bytes(),
         journal=_journal(Sweep(settings, directory / "half.nc")),
         netcdf=_netcdf(directory / "one.nc"),
+        stored=_stored(directory),
         diagnosis=diagnosis,
     )
 
@@ -159,6 +163,39 @@ def _netcdf(path: Path) -> bytes:
             variable.setncattr("units", unit)
             variable[:] = samples
     return path.read_bytes()
+
+
+def _stored(directory: Path) -> dict[str, bytes]:
+    """Return the vibration in further formats, by ending, as far as their libraries are here."""
+    columns = dict(zip("tdv", vibration().T, strict=True))
+    np.savez(directory / "one.npz", **columns)
+    np.save(directory / "one.npy", vibration())
+    wavfile.write(directory / "one.wav", int(RATE), (vibration() / 200.0).astype("f4"))
+    with suppress(ImportError):
+        import h5py
+
+        with h5py.File(directory / "one.h5", "w") as file:
+            file.update(columns)
+    with suppress(ImportError):
+        import pyarrow
+        from pyarrow import parquet
+
+        parquet.write_table(pyarrow.table(columns), directory / "one.parquet")
+    with suppress(ImportError):
+        import openpyxl
+
+        book = openpyxl.Workbook()
+        for row in ("tdv", *vibration().tolist()):
+            book.active.append(list(row))
+        book.save(directory / "one.xlsx")
+    with suppress(ImportError):
+        import nptdms
+
+        with nptdms.TdmsWriter(directory / "one.tdms") as writer:
+            writer.write_segment([nptdms.ChannelObject("x", name, each) for name, each in columns.items()])
+    endings = ("npz", "npy", "wav", "h5", "parquet", "xlsx", "tdms")
+    files = (directory / f"one.{ending}" for ending in endings)
+    return {file.suffix: file.read_bytes() for file in files if file.exists()}
 
 
 def _journal(sweep: Any) -> bytes:

@@ -149,11 +149,41 @@ def test_what_is_wrong_with_a_set_is_told(name):
     assert ("valid" in told) == valid
 
 
+def copied(directory, name, *changes):
+    """A small set with changes of its measured.toml."""
+    for file in (REAL / "small" / name).iterdir():
+        (directory / file.name).write_bytes(file.read_bytes())
+    path = directory / "measured.toml"
+    text = path.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("delay-steady", ('column = "u"', 'column = "u"\ndelay_ms = -4.0')),
+        ("delay-loop", ('column = "F"', 'column = "F"\ndelay_ms = 1.0')),
+        ("input-negated", ('column = "u"', 'column = "u"\nsign = -1')),
+        ("force-negated-one-loop", ('file = "test-01.csv"', 'file = "test-01.csv"\ncolumns.force.sign = -1')),
+    ],
+)
+def test_the_line_that_is_named_mends_it(tmp_path, name, change):
+    assert "warning" not in invoke("check", copied(tmp_path, name, change))
+
+
+def test_rests_of_an_exact_displacement_do_not_count(tmp_path):
+    path = copied(tmp_path, "loop-exact-rests")
+    effects = "viscous_damping,stribeck"
+    told = invoke("diagnose", path, "-o", tmp_path / "out", "--no-report", "--effects", effects)
+    assert "Nothing is missing" in told
+
+
 def test_days_are_read_as_days(tmp_path):
-    for file in (REAL / "small" / "excel-days").iterdir():
-        (tmp_path / file.name).write_bytes(file.read_bytes())
-    path = tmp_path / "measured.toml"
-    path.write_text(path.read_text().replace('unit = "s"', 'unit = "excel"', 1))
+    path = copied(tmp_path, "excel-days", ('unit = "s"', 'unit = "excel"'))
     days = measured.read(path).tests[0]
     assert days.time[0] == pytest.approx(0.0, abs=1e-6)
     assert days.sampling_rate == pytest.approx(400.0, rel=1e-4)

@@ -109,9 +109,11 @@ def _size_faults(signals: Signals) -> Iterator[str]:
     for name, values in sizes:
         samples = values[np.isfinite(values)]
         largest = float(np.abs(samples).max(initial=0.0))
-        if largest > LARGEST:
+        if not samples.size:
+            yield f"{name}: no samples in the part that is used; correct the columns, or from_s and to_s"
+        elif largest > LARGEST:
             yield f"{name}: {largest:.3g} in SI units is too large; correct the unit or the file"
-        elif samples.size and name != "time" and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
+        elif name != "time" and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
             yield f"{name} is constant; there is no vibration in it"
 
 

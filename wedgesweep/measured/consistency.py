@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from wedgesweep.measured.cycles import cut
-from wedgesweep.measured.declarations import INPUT, STEADY
+from wedgesweep.measured.declarations import INPUT, STEADY, TRANSIENT
 from wedgesweep.measured.frequency import estimate_frequency
 from wedgesweep.measured.measurement import Measurement, TestRecord
 
@@ -21,21 +21,26 @@ HIGHEST, SHARE, ORDER, FEWEST = 12.0, 0.05, 4, 64
 # Longest delay over a period and shortest over a sampling interval that is told; number of delays that are
 # tried in each of ROUNDS; residual with the delay over that without, and over the force, that tell it.
 LONGEST, SHORTEST, TRIED, ROUNDS, GAIN, MOST_LEFT = 0.12, 0.5, 40, 2, 0.6, 0.1
+# Residual without a delay, over the force, below which there is nothing to explain; numbers to compare from
+# which mass, spring, damper, friction and delay may be told apart, two of each steady test.
+LEAST, FEWEST_ROWS = 1e-3, 8
 TINY = 1e-300
 # Standard error of a second harmonic over its size; distance of frequencies (in logarithm) within which
-# shapes are alike, and how alike (cosine) they must be once their signs are right.
-CLEAR, ALIKE, SUPPORT = 0.25, 0.15, 0.5
+# shapes are alike, how alike (cosine) they must be once their signs are right, and to how many other tests.
+CLEAR, ALIKE, SUPPORT, OTHERS = 0.25, 0.15, 0.5, 1.2
 
 
 def warnings(measurement: Measurement) -> list[str]:
     """What signs or delays of channels to look at, as "file: what; how to mend it"."""
-    driven = [test for test in measurement.tests if _force(test, measurement) is not None]
+    # A transient may give back energy that it began with.
+    periodic = [test for test in measurement.tests if test.kind != TRANSIENT]
+    driven = [test for test in periodic if _force(test, measurement) is not None]
     if measurement.model.system == "oscillator" and measurement.model.oscillator["contact"] == "belt":
         driven = []  # a belt gives out energy
     negated = [test for test in driven if _gives_out(test, measurement)]
     found = [] if len(negated) == len(driven) else _delay_warnings(driven, measurement)
     if not found:
-        found = [_sign_warning(test, measurement, len(negated) == len(driven)) for test in negated]
+        found = _sign_warnings(negated, len(negated) == len(driven))
         found += _delay_warnings([test for test in driven if test not in negated], measurement)
     return found + _shape_warnings(
         [test for test in measurement.tests if test.kind == STEADY and test.input is None]
@@ -77,21 +82,23 @@ def _gives_out(test: TestRecord, measurement: Measurement) -> bool:
     return bool(correlation < GIVES_OUT or (surely and correlation < -LITTLE))
 
 
-def _sign_warning(test: TestRecord, measurement: Measurement, everywhere: bool) -> str:
-    name = "force" if test.force is not None else INPUT
-    fault = (
-        f"{test.file}: {name} gives out energy, which a passive system takes in: its sign is the other one"
-    )
-    line = f"columns.{name}.sign = -1 in [[measurement.test]]"
-    mend = f"sign = -1 at {name} in [measurement.columns]" if everywhere else line
-    return f"{fault}, or that of the motion; write {mend}"
+def _sign_warnings(negated: Sequence[TestRecord], everywhere: bool) -> list[str]:
+    """Tests in which the force gives out energy; ``everywhere``: whether it does so in all tests."""
+    if not negated:
+        return []
+    name = "force" if negated[0].force is not None else INPUT
+    fault = f"{name} gives out energy, which a passive system takes in: its sign is the other one"
+    where = f"sign = -1 at {name} in [measurement.columns]"
+    mend = where if everywhere else f"columns.{name}.sign = -1 in [[measurement.test]]"
+    files = ", ".join(test.file for test in negated)
+    return [f"{files}: {fault}, or that of the motion; write {mend}"]
 
 
 def _delay_warnings(tests: Sequence[TestRecord], measurement: Measurement) -> list[str]:
     """The delay of the force at which one mass, spring, damper and friction fit all tests much better."""
     fits = [_delayed_force(test, measurement) for test in tests if not test.model]
     pairs = [fit for fit in fits if fit is not None]
-    if not pairs:
+    if sum(rows(0.0)[1].size for rows, _ in pairs) < FEWEST_ROWS:
         return []
     longest = LONGEST * min(period for _, period in pairs)
     delay, reach = 0.0, longest
@@ -101,7 +108,7 @@ def _delay_warnings(tests: Sequence[TestRecord], measurement: Measurement) -> li
         delay, least, reach = float(delays[left.argmin()]), float(left.min()), 2.0 * reach / TRIED
     without = _unexplained([rows(0.0) for rows, _ in pairs])
     shortest = SHORTEST / max(test.sampling_rate for test in tests)
-    if least > min(GAIN * without, MOST_LEFT) or not shortest < abs(delay) < longest:
+    if without < LEAST or least > min(GAIN * without, MOST_LEFT) or not shortest < abs(delay) < longest:
         return []
     name = "force" if tests[0].force is not None else INPUT
     late = f"{name} seems to be {'late' if delay > 0.0 else 'early'} by {1e3 * abs(delay):.3g} ms"
@@ -124,6 +131,8 @@ def _delayed_force(
     if test.kind == STEADY:
         frequency = test.refined_frequency
         pair = [complex(cut(test.time, each, frequency).harmonics[:, 0].mean()) for each in (velocity, force)]
+        if not min(map(abs, pair)) > TINY:
+            return None
         return partial(_of_fundamental, 2.0 * np.pi * frequency, pair[0], pair[1]), 1.0 / frequency
     frequency = estimate_frequency(test.time, displacement)
     if not frequency > 0.0 or 5.0 * frequency > test.sampling_rate or test.time.size < FEWEST:
@@ -181,22 +190,21 @@ def _shape_warnings(tests: Sequence[TestRecord]) -> list[str]:
             phases.append(np.angle(mean[1] / mean[0] ** 2))
             logs.append(log(test.refined_frequency))
             used.append(test)
-    apart = np.subtract.outer(logs, logs) / ALIKE
-    alike = np.exp(-(apart**2)) * np.cos(np.subtract.outer(phases, phases)) * (1.0 - np.eye(len(used)))
+    if not used:
+        return []
+    near = np.exp(-((np.subtract.outer(logs, logs) / ALIKE) ** 2)) - np.eye(len(used))
+    alike = near * np.cos(np.subtract.outer(phases, phases))
     signs = np.ones(len(used))
     for _ in used:
         gains = -signs * (alike @ signs)
-        if not len(used) or gains.max() <= 0.0:
+        if gains.max() <= 0.0:
             break
         signs[gains.argmax()] *= -1.0
     odd = signs == (-1.0 if signs.sum() >= 0.0 else 1.0)
-    support = (
-        signs * (alike @ signs) / np.maximum(np.exp(-(apart**2)).sum(axis=1) - 1.0, TINY) if used else signs
-    )
-    files = [
-        test.file for test, other, sure in zip(used, odd, support, strict=True) if other and sure > SUPPORT
-    ]
+    others = near.sum(axis=1)
+    clear = (others > OTHERS) & (signs * (alike @ signs) > SUPPORT * others)
+    files = [test.file for test, told in zip(used, odd & clear, strict=True) if told]
     if not files:
         return []
     fault = "the second harmonic has the other sign than in the other tests, as if the sensor were turned"
-    return [f"{', '.join(files)}: {fault}; if it was, write columns.displacement.sign = -1 in these tests"]
+    return [f"{', '.join(files)}: {fault}; if it was, write sign = -1 at its channels in these tests"]

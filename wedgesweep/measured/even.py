@@ -18,6 +18,8 @@ MOST_ERROR, OVER_NOISE = 0.02, 1.5
 HALF_WAY = 0.14
 # Rounding of the stamps over their step from which a rate is fitted that they do not show one by one.
 COARSE = 0.5
+# Relative error of a rate (the rounding of n stamps over their span and the root of n) that is too large.
+UNCERTAIN = 1e-3
 # Even samples per sample of the file: more are a fault of the stamps.
 MOST = 4
 # Place between two samples, from 0 at one of them to 1 half way, below which it is one of them.
@@ -127,7 +129,7 @@ def _cleaned(name: str, signal: Signal, remarks: list[str]) -> Signal:
         fault = f"{signal.time[row + 1]:.12g} s follows {signal.time[row]:.12g} s"
         mend = "put the samples in order, or choose a part (from_s, to_s)"
         raise ClockError(signal.where(row + 1), f"time goes back ({fault}); {mend}")
-    if (steps > 0.0).all() or (typical_step(signal.time) and fit_clock(signal.time, signal.resolution).exact):
+    if (steps > 0.0).all() or (typical_step(signal.time) and _clock(signal).exact):
         return signal
     stamps, place, count = np.unique(signal.time, return_inverse=True, return_counts=True)
     if stamps.size < FEWEST:
@@ -145,7 +147,7 @@ def _placed(signals: Sequence[Signal], remarks: list[str]) -> _Placed:
     Software may have read the clock late; then the samples are smoother over even times.
     """
     signal = signals[0]
-    clock = fit_clock(signal.time, signal.resolution)
+    clock = _clock(signal)
     rounding, off = float(np.median(signal.resolution)) / clock.step, float(np.sqrt(np.mean(clock.off**2)))
     if clock.exact:
         if rounding >= COARSE and off > EVEN:
@@ -163,6 +165,17 @@ def _placed(signals: Sequence[Signal], remarks: list[str]) -> _Placed:
     rate = f"{1.0 / regular.step:.6g} Hz"
     remarks.append(f"{scatter}, but the samples do not: they are taken to be even, at {rate}")
     return _with_losses(_Placed(signal, regular, regular.places), remarks)
+
+
+def _clock(signal: Signal) -> Clock:
+    """The clock of a signal; raises ClockError if its stamps are rounded too far to tell the rate."""
+    clock = fit_clock(signal.time, signal.resolution)
+    rounding = float(np.median(signal.resolution))
+    uncertain = rounding / (np.ptp(signal.time) * np.sqrt(signal.time.size))
+    if (clock.exact and uncertain > UNCERTAIN) or ((np.diff(clock.places) <= 0.0).any() and clock.even):
+        fault = f"time stamps that are rounded to {rounding:.2g} s do not tell the sampling rate"
+        raise ClockError(signal.where(0), f"{fault}; leave the column time out, and write rate_hz")
+    return clock
 
 
 def _with_losses(placed: _Placed, remarks: list[str]) -> _Placed:

@@ -48,6 +48,7 @@ def wav(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     size = FULL_SCALE[samples.dtype.kind](samples.dtype)
     zero = 128.0 if samples.dtype.kind == "u" else 0.0
     clock = np.arange(len(samples)) / rate
+    samples = np.where(np.isfinite(samples), samples, np.nan)
     return {
         f"track {number}": Channel((track - zero) / size, "", clock)
         for number, track in enumerate(samples.T, 1)

@@ -17,7 +17,7 @@ SAMPLES = 58
 def tdms(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     """Channels as ``group/channel``, with the clock of their waveform."""
     found: dict[str, Channel | None] = {}
-    with module("nptdms").TdmsFile.open(file) as opened:
+    with file.open("rb") as stream, module("nptdms").TdmsFile.open(stream) as opened:
         for number, channel in enumerate((each for group in opened.groups() for each in group.channels()), 1):
             name = f"{channel.group_name}/{channel.name}"
             step = channel.properties.get("wf_increment")

@@ -25,6 +25,8 @@ from wedgesweep.solvers import imposed_motion
 # Below so many standard deviations of its noise the velocity has no sign. Where it stays there for more than
 # one compared sample the mass may rest, and friction is not known.
 AT_REST = 3.0
+# The same over the largest velocity: however exact the displacement, a low-pass rings on after a stop.
+RESTS = 3e-3
 # Change of a part of the motion for its derivative, over its largest value, where it has no noise.
 LEAST_CHANGE = 1e-9
 # Fewest samples with a known friction that make a loop.
@@ -260,7 +262,8 @@ def _sign(model: Config) -> float:
 
 def at_rest(motion: Motion, low_pass: LowPass) -> np.ndarray:
     """Whether (n,) the mass may rest at or near a sample: its velocity has no sign for a while."""
-    slow = np.abs(motion.velocity) <= AT_REST * motion.noise[1]
+    speed = np.abs(motion.velocity)
+    slow = speed <= max(AT_REST * motion.noise[1], RESTS * float(speed.max()))
     edges = np.flatnonzero(np.diff(np.r_[False, slow, False].astype(int)))
     found = np.zeros(slow.size, bool)
     for first, last in zip(edges[::2], edges[1::2], strict=True):

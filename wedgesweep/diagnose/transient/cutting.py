@@ -11,6 +11,7 @@ from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import HIGHEST, LowPass
 from wedgesweep.diagnose.transient.recorded_input import RecordedInput, no_input, starting_at
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
+from wedgesweep.errors import InputError
 
 # Natural periods of a window, and of what is simulated before it so that the start of bristles is forgotten.
 WINDOW, LEAD = 10.0, 1.0
@@ -30,6 +31,8 @@ HARMONICS, BEYOND = 8.0, 2.0
 REST = 0.1
 # Fewest coefficients that are compared, and smallest motion in a window over that in the record.
 FEWEST_COMPARED, SMALL = 8, 1e-3
+# Fewest samples per natural period: a swing must show.
+SLOWEST = 2.0
 
 
 class Recorded(NamedTuple):
@@ -111,6 +114,9 @@ def windows(record: Recorded, model: Config, law: str, fewest: int = 1) -> list[
     """Windows of a record; ``fewest``: see ``cuts``."""
     rate, given = record.rate, record.input
     period, top = _period(record, model), highest_compared(record, model)
+    if period < SLOWEST:
+        fault = f"{period:.2g} samples per natural period of the model"
+        raise InputError([f"{fault}; sample faster, or correct the unit of time"])
     displacement = _displacement(record, 2.0 * pi / period)
     rest, length = _extent(displacement)
     smooth = LowPass(min(top / (2.0 * pi), HIGHEST), 1.0)(displacement) - rest

@@ -9,6 +9,7 @@ from wedgesweep.diagnose.transient.noise import Channels, NoiseEvidence, evidenc
 from wedgesweep.diagnose.transient.recorded_input import QUANTITIES_OF_MOTION, RecordedInput
 from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.transient.window import RecordWindow
+from wedgesweep.errors import InputError
 from wedgesweep.measured import Measurement, TestRecord
 
 
@@ -26,7 +27,10 @@ def transient_data(measurement: Measurement) -> TransientData:
             test.name, channels[number], test.sampling_rate, spectra[number], given, number, orders
         )
         record = _as_simulated(record, measurement)
-        found += windows(record, model, measurement.law, fewest)
+        try:
+            found += windows(record, model, measurement.law, fewest)
+        except InputError as error:
+            raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error
     return TransientData(
         tuple(found),
         dict(measurement.uncertain),
