@@ -294,8 +294,8 @@ def test_a_foreign_tone_has_a_phase_of_its_own_in_each_test(here):
 
 
 def test_what_is_not_steady_is_told(here):
-    told = synthesize(*SHORT)
-    assert "test[0] (20 Hz, 0.11 mm): not steady after 3 periods; raise --settle-periods" in told
+    told = synthesize("--settle-periods", 2, "--periods", 4)
+    assert "test[0] (20 Hz, 0.11 mm): not steady after 2 periods; raise --settle-periods" in told
 
 
 def test_tests_that_cannot_be_simulated_write_nothing(here):

@@ -9,6 +9,7 @@ import inspect
 from ast import literal_eval
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import cache
 from typing import Any, TypeVar, cast
 
 import numba
@@ -160,7 +161,44 @@ def expression_of(arguments: Sequence[str], body: str, **scope: Any) -> Callable
 
 # Expressions whose value stands in the code itself.
 LITERALS = ("0.0", "1.0", "0", "()", "False")
-_MADE_BY_RECORD: dict[Callable, types.Function] = {}
+
+
+@cache
+def contracted_of(arguments: tuple[str, ...], body: str) -> Callable:
+    """As ``function_of``, ``contracted``; the same one for the same text."""
+    return contracted(function_of(arguments, body))
+
+
+def by_type(function: Callable) -> Callable[[Function], Function]:
+    """Let compiled code call other functions in place of this one, chosen by the types of the arguments.
+
+    What is decorated gets numba's types, and returns compiled code: always the same for the same purpose, so
+    that it is compiled once. It returns None for arguments that there is nothing for.
+    """
+
+    def decorate(choose: Function) -> Function:
+        class Chosen(AbstractTemplate):
+            key = function
+
+            def generic(self, arguments: Any, keywords: Any) -> Any:
+                chosen = choose(*arguments)
+                if chosen is None:
+                    return None
+                self.context.refresh()  # it may be an intrinsic that was made just now
+                self.kind = self.context.resolve_value_type(chosen)
+                return self.kind.get_call_type(self.context, arguments, keywords)
+
+            def get_impl_key(self, signature: Any) -> Any:
+                return self.kind.get_impl_key(signature)
+
+        _BY_TYPE.add(function)
+        infer_global(function, types.Function(Chosen))
+        return choose
+
+    return decorate
+
+
+_BY_TYPE: set[Callable] = set()
 
 
 def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable]) -> Function:
@@ -170,34 +208,16 @@ def by_record(function: Function, choose: Callable[[Mapping[str, Any]], Callable
     a record has no fields for costs nothing. Returns ``function`` itself, which is what Python would call.
     """
     place = list(inspect.signature(function).parameters).index("p")
-    made: dict[types.Record, Any] = {}
 
-    class Chosen(AbstractTemplate):
-        key = function
+    @cache
+    def chosen_for(record: types.Record) -> Callable:
+        chosen = choose(cast(Any, record).fields)
+        return inlined(chosen) if inspect.isfunction(chosen) and chosen not in _BY_TYPE else chosen
 
-        def generic(self, arguments: Any, keywords: Any) -> Any:
-            record = arguments[place]
-            if not isinstance(record, types.Record):
-                return None
-            if record not in made:
-                chosen = choose(record.fields)
-                plain = inspect.isfunction(chosen) and chosen not in _MADE_BY_RECORD
-                made[record] = inlined(chosen) if plain else chosen
-                self.context.refresh()  # it may be an intrinsic that was made just now
-            self.kind = self.context.resolve_value_type(made[record])
-            return self.kind.get_call_type(self.context, arguments, keywords)
-
-        def get_impl_key(self, signature: Any) -> Any:
-            return self.kind.get_impl_key(signature)
-
-    _MADE_BY_RECORD[function] = types.Function(Chosen)
-    infer_global(function, _MADE_BY_RECORD[function])
+    by_type(function)(
+        lambda *kinds: chosen_for(kinds[place]) if isinstance(kinds[place], types.Record) else None
+    )
     return function
-
-
-def forward(arguments: Sequence[str], target: Callable) -> Callable:
-    """A plain function that passes its arguments on to compiled code."""
-    return function_of(arguments, f"target({', '.join(arguments)})", target=target)
 
 
 def term(owner: str, off: str, **scope: Any) -> Callable[[Function], Function]:

@@ -82,5 +82,5 @@ def lagged(velocity, step, periodic, p):
             pulled = a * velocity[before] + b * velocity[i] + c * velocity[after] + d * velocity[later]
             now = keeps * now + pulled
         if periodic and turn == 0:
-            now /= 1.0 - keeps**n
+            now /= 1.0 - exp(-ratio * n)
     return out

@@ -118,9 +118,10 @@ def test_read_says_what_it_cannot_read(tmp_path, sweep):
     with pytest.raises(SweepError, match="is a directory"):
         dataset.read(tmp_path)
     content = sweep.out.read_bytes()
-    for broken in (b"", b"text", content[: len(content) // 2]):
+    damaged = r"x\.nc: not a netCDF dataset, or damaged"
+    for broken, words in ((b"", "empty file"), (b"text", damaged), (content[: len(content) // 2], damaged)):
         (tmp_path / "x.nc").write_bytes(broken)
-        with pytest.raises(SweepError, match=r"x\.nc: not a netCDF dataset, or damaged"):
+        with pytest.raises(SweepError, match=words):
             dataset.read(tmp_path / "x.nc")
 
 

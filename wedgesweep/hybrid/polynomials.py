@@ -1,8 +1,6 @@
 """Polynomials: their coefficients c are a tuple, and stand for c[0] + c[1] s + c[2] s^2 + ..."""
 
-from numba.extending import overload
-
-from wedgesweep.compiled import CONTRACTED, function_of
+from wedgesweep.compiled import by_type, contracted_of
 
 
 def _horner(terms: list[str]) -> str:
@@ -18,9 +16,9 @@ def polynomial(c, s):
     raise NotImplementedError
 
 
-@overload(polynomial, jit_options=CONTRACTED)
+@by_type(polynomial)
 def _polynomial(c, s):
-    return function_of(("c", "s"), _horner([f"c[{i}]" for i in range(len(c))]))
+    return contracted_of(("c", "s"), _horner([f"c[{i}]" for i in range(len(c))]))
 
 
 def slope(c, s):
@@ -28,9 +26,9 @@ def slope(c, s):
     raise NotImplementedError
 
 
-@overload(slope, jit_options=CONTRACTED)
+@by_type(slope)
 def _slope(c, s):
-    return function_of(("c", "s"), _horner([f"{i} * c[{i}]" for i in range(1, len(c))]))
+    return contracted_of(("c", "s"), _horner([f"{i} * c[{i}]" for i in range(1, len(c))]))
 
 
 def largest_change(c, s):
@@ -38,6 +36,6 @@ def largest_change(c, s):
     raise NotImplementedError
 
 
-@overload(largest_change, jit_options=CONTRACTED)
+@by_type(largest_change)
 def _largest_change(c, s):
-    return function_of(("c", "s"), _horner(["0.0", *(f"abs(c[{i}])" for i in range(1, len(c)))]))
+    return contracted_of(("c", "s"), _horner(["0.0", *(f"abs(c[{i}])" for i in range(1, len(c)))]))

@@ -10,9 +10,8 @@ from math import inf
 from typing import NamedTuple, TypeVar
 
 from numba.core import types
-from numba.extending import overload
 
-from wedgesweep.compiled import INNER, forward, inlined, inner
+from wedgesweep.compiled import by_type, inlined, inner
 
 GOLDEN = 0.6180339887498949
 MOST_ITERATIONS = 100
@@ -44,11 +43,11 @@ def _value(place, context):
     """The function of a context, at a place."""
 
 
-@overload(_value, jit_options=INNER | {"forceinline": True})
+@by_type(_value)
 def _of_context(place, context):
     if not isinstance(context, types.NamedTuple | types.NamedUniTuple):
         return None
-    return forward(("place", "context"), _FUNCTIONS[context.instance_class])
+    return _FUNCTIONS[context.instance_class]
 
 
 class Bracket(NamedTuple):

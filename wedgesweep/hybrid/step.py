@@ -3,9 +3,7 @@
 from math import sqrt
 from typing import Any, NamedTuple
 
-from numba.extending import overload
-
-from wedgesweep.compiled import INNER, forward, inlined
+from wedgesweep.compiled import by_type, inlined
 from wedgesweep.hybrid.interface import error_scales
 from wedgesweep.hybrid.polynomials import polynomial, slope
 from wedgesweep.hybrid.vectors import combination, weighted
@@ -90,9 +88,9 @@ def dense_output(share, step):
     raise NotImplementedError
 
 
-@overload(dense_output, jit_options=INNER | {"forceinline": True})
+@by_type(dense_output)
 def _dense_output(share, step):
-    return forward(("share", "step"), _OUTPUT[step.instance_class])
+    return _OUTPUT[step.instance_class]
 
 
 def dense_slope(share, step):
@@ -100,9 +98,9 @@ def dense_slope(share, step):
     raise NotImplementedError
 
 
-@overload(dense_slope, jit_options=INNER | {"forceinline": True})
+@by_type(dense_slope)
 def _dense_slope(share, step):
-    return forward(("share", "step"), _SLOPE[step.instance_class])
+    return _SLOPE[step.instance_class]
 
 
 @inlined

@@ -4,17 +4,18 @@
 """
 
 from collections.abc import Callable
-from typing import Any, cast
+from functools import cache
+from typing import Any
 
 from numba.core import types
 from numba.cpython.unsafe.tuple import tuple_setitem
-from numba.extending import overload
 
-from wedgesweep.compiled import CONTRACTED, function_of, inlined
+from wedgesweep.compiled import by_type, contracted, contracted_of, inlined
 
 _set_item: Any = tuple_setitem
 
 
+@cache
 def _sum_of_products(arguments: str, size: int, count: int) -> Callable:
     """A function that adds ``count`` vectors of ``size`` numbers, to ``start`` if that is an argument."""
     factors = "\n".join(f"    w{j} = scale * weights[{j}]" for j in range(count))
@@ -24,7 +25,7 @@ def _sum_of_products(arguments: str, size: int, count: int) -> Callable:
         parts.append(" + ".join([*first, *(f"w{j} * vectors[{j}][{i}]" for j in range(count))]))
     scope: dict[str, Any] = {}
     exec(f"def sum({arguments}):\n{factors}\n    return ({', '.join(parts)},)", scope)
-    return cast(Callable, scope["sum"])
+    return contracted(scope["sum"])
 
 
 def weighted(start, scale, weights, vectors):
@@ -32,7 +33,7 @@ def weighted(start, scale, weights, vectors):
     raise NotImplementedError
 
 
-@overload(weighted, jit_options=CONTRACTED)
+@by_type(weighted)
 def _weighted(start, scale, weights, vectors):
     return _sum_of_products("start, scale, weights, vectors", len(start), len(vectors))
 
@@ -42,7 +43,7 @@ def combination(scale, weights, vectors):
     raise NotImplementedError
 
 
-@overload(combination, jit_options=CONTRACTED)
+@by_type(combination)
 def _combination(scale, weights, vectors):
     return _sum_of_products("scale, weights, vectors", len(vectors[0]), len(vectors))
 
@@ -52,12 +53,12 @@ def vector(array, like):
     raise NotImplementedError
 
 
-@overload(vector, jit_options=CONTRACTED)
+@by_type(vector)
 def _vector(array, like):
     if not isinstance(like, types.BaseTuple):
         return None
     parts = ", ".join(f"array[{i}]" for i in range(len(like)))
-    return function_of(("array", "like"), f"({parts},)")
+    return contracted_of(("array", "like"), f"({parts},)")
 
 
 @inlined

@@ -40,17 +40,17 @@ def both_sides(t, y, mode, first, p, out):
             order[count] = axis
             count += 1
     order = order[:count]
-    vertices = np.empty((2**count, WIDTH))
+    vertices = np.empty((1 << count, WIDTH))
     unique = True
-    for bits in range(2**count):
+    for bits in range(1 << count):
         at, now, certain = solve_for_signs(t, y, _vertex(mode, bits, order, p), p)
         unique = unique and certain
         vertices[bits, 0], vertices[bits, 1], vertices[bits, 2] = now[0], now[1], now[2]
         vertices[bits, 3], vertices[bits, 4] = now.column, now.bolster
         vertices[bits, POWER] = friction_power(t, y, at, now, p)
     for i in range(count - 1, 0, -1):
-        for low in range(2**i):
-            _resolve(order[i], t, y, vertices[low], vertices[low + 2**i], p)
+        for low in range(1 << i):
+            _resolve(order[i], t, y, vertices[low], vertices[low + (1 << i)], p)
     for i in range(WIDTH):
         out[0, i], out[1, i] = vertices[0, i], vertices[1, i]
     return unique

@@ -31,6 +31,8 @@ MOST_MODES = 1000
 LEAST_STEPS, LEAST_STEPS_RECORDED = 6, 12
 # The last term of a series, and a share of the one before it, limit a step, which is shorter by a factor.
 LAST_BUT_ONE, SAFETY = 0.1, 0.8
+# Order of the last term but one; numba multiplies out powers that are constants.
+BEFORE = ORDER - 1
 # A normal force stays positive in a step if its values at start, middle and end exceed this share of their
 # second difference: a parabola stays above the least of them less a quarter of that share.
 SECOND_DIFFERENCE = 0.5
@@ -67,7 +69,7 @@ def _expanded(t, y, mode, forces, p):
 def _length(series, longest, rtol, p):
     """Length (s) of a step, at most ``longest``, whose last term is within the tolerance."""
     scales, v = error_scales(p), series.velocity
-    last = (abs(v[ORDER]) * longest + LAST_BUT_ONE * abs(v[ORDER - 1])) * longest ** (ORDER - 1)
+    last = (abs(v[ORDER]) * longest + LAST_BUT_ONE * abs(v[BEFORE])) * longest**BEFORE
     of_x = last * longest / (ORDER + 1) / (abs(series.x[0]) + ABSOLUTE * scales[0])
     error = max(of_x, last / (abs(v[0]) + ABSOLUTE * scales[1])) / rtol
     # An eighth root in place of a seventh one, which takes longer: the safety factor covers the difference.

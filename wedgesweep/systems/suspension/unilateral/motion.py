@@ -12,9 +12,8 @@ them are the states of the suspension with bilateral joints.
 from typing import Any
 
 from numba.core import types
-from numba.extending import overload
 
-from wedgesweep.compiled import CONTRACTED, function_of, inlined
+from wedgesweep.compiled import by_type, contracted_of, inlined
 from wedgesweep.effects import fixture_resonance, guide_friction, hooks, lift_off, states, travel
 from wedgesweep.excitation import acceleration
 from wedgesweep.systems.suspension.modes import VELOCITY, X
@@ -32,11 +31,11 @@ def gap_state(y: Any, place: int) -> float:
     raise NotImplementedError
 
 
-@overload(gap_state, jit_options=CONTRACTED)
+@by_type(gap_state)
 def _gap_state(y, place):
     if not isinstance(y, types.BaseTuple):
         return None
-    return function_of(("y", "place"), "0.0" if len(y) == 2 else f"y[{len(y) - 4} + place]")
+    return contracted_of(("y", "place"), "0.0" if len(y) == 2 else f"y[{len(y) - 4} + place]")
 
 
 def with_gaps(y: Any, gaps: Any) -> Any:
@@ -44,11 +43,11 @@ def with_gaps(y: Any, gaps: Any) -> Any:
     raise NotImplementedError
 
 
-@overload(with_gaps, jit_options=CONTRACTED)
+@by_type(with_gaps)
 def _with_gaps(y, gaps):
     if not isinstance(y, types.BaseTuple):
         return None
-    return function_of(("y", "gaps"), f"({', '.join(f'y[{i}]' for i in range(len(y) - 4))},) + gaps")
+    return contracted_of(("y", "gaps"), f"({', '.join(f'y[{i}]' for i in range(len(y) - 4))},) + gaps")
 
 
 @inlined
