@@ -15,8 +15,8 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 def main() -> None:
     """Run the command line."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    # This process is the command's own. Compilation makes millions of objects that stay: Python would look for
-    # garbage among them 150 times as often, a sixth of the time of a first run, and once more before it ends.
+    # This process is the command's own. Compilation makes millions of objects that stay: Python would look
+    # for garbage among them 150 times as often, a sixth of the time of a first run, and again before it ends.
     gc.set_threshold(100_000)
     atexit.register(gc.freeze)
     for stream in (sys.stdout, sys.stderr):

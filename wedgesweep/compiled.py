@@ -110,6 +110,19 @@ def _borrowed(typing_context: Any, value: Any) -> Any:
 borrowed = cast(Callable[[Any], Any], intrinsic(_borrowed))
 
 
+def _record_in(typing_context: Any, kind: Any, content: Any) -> Any:
+    """The record of a type (a dtype) that an array of bytes holds, without a copy."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array = context.make_array(content)(context, builder, arguments[1])
+        return builder.bitcast(array.data, context.get_value_type(kind.dtype))
+
+    return kind.dtype(kind, content), code
+
+
+record_in = cast(Callable[[Any, Any], Any], intrinsic(_record_in))
+
+
 class Pointer(types.WrapperAddressProtocol):
     """A compiled function as an argument of compiled code.
 

@@ -7,7 +7,7 @@ part of the functions that Python calls (``compiled.compiled``), which are optim
 """
 
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
 from llvmlite.binding import create_new_function_pass_manager
 from numba.core import compiler, event, sigutils, types
@@ -21,6 +21,7 @@ from numba.core.typed_passes import (
     NopythonTypeInference,
     PreLowerStripPhis,
 )
+from numba.core.typing.context import Context
 from numba.core.untyped_passes import (
     FixupArgs,
     GenericRewrites,
@@ -100,6 +101,41 @@ class _InnerLowering(NativeLowering):
         return True
 
 
+class _TypingContext(Context):
+    """numba's typing context, which keeps what it infers for operators and functions of numbers.
+
+    numba infers them anew for every use: it tries templates for arrays, strings and dates first.
+    """
+
+    known: ClassVar[dict[tuple, Any]] = {}
+
+    def __init__(self, shared: Context) -> None:
+        self.__dict__ = shared.__dict__
+
+    def resolve_function_type(self, function: Any, arguments: tuple, keywords: Any) -> Any:
+        of_numbers = all(isinstance(each, types.Number | types.Boolean) for each in arguments)
+        if keywords or not of_numbers or not isinstance(function, types.Function):
+            return super().resolve_function_type(function, arguments, keywords)
+        call = function, arguments
+        if call not in self.known:
+            self.known[call] = super().resolve_function_type(*call, keywords)
+        return self.known[call]
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _InnerTypeInference(NopythonTypeInference):
+    """Type inference in a context of its own."""
+
+    _name = "inner_type_inference"
+
+    def run_pass(self, state: Any) -> bool:
+        shared, state.typingctx = state.typingctx, _TypingContext(state.typingctx)
+        try:
+            return bool(super().run_pass(state))
+        finally:
+            state.typingctx = shared
+
+
 class InnerCompiler(compiler.CompilerBase):
     """numba's compiler, with the last step left to the callers.
 
@@ -121,7 +157,7 @@ _PASSES = (
     IRProcessing,
     GenericRewrites,
     ReconstructSSA,
-    NopythonTypeInference,
+    _InnerTypeInference,
     PreLowerStripPhis,
     IRLegalization,
     _InnerLowering,

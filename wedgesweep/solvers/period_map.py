@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from wedgesweep.compiled import Pointer, borrowed, by_record, compiled, inlined, inner
+from wedgesweep.compiled import Pointer, borrowed, by_record, compiled, inlined, inner, record_in
 from wedgesweep.hybrid import accumulators
 from wedgesweep.hybrid.interface import (
     clocks,
@@ -157,8 +157,7 @@ def period_map(kind: np.dtype) -> Pointer:
     """Compiled code for records of a type, given as bytes, to be called as ``run_periods`` is."""
 
     def run_record(first, periods, y, record, keeping, memory):
-        p = borrowed(record).view(kind)[0]
-        return _run_periods(first, periods, y, p, keeping, borrowed(memory))
+        return _run_periods(first, periods, y, record_in(kind, record), keeping, borrowed(memory))
 
     record = np.zeros(kind.itemsize, np.uint8)
     return Pointer(run_record, types.int64, (0, 1, np.zeros(1), record, False, memory(1e-6, 4)))
