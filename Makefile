@@ -16,6 +16,7 @@ $(BIN)/.installed: pyproject.toml
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	PYTHONWARNINGS='ignore:Editable installation' $(BIN)/python -m pip install --quiet --editable '.[test]'
 	touch $@
+	@echo "first runs compile for half a minute; $(BIN)/wedgesweep warm-up does that ahead"
 
 run: install  ## run configs/quick.toml; dataset and figures in out/
 	mkdir -p $(OUT)
@@ -42,6 +43,9 @@ validate: install  ## hide effects in data, diagnose them, compare with the trut
 	$(BIN)/python -m pytest -q tests/validation/diagnoses.py
 	PYTHONPATH=scripts $(BIN)/python -m validation --output $(OUT)/validation
 
+everywhere:  ## the tests in eight surroundings: locale, home, user, versions, ... (half an hour)
+	scripts/everywhere.sh
+
 torture: install  ## 100,000 hostile inputs and 200 kills (hours)
 	$(BIN)/python scripts/fuzz.py
 	$(BIN)/python scripts/kill_campaign.py
@@ -52,4 +56,4 @@ bench: install  ## benchmarks, as ratios within one run
 clean:  ## remove everything that the other targets made
 	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .kernels
 
-.PHONY: help install run test acceptance lint check reproduce validate torture bench clean
+.PHONY: help install run test acceptance lint check reproduce validate everywhere torture bench clean
