@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from wedgesweep.compiled import allocating, inlined, inner
+from wedgesweep.compiled import allocating, inlined, inner, inner_code
+
+pytestmark = pytest.mark.skipif(inner_code is None, reason="numba's own compiler is in its place")
 
 
 def from_python(function):
@@ -58,3 +60,21 @@ def test_allocating_functions_make_arrays():
     for _ in range(100):
         assert call(values) == 2.0 * values.sum()
     assert np.array_equal(values, np.arange(1000.0))
+
+
+def test_operators_of_numbers_are_inferred_once_and_for_this_package_only():
+    known = inner_code._TypingContext.known
+    odd = np.int8(3), np.int16(4)  # a product that nothing else here has
+
+    def product(one, other):
+        return one * other
+
+    before = len(known)
+    assert from_python(product)(*odd) == 12
+    assert len(known) == before
+    inside = inner(product)
+    assert from_python(lambda one, other: inside(one, other))(*odd) == 12
+    assert len(known) == before + 1
+    again = inner(lambda one, other: one * other)
+    assert from_python(lambda one, other: again(one, other))(*odd) == 12
+    assert len(known) == before + 1
