@@ -149,7 +149,7 @@ def test_the_command_ends_with_its_own_exit_code(tmp_path):
     options = ("--effects", ",".join(CANDIDATES), "--no-report", "-o", tmp_path / "found")
     told = invoke("diagnose", BENCH, *options, "--time-limit", "0.001s", code=3)
     assert "test-09.csv: noise" in told
-    assert "base model: error 17.1 times the noise, 17 % of the response" in told.replace("\u00a0", " ")
+    assert "base model: error 17.1 times the noise\n" in told.replace("\u00a0", " ")
     assert "(time limit)" in told
     assert diagnosis_result.read(tmp_path / "found").document["ended"]["by"] == "time limit"
 

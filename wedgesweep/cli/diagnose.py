@@ -135,9 +135,7 @@ class Results:
         if len(found.document["ladder"]) > 1:
             self._store(found)
         elif not self._begun:
-            error, size = phrases.error_of(found, "base"), found.document["ladder"][0]["accuracy"]
-            share = f", {phrases.accuracy(size)} of the response" if size else ""
-            log.info(f"base model: error {error} times the noise{share}")
+            log.info(f"base model: error {phrases.error_of(found, 'base')} times the noise")
 
     def complete(self, found: "DiagnosisResult", n_jobs: int) -> bool:
         """Write the last result, then its report and figures if any ``n_jobs`` processes draw them.
