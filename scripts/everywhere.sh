@@ -35,7 +35,7 @@ row() {  # row NAME COMMAND...: run it, and add a line to the table
   shift
   "$@" >"$root/$name.log" 2>&1
   status=$?
-  last=$(grep -E '^[0-9]+ (passed|failed)|(passed|failed).* in ' "$root/$name.log" | tail -n 1)
+  last=$(grep -E '(passed|failed).* in ' "$root/$name.log" | tail -n 1)
   printf '%-9s %-6s %4d s  %s\n' "$name" "$([ $status = 0 ] && echo passes || echo FAILS)" \
     $((SECONDS - began)) "$last" | tee -a "$table"
   if [ $status != 0 ]; then failed=1; tail -n 40 "$root/$name.log"; fi
