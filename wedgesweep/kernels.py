@@ -75,7 +75,7 @@ def _usable(home: Path, digest: str) -> Path | None:
 
 def _digest() -> str:
     digest = sha256(_package_digest() + bytes([PLAIN]))
-    for name, source in _outside_sources():
+    for name, source in outside_sources():
         digest.update(name.encode() + b"\0" + source)
     return digest.hexdigest()[:16]
 
@@ -90,7 +90,7 @@ def _package_digest() -> bytes:
     return digest.digest()
 
 
-def _outside_sources() -> list[tuple[str, bytes]]:
+def outside_sources() -> list[tuple[str, bytes]]:
     """Names and sources of registered modules and of those that they import, directly or not."""
     found: dict[str, bytes] = {}
     waiting = [*_registered.values()]

@@ -88,7 +88,7 @@ def test_the_last_record_of_a_case_counts(path):
         ("numpy", "3.0", "numpy: 2.0 there, 3.0 now"),
         ("wedgesweep", "1.1", "wedgesweep: 1.0 there, 1.1 now"),
         ("config_sha256", "abd", "the config has changed"),
-        ("source_sha256", "1", "the code of wedgesweep has changed"),
+        ("source_sha256", "1", "the code of wedgesweep or of a plug-in has changed"),
     ],
 )
 def test_refuses_the_journal_of_another_set_up_and_leaves_it_alone(path, key, value, words):

@@ -10,7 +10,7 @@ from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, OutputPath, command_line
+from wedgesweep.cli.options import CONFIG, PLUGIN, OutputPath, command_line
 from wedgesweep.cli.run import print_remark
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ PICTURE = "phase-portrait"
 
 @click.command()
 @CONFIG
+@PLUGIN
 @click.option("--law", help="Friction law; default: the config's first.")
 @click.option("--beta", type=float, help="Input frequency as a ratio to omega_n.")
 @click.option("--frequency", type=float, metavar="HZ", help="Input frequency in Hz, instead of --beta.")

@@ -11,7 +11,7 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
-from wedgesweep.cli.options import CONFIG, STANDARD_OUTPUT, OutputPath, require_kind
+from wedgesweep.cli.options import CONFIG, PLUGIN, STANDARD_OUTPUT, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
 from wedgesweep.files import JSON, TOML, write_text
 from wedgesweep.kinds import CONFIG_OR_MEASURED, DIAGNOSIS, SWEEP, is_measured, kind_of
@@ -56,6 +56,7 @@ def schema(output: Path) -> None:
 
 @click.command()
 @CONFIG
+@PLUGIN
 def check(config_path: Path) -> None:
     """Check a config, or measured data (measured.toml).
 

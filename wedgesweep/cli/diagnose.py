@@ -12,7 +12,7 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_noise, print_warnings
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import N_JOBS, Duration, GivenPath, require_kind, require_place_for
+from wedgesweep.cli.options import N_JOBS, PLUGIN, Duration, GivenPath, require_kind, require_place_for
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.files import beside
 from wedgesweep.kinds import MEASURED
@@ -43,6 +43,7 @@ OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrog
     "-diagnosis, in the current directory.",
 )
 @N_JOBS
+@PLUGIN
 @click.option("--effects", metavar="A,B,...", help="Candidate effects; default: all.")
 @click.option(
     "--report/--no-report",
@@ -109,6 +110,7 @@ def diagnose(
 @click.command("report")
 @click.argument("directory", metavar="DIR", type=GivenPath(exists=True, file_okay=False))
 @N_JOBS
+@PLUGIN
 def write_report(directory: Path, n_jobs: int | None) -> None:
     """Write the report of a diagnosis again, or of one that was killed.
 

@@ -3,6 +3,7 @@
 import os
 import signal
 import socket
+import sys
 import threading
 from types import FrameType
 from typing import Any
@@ -106,4 +107,7 @@ def _failure(error: Exception) -> Exception:
         return Failure(described or str(error) or type(error).__name__)
     if isinstance(error, MemoryError):
         return Failure(f"not enough memory: {error}" if str(error) else "not enough memory")
+    plugins = sys.modules.get("wedgesweep.plugins")
+    if plugins and (told := plugins.described(error)):
+        return Failure(told)
     return error

@@ -43,6 +43,25 @@ N_JOBS = click.option(
 )
 
 
+def _load_plugins(ctx: click.Context, param: click.Parameter, given: tuple[Path, ...]) -> None:
+    if given:
+        from wedgesweep import plugins
+
+        plugins.load_all(given)
+
+
+PLUGIN = click.option(
+    "--plugin",
+    type=GivenPath(exists=True, dir_okay=False),
+    multiple=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_load_plugins,
+    metavar="FILE",
+    help="Python file with an effect of your own (docs/extending.md); may be repeated.",
+)
+
+
 class FiniteRange(click.FloatRange):
     """A number in a range; a comparison alone does not refuse nan."""
 

@@ -11,7 +11,7 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import MANY, require_confirmed
 from wedgesweep.cli.failure import SOME_FAILED, Failure, exit_code
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, OutputPath, command_line
+from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, OutputPath, command_line
 from wedgesweep.cli.progress import ProgressReport
 from wedgesweep.cli.summary import print_summary
 from wedgesweep.cli.verify import print_verification
@@ -31,6 +31,7 @@ BACKENDS = ("threads", "loky", "dask")
 
 @click.command()
 @CONFIG
+@PLUGIN
 @click.option(
     "-o",
     "--output",

@@ -8,7 +8,7 @@ import click
 from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, N_JOBS, FiniteRange, GivenPath
+from wedgesweep.cli.options import CONFIG, N_JOBS, PLUGIN, FiniteRange, GivenPath
 from wedgesweep.synthesize.options import NOISES, QUANTITIES
 
 SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
@@ -16,6 +16,7 @@ SHARE = FiniteRange(min=0.0, max=1.0, max_open=True)
 
 @click.command()
 @CONFIG
+@PLUGIN
 @click.option(
     "--tests",
     "plan_path",

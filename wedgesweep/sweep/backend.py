@@ -6,10 +6,12 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import joblib
 
+from wedgesweep import plugins
 from wedgesweep.errors import SweepError
 from wedgesweep.processes import end_with, interrupts_ignored
 
@@ -62,8 +64,14 @@ def in_order(tasks: Iterable[Any], n_jobs: int) -> list[Any]:
 
 
 def _processes(n_jobs: int) -> dict[str, Any]:
-    """Options of joblib for processes that end with this one also if it is killed."""
-    return {"n_jobs": n_jobs, "backend": "loky", "initializer": end_with, "initargs": (os.getpid(),)}
+    """Options of joblib for processes that end with this one also if it is killed, and know its plug-ins."""
+    begun = {"initializer": _begin, "initargs": (os.getpid(), plugins.loaded())}
+    return {"n_jobs": n_jobs, "backend": "loky", **begun}
+
+
+def _begin(parent: int, files: tuple[Path, ...]) -> None:
+    end_with(parent)
+    plugins.load_all(files)
 
 
 def _joblib(**options: Any) -> Solve:

@@ -6,8 +6,10 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wedgesweep import plugins
 from wedgesweep.errors import SweepError
 from wedgesweep.sweep.backend import SENT_AHEAD, Pool, Solve
 from wedgesweep.sweep.fingerprint import differences
@@ -34,6 +36,7 @@ def dask(
 
     with ExitStack() as opened:
         client = _connected(opened, scheduler) if scheduler else _local(opened, n_jobs)
+        client.register_plugin(_plugins())
         _require_same(client, fingerprint)
         try:
             cores = sum(client.ncores().values())
@@ -88,6 +91,20 @@ def _connected(opened: ExitStack, scheduler: str) -> "Client":
         message = f"{scheduler}: no Dask scheduler with a worker ({reason})"
         raise SweepError(message) from error
     return client
+
+
+def _plugins() -> Any:
+    """What lets workers, also those that start later, load the plug-ins of this process."""
+    from distributed import WorkerPlugin
+
+    class Plugins(WorkerPlugin):
+        def __init__(self, files: tuple[Path, ...]) -> None:
+            self.files = files
+
+        def setup(self, worker: Any) -> None:
+            plugins.load_all(self.files)
+
+    return Plugins(plugins.loaded())
 
 
 def _require_same(client: "Client", fingerprint: Callable[[], dict[str, str]]) -> None:

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import __version__, toml
+from wedgesweep import __version__, kernels, toml
 from wedgesweep.config import Config
 from wedgesweep.hints import show
 
@@ -23,7 +23,7 @@ def fingerprint(config: Config) -> dict[str, str]:
     return {
         "config_sha256": config.sha256,
         "wedgesweep": __version__,
-        "source_sha256": _source_digest(),
+        "source_sha256": _digest_with_plugins(),
         "python": platform.python_version(),
         **{name: version(name) for name in SAME_RESULTS},
     }
@@ -40,7 +40,7 @@ def differences(found: Mapping[str, str], expected: Mapping[str, str]) -> list[s
 
 def _descriptions(key: str, found: Mapping[str, str], expected: Mapping[str, str]) -> list[str]:
     if key == "source_sha256":
-        return ["the code of wedgesweep has changed"]
+        return ["the code of wedgesweep or of a plug-in has changed"]
     if key == "config_sha256":
         changed = _changed_keys(found.get("config", ""), expected.get("config", ""))
         return changed or ["the config has changed"]
@@ -69,6 +69,12 @@ def _flat(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]
             yield from _flat(value, f"{path}{key}.")
         else:
             yield path + key, value
+
+
+def _digest_with_plugins() -> str:
+    outside = kernels.outside_sources()
+    parts = [name.encode() + b"\0" + source for name, source in outside]
+    return sha256(_source_digest().encode() + b"".join(parts)).hexdigest() if parts else _source_digest()
 
 
 @cache

@@ -1,0 +1,121 @@
+"""Effects from files outside of the package: what is wrong with one, and runs in processes."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from tests.test_extending import REPOSITORY, SWEEP, example
+from wedgesweep import effects, plugins
+from wedgesweep.errors import InputError
+
+HYPOTHESIS = (REPOSITORY / "examples" / "quintic_stiffness.py").read_text()
+FORCE = "    return -p.quintic_stiffness.force * (z / TRAVEL) ** 5"
+# What is changed in a file that works, and what is said of it.
+FAULTS = {
+    "syntax": ("def force_on_mass(", "def force_on_mass((", "SyntaxError"),
+    "exception": ("TRAVEL = 1e-3", "TRAVEL = 1 / 0", "ZeroDivisionError: division by zero"),
+    "no effect": ("EFFECT = Effect(", "OTHER = Effect(", "EFFECT: missing"),
+    "taken": ('name="quintic_stiffness"', 'name="viscous_damping"', "name: 'viscous_damping' is taken"),
+    "family": ("missing-force", "missing-froce", "family: unknown name 'missing-froce'; did you mean"),
+    "extends": ('extends=("force",)', 'extends=("size",)', "extends: unknown name 'size'"),
+    "arguments": ("(z, velocity, y, p)", "(z, y, p)", "(z, y, p); the hook has (z, velocity, y, p)"),
+    "equation": ("(z/z_1)^5", "(z/z_1^5", "EQUATIONS"),
+    "symbol": ('"z_1"', '"z_2"', "symbol 'z_1' is not explained"),
+    "name": (FORCE, FORCE.replace("TRAVEL", "LENGTH"), "force_on_mass: NameError: name 'LENGTH'"),
+    "number": (FORCE, FORCE.replace(".force ", ".size "), "p has no part or number 'size'"),
+    "not neutral": (FORCE, FORCE.replace("-p", "1.0 - p"), "is 1 at the neutral value of the effect"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_fault_is_told_with_file_and_line(fault, tmp_path):
+    good, bad, told = FAULTS[fault]
+    assert good in HYPOTHESIS
+    file = tmp_path / "my_effect.py"
+    file.write_text(HYPOTHESIS.replace(good, bad))
+    with pytest.raises(InputError) as caught:
+        plugins.load(file)
+    line = str(caught.value).splitlines()[0]
+    assert line.startswith(f"{file}: ")
+    assert told in line
+    if fault != "no effect":  # there is no line to name
+        changed = next(i for i, text in enumerate(HYPOTHESIS.splitlines(), 1) if good.splitlines()[0] in text)
+        declared = int(line.split(": line ")[1].split(":")[0])
+        assert 0 <= changed - declared <= 10
+    assert "quintic_stiffness" not in effects.EFFECTS
+    assert "my_effect" not in sys.modules
+    assert not plugins.loaded()
+
+
+def test_name_of_file_is_free(tmp_path):
+    (tmp_path / "json.py").write_text(HYPOTHESIS)
+    with pytest.raises(InputError, match="rename the file"):
+        plugins.load(tmp_path / "json.py")
+
+
+def command(folder: Path, *words: str) -> str:
+    """Run a command in a process of its own, which must succeed."""
+    search = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
+    done = subprocess.run(
+        [sys.executable, "-m", "wedgesweep", *words],
+        cwd=folder,
+        env=search,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr + done.stdout
+    return done.stdout
+
+
+@pytest.mark.acceptance
+def test_processes_of_a_sweep_know_it(tmp_path):
+    (tmp_path / "maxwell.py").write_text(example("maxwell.py"))
+    sweep = SWEEP.replace('["fading", "coulomb"]', '["coulomb", "static-dynamic"]')
+    (tmp_path / "sweep.toml").write_text(sweep)
+    plugin = ("--plugin", "maxwell.py", "--n-jobs", "2")
+    for solver, backend in (("event-driven", "threads"), ("radau", "loky")):
+        command(
+            tmp_path,
+            "run",
+            "sweep.toml",
+            *plugin,
+            "--solver",
+            solver,
+            "--backend",
+            backend,
+            "-o",
+            f"{backend}.nc",
+        )
+    one, other = (xr.load_dataset(tmp_path / f"{name}.nc") for name in ("threads", "loky"))
+    assert (one["status"] == 0).all()
+    assert one["amplitude_ratio"].values == pytest.approx(other["amplitude_ratio"].values, rel=1e-5)
+
+
+@pytest.mark.acceptance
+def test_hidden_effect_is_found_and_reported(tmp_path):
+    """Synthesized with an effect of one's own, diagnosed with it: named, with equation, and it runs."""
+    hidden = (REPOSITORY / "examples" / "shaker-hidden.toml").read_text()
+    text = hidden.replace("[effects.cubic_stiffness]", "[effects.quintic_stiffness]")
+    text = text.replace("coefficient_N_per_mm3 = 0.3", "force_N = 0.05")
+    assert "force_N" in text
+    (tmp_path / "hidden.toml").write_text(text)
+    (tmp_path / "quintic.py").write_text(HYPOTHESIS)
+    tests = REPOSITORY / "examples" / "shaker-tests.toml"
+    plugin = ("--plugin", "quintic.py")
+    command(
+        tmp_path, "synthesize", "hidden.toml", *plugin, "--tests", str(tests), "-o", "made", "--n-jobs", "2"
+    )
+    asked = ("--effects", "cubic_stiffness,quintic_stiffness")
+    command(tmp_path, "diagnose", "made/measured.toml", *plugin, *asked, "-o", "found", "--n-jobs", "2")
+    (cause,) = json.loads((tmp_path / "found" / "diagnosis.json").read_text())["causes"]
+    low, high = cause["parameters"]["force_N"]["ci95"]
+    assert cause["effect"] == "quintic_stiffness"
+    assert low <= 0.05 <= high
+    assert "fifth power of travel" in (tmp_path / "found" / "report.html").read_text()
+    command(tmp_path, "check", "found/extended.toml", *plugin)
