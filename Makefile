@@ -41,7 +41,7 @@ reproduce: install  ## run the paper's 1,800 cases and check its claims
 
 validate: install  ## hide effects in data, diagnose them, compare with the truth (hours; rerun to resume)
 	$(BIN)/python -m pytest -q tests/validation/diagnoses.py
-	PYTHONPATH=scripts $(BIN)/python -m validation --output $(OUT)/validation
+	PYTHONPATH=scripts $(BIN)/python -m validation --output $(OUT)/validation $(if $(ABLATE),--ablate "$(ABLATE)")
 
 everywhere:  ## the tests in eight surroundings: locale, home, user, versions, ... (half an hour)
 	scripts/everywhere.sh

@@ -27,6 +27,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--size", type=float, default=1.0, help="fraction of the sets of each kind")
     parser.add_argument("--only", action="append", choices=KINDS, default=[], help="kind of sets; repeatable")
+    parser.add_argument("--ablate", default="", help="stage (diagnosis.json lists them) to leave out")
     parser.add_argument("--jobs", type=int, default=2, help="sets at the same time")
     parser.add_argument("-o", "--output", type=Path, help="directory; default: out/validation-SEED")
     parser.add_argument("--records", type=Path, help="records (.jsonl) of sets that are not to be run again")
@@ -39,7 +40,9 @@ def main(given: Sequence[str] | None = None) -> None:
     """Run a campaign, or print the tables of its records."""
     options = arguments(given)
     out = options.output or Path("out") / f"{NAME}-{options.seed}"
-    wanted = chains(options.seed, options.size, tuple(options.only))
+    if options.ablate:
+        out = out.with_name(f"{out.name}-without-{options.ablate.replace(' ', '-')}")
+    wanted = chains(options.seed, options.size, tuple(options.only), options.ablate)
     finished = _read(options.records, options.seed) if options.records else []
     if options.tables:
         names = {one.name for chain in wanted for one in chain}

@@ -113,7 +113,7 @@ def _run(one: DataSet, out: Path) -> Record:
         _synthesize(draft, spreads, one.noise_seed, directory)
     write(directory / DRAFT, asdict(draft))
     limit = ["--effects", ",".join(draft.candidates)] if one.kind == "unknown" else []
-    found = _diagnose(directory, clock, *limit)
+    found = _diagnose(one, directory, clock, *limit)
     simpler = BASELINES if one.kind in COMPARED else {}
     named_by = {name: method(directory / RESULT) for name, method in simpler.items()}
     clock.lap("baselines")
@@ -135,18 +135,19 @@ def _run_time_records(one: DataSet, directory: Path) -> Record:
     noise = ["--noise", drawn["noise"], "--level", drawn["level"], "--input-level", 0.5 * drawn["level"]]
     more = ["--sampling-hz", drawn["sampling_hz"], "--seed", one.noise_seed, "--n-jobs", 1]
     wedgesweep("synthesize", *files, *noise, *more, "--settle-periods", SETTLE_PERIODS)
-    found = _diagnose(directory, clock)
+    found = _diagnose(one, directory, clock)
     made = {key: drawn[key] for key in ("law", "noise", "level")}
     record = _record(one, sorted(drawn["hidden"]), drawn["hidden"], made, found, None)
     return record | {"baselines": {}, "seconds": clock.seconds}
 
 
-def _diagnose(directory: Path, clock: _Clock, *options: str) -> dict[str, Any]:
+def _diagnose(one: DataSet, directory: Path, clock: _Clock, *options: str) -> dict[str, Any]:
     """Diagnose the data of a directory; the truth is put out of the reach of the diagnosis."""
     (directory / DATA / TRUTH).rename(directory / TRUTH)
     clock.lap("synthesize")
     files = [directory / DATA / "measured.toml", "-o", directory / RESULT]
-    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *options)
+    module = ("validation.without", one.ablated) if one.ablated else ("wedgesweep",)
+    wedgesweep("diagnose", *files, "--no-report", "--n-jobs", 1, *options, module=module)
     clock.lap("diagnose")
     return json.loads((directory / RESULT / "diagnosis.json").read_text())
 
@@ -236,9 +237,9 @@ def _declare_errors(draft: Draft, data: Path) -> None:
     file.write_text(toml.dumps(document))
 
 
-def wedgesweep(*arguments: Any) -> None:
-    """Run the command line as a user would; raises CommandError."""
-    command = [sys.executable, "-m", "wedgesweep", *map(str, arguments)]
+def wedgesweep(*arguments: Any, module: tuple[str, ...] = ("wedgesweep",)) -> None:
+    """Run the command line as a user would, or another module that does so; raises CommandError."""
+    command = [sys.executable, "-m", *module, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         said = f"{' '.join(map(str, arguments))}: exit code {done.returncode}\n{done.stderr[-2000:]}"

@@ -39,11 +39,12 @@ KINDS = tuple(ALL)
 
 @dataclass(frozen=True)
 class DataSet:
-    """One data set of a campaign."""
+    """One data set of a campaign; ``ablated``: the stage that its diagnosis leaves out."""
 
     kind: str
     index: int
     seed: int
+    ablated: str = ""
 
     @property
     def name(self) -> str:
@@ -70,7 +71,7 @@ class DataSet:
         return float(np.exp(random.uniform(low, high)))
 
 
-def chains(seed: int, size: float, only: tuple[str, ...] = ()) -> list[list[DataSet]]:
+def chains(seed: int, size: float, only: tuple[str, ...] = (), ablated: str = "") -> list[list[DataSet]]:
     """Lists of sets to be run one after the other, as an ``added`` set needs its poor set.
 
     The kinds alternate, so that an interrupted campaign is a sample of all of them.
@@ -82,8 +83,8 @@ def chains(seed: int, size: float, only: tuple[str, ...] = ()) -> list[list[Data
     placed = []
     for kind, count in wanted.items():
         for index in range(count if kind != "added" else 0):
-            chain = [DataSet(kind, index, seed)]
+            chain = [DataSet(kind, index, seed, ablated)]
             if kind == "poor" and index < wanted.get("added", 0):
-                chain.append(DataSet("added", index, seed))
+                chain.append(replace(chain[0], kind="added"))
             placed.append(((index + 0.5) / count, chain))
     return [chain for _, chain in sorted(placed, key=lambda each: each[0])]

@@ -35,7 +35,8 @@ def test_an_effect_keeps_its_numbers_beside_another_than_that_of_its_pair():
     model = search.model("preload", "bolster_mass")
     wrong = minimise(model, model.evaluate(model.start(base.fit, np.array([0.3, 1.0]))))
     assert wrong.p < 1e-9
-    best = pairs.swapped_pairs(pairs.PairSearch(search, base.fit, known), [search.explanation(wrong)])[0]
+    job = pairs.PairSearch(search, base.fit, known, [search.explanation(wrong)])
+    best = pairs.swapped_pairs(job)[0]
     assert set(best.effects) == set(TRUTH)
     assert best.fit.p > 1e-3
 
@@ -47,7 +48,8 @@ def test_a_pair_that_stopped_in_a_local_minimum_is_fitted_again_from_the_whole_r
     model = search.model(*truth)
     wrong = minimise(model, model.evaluate(model.start(base.fit, np.array([np.log(9.0), 1.15]))))
     assert wrong.p < 1e-9
-    best = pairs.restarted_pairs(search, [search.explanation(wrong)])[0]
+    job = pairs.PairSearch(search, base.fit, {}, [search.explanation(wrong)])
+    best = pairs.restarted_pairs(job)[0]
     assert best.fit.p > 1e-3
     assert best.fit.values["column_compliance"]["stiffness_N_per_mm"] == pytest.approx(22.461, rel=0.02)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import MODEL, base_of, drawn, searched
-from wedgesweep.diagnose import diagnosis
+from wedgesweep.diagnose import stages
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.search import (
     Search,
@@ -34,8 +34,8 @@ def test_all_starts_are_followed_only_if_nothing_is_adequate(truth, looked, monk
         again.extend(multistart(search, scans))
         return again
 
-    monkeypatch.setattr(diagnosis, "multistart", recorded)
-    found = diagnosis.explain(Search.of(drawn(truth), CANDIDATES)).explanations
+    monkeypatch.setattr(stages, "multistart", recorded)
+    found = stages.explain(Search.of(drawn(truth), CANDIDATES)).explanations
     assert [each.effects for each in again] == [(name,) for name in CANDIDATES if looked]
     single = {each.effects: each.fit.chi2 for each in found if len(each.effects) == 1}
     for each in again:
@@ -94,7 +94,7 @@ def test_an_effect_is_fitted_beside_what_is_stated_where_the_base_model_needs_ot
 
 def test_an_undetected_tone_leaves_nothing_to_fit():
     search = Search.of(drawn({"viscous_damping": {"coefficient": 8.0}}), ("stray_vibration",))
-    _, base, found, _ = diagnosis.explain(search)
+    _, base, found, _ = stages.explain(search)
     assert base.fit.p < 1e-9
     assert found == []
 

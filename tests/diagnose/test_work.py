@@ -74,7 +74,8 @@ def test_a_budget_ends_the_search_for_pairs_at_the_same_place_with_any_number_of
         search = replace(search, budget=Budget(total))
         begun = work.done()
         found = pairs.fit_pairs(search, base.fit, singles, scans)
-        return [(each.effects, each.fit.chi2) for each in found], search.budget.untried, work.done() - begun
+        effects = [(each.effects, each.fit.chi2) for each in found]
+        return effects, search.budget.untried, work.done() - begun, search.budget.changes
 
     complete = searched(1, float("inf"))
     assert complete[1] == []

@@ -8,10 +8,11 @@ what it leaves would be taken for a cause that no effect describes.
 from collections.abc import Sequence
 from dataclasses import replace
 
+from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.search import SLIGHT, Search
+from wedgesweep.diagnose.search import Search
 
 # Number of best explanations that are followed beyond the range.
 FOLLOWED = 6

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import cast
 
 from wedgesweep.diagnose import score_test, verdict, work
-from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.calibration import calibrate
+from wedgesweep.diagnose.changes import Best, Change
 from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.ladder import Level, ladder, rough_ladder
@@ -20,23 +20,10 @@ from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import NextTest
 from wedgesweep.diagnose.next_test.recommend import recommend
-from wedgesweep.diagnose.pairs import component_fits, fit_pairs
 from wedgesweep.diagnose.profile_likelihood import profile_likelihood
-from wedgesweep.diagnose.renewal import Explained, with_renewed_covariance
 from wedgesweep.diagnose.score_test import Score
-from wedgesweep.diagnose.search import (
-    PAIRS_SHARE,
-    Search,
-    base_fit,
-    followed,
-    from_shared_nuisances,
-    from_special_cases,
-    multistart,
-    quiet,
-    refit_base,
-    refit_best,
-    single_fits,
-)
+from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, quiet
+from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, base_model, explain, single_effects, taken
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.transient.from_measurement import transient_data
@@ -52,8 +39,6 @@ log = logging.getLogger(__name__)
 COMPARED = 6
 # Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
 FOLLOWED_GAPS = 5.0
-# Single effects are fitted again if a refit of the base model leaves less than this share of its chi-squared.
-REFIT_BELOW = 0.9
 Data = HarmonicData | LoopData | TransientData | MixedData
 # How the tests of each kind become data of a fit.
 DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]] = {
@@ -75,7 +60,8 @@ class Diagnosis:
     ``ladder``: accuracy by number of effects. ``calibration``: None unless thresholds were calibrated.
     ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects that were not
     fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
-    raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early.
+    raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early. ``changes``: what
+    each stage changed; ``without``: stages that were left out.
     """
 
     measurement: Measurement
@@ -94,6 +80,14 @@ class Diagnosis:
     unfinished: Mapping[str, str] = field(default_factory=dict)
     failed: Mapping[str, str] = field(default_factory=dict)
     ended: KeyboardInterrupt | None = None
+    changes: tuple[Change, ...] = ()
+    without: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> Best:
+        """The explanation that the verdict is about, else the base model."""
+        decided = self.decided.best or self.base
+        return Best(decided.effects, decided.penalised)
 
     @property
     def finding(self) -> Finding:
@@ -124,7 +118,10 @@ class Course:
         thresholds = verdict.thresholds_for(data)
         decided = verdict.decide(base, [], thresholds)
         unfinished = dict.fromkeys(steps, NOT_REACHED)
-        self.found = Diagnosis(measurement, data, base, decided, thresholds, unfinished=unfinished)
+        left_out = tuple(sorted(explained.search.without))
+        self.found = Diagnosis(
+            measurement, data, base, decided, thresholds, unfinished=unfinished, without=left_out
+        )
         self.found = self.explained_by(explained)
 
     @property
@@ -136,14 +133,15 @@ class Course:
         self.search.progress(step)
         unfinished = dict(self.found.unfinished)
         try:
-            self.found = function(self)
+            self.found = self.search.tried(step, self.found, lambda _: function(self))
             del unfinished[step]
         except Exception as error:  # no step may take the results of the others with it
             log.debug(traceback.format_exc())
             self.search.progress(f"{step}: failed ({_described(error)}); the diagnosis goes on without")
             self._take_finished()
             unfinished[step] = _described(error)
-        self.found = replace(self.found, unfinished=unfinished)
+        changes = tuple(self.search.budget.changes)
+        self.found = replace(self.found, unfinished=unfinished, changes=changes)
         self._reached(self.found)
 
     def end(self, interrupt: KeyboardInterrupt) -> Diagnosis:
@@ -227,7 +225,8 @@ def diagnose(
     """
     effects = _candidates(effects, measurement, progress)
     explained = base_model(Search.of(data_of(measurement), effects, threads, progress))
-    steps = {name: step for name, step in STEPS.items() if calibrated or step is not _calibrated}
+    left_out = {*explained.search.without, *(() if calibrated else ("calibration",))}
+    steps = {name: step for name, step in STEPS.items() if name not in left_out}
     course = Course(measurement, explained, tuple(steps), reached)
     try:
         reached(course.found)
@@ -356,7 +355,7 @@ def refit_cause(
         finding = verdict.decide(base, found, thresholds)
     done: list[Explanation] = []
     while finding.best is not None and not any(finding.best is each for each in done):
-        fit = tight_refit(from_other_nuisances(finding.best.fit))
+        fit = tight_refit(search.tried(OTHER_NUISANCES, finding.best.fit, from_other_nuisances))
         # Without a cause there is no interval to report.
         if finding.cause is not None or search.budget.left > 0.0:
             fit = profile_likelihood(fit, search.each)
@@ -387,65 +386,6 @@ def on_held_out_tests(
     return finding, gain if finding.best is not None else None
 
 
-def explain(search: Search) -> Explained:
-    """Fit the base model, every candidate, and pairs of candidates where no single one is adequate.
-
-    Each stage may renew the search: its data (records aligned, covariance renewed) and its ranges.
-    """
-    return further_explained(refined(single_effects(base_model(search))))
-
-
-def base_model(search: Search) -> Explained:
-    """The fit of the base model."""
-    search.progress("base model")
-    search, base = base_fit(search)
-    return Explained(search, base, [], {})
-
-
-def single_effects(explained: Explained) -> Explained:
-    """The fit of every candidate effect by itself."""
-    search, found, scans = single_fits(explained.search, explained.base.fit)
-    return Explained(search, explained.base, found, scans)
-
-
-def refined(explained: Explained) -> Explained:
-    """The base model and the single effects fitted again from where another of these fits ended."""
-    search, base, found, scans = explained
-    sharing = search.data.shares_nuisances
-    if sharing and verdict.none_adequate(found):
-        found = followed(search, found)
-    search, better = refit_base(search, base, found)
-    # An adequate explanation hands its nuisance parameters on to the others, which need no better base then.
-    handed_on = sharing and not verdict.none_adequate(found)
-    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2 and not handed_on:
-        search, again, scans = single_fits(search, better.fit)
-        found = best_of_each([*found, *again], penalised)
-    found = from_shared_nuisances(search, from_special_cases(search, found))
-    return with_renewed_covariance(Explained(search, better, found, scans))
-
-
-def further_explained(explained: Explained) -> Explained:
-    """Where no single effect is adequate, pairs, and single effects from further starts."""
-    search, base, found, scans = explained
-    if verdict.none_adequate([base]):
-        found = refit_best(search, found)
-    if verdict.none_adequate([base, *found]):
-        search, found = followed_beyond(search, base, found)
-    if verdict.none_adequate([base, *found]) and search.data.tests >= verdict.FEWEST_TESTS:
-        search.budget.grant(PAIRS_SHARE * search.budget.total)
-        pairs = fit_pairs(search, base.fit, found, scans)
-        found = found + pairs + component_fits(search, pairs)
-        if verdict.none_adequate(found):
-            search, found = followed_beyond(search, base, found)
-        if verdict.none_adequate(found):
-            found = found + multistart(search, scans)
-        if search.data.shares_nuisances and verdict.none_adequate(found):
-            found = refit_best(search, found)
-    found = from_shared_nuisances(search, best_of_each(found, penalised))
-    search, base = refit_base(search, base, found)
-    return with_renewed_covariance(Explained(search, base, found, scans))
-
-
 def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds: Thresholds) -> list[Fit]:
     """Fits that a next test should separate, at most COMPARED of them without a cause.
 
@@ -464,8 +404,8 @@ def _undecided(finding: Finding, explanations: Sequence[Explanation], thresholds
 # Steps of a diagnosis after the fit of the base model, in their order; any of them may fail or be cut off.
 STEPS: dict[str, Callable[[Course], Diagnosis]] = {
     "single effects": lambda course: course.explained_by(single_effects(course.explained)),
-    "refinement of single effects": lambda course: course.explained_by(refined(course.explained)),
-    "pairs": lambda course: course.explained_by(further_explained(course.explained)),
+    "refinement of single effects": lambda course: course.explained_by(taken(REFINEMENT, course.explained)),
+    "pairs": lambda course: course.explained_by(taken(PAIRS, course.explained)),
     "calibration": _calibrated,
     "intervals": _with_intervals,
     "held-out tests": _held_out,

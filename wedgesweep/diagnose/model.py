@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.special import chdtrc
 
+from wedgesweep.diagnose.changes import Best
 from wedgesweep.diagnose.evaluation import Evaluation, Point, Scenario, best_evaluation_per_test
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis, Values
@@ -164,6 +165,11 @@ class Fit:
     @property
     def chi2(self) -> float:
         return self.evaluation.chi2
+
+    @property
+    def best(self) -> Best:
+        """What a stage that changes this fit is judged by."""
+        return Best(self.effects, self.chi2)
 
     @property
     def dof(self) -> int:

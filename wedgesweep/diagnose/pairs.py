@@ -7,20 +7,23 @@ would fit best if responses added. The most promising pairs are then followed fu
 as well, and the best pairs are fitted again from diverse starts.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
 
 from wedgesweep.diagnose import verdict
+from wedgesweep.diagnose.changes import NO_BEST, Best
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import ITERATIONS, from_other_nuisances, minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
 from wedgesweep.diagnose.search import (
     MULTISTART_SCHEDULE,
+    OTHER_NUISANCES,
     Scans,
     Search,
     best_of,
@@ -86,54 +89,74 @@ class Combination(NamedTuple):
 
 
 class PairSearch(NamedTuple):
-    """What all stages of the search for pairs need: data, base fit, and all effects by themselves."""
+    """What stages of the search for pairs share: data, base fit, all effects by themselves; pairs so far."""
 
     search: Search
     base: Fit
     singles: Mapping[str, SingleScan]
+    found: list[Explanation]
+
+    @property
+    def best(self) -> Best:
+        """The best pair."""
+        return Best(self.found[0].effects, self.found[0].penalised) if self.found else NO_BEST
+
+    @property
+    def leading(self) -> list[str]:
+        """The effects that fit best by themselves."""
+        return sorted(self.singles, key=lambda effect: self.singles[effect].fit.chi2)[:PARTNERS]
+
+    def with_more(self, pairs: Callable[["PairSearch"], list[Explanation]]) -> "PairSearch":
+        """The search after one more stage."""
+        return self._replace(found=best_of_each([*self.found, *pairs(self)], penalised))
+
+    def with_all_others(self, first: Iterable[str], except_for: Sequence[str] = ()) -> list[Combination]:
+        """Combinations of effects, but those in ``except_for``, with every other effect."""
+        known = self.singles
+        return [
+            Combination(known[one], known[other])
+            for one in first
+            for other in known
+            if one != other and one not in except_for
+        ]
 
 
 def fit_pairs(search: Search, base: Fit, singles: Sequence[Explanation], scans: Scans) -> list[Explanation]:
     """Fit pairs of effects, and return them best first; ``singles``: best fit of each effect by itself."""
     known = {each.effects[0]: single_scan(base, each.fit, scans[each.effects[0]]) for each in singles}
-    job = PairSearch(search, base, known)
-    leading = sorted(known, key=lambda effect: known[effect].fit.chi2)[:PARTNERS]
-    found = _fit_combinations(job, _with_all_others(known, leading, ()), PAIRS)
-    if verdict.none_adequate(found):
-        # Effects that do not stand out by themselves may do so in a pair.
-        showing = dict.fromkeys(effect for each in found[:LEADING] for effect in each.effects)
-        combinations = _with_all_others(known, showing, leading)
-        found = best_of_each(found + _fit_combinations(job, combinations, FURTHER_PAIRS), penalised)
-    if verdict.none_adequate(found):
-        found = best_of_each(found + restarted_pairs(search, found), penalised)
-    if verdict.none_adequate(found):
-        found = best_of_each(found + swapped_pairs(job, found), penalised)
-    if verdict.none_adequate(found):
-        orders = [order for each in found[:COMPLETED] for order in permutations(each.effects)]
-        combinations = [Combination(known[one], known[other]) for one, other in orders]
-        found += _fit_combinations(job, combinations, DIVERSE, diverse=True)
-    return best_of_each(found, penalised)
+    job = PairSearch(search, base, known, [])
+    for name, pairs in STAGES.items():
+        if name == PAIRS or verdict.none_adequate(job.found):
+            job = search.tried(name, job, partial(PairSearch.with_more, pairs=pairs))
+    return job.found
 
 
-def _with_all_others(
-    known: Mapping[str, SingleScan], first: Sequence[str] | Mapping[str, None], except_for: Sequence[str]
-) -> list[Combination]:
-    """Combinations of each effect of ``first`` that is not in ``except_for`` with every other effect."""
-    return [
-        Combination(known[one], known[other])
-        for one in first
-        for other in known
-        if one != other and one not in except_for
-    ]
+def pairs_with_leading(job: PairSearch) -> list[Explanation]:
+    """Each of the best single effects with every other one."""
+    return _fit_combinations(job, job.with_all_others(job.leading), PAIRS)
 
 
-def restarted_pairs(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+def pairs_with_showing(job: PairSearch) -> list[Explanation]:
+    """Effects that do not stand out by themselves may do so in a pair."""
+    showing = dict.fromkeys(effect for each in job.found[:LEADING] for effect in each.effects)
+    return _fit_combinations(job, job.with_all_others(showing, job.leading), FURTHER_PAIRS)
+
+
+def diverse_pairs(job: PairSearch) -> list[Explanation]:
+    """The best pairs from several starts of the second effect, in either order."""
+    orders = [order for each in job.found[:COMPLETED] for order in permutations(each.effects)]
+    combinations = [Combination(job.singles[one], job.singles[other]) for one, other in orders]
+    return _fit_combinations(job, combinations, DIVERSE, diverse=True)
+
+
+def restarted_pairs(job: PairSearch) -> list[Explanation]:
     """The best pairs fitted again from the whole range of either effect, the other one as it was fitted.
 
     The first effect of a pair began where it fits best by itself: the pair may have a minimum there as well,
     and a much deeper one elsewhere.
     """
-    restarts = [(pair.fit, effect) for pair in found[:RESTARTED] for effect in pair.effects]
+    search = job.search
+    restarts = [(pair.fit, effect) for pair in job.found[:RESTARTED] for effect in pair.effects]
     fits = search.each_affordable(
         lambda one: _restarted(search, *one), restarts, RESTARTS, lambda one: one[0].effects
     )
@@ -150,9 +173,9 @@ def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
     return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
 
 
-def swapped_pairs(job: PairSearch, found: Sequence[Explanation]) -> list[Explanation]:
+def swapped_pairs(job: PairSearch) -> list[Explanation]:
     """Pairs in which one effect is kept as in one of the best pairs, and the other is replaced."""
-    components = [(pair.fit, effect) for pair in found[:SWAPPED] for effect in pair.effects]
+    components = [(pair.fit, effect) for pair in job.found[:SWAPPED] for effect in pair.effects]
     kept = job.search.each(lambda one: _as_in_pair(job.search, *one), components)
     combinations = [
         Combination(first, second)
@@ -220,7 +243,8 @@ def component_fits(search: Search, pairs: Sequence[Explanation]) -> list[Explana
     near = [each for each in pairs if each.fit.chi2 - pairs[0].fit.chi2 < NEAR_BEST]
     components = [(pair.fit, effect) for pair in near for effect in pair.effects]
     starts = search.each(lambda one: _component(search, *one), components)
-    fits = search.each(lambda fit: from_other_nuisances(_followed(fit, ITERATIONS)), starts)
+    ends = search.each(lambda fit: _followed(fit, ITERATIONS), starts)
+    fits = search.each(lambda fit: search.tried(OTHER_NUISANCES, fit, from_other_nuisances), ends)
     return [search.explanation(fit) for fit in fits]
 
 
@@ -301,3 +325,13 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     found = job.search.explanation(minimise(model, model.evaluate(start)))
     job.search.finished.append(found)
     return found
+
+
+# Stages of the search for pairs; those after the first one are taken where no pair is adequate.
+STAGES: dict[str, Callable[[PairSearch], list[Explanation]]] = {
+    PAIRS: pairs_with_leading,
+    FURTHER_PAIRS: pairs_with_showing,
+    RESTARTS: restarted_pairs,
+    EXCHANGED: swapped_pairs,
+    DIVERSE: diverse_pairs,
+}

@@ -5,23 +5,13 @@ pass on much more, or much less, of it than the right model does.
 """
 
 from dataclasses import replace
-from typing import NamedTuple
 
 from wedgesweep.diagnose.explanation import Explanation, penalised
 from wedgesweep.diagnose.least_squares import minimise
-from wedgesweep.diagnose.search import Scans, Search, contenders
+from wedgesweep.diagnose.search import Explained, Search, contenders
 
 # Iterations of the fits of those that are fitted again.
 ITERATIONS = 8
-
-
-class Explained(NamedTuple):
-    """Result of a search: the base model, all explanations, best first, and the scans of single effects."""
-
-    search: Search
-    base: Explanation
-    explanations: list[Explanation]
-    scans: Scans
 
 
 def with_renewed_covariance(explained: Explained) -> Explained:

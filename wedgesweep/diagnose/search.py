@@ -10,11 +10,13 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from wedgesweep.ablation import left_out
 from wedgesweep.diagnose import work
+from wedgesweep.diagnose.changes import SLIGHT, Best, Change, HasBest
 from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, parameter_penalty, penalised
 from wedgesweep.diagnose.fit_data import FitData
@@ -54,16 +56,19 @@ REFITTED = 8
 HELD_ITERATIONS = 8
 # Rounds of fits of an effect beside a base model in which everything is as stated.
 STATED_SCHEDULE = (Round(4, 3), Round(2, 5))
-# A fit is better if it takes this much off chi-squared, and a test fits markedly better with this much less.
-SLIGHT, MARKED = 1.0, 9.0
+# A test fits markedly better if its chi-squared is this much less.
+MARKED = 9.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
 # that pairs get even if unknown amplitudes made single effects expensive.
 WORK_PER_TEST, FEWEST_COUNTED, PAIRS_SHARE = 1e5, 12, 1.0 / 3.0
 # Effects with states or an iteration of their own take longest to fit, and begin first.
 SLOWEST = ("lift_off", "load_dependent_friction", "column_compliance", "fixture_resonance", "presliding")
 
+# Names of what may help a fit, in the order in which it is tried.
+OTHER_NUISANCES, INFLUENTIAL = "other nuisances", "influential tests left out"
 # Evaluations of each effect over the range of its parameters, beside the base model.
 Scans = Mapping[str, Sequence[Evaluation]]
+Known = TypeVar("Known", bound=HasBest)
 
 
 def quiet(step: str) -> None:
@@ -78,7 +83,8 @@ class Search:
     to fit. ``progress`` is called with each step. ``budget``: what may be simulated; base model and single
     effects are fitted whatever that takes. ``wider``: effects whose best numbers lie outside of the range
     that is searched, see beyond_range.py. ``finished``: fits of the present stage that are done, for the case
-    that it does not end; ``failed``: effects whose own fits raised an error, with the error.
+    that it does not end; ``failed``: effects whose own fits raised an error, with the error. ``without``:
+    names of stages that are left out.
     """
 
     data: FitData
@@ -90,6 +96,7 @@ class Search:
     wider: tuple[str, ...] = ()
     finished: list[Explanation] = field(default_factory=list, compare=False)
     failed: dict[str, Exception] = field(default_factory=dict, compare=False)
+    without: frozenset[str] = field(default_factory=left_out.get)
 
     @classmethod
     def of(
@@ -105,6 +112,22 @@ class Search:
         budget = work.Budget(WORK_PER_TEST * max(data.measured_tests, FEWEST_COUNTED))
         return cls(data, detected, undetected, threads, progress, budget)
 
+    def tried(self, name: str, known: Known, change: Callable[[Known], Known]) -> Known:
+        """What a stage makes of what is known, unless it is left out; what it changed is told."""
+        if name in self.without:
+            return known
+        begun, before = work.done(), known.best
+        known = change(known)
+        work.told(Change(name, before, known.best, work.done() - begun))
+        return known
+
+    def uses(self, name: str, here: bool) -> bool:
+        """Whether a way of fitting that is asked for here is taken, unless it is left out; that is told."""
+        used = here and name not in self.without
+        if used:
+            work.told(Change(name, Best((), 0.0), Best((), 0.0), 0.0))
+        return used
+
     def model(self, *effects: str, tolerance: float = TOLERANCE) -> Model:
         """The model with some effects; no effects: the base model."""
         known = self.data.known
@@ -114,6 +137,12 @@ class Search:
 
     def explanation(self, fit: Fit) -> Explanation:
         return Explanation(fit, parameter_penalty(self.data))
+
+    def nuisances_searched(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
+        """Evaluations of points, with nuisance parameters without a prior where they fit best."""
+        if self.uses("search of nuisances", here=True):
+            return self.data.search_nuisances(model, points)
+        return model.evaluate_all(points)
 
     def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         """Results of a function for all items, in their order."""
@@ -174,7 +203,7 @@ class Search:
         before = np.cumsum(np.r_[0.0, spent])[:-1]
         beyond = inf if limit is None else limit
         kept = [each for each, earlier in zip(outcomes, before, strict=True) if each and earlier < beyond]
-        work.add(sum(each.work for each in kept))
+        work.count(kept)
         return [each.result for each in kept]
 
     def each_effect(self, function: Callable[[str], Any]) -> dict[str, Any]:
@@ -182,6 +211,21 @@ class Search:
         order = sorted(self.effects, key=lambda effect: effect not in SLOWEST)
         found = dict(zip(order, self._each(function, order, "single effects"), strict=True))
         return {effect: found[effect] for effect in self.effects}
+
+
+class Explained(NamedTuple):
+    """What a search knows: the base model, explanations, best first, and the scans of single effects."""
+
+    search: Search
+    base: Explanation
+    explanations: list[Explanation]
+    scans: Scans
+
+    @property
+    def best(self) -> Best:
+        """The best explanation, or the base model."""
+        best = min([self.base, *self.explanations], key=penalised)
+        return Best(best.effects, best.penalised)
 
 
 class BaseFit(NamedTuple):
@@ -212,14 +256,25 @@ def base_fit(search: Search) -> BaseFit:
     model = search.model()
     start = model.start(None, np.zeros(0))
     points = [replace(start, x=x) for x in model.uncertain_starts()]
-    evaluations = search.data.search_nuisances(model, points)
+    if not search.uses("starts of uncertain numbers", len(points) > 1):
+        points = points[:1]
+    evaluations = search.nuisances_searched(model, points)
     fit = _from_several(search, model, evaluations)
     if len(model.uncertain) and fit.p < POSSIBLE:
-        # Nuisance parameters may have made up for wrong values of uncertain parameters.
-        held = search.each(lambda evaluation: _nuisances_held(model, evaluation), evaluations)
-        fit = min(fit, _from_several(search, model, held), key=_chi2)
-    fit = _aligned(refit_without_influential_tests(fit))
+        fit = search.tried(
+            "nuisances held", fit, lambda fit: min(fit, _from_held(search, model, evaluations), key=_chi2)
+        )
+    fit = _aligned(search, search.tried(INFLUENTIAL, fit, refit_without_influential_tests))
     return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
+
+
+def _from_held(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
+    """The base model from where nuisance parameters were held as stated.
+
+    They may have made up for wrong values of uncertain parameters.
+    """
+    held = search.each(lambda evaluation: _nuisances_held(model, evaluation), evaluations)
+    return _from_several(search, model, held)
 
 
 def _from_several(search: Search, model: Model, evaluations: Sequence[Evaluation]) -> Fit:
@@ -244,17 +299,17 @@ def refit_base(search: Search, base: Explanation, found: Sequence[Explanation]) 
     fit = minimise(model, model.evaluate(replace(best.point, x=x, warm=at_rest)))
     if fit.chi2 >= base.fit.chi2 - SLIGHT:
         return BaseFit(search, base)
-    fit = _aligned(fit)
+    fit = _aligned(search, fit)
     return BaseFit(replace(search, data=fit.model.data), search.explanation(fit))
 
 
-def _aligned(fit: Fit) -> Fit:
+def _aligned(search: Search, fit: Fit) -> Fit:
     """The fit on data aligned to it, continued from there if its responses depend on the alignment."""
     model = fit.model.on(fit.model.data.aligned_to(fit.evaluation))
     fit = replace(fit, model=model)
     if model.data.needs_alignment(fit.effects):
         fit = minimise(model, model.evaluate(fit.point))
-    return from_other_nuisances(fit)
+    return search.tried(OTHER_NUISANCES, fit, from_other_nuisances)
 
 
 def single_fits(search: Search, base: Fit) -> SingleFits:
@@ -282,25 +337,31 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
     """Fit one effect from starting points over its range, beside the fitted base model."""
     data, model, rough = search.data, search.model(effect), search.model(effect, tolerance=ROUGH)
     points = model.hypothesis.starts()
-    scan = data.search_nuisances(rough, [model.start(base, x) for x in points])
+    scan = search.nuisances_searched(rough, [model.start(base, x) for x in points])
     evaluations = best_per_value(scan)
     implausible = data.implausible(base.point) or bool(base.implausible)
     own_numbers = bool(model.hypothesis.switches and data.uncertain)
-    if implausible or data.brings_nuisances(effect) or model.hypothesis.switches:
+    apart = implausible or data.brings_nuisances(effect) or model.hypothesis.switches
+    if search.uses("starts as stated", apart):
         # Fitted without the effect, the base model's own parameters are, or may be, far from the truth.
-        fresh = data.search_nuisances(rough, [model.start(None, x) for x in points])
-        if own_numbers:
+        fresh = search.nuisances_searched(rough, [model.start(None, x) for x in points])
+        if search.uses("step of own numbers", own_numbers):
             fresh = [_with_own_numbers(rough, each) for each in fresh]
         evaluations = evaluations + fresh
-        if implausible:
+        if search.uses("fits beside stated numbers", implausible):
             evaluations = evaluations + beside_stated(model, fresh)
-    nearer = NEARER_SCHEDULE if implausible or own_numbers else SCHEDULE
-    schedule = SHORT_SCHEDULE if base.p >= POSSIBLE else nearer
+    nearer = search.uses("fewer fits go on", implausible or own_numbers)
+    short = search.uses("short rounds", base.p >= POSSIBLE)
+    schedule = SHORT_SCHEDULE if short else NEARER_SCHEDULE if nearer else SCHEDULE
     rows = data.representative(base.evaluation)
-    limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum())
-    fit = best_of(model, evaluations, schedule, limit, rows, waits=data.shares_nuisances)
+    if not search.uses("worst windows first", rows.size < data.tests):
+        rows = np.arange(data.tests)
+    drops = search.uses("hopeless fits end", here=True)
+    limit = CUT_OFF * float(base.evaluation.chi2_by_test[rows].sum()) if drops else inf
+    waits = search.uses("far fits wait", data.shares_nuisances)
+    fit = best_of(model, evaluations, schedule, limit, rows, waits=waits)
     if data.brings_nuisances(effect):
-        fit = _aligned(fit)
+        fit = _aligned(search, fit)
     return SingleFit(search.explanation(fit), scan, fit.model.data)
 
 
@@ -396,8 +457,8 @@ def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation
     def refitted(each: Explanation) -> Explanation:
         most = each.fit.model.data.gained_by_other_nuisances(each.fit.evaluation)
         promising = each.penalised - most < leading[0].penalised
-        fit = from_other_nuisances(each.fit) if promising else each.fit
-        return search.explanation(refit_without_influential_tests(fit))
+        fit = search.tried(OTHER_NUISANCES, each.fit, from_other_nuisances) if promising else each.fit
+        return search.explanation(search.tried(INFLUENTIAL, fit, refit_without_influential_tests))
 
     return best_of_each([*search.each(refitted, best), *found], penalised)
 

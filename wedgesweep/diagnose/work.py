@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
+from wedgesweep.diagnose.changes import Change
+
 Result = TypeVar("Result")
 
 
@@ -28,9 +30,14 @@ def unlimited() -> float:
 
 
 class _Clock(threading.local):
-    reading = 0.0
-    # The share of the time limit that is used up; from 1 on, simulations raise OutOfTime.
-    time_used: Callable[[], float] = staticmethod(unlimited)
+    """Of each thread: its work, what stages changed, and the share of the time limit that is used up.
+
+    From a share of 1 on, simulations raise OutOfTime.
+    """
+
+    def __init__(self) -> None:
+        self.reading, self.changes = 0.0, list[Change]()
+        self.time_used: Callable[[], float] = unlimited
 
 
 _clock = _Clock()
@@ -63,20 +70,35 @@ def add(work: float) -> None:
         raise OutOfTime
 
 
+def told(change: Change) -> None:
+    """Keep what a stage changed."""
+    _clock.changes.append(change)
+
+
 class Uncounted(NamedTuple, Generic[Result]):
-    """What a function returned, and the work that it took, which no thread has counted yet."""
+    """What a function returned, its work and what its stages changed, which no thread has counted yet."""
 
     result: Result
     work: float
+    changes: list[Change]
 
 
 def uncounted(function: Callable[[], Result]) -> Uncounted[Result]:
-    """Call a function without counting its work for this thread; ``add`` counts it later."""
-    begun = done()
-    result = function()
-    outcome = Uncounted(result, done() - begun)
+    """Call a function without counting its work for this thread; ``count`` does so later."""
+    begun, changes, _clock.changes = done(), _clock.changes, []
+    try:
+        result = function()
+        outcome = Uncounted(result, done() - begun, _clock.changes)
+    finally:
+        _clock.changes = changes
     _clock.reading = begun
     return outcome
+
+
+def count(outcomes: Sequence[Uncounted[Result]]) -> None:
+    """Count work for this thread, and keep what changed."""
+    _clock.changes += [change for each in outcomes for change in each.changes]
+    add(sum(each.work for each in outcomes))
 
 
 class Untried(NamedTuple):
@@ -93,13 +115,20 @@ class Budget:
     """Work that this thread, and those that work for it, may spend from now on.
 
     ``total``: in the unit of the clock; ``begun``: reading of the clock at which the budget began;
+    ``told_before``: number of changes that were told before;
     ``untried``: what the budget was too small for; ``tried``: combinations of effects that were fitted.
     """
 
     total: float = float("inf")
     begun: float = field(default_factory=done)
+    told_before: int = field(default_factory=lambda: len(_clock.changes))
     untried: list[Untried] = field(default_factory=list)
     tried: set[frozenset[str]] = field(default_factory=set)
+
+    @property
+    def changes(self) -> list[Change]:
+        """What stages changed since the budget began."""
+        return _clock.changes[self.told_before :]
 
     @property
     def left(self) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from wedgesweep import __version__
 from wedgesweep.config import Config
+from wedgesweep.diagnose.changes import SLIGHT, summary
 from wedgesweep.diagnose.cross_validation import Gain
 from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
@@ -20,7 +21,6 @@ from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
 from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.sampled_data import SampledData
-from wedgesweep.diagnose.search import SLIGHT
 from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
 from wedgesweep.diagnose.work import OutOfTime
@@ -57,6 +57,8 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],
         "never_tried": [list(each) for each in found.never_tried],
         "unfinished": [{"step": step, "reason": why} for step, why in found.unfinished.items()],
+        "stages": summary(found.changes),
+        "without": list(found.without),
         "failed": [{"effect": effect, "reason": why} for effect, why in found.failed.items()],
         "ended": _ended(found),
         "title": found.measurement.title,
