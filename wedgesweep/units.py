@@ -38,6 +38,12 @@ UNITS = {
     },
 }
 
+# Units of other quantities, that a file may name.
+FOREIGN = {
+    *("V", "mV", "uV", "A", "mA", "bar", "mbar", "psi", "Pa", "kPa", "MPa", "C", "K", "F", "W", "degC"),
+    *("Hz", "%", "counts", "ticks", "inc", "ohm", "volt", "volts", "Volt", "amp", "amps", "-"),
+}
+
 # Other spellings, and those used here.
 SPELLINGS = {
     "/sec": "/s",
@@ -58,6 +64,10 @@ WORDS = {
         "G": "g",
         "lbs": "lb",
         "rev/min": "rpm",
+        **dict.fromkeys(("newton", "newtons", "Newton"), "N"),
+        **dict.fromkeys(("degree", "degrees"), "deg"),
+        **dict.fromkeys(("radian", "radians"), "rad"),
+        **dict.fromkeys(("meter", "meters", "metres"), "m"),
     },
 }
 
@@ -67,3 +77,8 @@ def usual(unit: str) -> str:
     for other, own in SPELLINGS.items():
         unit = unit.replace(other, own)
     return WORDS.get(unit, unit)
+
+
+def is_unit(word: str) -> bool:
+    """Whether a word, in its usual spelling, is a unit of anything."""
+    return word in FOREIGN or any(word in units for units in UNITS.values())

@@ -2,12 +2,11 @@
 
 import sys
 
-import netCDF4
 import numpy as np
 import pytest
 from scipy.io import savemat, wavfile
 
-from tests import fixture_measured
+from tests import fixture_formats, fixture_measured
 from tests.command import invoke
 from tests.fixture_measured import MEASURED, csv_lines, lines, vibration
 from wedgesweep import measured
@@ -126,66 +125,7 @@ def test_what_is_no_text_is_called_what_it_is(tmp_path, beginning, words):
         measured.read(path)
 
 
-def write_hdf5(path, columns):
-    with pytest.importorskip("h5py").File(path, "w") as file:
-        for name, values in columns.items():
-            file["bench/" + name if path.suffix == ".h5" else name] = values[None]
-
-
-def write_parquet(path, columns):
-    arrow = pytest.importorskip("pyarrow")
-    pytest.importorskip("pyarrow.parquet").write_table(arrow.table(columns), path)
-
-
-def write_netcdf(path, columns):
-    with netCDF4.Dataset(path, "w", format="NETCDF3_CLASSIC" if path.stem == "old" else "NETCDF4") as root:
-        root.createDimension("sample", columns["t"].size)
-        for (name, values), unit in zip(columns.items(), ("s", "mm", "mm s-1"), strict=True):
-            variable = root.createVariable(name, "f8", ("sample",))
-            variable.setncattr("units", unit.replace(" s-1", "/s"))
-            variable[:] = values
-
-
-def write_xlsx(path, columns):
-    book = pytest.importorskip("openpyxl").Workbook()
-    book.active.append(list(columns))
-    book.active.append(["s", "mm", "mm/s"])
-    for row in zip(*columns.values(), strict=True):
-        book.active.append([float(value) for value in row])
-    book.save(path)
-
-
-def write_tdms(path, columns):
-    nptdms = pytest.importorskip("nptdms")
-    with nptdms.TdmsWriter(path) as writer:
-        writer.write_segment([nptdms.ChannelObject("bench", name, each) for name, each in columns.items()])
-
-
-def write_mdf(path, columns):
-    asammdf = pytest.importorskip("asammdf")
-    with asammdf.MDF(version="4.10") as file:
-        file.append(
-            [asammdf.Signal(values, columns["t"], name=name) for name, values in columns.items()],
-            common_timebase=True,
-        )
-        file.save(path)
-
-
-@pytest.mark.parametrize(
-    ("name", "write"),
-    [
-        ("one.mat", savemat),
-        ("new.mat", write_hdf5),
-        ("one.h5", write_hdf5),
-        ("one.parquet", write_parquet),
-        ("one.npz", lambda path, columns: np.savez(path, **columns)),
-        ("one.nc", write_netcdf),
-        ("old.nc", write_netcdf),
-        ("one.xlsx", write_xlsx),
-        ("one.tdms", write_tdms),
-        ("one.mf4", write_mdf),
-    ],
-)
+@pytest.mark.parametrize(("name", "write"), fixture_formats.SPECIMENS)
 def test_binary_files_hold_variables(tmp_path, plain, name, write):
     t, d, v = vibration()
     write(tmp_path / name, {"t": np.round(t, 4), "d": d, "v": v})
@@ -273,18 +213,7 @@ def test_sound_has_a_clock_and_full_scale_is_one(tmp_path, kind, scale):
 
 
 def test_universal_files_hold_numbered_sets(tmp_path, plain):
-    pyuff = pytest.importorskip("pyuff")
-    t, d, v = vibration()
-    file = pyuff.UFF(str(tmp_path / "one.uff"))
-    for values in (d, v):
-        entry = pyuff.prepare_58(
-            binary=0, func_type=1, ver_num=0, load_case_id=0, rsp_node=1, rsp_dir=1, ref_node=1, ref_dir=1,
-            ord_data_type=4, num_pts=t.size, abscissa_spacing=1, abscissa_min=0.0, abscissa_inc=0.001,
-            z_axis_value=0.0, data=values, x=t, id1="a", id2="b", id3="c", id4="d", id5="e",
-            rsp_ent_name="r", ref_ent_name="s", abscissa_spec_data_type=17, ordinate_spec_data_type=8,
-            orddenom_spec_data_type=0, z_axis_spec_data_type=0,
-        )  # fmt: skip
-        file.write_sets(entry, "add")
+    fixture_formats.uff(tmp_path / "one.uff", dict(zip("tdv", vibration(), strict=True)))
     found = read_with(tmp_path, ("one.csv", "one.uff"), CLOCKLESS, ('"d"', "1"), ('"v"', "2"))
     np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-4)
 

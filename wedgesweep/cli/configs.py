@@ -11,9 +11,9 @@ from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.cost import print_cost
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.measurement import print_measurement
-from wedgesweep.cli.options import CONFIG, PLUGIN, STANDARD_OUTPUT, OutputPath, require_kind
+from wedgesweep.cli.options import CONFIG, PLUGIN, STANDARD_OUTPUT, GivenPath, OutputPath, require_kind
 from wedgesweep.cli.run import print_remark
-from wedgesweep.files import JSON, TOML, write_text
+from wedgesweep.files import ENDINGS, JSON, TOML, write_text
 from wedgesweep.kinds import CONFIG_OR_MEASURED, DIAGNOSIS, SWEEP, is_measured, kind_of
 
 if TYPE_CHECKING:
@@ -21,19 +21,56 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("path", default="wedgesweep.toml", type=OutputPath(TOML, allow_dash=True))
-@click.option("--force", is_flag=True, help="Overwrite an existing file.")
-def init(path: Path, force: bool) -> None:
-    """Write a commented config with every key.
+@click.argument("paths", metavar="[PATH]", nargs=-1, type=GivenPath())
+@click.option("--data", "files", metavar="FILE...", multiple=True, type=GivenPath(), help="Measured data.")
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
+def init(paths: tuple[Path, ...], files: tuple[Path, ...], force: bool) -> None:
+    """Write a first file: a config with every key, or with --data a measured.toml.
 
-    PATH is wedgesweep.toml by default; - prints it.
+    PATH is wedgesweep.toml by default, with --data measured.toml; - prints the config. With --data the
+    files are looked at, a model.toml is written as well, and both are checked: what columns, units, kinds of
+    test and numbers of the model seem to be, with questions where that is not clear. If FILE is a
+    measured.toml, the numbers of a model are estimated once more, and PATH is that of the model.
     """
     from wedgesweep import config
+    from wedgesweep.guess import first_files
 
+    if files:
+        written = [path for path in paths if path.suffix in ENDINGS[TOML][:1]]
+        data = [*files, *(path for path in paths if path not in written)]
+        default = first_files.MODEL if all(map(is_measured, data)) else "measured.toml"
+        _init_from(written or [Path(default)], data, force)
+        return
+    path = _output([*paths] or [Path("wedgesweep.toml")], force)
+    _put(config.template(), path)
+
+
+def _output(paths: list[Path], force: bool) -> Path:
+    """The one path to write to."""
+    if len(paths) > 1:
+        message = f"Got unexpected extra argument ({paths[1]})"
+        raise click.UsageError(message)
+    path = OutputPath(TOML, allow_dash=True).convert(paths[0], None, click.get_current_context())
     if path.exists() and not force:
         message = f"{path}: exists; --force overwrites it"
         raise Failure(message)
-    _put(config.template(), path)
+    return path
+
+
+def _init_from(paths: list[Path], files: list[Path], force: bool) -> None:
+    """Write a measured.toml and a model for data files, and check them."""
+    from wedgesweep import measured
+    from wedgesweep.guess import first_files
+
+    path = _output(paths, force)
+    if all(map(is_measured, files)):
+        first_files.write_model(path, files[0])
+        click.echo(f"wrote {path}")
+        return
+    _output([path.parent / first_files.MODEL], force)
+    for written in first_files.write(path, files):
+        click.echo(f"wrote {written}")
+    print_measurement(measured.read(path))
 
 
 @click.command()

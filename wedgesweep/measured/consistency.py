@@ -32,19 +32,27 @@ CLEAR, ALIKE, SUPPORT, OTHERS = 0.25, 0.15, 0.5, 1.2
 
 def warnings(measurement: Measurement) -> list[str]:
     """What signs or delays of channels to look at, as "file: what; how to mend it"."""
-    # A transient may give back energy that it began with.
-    periodic = [test for test in measurement.tests if test.kind != TRANSIENT]
-    driven = [test for test in periodic if _force(test, measurement) is not None]
-    if measurement.model.system == "oscillator" and measurement.model.oscillator["contact"] == "belt":
-        driven = []  # a belt gives out energy
-    negated = [test for test in driven if _gives_out(test, measurement)]
-    found = [] if len(negated) == len(driven) else _delay_warnings(driven, measurement)
+    driven, turned = _driven(measurement), negated(measurement)
+    found = [] if len(turned) == len(driven) else _delay_warnings(driven, measurement)
     if not found:
-        found = _sign_warnings(negated, len(negated) == len(driven))
-        found += _delay_warnings([test for test in driven if test not in negated], measurement)
+        found = _sign_warnings(turned, len(turned) == len(driven))
+        found += _delay_warnings([test for test in driven if test not in turned], measurement)
     return found + _shape_warnings(
         [test for test in measurement.tests if test.kind == STEADY and test.input is None]
     )
+
+
+def negated(measurement: Measurement) -> list[TestRecord]:
+    """Tests in which the force gives out energy."""
+    return [test for test in _driven(measurement) if _gives_out(test, measurement)]
+
+
+def _driven(measurement: Measurement) -> list[TestRecord]:
+    """Tests with a recorded force on a passive system, but for transients: these give back energy as well."""
+    if measurement.model.system == "oscillator" and measurement.model.oscillator["contact"] == "belt":
+        return []  # a belt gives out energy
+    periodic = [test for test in measurement.tests if test.kind != TRANSIENT]
+    return [test for test in periodic if _force(test, measurement) is not None]
 
 
 def _force(test: TestRecord, measurement: Measurement) -> np.ndarray | None:

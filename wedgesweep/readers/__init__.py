@@ -38,8 +38,16 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
     if reader is None:
         return text.read(path, names, stated)
     wanted = Wanted(tuple(names))
+    channels = stored(path, lambda: wanted.picked(reader(regular(path), wanted)))
+    return Table(
+        channels, lambda sample: f"{path}: sample {sample}", f"{path.suffix.lower().lstrip('.')} file"
+    )
+
+
+def stored(path: Path, reading: Callable[[], Any]) -> Any:
+    """What a binary file holds; raises ReadError for all that its library may raise."""
     try:
-        channels = wanted.picked(reader(regular(path), wanted))
+        return reading()
     except ReadError as error:
         raise ReadError([f"{path}: {problem}" for problem in error.problems]) from error
     except OSError as error:
@@ -47,6 +55,3 @@ def read(path: Path, names: Sequence[Name], stated: Mapping[str, Any] | None = N
     except Exception as error:  # the libraries raise nearly anything for damaged files
         reason = (str(error) or type(error).__name__).splitlines()[0]
         raise ReadError([f"{path}: cannot be read ({reason})"]) from error
-    return Table(
-        channels, lambda sample: f"{path}: sample {sample}", f"{path.suffix.lower().lstrip('.')} file"
-    )

@@ -1,0 +1,233 @@
+"""A first measured.toml that is written after a look at the data."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import savemat, wavfile
+
+from tests import fixture_formats
+from tests.command import invoke
+from tests.fixture_measured import csv_lines, vibration
+from wedgesweep import config, measured
+
+REAL = Path(__file__).parents[2] / "shared" / "real"
+RATE = 1000.0
+
+
+def begun(directory, *files, code=0):
+    """What init says, and the measurement that it wrote."""
+    path = directory / "measured.toml"
+    told = invoke("init", path, "--data", *files, code=code)
+    return told, measured.read(path) if code == 0 else None
+
+
+def loop(mass=3.0, damping=40.0, friction=20.0, seed=0):
+    """Time (s), displacement (mm) and force (N) of a mass that is moved to and fro on a bed that rubs."""
+    t = np.arange(6000) / RATE
+    omega = 2.0 * np.pi * 1.3
+    x, v, a = np.sin(omega * t), omega * np.cos(omega * t), -(omega**2) * np.sin(omega * t)
+    random = np.random.default_rng(seed)
+    force = mass * 0.05 * a + damping * 0.05 * v + friction * np.sign(v) + 0.2 * random.normal(size=t.size)
+    return t, 50.0 * x + 1e-3 * random.normal(size=t.size), force
+
+
+def decay():
+    """Time (s) and displacement (mm) of a free motion that friction ends, after a push."""
+    t = np.arange(3000) / RATE
+    swing = 10.0 * np.maximum(1.0 - t / 2.5, 0.0)
+    x = swing * np.cos(2.0 * np.pi * 4.0 * t)
+    pushed = np.linspace(0.0, 10.0, 200)
+    return np.arange(3200) / RATE, np.r_[pushed, x] + 0.01 * np.random.default_rng(0).normal(size=3200)
+
+
+def text(path, *columns, header="", delimiter=",", decimals=6):
+    rows = (delimiter.join(f"{cell:.{decimals}f}" for cell in row) for row in zip(*columns, strict=True))
+    path.write_text("\n".join([*header.splitlines(), *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(("name", "write"), fixture_formats.SPECIMENS)
+def test_every_format_gets_in_as_it_is(tmp_path, name, write):
+    t, d, v = vibration()
+    write(tmp_path / name, {"t": np.round(t, 4), "d": d, "v": v})
+    told, found = begun(tmp_path, tmp_path / name)
+    assert "valid" in told
+    test = found.tests[0]
+    assert test.kind == "steady"
+    np.testing.assert_allclose(test.displacement, 1e-3 * d, rtol=1e-6)
+    np.testing.assert_allclose(test.velocity, 1e-3 * v, rtol=1e-6)
+
+
+def test_formats_without_names(tmp_path):
+    t, d, f = loop()
+    np.save(tmp_path / "one.npy", np.column_stack([t, d, f]))
+    savemat(tmp_path / "two.mat", {"fs": RATE, "position": d, "force": f})
+    sound = np.column_stack([d / 100.0, f / 100.0])
+    wavfile.write(tmp_path / "three.wav", int(RATE), (32767 * sound).astype("i2"))
+    fixture_formats.uff(tmp_path / "four.uff", {"t": t, "d": d, "f": f})
+    for name in ("one.npy", "two.mat", "three.wav", "four.uff"):
+        (tmp_path / name[:3]).mkdir()
+        _, found = begun(tmp_path / name[:3], tmp_path / name)
+        test = found.tests[0]
+        assert test.kind == "loop", name
+        assert np.corrcoef(test.displacement, d)[0, 1] > 0.999
+        assert np.corrcoef(test.force, f)[0, 1] > 0.999
+        assert test.sampling_rate == pytest.approx(RATE)
+
+
+@pytest.mark.parametrize(
+    "header", ["", "time (s);weg [mm];kraft [N]", "# t, s\n# run 7", "t;pos;load\ns;mm;N"]
+)
+def test_numbers_of_the_model_are_those_of_the_record(tmp_path, header):
+    text(tmp_path / "one.csv", *loop(), header=header, delimiter=";")
+    _, found = begun(tmp_path, tmp_path / "one.csv")
+    own = found.model.oscillator
+    assert own["mass"] == pytest.approx(3.0, rel=0.15)
+    assert own["damping"] == pytest.approx(40.0, rel=0.15)
+    assert own["spring"] == pytest.approx(0.0, abs=20.0)
+    assert "shows about 2" in (tmp_path / "model.toml").read_text()
+
+
+def test_a_free_motion_begins_when_it_is_let_go(tmp_path):
+    text(tmp_path / "one.txt", *decay(), delimiter="\t")
+    _, found = begun(tmp_path, tmp_path / "one.txt")
+    test = found.tests[0]
+    assert test.kind == "transient"
+    assert test.time[0] == pytest.approx(0.2, abs=0.05)
+    natural = np.sqrt(found.model.oscillator["spring"] / found.model.oscillator["mass"])
+    assert natural == pytest.approx(2.0 * np.pi * 4.0, rel=0.05)
+
+
+def test_a_force_that_gives_out_energy_is_turned(tmp_path):
+    t, d, f = loop()
+    files = [
+        text(tmp_path / "one.csv", t, d, f, header="t,d,F"),
+        text(tmp_path / "two.csv", t, d, -f, header="t,d,F"),
+    ]
+    told, found = begun(tmp_path, *files)
+    assert "gives out energy" not in told
+    np.testing.assert_allclose(found.tests[0].force, found.tests[1].force, atol=1e-6)
+
+
+def test_runs_side_by_side_and_between_pauses_are_tests(tmp_path):
+    t, x = decay()
+    header = "Time (s) Run #1;Angle (rad) Run #1;Time (s) Run #2;Angle (rad) Run #2"
+    text(tmp_path / "one.csv", t, x, t, 0.5 * x, header=header, delimiter=";")
+    assert len(begun(tmp_path, tmp_path / "one.csv")[1].tests) == 2
+    (tmp_path / "two").mkdir()
+    t, d, f = loop()
+    twice = np.r_[t, t + 20.0], np.r_[d, d], np.r_[f, f]
+    text(tmp_path / "two.csv", *twice, header="t,d,F")
+    _, found = begun(tmp_path / "two", tmp_path / "two.csv")
+    assert [test.time.size for test in found.tests] == [t.size, t.size]
+
+
+def test_channels_of_two_loggers_are_one_test(tmp_path):
+    t, d, f = loop()
+    text(tmp_path / "one.csv", 1e3 * t, d, header="Time,Position\nms,mm")
+    text(tmp_path / "two.csv", t[::2], f[::2] / 200.0, header="Date,Load\ns,V")
+    _, found = begun(tmp_path, tmp_path / "one.csv", tmp_path / "two.csv")
+    assert found.tests[0].kind == "loop"
+    assert "scale = 1.0" in (tmp_path / "measured.toml").read_text()
+    assert np.corrcoef(found.tests[0].force, f[: found.tests[0].force.size])[0, 1] > 0.99
+
+
+def test_what_drives_a_rig_is_its_input(tmp_path):
+    t, d, _ = vibration()
+    header = "time_s,plate_mm,base_mm"
+    text(tmp_path / "one.csv", t, d, 0.3 * np.cos(2.0 * np.pi * 20.0 * t), header=header)
+    _, found = begun(tmp_path, tmp_path / "one.csv")
+    assert found.recorded_input == "displacement"
+    assert found.columns["displacement"]["of"] == "absolute"
+    assert not found.model.forced
+
+
+def test_what_is_not_known_is_asked(tmp_path):
+    _, d, f = loop()
+    text(tmp_path / "one.csv", d, f, header="position_mm,motor current [A]")
+    told, _ = begun(tmp_path, tmp_path / "one.csv", code=2)
+    assert "rate_hz" in told
+    path = tmp_path / "measured.toml"
+    asked = path.read_text()
+    assert "# ? No column looks like time" in asked
+    assert "how many N are 1 A" in asked
+    path.write_text(asked.replace("# rate_hz", "rate_hz").replace("scale = 1.0", "scale = 2.0"))
+    test = measured.read(path).tests[0]
+    np.testing.assert_allclose(test.force, 2.0 * f, atol=1e-5)
+    # The numbers of the model follow once the lines are edited.
+    invoke("init", tmp_path / "model.toml", "--data", path, "--force")
+    assert measured.read(path).model.oscillator["mass"] == pytest.approx(6.0, rel=0.15)
+
+
+def test_nothing_is_overwritten(tmp_path):
+    file = text(tmp_path / "one.csv", *loop(), header="t,d,F")
+    (tmp_path / "model.toml").write_text("mine")
+    assert "exists; --force overwrites it" in invoke(
+        "init", tmp_path / "measured.toml", "--data", file, code=2
+    )
+    assert (tmp_path / "model.toml").read_text() == "mine"
+    assert not (tmp_path / "measured.toml").exists()
+    begun_anyway = invoke("init", "--force", tmp_path / "measured.toml", "--data", file)
+    assert "wrote" in begun_anyway
+
+
+@pytest.mark.parametrize("content", ["", "a,b\n", "\n".join(["x,y"] * 50), "1,2\n3,4\n"])
+def test_a_file_without_numbers_is_named(tmp_path, content):
+    (tmp_path / "one.csv").write_text(content)
+    told = invoke("init", tmp_path / "measured.toml", "--data", tmp_path / "one.csv", code=2)
+    assert "one.csv" in told
+    assert not (tmp_path / "measured.toml").exists()
+
+
+def test_the_model_is_a_config(tmp_path):
+    lines = csv_lines(*vibration())
+    (tmp_path / "one.csv").write_text("\n".join(lines))
+    begun(tmp_path, tmp_path / "one.csv")
+    assert config.load(tmp_path / "model.toml").system == "oscillator"
+    assert "amplitude_mm" in (tmp_path / "measured.toml").read_text()
+
+
+# Files of each set, the kind, the number of tests, and lines that must be edited first.
+SETS = {
+    "emps": (["emps.csv"], "loop", 1),
+    "frame": (["frame-250g.csv", "frame-450g.csv"], "steady", 2),
+    "seal": ([f"pneumatic-seal/Circle_{bar}bar.csv" for bar in (1, 3, 5, 7)], "loop", 5),
+    "torsion": (["torsion-oscillator/free-decays.csv"], "transient", 10),
+    "magnet": (["torsion-oscillator/free-decays-with-magnet.csv"], "transient", 10),
+    "rack": (["rack-pinion/a3MR.csv", "rack-pinion/a3NI.csv"], "transient", 1),
+    "dyno": (
+        [f"damper-dyno/t1_{name}psi.csv" for name in ("1_1_18_18_s5_n10_50", "2_2_24_24_s5_n10_100")],
+        "loop",
+        2,
+    ),
+    "spring": ([f"spring-mass/experiment_{i}.csv" for i in (1, 2, 3)], "transient", 3),
+}
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason="the recordings are not here")
+@pytest.mark.parametrize("name", SETS)
+def test_recordings_get_in_as_delivered(tmp_path, name):
+    files, kind, count = SETS[name]
+    _, found = begun(tmp_path, *(REAL / file for file in files))
+    assert [test.kind for test in found.tests] == [kind] * count
+
+
+SMALL = ("delay-loop", "delay-steady", "excel-days", "force-negated-one-loop", "input-negated", "iso-time")
+SMALL += (
+    "jitter",
+    "lost-sample",
+    "nan-outside-selection",
+    "two-rates",
+    "units-row-unknown",
+    "loop-exact-rests",
+)
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason="the recordings are not here")
+@pytest.mark.parametrize("name", SMALL)
+def test_small_sets_get_in(tmp_path, name):
+    loops = {"delay-loop", "force-negated-one-loop", "loop-exact-rests"}
+    _, found = begun(tmp_path, *sorted((REAL / "small" / name).glob("*.csv")))
+    assert {test.kind for test in found.tests} == {"loop" if name in loops else "steady"}
+    assert "input" in found.columns or name in loops

@@ -1,0 +1,382 @@
+"""Which column is which channel: by unit, by name, and where neither speaks by what the numbers do."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise, permutations
+
+import numpy as np
+
+from wedgesweep.measured.declarations import QUANTITIES
+from wedgesweep.readers.survey import Column
+from wedgesweep.readers.table import DATETIME
+from wedgesweep.units import DAY, FOREIGN, UNITS, is_unit, usual
+
+MOTIONS = ("displacement", "velocity", "acceleration")
+FORCE, INPUT, TIME = "force", "input", "time"
+# Parts of names, and whole names, of each quantity; the first quantity with a match has the column.
+STEMS = {
+    TIME: r"time|\bdate|zeit|temps\b|tempo\b|stamp|seconds|clock",
+    "acceleration": r"acc|beschl|ddot|\bimu",
+    "velocity": r"vel|speed|geschw|vitesse|rpm|omega|tacho|qdot|xdot|gyro",
+    FORCE: r"force|torque|trq|kraft|moment|thrust|effort|load|traction|\btau",
+    "displacement": r"disp|pos|ang[lu]|weg\b|winkel|laser|lvdt|stroke|encod|deflect|travel|rotation|extens"
+    r"|position|distance|hub\b|theta|plate|mass|auslenk|drehwinkel",
+}
+SYMBOLS = {
+    TIME: r"t|ts|sec|s\.?e\.?c|s",
+    "acceleration": r"a|[axyz]?dd[xyzq]?|[xyq]dd|a[xyz]|[xyq]''",
+    "velocity": r"v|w|[xyq]d|d[xyq]|v[xyz]|d[xyq]/?dt|[xyq]'",
+    FORCE: r"f|m|tq|f[xyznt]|tau|mot",
+    "displacement": r"d|x|y|z|q|s|phi|th|alpha|l|h",
+    INPUT: r"u|in|exc",
+}
+# Words of what drives a rig, and of what it was told to do, or what is of no use here.
+DRIVES = r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|floor|source|anreg|fuss|support|wall"
+NOT_MEASURED = r"ref|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit"
+# A motor's current may stand for its torque.
+STANDS_FOR_FORCE = r"curr|amp|strom"
+# Points of a column for a quantity.
+OF_UNIT, OF_NAME, OF_FOREIGN, OF_COMMAND, OF_SHARED, OF_PROXY = 4.0, 3.0, -1.5, -4.0, 0.3, 1.0
+# Correlation from which two columns are one signal in two units, and one is the derivative of another.
+SAME, DERIVED = 0.9995, 0.9
+# Difference of a velocity without a name from the slope of the displacement, in some unit.
+UNLIKE = 0.05
+# A velocity is computed if it differs from the slope of the displacement by less than this share.
+COMPUTED = 0.02
+# What has no name is time if this share of its steps differs from the median one by less than so much of it.
+EVEN, UNEVEN = 0.9, 0.75
+# Points at which columns are compared.
+POINTS = 3000
+# A time in seconds has steps (s) between these.
+STEPS = (1e-7, 0.5)
+# Angles (in the file) beyond which they are degrees; displacements that are metres.
+DEGREES, METRES = 13.0, 0.05
+DAYS, EPOCH = (2e4, 8e4), (1e9, 4e9)
+RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.IGNORECASE)
+BRACKETS, WORDS = re.compile(r"[\[(]([^\[\]()]*)[\])]"), re.compile(r"[a-zA-ZäöüÄÖÜß/']+|\d+")
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """A column as a channel, its unit, further keys of it, and what is to be asked."""
+
+    column: Column
+    unit: str
+    keys: Mapping[str, object] | None = None
+    questions: tuple[str, ...] = ()
+
+    @property
+    def values(self) -> np.ndarray:
+        return self.column.channel.values
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Columns of a run: its time, its channels by name, and what is left."""
+
+    time: Chosen | None
+    channels: Mapping[str, Chosen]
+    left: tuple[Column, ...] = ()
+
+
+def unit_of(column: Column, quantities: Sequence[str]) -> str:
+    """The unit that a file names, of one of the quantities or else foreign; empty if there is none."""
+    written = [column.channel.unit, *BRACKETS.findall(column.label), *re.split(r"[_\s,:]+", column.label)[1:]]
+    known = [usual(each.strip()) for each in written if each.strip()]
+    valid = {unit for each in quantities for unit in UNITS[each]}
+    return next((each for each in known if each in valid), "") or next(
+        (each for each in known if is_unit(each)), ""
+    )
+
+
+def runs_of(columns: Sequence[Column]) -> list[list[Column]]:
+    """Columns of each run where several stand side by side, each with a time of its own or a number."""
+    starts = [i for i, column in enumerate(columns) if is_time(column)]
+    if len(starts) < 2:
+        return _numbered_runs(columns)
+    edges = [0, *starts[1:], len(columns)]
+    parts = [list(columns[first:last]) for first, last in pairwise(edges)]
+    patterns = {tuple(_pattern(column.label) for column in part) for part in parts}
+    first = parts[0][0].channel.values
+    same = all(np.array_equal(first, part[0].channel.values, equal_nan=True) for part in parts)
+    marked = all(RUN.search(part[-1].label) for part in parts)
+    if len(patterns) == 1 and len(parts[0]) > 1 and (marked or not same):
+        return parts
+    return [[column for i, column in enumerate(columns) if i not in starts[1:]]]
+
+
+def _pattern(label: str) -> str:
+    return re.sub(r"\d+", "", label)
+
+
+def _numbered_runs(columns: Sequence[Column]) -> list[list[Column]]:
+    """Columns by the number of a run in their names; those without belong to all runs."""
+    numbers = [found[1] if (found := RUN.search(column.label)) else None for column in columns]
+    runs = [number for number in dict.fromkeys(numbers) if number is not None]
+    if len(runs) < 2:
+        return [list(columns)]
+    return [[c for c, n in zip(columns, numbers, strict=True) if n in (None, run)] for run in runs]
+
+
+def is_time(column: Column) -> bool:
+    """Whether a column may be time: by its name or dates, and because it goes on."""
+    values = column.channel.values
+    values = values[np.isfinite(values)]
+    if values.size < 3 or not values[0] < values[-1]:
+        return False
+    named = column.channel.unit == DATETIME or _names(column, TIME) or unit_of(column, [TIME]) in UNITS[TIME]
+    onward = float((np.diff(values) >= 0.0).mean())
+    if named:
+        return onward > 0.9
+    steps = np.diff(values)
+    known = _names_anything(column) or unit_of(column, [TIME, *QUANTITIES])
+    even = (np.abs(steps / max(float(np.median(steps)), 1e-300) - 1.0) < UNEVEN).mean()
+    return not known and bool((steps >= 0.0).all()) and even > EVEN
+
+
+def choose(columns: Sequence[Column]) -> Run:
+    """The channels among the columns of a run."""
+    time = next((column for column in columns if is_time(column)), None)
+    rest = [column for column in columns if column is not time and not is_time(column) and _varies(column)]
+    channels = _by_name(rest)
+    if not any(name in channels for name in MOTIONS):
+        unnamed = [column for column in rest if not _names_anything(column)]
+        channels |= _by_numbers(unnamed, None if time is None else time.channel.values)
+    chosen = {name: _with_unit(name, column) for name, column in channels.items()}
+    if "velocity" in chosen and "displacement" in chosen:
+        chosen["velocity"] = _derived(chosen, time)
+    left = [each for each in columns if each is not time and all(each is not c for c in channels.values())]
+    return Run(None if time is None else _clock(time), chosen, tuple(left))
+
+
+def _varies(column: Column) -> bool:
+    values = column.channel.values[np.isfinite(column.channel.values)]
+    return bool(values.size and np.ptp(values) > 1e-12 * np.abs(values).max())
+
+
+def _names(column: Column, quantity: str) -> bool:
+    """Whether the words above a column name a quantity."""
+    stem, symbol = STEMS.get(quantity, DRIVES), SYMBOLS[quantity]
+    unit = unit_of(column, [TIME, *QUANTITIES]).lower()
+    for words in [each for each in column.words if not is_unit(usual(each.strip(" ()[]")))] or column.words:
+        bare = BRACKETS.sub(" ", words).strip().lower()
+        short = re.sub(r"[_\s]*\d*$", "", bare.removesuffix(f"_{unit}"))
+        if re.search(stem, bare) or re.fullmatch(symbol, re.sub(r"^.*[./]", "", short)):
+            return True
+    return False
+
+
+def _names_anything(column: Column) -> bool:
+    return any(_names(column, each) for each in SYMBOLS)
+
+
+def _points(column: Column, quantity: str) -> float:
+    """How well name and unit of a column go with a quantity; not positive if they do not."""
+    label, unit = column.label.lower(), unit_of(column, [quantity])
+    points = 0.0
+    if unit in UNITS[quantity]:
+        points += OF_UNIT
+    elif unit in FOREIGN:
+        points += OF_FOREIGN
+    elif unit:
+        return 0.0
+    first = next((each for each in STEMS if _names(column, each)), None)
+    points += OF_NAME if first == quantity else 0.0
+    if quantity == FORCE and re.search(STANDS_FOR_FORCE, label):
+        points += OF_PROXY - (OF_FOREIGN if unit in FOREIGN else 0.0)
+    if re.search(NOT_MEASURED, label):
+        points += OF_COMMAND
+    return points
+
+
+def _by_name(columns: Sequence[Column]) -> dict[str, Column]:
+    """Channels by names and units."""
+    drives = [c for c in columns if _names(c, INPUT)]
+    channels: dict[str, Column] = {}
+    for quantity in (*MOTIONS, FORCE):
+        found = _best(quantity, columns, drives, channels)
+        if found is not None:
+            channels[quantity] = found
+    others = [c for c in drives if all(c is not each for each in channels.values())]
+    # What nothing names but that it drives the rig is a force, unless its unit is another one's.
+    able = [(max(_points(c, q) for q in QUANTITIES), c) for c in others if _quantity(c)]
+    if able:
+        channels[INPUT] = max(able, key=lambda pair: pair[0])[1]
+    return channels
+
+
+def _best(
+    quantity: str, columns: Sequence[Column], drives: Sequence[Column], taken: Mapping[str, Column]
+) -> Column | None:
+    """The column that goes best with a quantity and with those that are taken; what drives is none."""
+    free = [c for c in columns if all(c is not each for each in (*taken.values(), *drives))]
+    words = {word for each in taken.values() for word in WORDS.findall(each.label.lower())}
+
+    def rank(column: Column) -> tuple[float, float]:
+        shared = len(words & set(WORDS.findall(column.label.lower())))
+        return _points(column, quantity) + OF_SHARED * shared, float(np.nanstd(column.channel.values))
+
+    able = [column for column in free if _points(column, quantity) > 0.0]
+    if not able:
+        return None
+    top = max(rank(column)[0] for column in able)
+    alike = [column for column in able if rank(column)[0] >= top - 1e-9]
+    units = {unit_of(column, [quantity]) for column in alike}
+    return max(alike, key=rank) if len(units) == 1 else alike[0]
+
+
+def _quantity(column: Column) -> str:
+    """What an input is: by its unit, by its name, or else a force; empty if it is none of these."""
+    unit = unit_of(column, QUANTITIES)
+    for quantity in QUANTITIES:
+        if unit in UNITS[quantity]:
+            return quantity
+    named = next((each for each in STEMS if each in QUANTITIES and _names(column, each)), "")
+    return named or ("" if unit else FORCE)
+
+
+def _by_numbers(columns: Sequence[Column], time: np.ndarray | None) -> dict[str, Column]:
+    """Channels by what their numbers do: one is the slope of another, or a force that a motion explains."""
+    signals = {i: _thinned(column, time) for i, column in enumerate(columns)}
+    kept: list[int] = []
+    for i in reversed(signals):  # a sensor's volts stand before what was computed of them
+        if all(abs(_correlation(signals[i], signals[j])) < SAME for j in kept):
+            kept.insert(0, i)
+    if not kept:
+        return {}
+    found: dict[str, int] = {}
+    span = float(np.ptp(time[np.isfinite(time)])) if time is not None else 0.0
+    pairs = {
+        (a, b): _slope_of(signals[a] * _size(columns[a]), signals[b] * _size(columns[b]), span)
+        for a, b in permutations(kept, 2)
+    }
+    slope = max(pairs, key=lambda pair: pairs[pair], default=None)
+    if slope is not None and pairs[slope] > DERIVED:
+        found = {"displacement": slope[0], "velocity": slope[1]}
+    rest = [i for i in kept if i not in found.values()]
+    moves = [found["displacement"]] if found else rest
+    explained = {(a, b): _explained(signals[a], signals[b]) for a in moves for b in rest if a != b}
+    if explained:
+        best = max(explained, key=lambda pair: explained[pair])
+        found |= {"displacement": best[0], FORCE: best[1]}
+    return {name: columns[i] for name, i in (found or {"displacement": kept[0]}).items()}
+
+
+def _thinned(column: Column, time: np.ndarray | None) -> np.ndarray:
+    """At most POINTS means of a column over even times, over their standard deviation."""
+    values = column.channel.values
+    place = np.arange(values.size, dtype=float) if time is None or time.size != values.size else time
+    good = np.isfinite(values) & np.isfinite(place)
+    order = np.argsort(place[good], kind="stable")
+    size = min(POINTS, int(good.sum()))
+    even = np.interp(
+        np.linspace(place[good].min(), place[good].max(), size * max(1, good.sum() // size)),
+        place[good][order],
+        values[good][order],
+    )
+    means = even.reshape(size, -1).mean(axis=1)
+    return (means - means.mean()) / max(float(means.std()), 1e-300)
+
+
+def _size(column: Column) -> float:
+    return float(np.nanstd(column.channel.values))
+
+
+def _slope_of(displacement: np.ndarray, velocity: np.ndarray, span: float) -> float:
+    """Correlation of a velocity with the slope of a displacement over a span of time; 0 if sizes differ."""
+    size = min(displacement.size, velocity.size)
+    slope = np.gradient(displacement[:size]) * size / (span or size)
+    if not slope.std() or not span:
+        return 0.0
+    ratio = float(velocity[:size] @ slope / (slope @ slope))
+    units = (1.0, 1e3, 1e-3, 180.0 / np.pi, np.pi / 180.0, 30.0 / np.pi)
+    alike = any(abs(ratio / unit - 1.0) < UNLIKE for unit in units)
+    return _correlation(slope, velocity) if alike else 0.0
+
+
+def _correlation(first: np.ndarray, second: np.ndarray) -> float:
+    size = min(first.size, second.size)
+    if not (first[:size].std() and second[:size].std()):
+        return 0.0
+    return float(np.corrcoef(first[:size], second[:size])[0, 1])
+
+
+def _explained(displacement: np.ndarray, force: np.ndarray) -> float:
+    """Share of a force that place and direction of a motion explain, less what they do the other way."""
+
+    def share(x: np.ndarray, f: np.ndarray) -> float:
+        size = min(x.size, f.size)
+        x, f = x[:size], f[:size]
+        v = np.gradient(np.convolve(x, np.ones(9) / 9.0, mode="same"))
+        speed = max(float(np.abs(v).std()), 1e-300)
+        parts = np.column_stack([np.ones(size), x, v, np.tanh(5.0 * v / speed)])
+        left = f - parts @ np.linalg.lstsq(parts, f, rcond=None)[0]
+        return 1.0 - float(left.var() / max(f.var(), 1e-300))
+
+    return share(displacement, force) - share(force, displacement)
+
+
+def _derived(chosen: Mapping[str, Chosen], time: Column | None) -> Chosen:
+    """The velocity, marked if it is but the slope of the displacement."""
+    d, v = chosen["displacement"].values, chosen["velocity"].values
+    t = np.arange(d.size) if time is None else time.channel.values
+    good = np.isfinite(d) & np.isfinite(t)
+    if v.size != d.size or t.size != d.size or good.sum() < 8 or (np.diff(t[good]) <= 0.0).any():
+        return chosen["velocity"]
+    slope, v = np.gradient(d[good], t[good]), v[good]
+    v = np.nan_to_num(v)
+    size = float(slope @ v) / max(float(v @ v), 1e-300)
+    left = float(np.std(slope - size * v)) / max(float(slope.std()), 1e-300)
+    return replace(chosen["velocity"], keys={"derived": True}) if left < COMPUTED else chosen["velocity"]
+
+
+def _with_unit(name: str, column: Column) -> Chosen:
+    """A channel and its unit; what is no unit of it, or is not known, is asked."""
+    quantity = _quantity(column) or FORCE if name == INPUT else name
+    keys: dict[str, object] = {"quantity": quantity} if name == INPUT else {}
+    unit = unit_of(column, [quantity])
+    if unit in UNITS[quantity]:
+        return Chosen(column, unit, keys)
+    largest = float(np.nanmax(np.abs(column.channel.values)))
+    likely = _likely(quantity, column, largest)
+    if unit in FOREIGN:
+        question = f"the file holds {unit}: how many {likely} are 1 {unit}? Write that as scale"
+        return Chosen(column, likely, {"scale": 1.0, **keys}, (question,))
+    question = f"unit? The file names none, and {likely} is a guess by its size (up to {largest:.3g})"
+    return Chosen(column, likely, keys, (question,))
+
+
+def _likely(quantity: str, column: Column, largest: float) -> str:
+    """A unit where the file names none: by the name, or by the size."""
+    label = column.label.lower()
+    turns = re.search(
+        r"ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau|rpm", label
+    )
+    if quantity == FORCE:
+        return "N m" if turns else "N"
+    if quantity == "acceleration":
+        return "rad/s^2" if turns else "m/s^2"
+    if "rpm" in label:
+        return "rpm"
+    unit = ("deg" if largest > DEGREES else "rad") if turns else ("m" if largest < METRES else "mm")
+    return unit if quantity == "displacement" else f"{unit}/s"
+
+
+def _clock(column: Column) -> Chosen:
+    """The time and its unit: dates, what the file names, or what makes plausible steps."""
+    if column.channel.unit == DATETIME:
+        return Chosen(column, DATETIME)
+    unit = unit_of(column, [TIME])
+    values = column.channel.values[np.isfinite(column.channel.values)]
+    step, first = float(np.median(np.diff(values))), float(values[0])
+    if DAYS[0] < first < DAYS[1] and step < STEPS[0] * DAY / 10.0:
+        return Chosen(column, "excel", {}, ("days of Excel?",))
+    if unit in UNITS[TIME]:
+        return Chosen(column, unit)
+    if EPOCH[0] < first < EPOCH[1] and step < 10.0:
+        return Chosen(column, "epoch")
+    likely = "s" if step < STEPS[1] else "ms"
+    if step > 1e3 * STEPS[1]:
+        likely = "us"
+    return Chosen(column, likely, {}, (f"unit? {likely} makes steps of {step:.3g} {likely}",))

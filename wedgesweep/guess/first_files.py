@@ -1,0 +1,80 @@
+"""Writes a first measured.toml and its model for the files of a measurement."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from wedgesweep import measured
+from wedgesweep.errors import InputError
+from wedgesweep.files import write_text
+from wedgesweep.guess import document
+from wedgesweep.guess.columns import INPUT
+from wedgesweep.guess.model import Numbers, numbers
+from wedgesweep.guess.tests import Guessed, tests_of
+from wedgesweep.measured import Measurement, consistency
+from wedgesweep.measured.declarations import LOOP
+from wedgesweep.readers import ReadError
+from wedgesweep.readers.survey import survey
+
+MODEL = "model.toml"
+# Times that a file is written: as it is, with the signs of channels, and with the numbers at these signs.
+MOST_LOOKS = 3
+UNKNOWN = Numbers(1.0, 1e3, 0.0, unseen=("mass", "damping"))
+
+
+def write(path: Path, files: Sequence[Path]) -> list[Path]:
+    """Write a measured.toml at a path and a model beside it; return both.
+
+    Raises InputError for files that hold no numbers.
+    """
+    problems: list[str] = []
+    surveys = []
+    for file in files:
+        try:
+            surveys.append(survey(file))
+        except ReadError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(problems)
+    tests, model, found = tests_of(surveys), path.parent / MODEL, UNKNOWN
+    for _ in range(MOST_LOOKS):
+        write_text(path, document.measured(path, model, tests, surveys, found))
+        write_text(model, document.model(found, _is_forced(tests[0]), _turns(tests[0])))
+        try:
+            measurement = measured.read(path)
+        except InputError:
+            break
+        before = tests, found
+        tests, found = _with_signs(tests, measurement), numbers(measurement)
+        if (tests, found) == before:
+            break
+    return [path, model]
+
+
+def write_model(path: Path, data: Path) -> None:
+    """Write a model with the numbers that the records of a measured.toml show; raises InputError."""
+    measurement = measured.read(data)
+    turns = _turning(str(each["unit"]) for each in measurement.columns.values())
+    write_text(path, document.model(numbers(measurement), measurement.model.forced, turns))
+
+
+def _with_signs(tests: Sequence[Guessed], measurement: Measurement) -> list[Guessed]:
+    """Tests whose force has the sign at which it takes energy out of the motion."""
+    turned = {test.name for test in consistency.negated(measurement)}
+    return [
+        replace(test, negated="force" if test.kind == LOOP else INPUT) if record.name in turned else test
+        for test, record in zip(tests, measurement.tests, strict=True)
+    ]
+
+
+def _is_forced(test: Guessed) -> bool:
+    given = test.run.channels.get(INPUT)
+    return test.kind == LOOP or (given is not None and (given.keys or {}).get("quantity") == "force")
+
+
+def _turns(test: Guessed) -> bool:
+    return _turning(each.unit for each in test.run.channels.values())
+
+
+def _turning(units: Iterable[str]) -> bool:
+    return any(part in unit for unit in units for part in ("rad", "deg", "rpm", "N m"))

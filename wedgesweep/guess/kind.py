@@ -1,0 +1,96 @@
+"""Which kind of test a record is, and which part of it: by what its signals do."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
+from wedgesweep.measured.frequency import FEWEST_CYCLES, estimate_frequency
+from wedgesweep.measured.noise_estimate import estimate_noise
+from wedgesweep.measured.stationarity import MOST_LEVEL_RATIO, MOST_MOVED, stationarity
+
+# What does not repeat, over what does, in a steady record; samples that tell it.
+NOISE, MOST = 0.5, 20_000
+# A pause parts two runs from so many steps of the clock on, if each has so many samples and such a share.
+PAUSE, FEWEST, SHARE = 20.0, 200, 0.1
+# Part of a free motion in which it must be at its largest, and share of the largest swing above which the
+# swing before that counts as a push.
+BEGINNING, PUSH, TAIL = 0.5, 0.9, 0.1
+
+
+@dataclass(frozen=True)
+class Part:
+    """Times (s) between which a record is used; None: its beginning, its end."""
+
+    start: float | None = None
+    end: float | None = None
+
+
+WHOLE = Part()
+
+
+def kind_of(signals: Mapping[str, np.ndarray], time: np.ndarray) -> tuple[str, str]:
+    """Kind of a test and the reason, by its signals (n,) and even times (n,) in s.
+
+    A force beside a displacement is compared along that motion, whatever imposes it: the force of a damper
+    rig, or all forces on a mass. Without a displacement a force is what drives the mass.
+    """
+    if "displacement" in signals and "force" in signals and "input" not in signals:
+        return LOOP, "a force under a recorded displacement"
+    leading = signals.get("input", next(iter(signals.values())))
+    response = next((each for name, each in signals.items() if name != "input"), leading)
+    if is_steady(leading, time) and is_steady(response, time):
+        return STEADY, "it repeats from period to period"
+    driven = "under a recorded input" if "input" in signals else "free: it decays"
+    return TRANSIENT, f"a motion from some start, {driven}"
+
+
+def is_steady(signal: np.ndarray, time: np.ndarray) -> bool:
+    """Whether a signal (n,) over even times (n,) in s repeats all along, from period to period."""
+    signal, time = signal[:MOST], time[:MOST]
+    if signal.size < FEWEST or not signal.std():
+        return False
+    rate = (time.size - 1) / float(time[-1] - time[0])
+    changes = stationarity(signal, rate)
+    if not (changes.moved <= MOST_MOVED and changes.level_ratio <= MOST_LEVEL_RATIO):
+        return False
+    frequency = estimate_frequency(time, signal)
+    cycles = frequency * float(time[-1] - time[0])
+    if not FEWEST_CYCLES <= cycles <= 0.2 * time.size:
+        return False
+    return bool(estimate_noise(time, signal, frequency).share < NOISE)
+
+
+def parts_of(time: np.ndarray) -> list[Part]:
+    """Parts of a record between long pauses of its stamps (n,) in s."""
+    stamps = time[np.isfinite(time)]
+    steps = np.diff(stamps)
+    if not steps.size or (steps < 0.0).any():
+        return [WHOLE]
+    step = float(np.median(steps))
+    ends = [0, *(np.flatnonzero(steps > PAUSE * step) + 1).tolist(), stamps.size]
+    runs = [(a, b) for a, b in pairwise(ends) if b - a >= max(FEWEST, SHARE * stamps.size)]
+    if len(runs) < 2:
+        return [WHOLE]
+    first = float(stamps[0])
+    return [
+        Part(_down(stamps[a], step) if a else None, None if b == stamps.size else _down(stamps[b - 1], -step))
+        for a, b in runs
+        if first <= stamps[a]
+    ]
+
+
+def _down(time: float, step: float) -> float:
+    """A time less half a step, in few decimals."""
+    return float(np.round(time - 0.5 * step, max(0, 1 - int(np.floor(np.log10(abs(step)))))))
+
+
+def from_release(signal: np.ndarray, time: np.ndarray) -> Part:
+    """The part of a free motion (n,) from its largest swing on, if it was pushed before."""
+    rest = float(np.median(signal[-max(int(TAIL * signal.size), 1) :]))
+    swing = np.abs(signal - rest)
+    largest = int(swing.argmax())
+    pushed = largest > 2 and swing[0] < PUSH * swing[largest] and largest < BEGINNING * signal.size
+    return Part(start=float(f"{time[largest]:.6g}")) if pushed else WHOLE

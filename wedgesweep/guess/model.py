@@ -1,0 +1,152 @@
+"""First numbers of a mass on a spring, by what a linear law explains of its records."""
+
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+from scipy.optimize import nnls
+
+from wedgesweep.diagnose.smoothing import LOWEST, LowPass, derivative, white_noise
+from wedgesweep.measured import Measurement, TestRecord
+from wedgesweep.measured.kinds import HIGHEST
+
+# Cut-offs over the frequency of the motion, noise of the acceleration over itself that is small enough, and
+# the share of the force below which a part of it is none.
+HARMONICS, NOISY, LEAST = (12.0, 8.0, 5.0, 3.0, 2.0), 0.05, 0.01
+# Lines of a spectrum that count, by their power over that of the highest one.
+LINES = 1e-3
+# Force of inertia over all force for a mass that no record shows.
+UNSEEN = 1e-3
+# Share of the largest velocity beyond which friction has its sign.
+MOVING = 0.1
+# Part of a free motion at its end that shows where it rests, and how much finer than a line spectra are read.
+TAIL, PADDED = 0.1, 8
+# Tests that are looked at.
+TESTS = 6
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """SI numbers of an oscillator; ``friction`` (N) is what dry friction takes beside them.
+
+    ``remarks``: on each number by its name, where it does not come from the record.
+    """
+
+    mass: float
+    spring: float
+    damping: float
+    friction: float = 0.0
+    unseen: tuple[str, ...] = ()
+
+
+def numbers(measurement: Measurement) -> Numbers:
+    """Mass, spring and damper that explain the records best; a free motion tells their ratio only."""
+    tests = measurement.tests[:TESTS]
+    if all(test.force is not None or measurement.recorded_input == "force" for test in tests):
+        return _under_force(tests)
+    if all(test.input is not None for test in tests) and measurement.recorded_input is not None:
+        return _on_base(tests, measurement)
+    frequency = float(np.median([_frequency(test) for test in tests]))
+    omega = 2.0 * pi * frequency
+    return Numbers(1.0, omega**2, 0.0, unseen=("mass", "damping"))
+
+
+def _frequency(test: TestRecord) -> float:
+    """Frequency (Hz) of a motion: at which it has most of its power, about where it ends."""
+    signal = next(iter(test.responses.values()))
+    about = signal - np.median(signal[-max(int(TAIL * signal.size), 1) :])
+    if test.force is not None or test.input is not None:
+        about = signal - signal.mean()
+    power = np.abs(np.fft.rfft(about, PADDED * signal.size))
+    slowest = PADDED  # one period over the record
+    return (slowest + int(power[slowest:].argmax())) / (PADDED * test.duration)
+
+
+def _under_force(tests: tuple[TestRecord, ...]) -> Numbers:
+    """Parts of a force by acceleration, velocity, place and the sign of velocity."""
+    blocks, forces = [], []
+    for test in tests:
+        parts, force = _parts(test)
+        blocks.append(parts - parts.mean(axis=0))
+        forces.append(force - force.mean())
+    design, force = np.vstack(blocks), np.concatenate(forces)
+    size = np.maximum(design.std(axis=0), 1e-300)
+    found = nnls(design / size, force)[0] / size
+    found[found * size < LEAST * force.std()] = 0.0
+    mass, damping, spring, friction = found.tolist()
+    unseen = ("mass",) if mass == 0.0 else ()
+    return Numbers(mass or UNSEEN * float(force.std()) / size[0], spring, damping, friction, unseen)
+
+
+def _parts(test: TestRecord) -> tuple[np.ndarray, np.ndarray]:
+    """Acceleration, velocity, place (or 0) and direction of a test, (n, 4), and its force (n,)."""
+    rate = test.sampling_rate
+    force = test.force if test.force is not None else test.input
+    assert force is not None
+    low_pass = _low_pass(test)
+    ends = slice(low_pass.settling, -low_pass.settling)
+    if 3 * low_pass.settling > force.size:
+        ends = slice(None)
+    if test.displacement is not None:
+        place = low_pass(test.displacement)
+        velocity, acceleration = (derivative(place, rate, order) for order in (1, 2))
+    elif test.velocity is not None:
+        place, velocity = np.zeros(force.size), low_pass(test.velocity)
+        acceleration = derivative(velocity, rate)
+    else:
+        assert test.acceleration is not None
+        acceleration = low_pass(test.acceleration)
+        velocity, place = (_integral(test.acceleration, rate, order) for order in (1, 2))
+    direction = np.sign(velocity)
+    parts = np.column_stack([acceleration, velocity, place, low_pass(direction)])[ends]
+    moving = np.abs(velocity[ends]) > MOVING * np.abs(velocity).max()
+    return parts[moving], low_pass(force)[ends][moving]
+
+
+def _low_pass(test: TestRecord) -> LowPass:
+    """The widest filter that keeps the noise of the acceleration small against the acceleration."""
+    rate, frequency = test.sampling_rate, _frequency(test)
+    order, signal = (0, test.displacement) if test.displacement is not None else (1, test.velocity)
+    for harmonics in HARMONICS:
+        low_pass = LowPass(min(max(harmonics * frequency, LOWEST * rate), HIGHEST * rate), rate)
+        if signal is None:
+            break
+        acceleration = derivative(low_pass(signal), rate, 2 - order)
+        if low_pass.noise(white_noise(signal, rate), 2 - order) < NOISY * acceleration.std():
+            break
+    return low_pass
+
+
+def _integral(acceleration: np.ndarray, rate: float, order: int) -> np.ndarray:
+    """An acceleration (n,), integrated at the frequencies at which it has power."""
+    line = np.fft.rfft(acceleration - acceleration.mean())
+    omega = 2.0 * pi * np.fft.rfftfreq(acceleration.size, 1.0 / rate)
+    power = np.abs(line) ** 2
+    line[power < LINES * power.max()] = 0.0
+    omega[0] = inf
+    return np.fft.irfft(line / (1j * omega) ** order, acceleration.size)
+
+
+def _on_base(tests: tuple[TestRecord, ...], measurement: Measurement) -> Numbers:
+    """Spring and damper over the mass, by the motions of mass and base at the frequencies that have power."""
+    order = {"displacement": 0, "velocity": 1, "acceleration": 2}
+    rows, values = [], []
+    for test in tests:
+        name, response = next(iter(test.responses.items()))
+        assert test.input is not None
+        omega = 2.0 * pi * np.fft.rfftfreq(test.time.size, 1.0 / test.sampling_rate)
+        y, u = (np.fft.rfft((each - each.mean()) * np.hanning(each.size)) for each in (response, test.input))
+        used = (np.abs(y) ** 2 > LINES * np.max(np.abs(y) ** 2)) & (omega > 0.0)
+        y, u, rate = y[used], u[used], 1j * omega[used]
+        y, u = y / rate ** order[name], u / rate ** order[str(measurement.recorded_input)]
+        relative = measurement.columns[name].get("of", "relative") == "relative"
+        stretch, absolute = (y, y + u) if relative else (y - u, y)
+        row = np.column_stack([-stretch, -rate * stretch]) / np.linalg.norm(absolute * rate**2)
+        value = rate**2 * absolute / np.linalg.norm(absolute * rate**2)
+        rows += [row.real, row.imag]
+        values += [value.real, value.imag]
+    design, value = np.vstack(rows), np.concatenate(values)
+    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
+    spring, damping = (nnls(design / size, value)[0] / size).tolist()
+    spring = spring or (2.0 * pi * float(np.median([_frequency(test) for test in tests]))) ** 2
+    return Numbers(1.0, spring, damping, unseen=("mass",))

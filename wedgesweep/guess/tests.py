@@ -1,0 +1,152 @@
+"""Which files and runs are tests, and which files hold channels of the others."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from wedgesweep.guess.columns import FORCE, INPUT, MOTIONS, Chosen, Run, choose, runs_of
+from wedgesweep.guess.kind import WHOLE, Part, from_release, kind_of, parts_of
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
+from wedgesweep.readers.survey import Survey
+from wedgesweep.units import UNITS
+
+# Names of single numbers that are a sampling rate (Hz), and of those that are a sampling interval (s).
+RATES, INTERVALS = ("fs", "rate", "samplerate", "samplingrate", "fsamp", "sr"), ("dt", "ts", "interval")
+# Rate (Hz) where nothing tells it.
+UNKNOWN_RATE = 1000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Guessed:
+    """A test: its file, its channels, its kind and why, and the part that is used.
+
+    ``rate``: in Hz, without a time; ``negated``: a channel whose sign is the other one.
+    """
+
+    file: Path
+    run: Run
+    kind: str = STEADY
+    reason: str = ""
+    part: Part = WHOLE
+    negated: str = ""
+    rate: float | None = None
+
+
+def tests_of(surveys: Sequence[Survey]) -> list[Guessed]:
+    """The tests that files hold, in their order."""
+    found = [
+        Guessed(survey.path, choose(columns), rate=_rate(survey))
+        for survey in surveys
+        for columns in runs_of(survey.columns)
+    ]
+    moving = [test for test in found if any(name in test.run.channels for name in MOTIONS)]
+    others = [test for test in found if test not in moving and test.run.channels]
+    if not moving:
+        return [replace(test, reason="no column is known as a motion") for test in found]
+    if others:
+        moving = [_joined(test, other) for test, other in zip(moving, others, strict=False)]
+    return [part for test in moving for part in _with_kind(test)]
+
+
+def _rate(survey: Survey) -> float | None:
+    """Sampling rate (Hz) by the single numbers of a file."""
+    for name, value in survey.numbers.items():
+        bare = name.lower().replace("_", "").rpartition(".")[2]
+        if value > 0.0 and bare in (*RATES, *INTERVALS):
+            return value if bare in RATES else 1.0 / value
+    return None
+
+
+def _joined(test: Guessed, other: Guessed) -> Guessed:
+    """A test with the channels of another file, which has no motion of its own."""
+    rate = _rate_beside(test, other)
+    added = {
+        name: replace(each, keys={**(each.keys or {}), "file": other.file, **rate})
+        for name, each in other.run.channels.items()
+    }
+    return replace(test, run=replace(test.run, channels={**test.run.channels, **added}))
+
+
+def _rate_beside(test: Guessed, other: Guessed) -> dict[str, float]:
+    """The sampling rate (Hz) of another file, unless its time is found as that of the test's file is."""
+    time, beside = test.run.time, other.run.time
+    if time is None or (beside and (time.column.name, time.unit) == (beside.column.name, beside.unit)):
+        return {}
+    stamps = _stamps(other)
+    if beside is None and other.rate is None:  # as long as the test
+        return {"rate_hz": float(f"{stamps.size / np.nanmax(np.abs(_stamps(test) - _stamps(test)[0])):.6g}")}
+    return {"rate_hz": float(f"{1.0 / np.median(np.diff(stamps[np.isfinite(stamps)])):.6g}")}
+
+
+def _with_kind(test: Guessed) -> list[Guessed]:
+    """A test with its kind and what channels are to it, once for each part between long pauses."""
+    channels = dict(test.run.channels)
+    if INPUT in channels:
+        channels.pop(FORCE, None)
+    elif FORCE in channels and "displacement" not in channels:
+        given = channels.pop(FORCE)
+        channels[INPUT] = replace(given, keys={**(given.keys or {}), "quantity": FORCE})
+    time, signals = _evenly(replace(test, run=replace(test.run, channels=channels)))
+    kind, reason = kind_of(signals, time)
+    if kind == LOOP:
+        channels = {name: each for name, each in channels.items() if name in ("displacement", FORCE)}
+    elif kind == TRANSIENT:
+        channels.pop(FORCE, None)
+    channels = _compared(channels)
+    test = replace(test, run=_without(test.run, channels), kind=kind, reason=reason)
+    parts = parts_of(_stamps(test))
+    if kind == TRANSIENT and INPUT not in channels and parts == [WHOLE]:
+        parts = [from_release(next(iter(signals.values())), time)]
+    return [replace(test, part=part) for part in parts]
+
+
+def _compared(channels: Mapping[str, Chosen]) -> dict[str, Chosen]:
+    """Channels of which two responses at most are compared."""
+    responses = [
+        name for name in MOTIONS if name in channels and not (channels[name].keys or {}).get("derived")
+    ]
+    if len(responses) < 3:
+        return dict(channels)
+    return {name: each for name, each in channels.items() if name != "acceleration"}
+
+
+def _without(run: Run, channels: Mapping[str, Chosen]) -> Run:
+    """A run with other channels; the columns of those that are gone are left."""
+    gone = [
+        each.column
+        for each in run.channels.values()
+        if all(each.column is not c.column for c in channels.values())
+    ]
+    return replace(run, channels=channels, left=(*run.left, *gone))
+
+
+def _stamps(test: Guessed) -> np.ndarray:
+    """Time stamps (n,) in s of a test, from its first one on if they are dates."""
+    if test.run.time is not None:
+        values = test.run.time.values * UNITS["time"][test.run.time.unit]
+        dated = test.run.time.unit in ("datetime", "excel", "epoch")
+        return values - values[np.isfinite(values)][0] if dated else values
+    first = next(iter(test.run.channels.values()))
+    if first.column.channel.clock is not None:
+        return first.column.channel.clock
+    return np.arange(first.values.size) / (test.rate or UNKNOWN_RATE)
+
+
+def _evenly(test: Guessed) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Even times (n,) in s and signals (n,), as far as a look needs them; those of other files are 0."""
+    stamps = _stamps(test)
+    channels = test.run.channels
+    own = {name: each.values for name, each in channels.items() if "file" not in (each.keys or {})}
+    good = np.isfinite(stamps)
+    order = np.argsort(stamps[good], kind="stable")
+    time = np.linspace(stamps[good].min(), stamps[good].max(), int(good.sum()))
+    signals = {}
+    for name, values in own.items():
+        if values.size != stamps.size:
+            continue
+        x, y = stamps[good][order], values[good][order]
+        known = np.isfinite(y)
+        signals[name] = np.interp(time, x[known], y[known])
+    return time, {**dict.fromkeys(channels, np.zeros(time.size)), **signals}
