@@ -10,7 +10,6 @@ import numpy as np
 from tests.scaling import BENCH_SIZE
 from wedgesweep import config
 from wedgesweep.diagnose.next_test.offer import recommended
-from wedgesweep.diagnose.next_test.sensors import sensors
 from wedgesweep.diagnose.next_test.steady import sines
 from wedgesweep.diagnose.search import Search, base_fit, single_fit
 from wedgesweep.diagnose.steady import simulation
@@ -108,7 +107,7 @@ def base_of(data):
 def steady_tests(fits):
     """Steady tests to choose from for fits to steady tests."""
     data = fits[0].model.data
-    return sines(fits[0], sensors(data), data)
+    return sines(fits[0], data.sensors(), data)
 
 
 def steady_test(fits):

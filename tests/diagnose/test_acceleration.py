@@ -7,7 +7,6 @@ from tests.diagnose.test_transients import MEASURED, OSCILLATOR, WEDGE
 from wedgesweep import api
 from wedgesweep.config import parse
 from wedgesweep.diagnose.diagnosis import data_of
-from wedgesweep.diagnose.next_test.sensors import sensors
 from wedgesweep.diagnose.next_test.transients import releases
 from wedgesweep.diagnose.search import Search, base_fit
 from wedgesweep.effects import merge
@@ -72,7 +71,7 @@ def test_a_next_release_is_offered_for_the_accelerometer_that_is_there(tmp_path)
     a = run.acceleration + noise * np.random.default_rng(1).standard_normal(run.acceleration.size)
     path = write(tmp_path, rig, [[np.arange(a.size) / rate, a]], CHANNEL.format(""))
     base = base_fit(Search.of(data_of(read(path)), [])).base.fit
-    known = sensors(base.model.data)
+    known = base.model.data.sensors()
     assert known.orders == (2,)
     assert known.displacement_noise < 0.03 * 1e-3 * travel
     offered = releases(base, known).data

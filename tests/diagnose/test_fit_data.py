@@ -1,21 +1,22 @@
-"""Another kind of record takes one class: free decays of an oscillator go through the whole search."""
+"""Another kind of record takes one class: free decays of an oscillator are diagnosed, and reported."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 import pytest
 
 from tests.diagnose.synthetic import MODEL as BENCH
 from wedgesweep import config
-from wedgesweep.diagnose import cross_validation, diagnosis, score_test, verdict
-from wedgesweep.diagnose.evaluation import Comparison, NuisanceParameter
-from wedgesweep.diagnose.fit_data import FitData
-from wedgesweep.diagnose.least_squares import tight_refit
-from wedgesweep.diagnose.profile_likelihood import profile_likelihood
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose import diagnosis
+from wedgesweep.diagnose.concatenation import joined
+from wedgesweep.diagnose.evaluation import Comparison, NoStart, NuisanceParameter
+from wedgesweep.diagnose.fit_data import BY_TEST, Arrays, FitData
+from wedgesweep.diagnose.result import result_of
+from wedgesweep.diagnose.search import Search, base_fit
+from wedgesweep.measured import Measurement, TestRecord
 
 MASS, STIFFNESS, DAMPING, STD = 5.0, 5000.0, 5.0, 0.02
 TIME = np.arange(200) / 100.0
@@ -23,23 +24,15 @@ TRUE = 3.0
 
 
 PACKAGE = Path(diagnosis.__file__).parent
-GENERAL = sorted(set(PACKAGE.glob("*.py")) - {Path(diagnosis.__file__)})
+GENERAL = sorted({*PACKAGE.glob("*.py"), *PACKAGE.glob("result/*.py")} - {Path(diagnosis.__file__)})
+CANDIDATES = ("bolster_stiffness", "viscous_damping")
 
 
 @pytest.mark.parametrize("file", GENERAL, ids=lambda file: file.stem)
 def test_only_the_workflow_knows_a_kind_of_record(file):
-    """Fits, search and verdict see the tests through the interface."""
-    assert "wedgesweep.diagnose.steady" not in file.read_text()
-
-
-class NoWarmStart:
-    """A closed form needs none."""
-
-    def of(self, rows):
-        return self
-
-    def where(self, chosen, other):
-        return self
+    """Fits, search, verdict and result see the tests through the interface."""
+    folders = ("steady", "transient", "loop")
+    assert [each for each in folders if f"wedgesweep.diagnose.{each}" in file.read_text()] == []
 
 
 def decay(values, amplitude):
@@ -57,9 +50,14 @@ class Decays(FitData):
     measured: np.ndarray
     stated: np.ndarray
     model_error: float = 0.0
+    kind, law = "decay", "static-dynamic"
+    uncertain: Mapping[str, float] = field(default_factory=dict)
     model = config.parse(BENCH)
-    uncertain = MappingProxyType({})
     eliminated = 1
+
+    @property
+    def names(self):
+        return tuple(f"{each:g} m" for each in self.stated)
 
     @cached_property
     def std(self):
@@ -74,16 +72,15 @@ class Decays(FitData):
         return np.full(self.tests, TIME.size)
 
     @property
-    def dof(self):
-        return self.observations - 1
-
-    @property
     def nuisance_std(self):
         return np.full((self.tests, 1), 0.05)
 
     @cached_property
     def power(self):
-        return ((self.measured / self.std) ** 2).sum(axis=1)
+        return self.power_of(self.measured)
+
+    def power_of(self, response):
+        return ((response / self.std) ** 2).sum(axis=1)
 
     @property
     def model_misfit(self):
@@ -97,7 +94,7 @@ class Decays(FitData):
         return (NuisanceParameter(step=1e-3, max_step=0.1),)
 
     def start(self):
-        return np.zeros((self.tests, 1)), NoWarmStart()
+        return np.zeros((self.tests, 1)), NoStart()
 
     def subset(self, rows):
         return replace(self, measured=self.measured[rows], stated=self.stated[rows])
@@ -111,7 +108,7 @@ class Decays(FitData):
     def compared(self, response):
         left = self.measured - response
         offset = left.mean(axis=1, keepdims=True)
-        return Comparison(response, (left - offset) / self.std, np.full(self.tests, True), NoWarmStart())
+        return Comparison(response, (left - offset) / self.std, np.full(self.tests, True), NoStart())
 
     def with_model_error(self, size):
         return replace(self, model_error=size)
@@ -135,30 +132,49 @@ class Decays(FitData):
     def held_out_groups(self):
         return [("displacement", np.array([test])) for test in range(self.tests)]
 
+    def rows(self, base, extended):
+        return [{"released_m": each} for each in self.stated]
+
+    def arrays(self, base, extended):
+        return Arrays({"released": (BY_TEST, self.stated, "m", "initial displacement")}, {})
+
 
 @pytest.fixture(scope="module")
-def explained():
+def decays():
     rng, stated = np.random.default_rng(0), np.linspace(0.5, 2.0, 8)
     true = stated * np.exp(0.05 * rng.normal(size=stated.size))
     exact = decay({"viscous_damping": {"coefficient": TRUE}}, true) + rng.normal(size=(stated.size, 1))
-    data = Decays(exact + STD * rng.normal(size=exact.shape), stated)
-    return diagnosis.explain(Search.of(data, ("bolster_stiffness", "viscous_damping")))
+    return Decays(exact + STD * rng.normal(size=exact.shape), stated)
 
 
-def test_the_cause_is_named(explained):
-    finding = verdict.decide(explained.base, explained.explanations, verdict.DEFAULT)
-    assert (finding.verdict, finding.best.effects) == ("named", ("viscous_damping",))
-    fit = finding.best.fit
-    fit = profile_likelihood(tight_refit(fit), explained.search.each)
-    assert abs(fit.x[0] - TRUE) < 4.0 * np.sqrt(fit.covariance[0, 0])
-    assert np.sqrt(fit.covariance[0, 0]) < 0.05
+def test_the_cause_is_named_and_reported(decays, monkeypatch):
+    monkeypatch.setitem(diagnosis.DATA, "decay", lambda measurement: decays)
+    tests = tuple(
+        TestRecord(name, name, None, None, 0.0, TIME, None, None, kind="decay") for name in decays.names
+    )
+    measurement = Measurement(Path(), "decays", decays.model, decays.law, {}, tests, False, {})
+    found = diagnosis.diagnose(measurement, CANDIDATES)
+    assert found.unfinished == {}
+    (cause,), tested = found.finding.cause.effects, {each.effect: each for each in found.scores}
+    assert (found.finding.verdict, cause) == ("named", "viscous_damping")
+    fit = found.finding.cause.fit
+    assert abs(fit.x[0] - TRUE) < 4.0 * np.sqrt(fit.covariance[0, 0]) < 0.2
+    assert found.gain.excess_removed > 0.95
+    assert all(each.testable for each in tested.values())
+    assert max(tested, key=lambda name: tested[name].t2) == cause
+    result = result_of(found)
+    rows = result.document["misfit"]["tests"]
+    assert [each["released_m"] for each in rows] == decays.stated.tolist()
+    assert sum(each["q_extended"] for each in rows) == pytest.approx(fit.evaluation.chi2_by_test.sum())
+    assert result.data["released"].values.tolist() == decays.stated.tolist()
+    assert result.document["next_test"] is None
 
 
-def test_the_gain_and_the_scores_tell_the_same(explained):
-    best = explained.explanations[0].fit
-    predict = cross_validation.Predictor(explained.search.each)
-    gain = cross_validation.cross_validate(explained.base.fit, best, predict)
-    assert gain.excess_removed > 0.95
-    scores = score_test.scores(explained.search, explained.base.fit, explained.scans)
-    assert all(each.testable for each in scores)
-    assert max(scores, key=lambda each: each.t2).effect == "viscous_damping"
+def test_tests_behind_one_another_are_tests_together(decays):
+    """Parts keep their own nuisance parameters; the fit does not depend on how tests are divided."""
+    rows = np.arange(decays.tests)
+    parts = joined([decays.subset(rows[:3]), decays.subset(rows[3:])])
+    one, several = (base_fit(Search.of(data, ())).base.fit for data in (decays, parts))
+    assert several.chi2 == pytest.approx(one.chi2, rel=1e-9)
+    assert several.dof == one.dof
+    assert (parts.names, joined([decays])) == (decays.names, decays)

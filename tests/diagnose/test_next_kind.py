@@ -19,7 +19,6 @@ from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.designs import offered
 from wedgesweep.diagnose.next_test.offer import SEPARATED
 from wedgesweep.diagnose.next_test.recommend import recommend
-from wedgesweep.diagnose.next_test.sensors import sensors
 from wedgesweep.diagnose.next_test.transients import releases, sweeps
 from wedgesweep.diagnose.search import Search
 from wedgesweep.effects import merge
@@ -107,7 +106,7 @@ def test_a_distance_is_the_excess_that_a_fit_would_leave(tmp_path):
     data, more = dropped(tmp_path), {"viscous_damping": {"coefficient_N_s_per_m": 2.05}}
     fits = [explained(data, each, std=1e-9) for each in (DAMPED, more)]
     for make in (releases, sweeps):
-        design = make(fits[0], sensors(data))
+        design = make(fits[0], data.sensors())
         distances = offered(design, fits).distances[0, :, 0]
         own = design.data.subset(np.array([3]))
         start = own.start()[0]

@@ -5,18 +5,17 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import cast
 
 from wedgesweep.diagnose import score_test, verdict, work
 from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.changes import Best, Change
+from wedgesweep.diagnose.concatenation import joined
 from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
+from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.ladder import Level, ladder, rough_ladder
 from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise, tight_refit
 from wedgesweep.diagnose.loop.from_measurement import loop_data
-from wedgesweep.diagnose.loop.loop_data import LoopData
-from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import NextTest
 from wedgesweep.diagnose.next_test.recommend import recommend
@@ -25,9 +24,7 @@ from wedgesweep.diagnose.score_test import Score
 from wedgesweep.diagnose.search import OTHER_NUISANCES, Explained, Search, quiet
 from wedgesweep.diagnose.stages import PAIRS, REFINEMENT, base_model, explain, single_effects, taken
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.transient.from_measurement import transient_data
-from wedgesweep.diagnose.transient.transient_data import TransientData
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.diagnose.work import Untried
 from wedgesweep.effects import EFFECTS, SCALES, acting
@@ -39,9 +36,8 @@ log = logging.getLogger(__name__)
 COMPARED = 6
 # Explanations are close if their penalised chi-squared is within so many times the gap of a tie of the best.
 FOLLOWED_GAPS = 5.0
-Data = HarmonicData | LoopData | TransientData | MixedData
 # How the tests of each kind become data of a fit.
-DATA: dict[str, Callable[[Measurement], HarmonicData | LoopData | TransientData]] = {
+DATA: dict[str, Callable[[Measurement], FitData]] = {
     STEADY: harmonic_data,
     LOOP: loop_data,
     TRANSIENT: transient_data,
@@ -65,7 +61,7 @@ class Diagnosis:
     """
 
     measurement: Measurement
-    data: Data
+    data: FitData
     base: Explanation
     decided: Finding
     thresholds: Thresholds
@@ -114,7 +110,7 @@ class Course:
     ) -> None:
         self.explained, self._reached = explained, reached
         self.predict = Predictor(explained.search.each)
-        data, base = cast("Data", explained.search.data), explained.base
+        data, base = explained.search.data, explained.base
         thresholds = verdict.thresholds_for(data)
         decided = verdict.decide(base, [], thresholds)
         unfinished = dict.fromkeys(steps, NOT_REACHED)
@@ -168,7 +164,7 @@ class Course:
         search.finished.clear()
         return replace(
             self.found,
-            data=cast("Data", search.data),
+            data=search.data,
             base=base,
             explanations=tuple(explanations),
             decided=verdict.decide(base, explanations, self.found.thresholds),
@@ -302,31 +298,9 @@ def _with_next_test(course: Course) -> Diagnosis:
     return replace(found, next_test=recommend(fits))
 
 
-def data_of(measurement: Measurement) -> Data:
+def data_of(measurement: Measurement) -> FitData:
     """The measured tests as data of a fit."""
-    parts = [DATA[kind](measurement.of_kind(kind)) for kind in measurement.kinds]
-    if len(parts) == 1:
-        return parts[0]
-    # Only steady tests have the gain of the input among the uncertain numbers; all parts have the same ones.
-    uncertain = {name: std for part in parts for name, std in part.uncertain.items()}
-    return MixedData.of([replace(part, uncertain=uncertain) for part in parts])
-
-
-def of_each_kind(found: Diagnosis) -> dict[str, Diagnosis]:
-    """The diagnosis restricted to the tests of each kind: their data, and both fits on them."""
-    if not isinstance(found.data, MixedData):
-        return {found.data.kind: found}
-    base, extended = found.data.fits(found.base.fit), found.data.fits(found.extended)
-    best = found.finding.best
-    return {
-        part.kind: replace(
-            found,
-            data=cast("Data", part),
-            base=replace(found.base, fit=base[part.kind]),
-            decided=replace(found.finding, best=best and replace(best, fit=extended[part.kind])),
-        )
-        for part in found.data.present
-    }
+    return joined([DATA[kind](measurement.of_kind(kind)) for kind in measurement.kinds])
 
 
 def _candidates(

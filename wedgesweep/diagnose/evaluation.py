@@ -20,6 +20,16 @@ class WarmStart(Protocol):
         """A warm start with the rows ``chosen`` (T,) from another."""
 
 
+class NoStart(NamedTuple):
+    """The warm start of simulations that do not depend on earlier ones."""
+
+    def of(self, rows: Any) -> "NoStart":
+        return self
+
+    def where(self, chosen: np.ndarray, other: Any) -> "NoStart":
+        return self
+
+
 @dataclass(frozen=True)
 class Point:
     """One guess of everything that is fitted by simulation.

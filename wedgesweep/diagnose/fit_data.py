@@ -1,9 +1,10 @@
-"""``FitData``, the interface through which a fit sees measured tests; every kind of record implements it.
+"""``FitData``, the interface through which a diagnosis sees measured tests; a part implements it.
 
-A kind of record (steady harmonics, transient, loop) defines how its tests are simulated, how a simulation is
-compared with the measurement, and which nuisance parameters each test has. Everything else in this package
-(least squares, profile likelihood, score tests, search, verdict, cross-validation) sees the tests through
-``FitData`` only. To add a kind, subclass ``FitData``; the methods with a body are optional.
+A part holds the tests of one kind of record (steady harmonics, transients, loops). It defines how its tests
+are simulated and compared with the measurement, their nuisance parameters, their noise, and what is reported
+of them. Tests of several kinds are parts behind one another (``concatenation.py``). Everything else in this
+package (least squares, score tests, search, verdict, cross-validation, result, next test) sees ``FitData``
+only. A new kind is a subclass, and its name in ``diagnosis.DATA``; the methods with a body are optional.
 
 Shapes: T tests, m numbers compared in each, N nuisance parameters of each, of which the first P have a prior
 and the first L are fitted by simulation.
@@ -11,7 +12,7 @@ and the first L are fitted by simulation.
 
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -26,31 +27,28 @@ from wedgesweep.diagnose.evaluation import (
 )
 from wedgesweep.natural_units import BENCH, NaturalUnits
 
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.model import Fit, Model
+    from wedgesweep.diagnose.next_test.sensors import Sensors
+
 # An uncertain number of the measurement, not of the model: the gain of the sensor that recorded all inputs.
 INPUT_GAIN = "input_gain"
 
 
-class Evaluator(Protocol):
-    """Evaluates points of a hypothesis on its ``data``."""
+# Dimensions, values, unit and meaning of a variable of a dataset.
+Variables = dict[str, tuple[tuple[str, ...], np.ndarray, str, str]]
+BY_TEST, BY_MODEL = ("test",), ("model", "test")
 
-    @property
-    def data(self) -> "FitData": ...
 
-    @property
-    def effects(self) -> tuple[str, ...]: ...
+class Arrays(NamedTuple):
+    """Arrays of measured and simulated tests for figures and notebooks, with coordinates, in SI units."""
 
-    def on(self, data: "FitData") -> "Evaluator":
-        """The same hypothesis on other data."""
-
-    def evaluate_all(self, points: Sequence[Point]) -> list[Evaluation]:
-        """Simulate many points at once, and compare them with the measurement."""
-
-    def best_nuisances(self, points: Sequence[Point]) -> np.ndarray:
-        """Nuisance parameters (T, N) of each test from the point that fits it best."""
+    variables: Variables
+    coordinates: Mapping[str, Any]
 
 
 class FitData(Protocol):
-    """T measured tests of one ``kind`` of record, a name of ``measured.declarations.KINDS``.
+    """T measured tests of one ``kind`` of record, or of several.
 
     ``model``: the base model with its friction ``law``; ``model_error``: relative error that it may have.
     ``eliminated``: number of nuisance parameters of each test whose best value has a closed form (start
@@ -78,6 +76,15 @@ class FitData(Protocol):
         """Number of tests T."""
 
     @property
+    def parts(self) -> "tuple[FitData, ...]":
+        """The tests of each kind."""
+        return (self,)
+
+    def fits(self, fit: "Fit") -> "list[Fit]":
+        """A fit of all tests as fits of the parts."""
+        return [fit]
+
+    @property
     def measured_tests(self) -> int:
         """Number of tests as they were measured, of which T may be windows or blocks."""
         return self.tests
@@ -88,14 +95,18 @@ class FitData(Protocol):
         """Real numbers that each test contributes, (T,)."""
 
     @property
-    @abstractmethod
     def dof(self) -> np.ndarray:
         """Observations of each test less its nuisance parameters without a prior, (T,)."""
+        return self.observations - self.eliminated - np.isinf(self.nuisance_std).sum(axis=1)
 
     @property
     @abstractmethod
     def power(self) -> np.ndarray:
         """Squared misfit of a simulation of nothing at all, (T,)."""
+
+    @abstractmethod
+    def power_of(self, response: Any) -> np.ndarray:
+        """The same (T,) if a response had been measured."""
 
     @property
     @abstractmethod
@@ -201,7 +212,7 @@ class FitData(Protocol):
         """Whether a fit without this effect knows nothing of nuisance parameters that come with it."""
         return False
 
-    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+    def other_nuisances(self, model: "Model", evaluation: Evaluation) -> np.ndarray | None:
         """Better nuisance parameters (T, N), if a fit cannot reach them from an evaluation by small steps.
 
         None if there are none to try.
@@ -232,7 +243,7 @@ class FitData(Protocol):
         """Whether (T,) the response depends on how long the rig had run, which the records do not tell."""
         return np.zeros(self.tests, bool)
 
-    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: "Model", points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations of points, each test's nuisance parameters without a prior searched globally."""
         return model.evaluate_all(points)
 
@@ -251,3 +262,29 @@ class FitData(Protocol):
     def predicted_nuisances(self, evaluation: Evaluation, step: np.ndarray) -> np.ndarray:
         """The step (T, L) of the nuisance parameters of a held-out test, which must remain a prediction."""
         return step
+
+    def rows(self, base: "Fit", extended: "Fit") -> list[dict[str, Any]]:
+        """Numbers of each test for diagnosis.json beside its name and misfit; units are part of the keys."""
+        return [{}] * self.tests
+
+    def arrays(self, base: "Fit", extended: "Fit") -> Arrays:
+        """What is stored of the tests for figures and notebooks."""
+        return Arrays({}, {})
+
+    @property
+    def method(self) -> dict[str, Any]:
+        """Numbers of the comparison for diagnosis.json that all tests share."""
+        return {}
+
+    def cases(self, fit: "Fit") -> list[dict[str, float]]:
+        """Frequency (``frequency_hz``) and input amplitude of each test as fitted, to run in a sweep."""
+        return []
+
+    @property
+    def offers(self) -> tuple[str, ...]:
+        """Next tests that are like these, by their names in ``next_test.recommend.DESIGNS``."""
+        return ()
+
+    def sensors(self) -> "Sensors | None":
+        """The sensors of these tests; None if they tell nothing of tests to come."""
+        return None

@@ -4,22 +4,20 @@ from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 
-from wedgesweep.diagnose.evaluation import Comparison, Evaluation, Scenario, best_evaluation_per_test
-from wedgesweep.diagnose.fit_data import INPUT_GAIN, FitData
-
-
-class NoStart(NamedTuple):
-    """The warm start of simulations that do not depend on earlier ones."""
-
-    def of(self, rows: Any) -> "NoStart":
-        return self
-
-    def where(self, chosen: np.ndarray, other: Any) -> "NoStart":
-        return self
+from wedgesweep.diagnose.evaluation import (
+    Comparison,
+    Evaluation,
+    NoStart,
+    Point,
+    Scenario,
+    best_evaluation_per_test,
+)
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData
+from wedgesweep.diagnose.model import Fit
 
 
 class SampledData(FitData):
@@ -80,12 +78,11 @@ class SampledData(FitData):
         return self.weight.sum(-1).astype(int)
 
     @property
-    def dof(self) -> np.ndarray:
-        return self.observations - 1
-
-    @property
     def power(self) -> np.ndarray:
-        return (self._whitened(self.without_zero(self.measured)) ** 2).sum(-1)
+        return self.power_of(self.measured)
+
+    def power_of(self, response: np.ndarray) -> np.ndarray:
+        return (self._whitened(self.without_zero(response)) ** 2).sum(-1)
 
     @property
     def model_misfit(self) -> np.ndarray:
@@ -179,6 +176,26 @@ class SampledData(FitData):
             {name: numbers for name, numbers in each.values.items() if name not in left_out}
             for each in scenarios
         ]
+
+    def numbers(self, point: Point) -> list[dict[str, Any]]:
+        """Numbers of each test for diagnosis.json, at a point of the extended model."""
+        return [{}] * self.tests
+
+    def shown(self, simulated: np.ndarray) -> Arrays:
+        """What is stored of the tests, with values (2, T, m) that were simulated."""
+        return Arrays({}, {})
+
+    def rows(self, base: Fit, extended: Fit) -> list[dict[str, Any]]:
+        """Numbers of the tests; errors are the rms of the residual over that of the response."""
+        errors = zip(*(self.error(fit.evaluation) for fit in (base, extended)), strict=True)
+        own = zip(self.numbers(extended.point), self.observations, errors, strict=True)
+        return [
+            {**numbers, "samples": int(samples), "error_base": before, "error_extended": after}
+            for numbers, samples, (before, after) in own
+        ]
+
+    def arrays(self, base: Fit, extended: Fit) -> Arrays:
+        return self.shown(np.array([self.with_zero(fit.evaluation) for fit in (base, extended)]))
 
 
 def best_of_each_test(evaluations: Sequence[Evaluation]) -> Evaluation:

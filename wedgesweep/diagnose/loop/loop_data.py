@@ -8,15 +8,19 @@ springs that are not linear act by their place. A wedge's displacement counts fr
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
-from wedgesweep.diagnose.evaluation import NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.evaluation import NoStart, NuisanceParameter, Point, Scenario
+from wedgesweep.diagnose.fit_data import Arrays
 from wedgesweep.diagnose.loop.recording import Recording
-from wedgesweep.diagnose.sampled_data import NoStart, SampledData
+from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.sampled_data import SampledData
+from wedgesweep.measured.declarations import LOOP
 from wedgesweep.natural_units import NaturalUnits
 
 # Effects on how a motion comes about, or on its sensors: where the motion is imposed, no force shows them.
@@ -44,7 +48,8 @@ class LoopData(SampledData):
     model_error: float = 0.0
     resampled: np.ndarray | None = None
 
-    kind = "loop"
+    kind = LOOP
+    offers = (LOOP,)
 
     @cached_property
     def names(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -189,3 +194,48 @@ class LoopData(SampledData):
         if np.ptp(numbers) == 0:
             return [("block", np.array([t])) for t in range(self.tests)]
         return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
+
+    def numbers(self, point: Point) -> list[dict[str, Any]]:
+        recordings = [self.recordings[number] for number, _ in self.chosen]
+        return [
+            {
+                "lowpass_hz": own.low_pass.cutoff,
+                "noise_force_N": own.noise,
+                "noise_from": own.spectrum.source,
+                "noise_correlation": own.spectrum.correlation,
+                "noise_velocity_mm_per_s": 1e3 * own.motion.noise[1],
+            }
+            for own in recordings
+        ]
+
+    def shown(self, simulated: np.ndarray) -> Arrays:
+        """Forces along the imposed motion, NaN where nothing is compared."""
+        seen = np.where(self.seen, 1.0, np.nan)
+        position, velocity = (
+            self.padded([getattr(own.motion, name)[own.places] for own in self.recordings]) * seen
+            for name in ("displacement", "velocity")
+        )
+        noise = np.array([self.recordings[number].noise for number, _ in self.chosen])
+        by_sample, measured = ("test", "sample"), self.measured * seen
+        variables = {
+            "displacement": (by_sample, position, "m", "imposed displacement"),
+            "velocity": (by_sample, velocity, "m/s", "imposed velocity"),
+            "measured_force": (by_sample, measured, "N", "measured force"),
+            "simulated_force": (
+                ("model", *by_sample),
+                simulated * seen,
+                "N",
+                "simulated, with the fitted zero",
+            ),
+            "force_noise": (("test",), noise, "N", "noise of a compared force"),
+        }
+        return Arrays(variables, {})
+
+    def sensors(self) -> Sensors:
+        own = median_test(
+            self.recordings, lambda each: each.noise_of_displacement / float(each.motion.displacement.std())
+        )
+        rms = np.array([own.motion.displacement.std()])
+        travel = max(each.half_range for each in self.recordings)
+        noise = NoiseSpectrum(0.0, 0.0, max(own.noise_of_displacement, 1e-9 * travel) ** 2)
+        return Sensors(self.model, self.law, own.low_pass.rate, (noise,), rms, travel, (0,))

@@ -11,7 +11,6 @@ from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.jacobian import accurate_jacobian
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.sampled_data import SampledData
 
 # Least share of the tests on offer that an explanation must predict; at the others its wedge locks.
 PREDICTED = 0.5
@@ -95,16 +94,9 @@ def _predicted(fit: Fit, data: FitData, moved: _Moved | None = None) -> _Predict
     size = np.linalg.norm(by_nuisance, axis=1)
     free = FREE / np.where(size > 0.0, size, FREE)  # what has no influence keeps its size
     std = np.where(np.isinf(std), free, std)
-    moves = _power(data, here) > MOVES * data.observations
+    moves = data.power_of(here.response) > MOVES * data.observations
     spread, adapted = by_parameter @ root, by_nuisance * std[:, None]
     return _Prediction(here, spread, adapted, std, moves & here.found_tests)
-
-
-def _power(data: FitData, here: Evaluation) -> np.ndarray:
-    """Squared size (T,) of simulated motions over their noise."""
-    if isinstance(data, SampledData):
-        return replace(data, resampled=here.response).power  # type: ignore[type-var]
-    return (np.abs(here.response.whitened) ** 2).sum(axis=(-2, -1))
 
 
 def _adapted(data: FitData, one: Fit, other: Fit) -> float:

@@ -1,23 +1,18 @@
 """The next test over all kinds: one like those that were made, or of another kind where they tell nothing."""
 
 from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 from wedgesweep.diagnose.fit_data import FitData
-from wedgesweep.diagnose.loop.loop_data import LoopData
-from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.designs import Design
 from wedgesweep.diagnose.next_test.loops import loops
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest, recommended
-from wedgesweep.diagnose.next_test.sensors import Sensors, sensors
+from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.next_test.steady import sines
-from wedgesweep.diagnose.next_test.transients import RELEASE, SWEEP, releases, sweeps
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
-from wedgesweep.diagnose.transient.transient_data import TransientData
-from wedgesweep.measured.declarations import LOOP, STEADY
-
-# Tests to choose from, what a laboratory has first.
-ALL = (STEADY, RELEASE, SWEEP, LOOP)
+from wedgesweep.diagnose.next_test.transients import releases, sweeps
+from wedgesweep.diagnose.transient.transient_data import RELEASE, SWEEP
+from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
 
 def recommend(fits: Sequence[Fit]) -> NextTest | None:
@@ -28,26 +23,14 @@ def recommend(fits: Sequence[Fit]) -> NextTest | None:
     """
     if len(fits) < 2:
         return None
-    parts = _parts(fits[0].model.data)
-    made = [kind for part in parts for kind in _made(part)]
-    found = [_of_kind(kind, fits, parts) for kind in made]
+    parts = fits[0].model.data.parts
+    made = [name for part in parts for name in part.offers]
+    found = [_like(name, fits, parts) for name in made]
     if not any(map(_decides, found)):
-        found += [_of_kind(kind, fits, parts) for kind in ALL if kind not in made]
+        found += [_like(name, fits, parts) for name in DESIGNS if name not in made]
     possible = [each for each in found if each is not None]
     # Of equals the first one.
     return max(possible, key=_worth, default=None)
-
-
-def _parts(data: FitData) -> list[FitData]:
-    return data.present if isinstance(data, MixedData) else [data]
-
-
-def _made(part: FitData) -> list[str]:
-    """Kinds of test that were made."""
-    if isinstance(part, TransientData):
-        driven = {each.driven for each in part.windows}
-        return [name for name, one in ((RELEASE, False), (SWEEP, True)) if one in driven]
-    return [part.kind]
 
 
 def _decides(test: NextTest | None) -> bool:
@@ -64,43 +47,29 @@ def _worth(test: NextTest) -> tuple[int, float]:
     return separated, 0.0 if separated else min(each.distance for each in test.pairs)
 
 
-def _of_kind(kind: str, fits: Sequence[Fit], parts: Sequence[FitData]) -> NextTest | None:
-    design = DESIGNS[kind](fits, parts)
+def _like(name: str, fits: Sequence[Fit], parts: Sequence[FitData]) -> NextTest | None:
+    """The next test of one kind; motions may be as large as in any of the measured tests."""
+    wanted, measured = DESIGNS[name], {part.kind: part for part in parts}
+    known = {kind: sensors for kind, part in measured.items() if (sensors := part.sensors()) is not None}
+    if not known:
+        return None
+    own = known.get(wanted.kind, next(iter(known.values())))
+    own = own._replace(travel=max(each.travel for each in known.values()))
+    design = wanted.design(fits[0], own, measured.get(wanted.kind))
     return None if design is None else recommended(design, fits)
 
 
-def _steady(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design:
-    measured = next((part for part in parts if isinstance(part, HarmonicData)), None)
-    return sines(fits[0], _known(parts, HarmonicData), measured)
+class _Kind(NamedTuple):
+    """The kind of record of a next test, and its design by the best fit, its sensors and measured tests."""
+
+    kind: str
+    design: Callable[[Fit, Sensors, Any], Design | None]
 
 
-def _release(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design | None:
-    known = _known(parts, TransientData)
-    # Without a spring the mass stays where it is.
-    if known.model.system == "oscillator" and known.model.oscillator["spring"] == 0.0:
-        return None
-    return releases(fits[0], known)
-
-
-def _sweep(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design | None:
-    return sweeps(fits[0], _known(parts, TransientData))
-
-
-def _loop(fits: Sequence[Fit], parts: Sequence[FitData]) -> Design | None:
-    measured = next((part for part in parts if isinstance(part, LoopData)), None)
-    return loops(fits[0], _known(parts, LoopData), measured)
-
-
-def _known(parts: Sequence[FitData], kind: type[FitData]) -> Sensors:
-    """The sensors of the tests of a kind, or of others if there are none; motions may be as large as any."""
-    found = [sensors(part) for part in parts]
-    own = next((each for each, part in zip(found, parts, strict=True) if isinstance(part, kind)), found[0])
-    return own._replace(travel=max(each.travel for each in found))
-
-
-DESIGNS: dict[str, Callable[[Sequence[Fit], Sequence[FitData]], Design | None]] = {
-    STEADY: _steady,
-    RELEASE: _release,
-    SWEEP: _sweep,
-    LOOP: _loop,
+# Tests to choose from, what a laboratory has first.
+DESIGNS = {
+    STEADY: _Kind(STEADY, sines),
+    RELEASE: _Kind(TRANSIENT, lambda best, known, measured: releases(best, known)),
+    SWEEP: _Kind(TRANSIENT, lambda best, known, measured: sweeps(best, known)),
+    LOOP: _Kind(LOOP, loops),
 }

@@ -12,12 +12,11 @@ from wedgesweep.diagnose.next_test.sensors import Sensors, beside_signal
 from wedgesweep.diagnose.transient.cutting import FEWEST_COMPARED, HARMONICS
 from wedgesweep.diagnose.transient.input_noise import InputNoise
 from wedgesweep.diagnose.transient.recorded_input import no_input
-from wedgesweep.diagnose.transient.transient_data import TransientData
+from wedgesweep.diagnose.transient.transient_data import RELEASE, SWEEP, TransientData
 from wedgesweep.diagnose.transient.window import Grid, RecordWindow
 from wedgesweep.measured.declarations import TRANSIENT
 from wedgesweep.sampled_input import from_samples
 
-RELEASE, SWEEP = "release", "sweep"
 # Sizes of the tests over what was measured.
 SIZES = np.array([0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8])
 # Amplitude of a sweep over the travel where no input was recorded.
@@ -28,8 +27,10 @@ RELEASED, SWEPT, LOW, HIGH = 10.0, 20.0, 0.5, 2.0
 FINE = 32
 
 
-def releases(best: Fit, known: Sensors) -> Design:
-    """Releases at rest from displacements of several sizes."""
+def releases(best: Fit, known: Sensors) -> Design | None:
+    """Releases at rest from displacements of several sizes; None without a spring, where the mass stays."""
+    if known.model.system == "oscillator" and known.model.oscillator["spring"] == 0.0:
+        return None
     starts, duration = SIZES * known.travel, RELEASED * 2.0 * pi / known.omega
     tests = tuple(_window(known, start, duration) for start in starts)
     numbers = [{"start_mm": 1e3 * start, "duration_s": duration} for start in starts]

@@ -12,16 +12,12 @@ from wedgesweep import __version__
 from wedgesweep.config import Config
 from wedgesweep.diagnose.changes import SLIGHT, summary
 from wedgesweep.diagnose.cross_validation import Gain
-from wedgesweep.diagnose.diagnosis import Diagnosis, of_each_kind
+from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
 from wedgesweep.diagnose.ladder import Level, Rated
-from wedgesweep.diagnose.mixed.mixed_data import MixedData
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
-from wedgesweep.diagnose.result import sampled
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
-from wedgesweep.diagnose.sampled_data import SampledData
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
 from wedgesweep.diagnose.work import OutOfTime
 from wedgesweep.diagnosis_result import FAILED, NO_BETTER
@@ -159,31 +155,12 @@ def _constancy(best: Explanation) -> dict[str, Any]:
 
 def _tests(found: Diagnosis) -> list[dict[str, Any]]:
     data, base, best = found.data, found.base.fit, found.extended
-    if isinstance(data, MixedData):
-        parts = of_each_kind(found).items()
-        return [{"kind": kind, **row} for kind, part in parts for row in _tests(part)]
-    if isinstance(data, SampledData):
-        return sampled.tests(found, data)
-    unit, size = data.model.amplitude_unit
-    amplitude = data.inputs_of(best.model.scenario(best.point))
-    rows = []
-    for t, (name, spectrum) in enumerate(zip(data.names, data.spectra, strict=True)):
-        noise = spectrum.sample_noise
-        rows.append(
-            {
-                "name": name,
-                "frequency_hz": spectrum.frequency,
-                f"amplitude_{unit}": finite(data.amplitude[t] / size),
-                f"amplitude_fitted_{unit}": finite(amplitude[t] / size),
-                "periods": spectrum.periods,
-                "noise_displacement_mm": 1e3 * noise[0],
-                "noise_velocity_mm_per_s": 1e3 * noise[1] if noise.size > 1 else None,
-                "q_base": finite(base.evaluation.chi2_by_test[t]),
-                "q_extended": finite(best.evaluation.chi2_by_test[t]),
-                "dof": int(data.dof[t]),
-            }
-        )
-    return rows
+    misfits = base.evaluation.chi2_by_test, best.evaluation.chi2_by_test
+    rows = zip(data.names, data.rows(base, best), *misfits, data.dof, strict=True)
+    return [
+        {"name": name, **_finite(row), "q_base": finite(before), "q_extended": finite(after), "dof": int(dof)}
+        for name, row, before, after, dof in rows
+    ]
 
 
 def _gain(gain: Gain | None) -> dict[str, Any]:
@@ -253,7 +230,7 @@ def _method(found: Diagnosis) -> dict[str, Any]:
         "noise_floor": finite(found.data.noise_floor),
         "least_gain": found.thresholds.least_gain,
         "dof": found.base.fit.dof,
-        **({"harmonics": found.data.shape[1]} if isinstance(found.data, HarmonicData) else {}),
+        **found.data.method,
         "calibrated": found.calibration,
     }
 

@@ -8,7 +8,6 @@ from wedgesweep.config.keys import SMALLEST
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.result.estimates import uncertain_values
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 
 def extended(found: Diagnosis) -> str:
@@ -17,22 +16,15 @@ def extended(found: Diagnosis) -> str:
     document = {**found.measurement.model.document, "title": f"{found.measurement.title}: extended model"}
     nuisance = {name: each for name, each in uncertain_values(best).items() if name != INPUT_GAIN}
     document["effects"] = _as_written(effects.merge(document["effects"], {**nuisance, **best.values}))
-    if not isinstance(data, HarmonicData):
+    cases = [{"friction_law": data.law, **case} for case in data.cases(best)]
+    if not cases:
         return _heading(found) + toml.dumps(document)
-    # Repeated tests are one case.
-    unit, inputs = data.model.amplitude_unit, data.inputs_of(best.model.scenario(best.point))
-    cases = dict.fromkeys(
-        (spectrum.frequency, float(f"{amplitude / unit.factor:.7g}"))
-        for spectrum, amplitude in zip(data.spectra, inputs, strict=True)
-    )
     document["solver"] = _steady(document["solver"])
     document["sweep"] = {
         "omega_n_rad_per_s": data.model.sweep.omega_n,
         "excitation": data.model.excitation,
-        "case": [
-            {"friction_law": data.law, "frequency_hz": frequency, unit.key: amplitude}
-            for frequency, amplitude in cases
-        ],
+        # Repeated tests are one case.
+        "case": [case for place, case in enumerate(cases) if case not in cases[:place]],
     }
     return _heading(found) + toml.dumps(document)
 

@@ -7,7 +7,7 @@ from math import log
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Evaluation, Point
-from wedgesweep.diagnose.fit_data import Evaluator
+from wedgesweep.diagnose.model import Model
 
 # Lowest level, over the fundamental of the displacement, and the factor from one level to the next.
 LOWEST, FACTOR = 0.12, 1.3
@@ -17,7 +17,7 @@ LEVELS, MOST_LEVELS = 17, 28
 FINE = 8
 
 
-def best_amplitudes(model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
+def best_amplitudes(model: Model, points: Sequence[Point]) -> list[Evaluation]:
     """Evaluations of points, the unknown input amplitudes being those that fit each of them best."""
     if not np.isinf(model.data.nuisance_std).any():
         return model.evaluate_all(points)
@@ -39,7 +39,7 @@ class _GridSearch:
     (logarithm) of those at which it did.
     """
 
-    def __init__(self, model: Evaluator, points: Sequence[Point]) -> None:
+    def __init__(self, model: Model, points: Sequence[Point]) -> None:
         self.model, self.best, self.current = model, list(points), list(points)
         self.unknown = np.isinf(model.data.nuisance_std[:, 0])
         shape = len(points), model.data.tests

@@ -7,18 +7,22 @@ the stated one. Under a spurious tone the phase of the tone is a third nuisance 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import Evaluator, FitData
-from wedgesweep.diagnose.steady import amplitude_grid, simulation, tone
+from wedgesweep.diagnose.fit_data import Arrays, FitData
+from wedgesweep.diagnose.model import Fit, Model
+from wedgesweep.diagnose.next_test.sensors import Sensors
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
+from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, tone
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
 from wedgesweep.effects import acting
 from wedgesweep.effects.states import TIME, kinds
+from wedgesweep.measured.declarations import STEADY
 from wedgesweep.natural_units import NaturalUnits
 from wedgesweep.solvers.period_detection import LONGEST_PERIOD
 from wedgesweep.solvers.periodic import Warm, at_rest, joined
@@ -71,7 +75,8 @@ class Simulated(NamedTuple):
 class HarmonicData(WhitenedHarmonics, FitData):
     """Harmonics of steady tests; see WhitenedHarmonics for the attributes."""
 
-    kind = "steady"
+    kind = STEADY
+    offers = (STEADY,)
     eliminated = 1
 
     @cached_property
@@ -87,11 +92,6 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def inputs_of(self, scenario: Scenario) -> np.ndarray:
         """Input amplitudes (T,) in m, or N of a force, that are simulated in a scenario."""
         return self.amplitudes(scenario.point)
-
-    @property
-    def dof(self) -> np.ndarray:
-        """Observations of each test less its start phase, and its amplitude where that is unknown, (T,)."""
-        return self.observations - 1 - np.isinf(self.amplitude_std)
 
     @property
     def nuisance_std(self) -> np.ndarray:
@@ -140,6 +140,9 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def correlated(self, noise: np.ndarray) -> np.ndarray:
         """The inverse of ``decorrelated``: values that it turns into some noise (..., T, m)."""
         return noise
+
+    def power_of(self, response: SteadyResponse) -> np.ndarray:
+        return (np.abs(response.whitened) ** 2).sum(axis=(-2, -1))
 
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         rows = [self.records(each) for each in scenarios]
@@ -248,7 +251,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
     def brings_nuisances(self, effect: str) -> bool:
         return effect == TONE
 
-    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+    def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
         effects, point = model.effects, evaluation.point
         if not self.has_tone(effects) or len(self.nuisances(effects, point)) > 1:
             return None
@@ -263,8 +266,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def insensitive(self, evaluation: Evaluation) -> np.ndarray:
         """Whether (T,) a test was measured to move, and sticks in the simulation."""
-        moved = (np.abs(evaluation.response.whitened) ** 2).sum(axis=(-2, -1))
-        return evaluation.found_tests & (moved < STICKS**2 * self.power)
+        return evaluation.found_tests & (self.power_of(evaluation.response) < STICKS**2 * self.power)
 
     def never_steady(self, scenario: Scenario) -> np.ndarray:
         """Whether (T,) a time that is a state (an age) exceeds that which any response takes to repeat."""
@@ -272,7 +274,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         elapsed = scenario.point.warm.state[:, : len(clocks)][:, clocks]
         return (elapsed * self.omega[:, None] / (2.0 * np.pi) > LONGEST_PERIOD).any(axis=1)
 
-    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
         return amplitude_grid.best_amplitudes(model, points)
 
     def held_as_stated(self) -> Self:
@@ -314,6 +316,43 @@ class HarmonicData(WhitenedHarmonics, FitData):
         if spectrum.tone is not None:
             mean = np.concatenate([mean, padded[:channels, -1:]], axis=1)
         return replace(spectrum, mean=mean)
+
+    def rows(self, base: Fit, extended: Fit) -> list[dict[str, Any]]:
+        unit, size = self.model.amplitude_unit
+        fitted = self.inputs_of(extended.model.scenario(extended.point)) / size
+        return [
+            {
+                "frequency_hz": spectrum.frequency,
+                f"amplitude_{unit}": stated,
+                f"amplitude_fitted_{unit}": amplitude,
+                "periods": spectrum.periods,
+                "noise_displacement_mm": 1e3 * spectrum.sample_noise[0],
+                "noise_velocity_mm_per_s": 1e3 * spectrum.sample_noise[1] if len(spectrum.mean) > 1 else None,
+            }
+            for spectrum, stated, amplitude in zip(self.spectra, self.amplitude / size, fitted, strict=True)
+        ]
+
+    def arrays(self, base: Fit, extended: Fit) -> Arrays:
+        return arrays.arrays(self, base, extended)
+
+    @property
+    def method(self) -> dict[str, Any]:
+        return {"harmonics": self.shape[1]}
+
+    def cases(self, fit: Fit) -> list[dict[str, float]]:
+        unit, inputs = self.model.amplitude_unit, self.inputs_of(fit.model.scenario(fit.point))
+        return [
+            {"frequency_hz": spectrum.frequency, unit.key: float(f"{amplitude / unit.factor:.7g}")}
+            for spectrum, amplitude in zip(self.spectra, inputs, strict=True)
+        ]
+
+    def sensors(self) -> Sensors:
+        share = [float(each.sample_noise[0] / each.rms[0]) for each in self.spectra]
+        own = self.spectra[int(np.argsort(share)[len(share) // 2])]
+        noise = tuple(NoiseSpectrum(0.0, 0.0, float(std) ** 2) for std in own.sample_noise[:2])
+        travel = max(float(np.abs(each.mean[0]).sum()) for each in self.spectra)
+        rms, orders = own.rms[:2], tuple(range(len(noise)))
+        return Sensors(self.model, self.law, 1.0 / own.interval, noise, rms, travel, orders)
 
 
 def groups_of_equal(values: np.ndarray) -> list[np.ndarray]:

@@ -106,11 +106,6 @@ class RecordedInputData(CorrelatedHarmonics):
         assert self.inputs is not None
         return self.inputs
 
-    @property
-    def dof(self) -> np.ndarray:
-        """Observations of each test, (T,): nothing of the input is free."""
-        return self.observations
-
     def subset(self, rows: np.ndarray) -> Self:
         return replace(super().subset(rows), inputs=self.recorded.of(rows))
 

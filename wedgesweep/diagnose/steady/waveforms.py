@@ -1,17 +1,20 @@
 """One period of measured and simulated signals, and what an engineer reads from it."""
 
 from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import root_scalar
 
 from wedgesweep.compiled import compiled
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 from wedgesweep.effects import EFFECTS, acting
 from wedgesweep.excitation import has_series
 from wedgesweep.hybrid.interface import cycle, initial_mode, rate
 from wedgesweep.systems import compact, driven_mass, has_own_mechanics, is_oscillator, moving_mass
+
+if TYPE_CHECKING:
+    from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
 
 PHASES = 256
 # A harmonic counts by the share of its square that exceeds this many times its noise.
@@ -31,19 +34,19 @@ def waveform(harmonics: np.ndarray) -> np.ndarray:
     return (harmonics @ turn).real
 
 
-def measured_from_phase_zero(data: HarmonicData, fit: Fit) -> np.ndarray:
+def measured_from_phase_zero(data: "HarmonicData", fit: Fit) -> np.ndarray:
     """Measured harmonics (T, C, H) without tone and aliases, rotated to phase 0 of the input of a fit."""
     response = fit.evaluation.response
     return data.rotated(data.measured - response.aliases, -response.phase)[..., : data.shape[1]]
 
 
-def velocity(data: HarmonicData, harmonics: np.ndarray) -> np.ndarray:
+def velocity(data: "HarmonicData", harmonics: np.ndarray) -> np.ndarray:
     """Velocity harmonics (T, H), from the displacement if there is no velocity channel."""
     derived = 1j * data.omega[:, None] * data.orders * harmonics[:, 0]
     return np.where(_has_velocity(data), harmonics[:, -1], derived)
 
 
-def _has_velocity(data: HarmonicData) -> np.ndarray:
+def _has_velocity(data: "HarmonicData") -> np.ndarray:
     """Whether (T, 1) tests have a velocity channel."""
     return np.array([[s.mean.shape[0] == 2] for s in data.spectra])
 
@@ -59,7 +62,7 @@ def dwell(velocities: np.ndarray) -> np.ndarray:
     return (speed < DWELL * speed.max(axis=-1, keepdims=True)).mean(axis=-1)
 
 
-def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.ndarray:
+def input_energy(data: "HarmonicData", fit: Fit, fundamental: np.ndarray) -> np.ndarray:
     """Energy (J) that the input puts in per period, shape (T,).
 
     On a moving base it is the work of the force of inertia, which friction dissipates: pi m a omega^2 Re D_1,
@@ -90,7 +93,7 @@ def input_energy(data: HarmonicData, fit: Fit, fundamental: np.ndarray) -> np.nd
     return np.where(has_series(rows), np.nan, pi * force * fundamental.real)
 
 
-def residual_force(data: HarmonicData, fit: Fit, harmonics: np.ndarray) -> np.ndarray:
+def residual_force(data: "HarmonicData", fit: Fit, harmonics: np.ndarray) -> np.ndarray:
     """Force on the bolster that the model lacks (restoring-force method), N, shape (T, PHASES).
 
     This is the measured acceleration less that of the model in the same state, times the moving mass. Both
@@ -152,13 +155,13 @@ def accelerations(parameters: np.ndarray, x: np.ndarray, v: np.ndarray, out: np.
         out[i] = rate(t, (x[i], v[i]), mode, p)[0][1]
 
 
-def _wiener_weight(data: HarmonicData) -> np.ndarray:
+def _wiener_weight(data: "HarmonicData") -> np.ndarray:
     """Share (T, H) of the harmonics of the velocity that is not noise, by Wiener's rule."""
     above = 0.5 * (np.abs(data.measured) * data.weight)[..., : data.shape[1]] ** 2
     share = 1.0 - ABOVE_NOISE / np.maximum(above, ABOVE_NOISE)
     return np.where(_has_velocity(data), share[:, -1], share[:, 0])
 
 
-def _rows(data: HarmonicData, fit: Fit) -> np.ndarray:
+def _rows(data: "HarmonicData", fit: Fit) -> np.ndarray:
     """Parameter records (T,) of a fit."""
     return data.records(fit.model.scenario(fit.point))

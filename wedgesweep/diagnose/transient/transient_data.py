@@ -18,20 +18,25 @@ from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import (
     UNUSED,
     Evaluation,
+    NoStart,
     NuisanceParameter,
     Point,
     Scenario,
 )
-from wedgesweep.diagnose.fit_data import Evaluator
-from wedgesweep.diagnose.model import TOLERANCE
+from wedgesweep.diagnose.fit_data import Arrays
+from wedgesweep.diagnose.model import TOLERANCE, Model
+from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
-from wedgesweep.diagnose.sampled_data import NoStart, SampledData, best_of_each_test
+from wedgesweep.diagnose.sampled_data import SampledData, best_of_each_test
+from wedgesweep.diagnose.transient import arrays
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
 from wedgesweep.natural_units import NaturalUnits
 
+# Next tests like these: free motions, and motions under an input.
+RELEASE, SWEEP = "release", "sweep"
 # Effects that are no candidates: of a sine as the input, or of what a recorded input contains already.
 OF_INPUT = ("input_distortion", "stray_vibration", "cross_slip")
 # Effects of sensors, and the derivative of the displacement whose sensor has each.
@@ -172,11 +177,6 @@ class TransientData(SampledData):
         return found
 
     @property
-    def dof(self) -> np.ndarray:
-        """Observations of each test less the zero of the displacement and its start."""
-        return self.observations - 1 - len(START)
-
-    @property
     def input_gain_std(self) -> float:  # type: ignore[override]
         return self.gain_std
 
@@ -285,7 +285,7 @@ class TransientData(SampledData):
             samples = scenarios * rows.size * self.windows[rows[0]].grid.samples
             yield from np.array_split(rows, min(ceil(samples / MOST_TOGETHER), rows.size))
 
-    def search_nuisances(self, model: Evaluator, points: Sequence[Point]) -> list[Evaluation]:
+    def search_nuisances(self, model: Model, points: Sequence[Point]) -> list[Evaluation]:
         """Evaluations of points, each test from the best of several starts."""
         stated, at_rest = self.start()
         starts = [stated]
@@ -309,7 +309,7 @@ class TransientData(SampledData):
         groups = [part for rows in records for part in np.array_split(rows, -(-rows.size // size))]
         return np.array([rows[np.argmax(misfit[rows])] for rows in groups])
 
-    def other_nuisances(self, model: Evaluator, evaluation: Evaluation) -> np.ndarray | None:
+    def other_nuisances(self, model: Model, evaluation: Evaluation) -> np.ndarray | None:
         found, stated = evaluation.point.nuisance.copy(), self.start()[0]
         for test in standing_out(evaluation.chi2_by_test, self.dof):
             rows = np.array([test])
@@ -330,8 +330,30 @@ class TransientData(SampledData):
         blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))
         return [("block", rows) for rows in blocks]
 
+    def numbers(self, point: Point) -> list[dict[str, Any]]:
+        return arrays.numbers(self, point)
 
-def _misfits(model: Evaluator, point: Point, starts: np.ndarray) -> np.ndarray:
+    def shown(self, simulated: np.ndarray) -> Arrays:
+        return arrays.arrays(self, simulated)
+
+    @property
+    def offers(self) -> tuple[str, ...]:
+        driven = {own.driven for own in self.windows}
+        return tuple(name for name, one in ((RELEASE, False), (SWEEP, True)) if one in driven)
+
+    def sensors(self) -> Sensors:
+        own = median_test(self.windows, lambda each: each.spectra[0].std / max(float(each.rms[0]), 1e-300))
+        drive = 0.0
+        for each in self.windows:
+            if each.driven:
+                times = np.arange(each.grid.samples) * each.step
+                drive = max(drive, 0.5 * float(np.ptp(each.input(times))))
+        drive /= self.units.mass / self.units.time**2 if self.model.forced else 1.0
+        travel = max(each.length for each in self.windows)
+        return Sensors(self.model, self.law, 1.0 / own.step, own.spectra, own.rms, travel, own.orders, drive)
+
+
+def _misfits(model: Model, point: Point, starts: np.ndarray) -> np.ndarray:
     """Squared misfits (n,) of one test from starts (n, 2); inf where there is no response."""
     moved = [replace(point, nuisance=np.r_[each, point.nuisance[0, len(START) :]][None]) for each in starts]
     return np.array([each.chi2 if each.found else np.inf for each in model.evaluate_all(moved)])

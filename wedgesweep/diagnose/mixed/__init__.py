@@ -1,1 +1,0 @@
-"""Tests of several kinds in one fit: one model, one verdict."""
