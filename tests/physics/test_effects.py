@@ -122,8 +122,9 @@ def test_energy_balance_with_every_effect(law, name):
 
 @pytest.mark.parametrize("name", EXTENDING)
 def test_it_changes_the_response(name):
-    base = numbers(parameters.record("static-dynamic", 0.8e-3, 0.6 * OMEGA_N), 20)
-    found = numbers(with_effect("static-dynamic", name), 20)
+    law = "coulomb" if name == "jamming" else "static-dynamic"  # regularised laws have no rest
+    base = numbers(parameters.record(law, 0.8e-3, 0.6 * OMEGA_N), 20)
+    found = numbers(with_effect(law, name), 20)
     assert abs(found["amplitude_ratio"] / base["amplitude_ratio"] - 1.0) > 1e-4
 
 

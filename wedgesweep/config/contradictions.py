@@ -5,11 +5,11 @@ from math import inf, nan
 from typing import Any
 
 from wedgesweep.config.input_contradictions import input_contradictions
-from wedgesweep.effects import EFFECTS, lift_off, of_system, with_lift_off
+from wedgesweep.effects import EFFECTS, jamming, lift_off, of_system, with_lift_off
 from wedgesweep.effects.base import OSCILLATOR, SUSPENSION
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
 from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD
-from wedgesweep.systems.suspension.parameters import UNILATERAL
+from wedgesweep.systems.suspension.parameters import LOCKED_IN, UNILATERAL
 
 # What some laws of oscillators do without an effect.
 OF_ITSELF = {"lugre": "has bristles of its own", "hyperbolic": "falls with velocity by itself"}
@@ -115,6 +115,12 @@ def _effects(document: Mapping[str, Any]) -> Iterator[str]:
             yield f"effects.{name}: {article} {system} has no such part; valid here: {', '.join(possible)}"
         for other in set(given).intersection(EFFECTS[name].excludes):
             yield f"effects.{name}: does not go with effects.{other}; remove one of them"
+    suspension = document.get("suspension", {})
+    if LOCKED_IN.key in suspension:
+        for other in set(given).intersection((jamming.NAME, *jamming.EFFECT.excludes)):
+            yield f"suspension.{LOCKED_IN.key}: does not go with effects.{other}; remove one of them"
+        if suspension.get("joints") == UNILATERAL:
+            yield f"suspension.{LOCKED_IN.key}: does not go with unilateral joints; remove one of them"
 
 
 def _joints(document: Mapping[str, Any]) -> Iterator[str]:

@@ -22,7 +22,7 @@ from wedgesweep.systems.oscillator.parameters import (
     EXCITATIONS,
     OSCILLATOR,
 )
-from wedgesweep.systems.suspension.parameters import JOINTS, RESTITUTION, SUSPENSION, UNILATERAL
+from wedgesweep.systems.suspension.parameters import JOINTS, LOCKED_IN, RESTITUTION, SUSPENSION, UNILATERAL
 
 BETA = Quantity("beta", nan, "input frequency over omega_n", above=0.0)
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency", above=0.0)
@@ -227,6 +227,13 @@ def root(transient: bool = False) -> Table:
                     quantity=RESTITUTION,
                     optional=True,
                     example=RESTITUTION.default,
+                ),
+                Number(
+                    key=LOCKED_IN.key,
+                    meaning="share of the band of rest that set-valued friction holds (0 if absent)",
+                    quantity=LOCKED_IN,
+                    optional=True,
+                    example=LOCKED_IN.default,
                 ),
                 default={},
             ),

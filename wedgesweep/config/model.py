@@ -40,9 +40,11 @@ class Config:
 
     @cached_property
     def suspension(self) -> dict[str, Any]:
-        """SI numbers of the suspension; ``joints`` and ``restitution`` where they are unilateral."""
+        """SI numbers of the suspension; those of jamming and unilateral joints where they are given."""
         given = self.document["suspension"]
-        numbers = _si(suspension.SUSPENSION, given)
+        numbers: dict[str, Any] = _si(suspension.SUSPENSION, given)
+        if suspension.LOCKED_IN.key in given:
+            numbers |= _si([suspension.LOCKED_IN], given)
         if given.get("joints") != suspension.UNILATERAL:
             return numbers
         restitution = given.get(suspension.RESTITUTION.key, suspension.RESTITUTION.default)

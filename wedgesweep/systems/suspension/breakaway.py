@@ -15,9 +15,9 @@ from wedgesweep.effects import fixture_resonance
 from wedgesweep.hybrid.search import Bracket, minimum, searched, zero
 from wedgesweep.hybrid.state import HANDED_OVER, LOCKED, NO_EVENT
 from wedgesweep.systems.suspension.events import EVENTS, events
-from wedgesweep.systems.suspension.faces import coefficients
-from wedgesweep.systems.suspension.modes import COLUMN, slipping
-from wedgesweep.systems.suspension.newton import UNDETERMINED, Coefficients, Loads, loads, reactions
+from wedgesweep.systems.suspension.modes import COLUMN
+from wedgesweep.systems.suspension.newton import UNDETERMINED
+from wedgesweep.systems.suspension.set_valued import breakaway_input
 from wedgesweep.systems.suspension.transitions import well_posed
 from wedgesweep.trigonometry import sine
 
@@ -52,29 +52,6 @@ def _lowest(t, stuck):
     """Smallest event function at time t."""
     events(UNDETERMINED, t, stuck.y, stuck.mode, stuck.p, stuck.out)
     return stuck.out[_smallest(stuck.out)], nan
-
-
-@inlined
-def _with_base(load, acceleration):
-    """The loads under another acceleration of the base."""
-    return Loads(load.tangential, load.normal, load.vertical, load.lateral, load.frame, acceleration)
-
-
-@inner
-def breakaway_input(y, direction, segment, p):
-    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative.
-
-    ``segment`` of the travel of the bolster.
-    """
-    mode = slipping(direction, segment, 1, p)
-    column_mu, bolster_mu = coefficients(0.0, y, mode, p)
-    mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
-    load = loads(0.0, y, mode, p)
-    at_rest = reactions(_with_base(load, 0.0), mu, p)[0].acceleration
-    inertia = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0].acceleration
-    limit = -at_rest / inertia
-    there = reactions(_with_base(load, limit), mu, p)[0]
-    return limit if min(there.column, there.bolster) > 0.0 else nan
 
 
 @inner

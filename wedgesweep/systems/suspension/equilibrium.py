@@ -1,6 +1,6 @@
 """Equilibrium and resonance of the suspension without friction, and the input at which it breaks away."""
 
-from math import inf, nan, sqrt
+from math import nan, sqrt
 
 import numpy as np
 
@@ -90,14 +90,17 @@ def _acceleration_on_verge(direction, mu_d, p):
     )
 
 
-def breakaway_acceleration(p: np.void) -> float:
-    """Smallest base acceleration (m/s^2) at which set-valued friction slips from the equilibrium.
+def breakaway_inputs(p: np.void) -> tuple[float, float]:
+    """Base accelerations (m/s^2) from which both faces can slip up (negative) and down from the equilibrium.
 
-    0 without friction. The normal forces stay positive on the way there, so that z'' is linear in the
-    base acceleration.
+    Without friction both are 0. The normal forces stay positive on the way there, so that z'' is linear in
+    the base acceleration.
     """
-    least = inf
-    for direction in (1.0, -1.0):
-        at_rest, inertia = _acceleration_on_verge(direction, float(p["friction"]["mu_d"]), p)
-        least = min(least, abs(at_rest / inertia))
-    return least
+    mu_d = float(p["friction"]["mu_d"])
+    (up, up_inertia), (down, down_inertia) = (_acceleration_on_verge(side, mu_d, p) for side in (1.0, -1.0))
+    return -up / up_inertia, -down / down_inertia
+
+
+def breakaway_acceleration(p: np.void) -> float:
+    """Smallest base acceleration (m/s^2) at which set-valued friction slips from the equilibrium."""
+    return min(map(abs, breakaway_inputs(p)))

@@ -17,7 +17,7 @@ import numpy as np
 from wedgesweep import effects as known
 from wedgesweep import excitation
 from wedgesweep import friction as laws
-from wedgesweep.effects import base, lift_off
+from wedgesweep.effects import base, jamming, lift_off
 from wedgesweep.natural_units import VELOCITY, NaturalUnits, natural_units
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
@@ -66,6 +66,8 @@ GEOMETRY = (
 # Whether a contact between wedge and column or bolster can pull, or opens: then it is the effect lift_off.
 BILATERAL, UNILATERAL = JOINTS = ("bilateral", "unilateral")
 RESTITUTION = lift_off.EFFECT.quantities[0]
+# Share of the band of rest that a wedge holds (rest.py): the effect jamming.
+LOCKED_IN = jamming.EFFECT.quantities[0]
 # Mark of records of bilateral joints: they also follow unilateral ones while both contacts are closed.
 TURNS: list[tuple] = [("while_closed", np.int64)]
 
@@ -147,7 +149,7 @@ def record(
         Of the input: m, rad/s.
     suspension, friction, effects : mapping
         SI numbers by the names of their quantities; ``joints`` of the suspension is one of JOINTS, and
-        ``restitution`` goes with unilateral ones.
+        ``restitution`` goes with unilateral ones. ``locked_in``: that of the effect jamming.
 
     Returns
     -------
@@ -161,6 +163,8 @@ def record(
     if suspension.get("joints") == UNILATERAL:
         restitution = suspension.get("restitution", RESTITUTION.default)
         effects = {**effects, lift_off.NAME: {"restitution": restitution}}
+    if locked_in := suspension.get(LOCKED_IN.name):
+        effects = {**effects, jamming.NAME: {LOCKED_IN.name: locked_in}}
     nominal = p["suspension"].copy()
     records.set_common(case, law, friction, (amplitude, omega))
     records.set_effects(p, effect_names(), effects)

@@ -1,10 +1,20 @@
 """A bolster at rest under a set-valued law: whether it sticks, and in which direction it breaks away."""
 
+from math import isnan, nan
+
 from wedgesweep import friction
-from wedgesweep.compiled import inlined, inner
+from wedgesweep.compiled import inlined, inner, term
 from wedgesweep.excitation import acceleration
+from wedgesweep.systems.suspension.faces import coefficients
 from wedgesweep.systems.suspension.modes import ContactMode, slipping, with_clock
-from wedgesweep.systems.suspension.newton import ROUNDING, solve_for_signs
+from wedgesweep.systems.suspension.newton import (
+    ROUNDING,
+    Coefficients,
+    Loads,
+    loads,
+    reactions,
+    solve_for_signs,
+)
 
 # Phase (rad) after which a quantity that passes zero now exceeds rounding errors.
 LOOK_AHEAD = 1e-8
@@ -18,8 +28,66 @@ def about_to_slip(t, y, direction, segment, p):
 
 @inlined
 def acceleration_on_breakaway(t, y, direction, segment, p):
-    """Acceleration z'' (m/s^2) if the bolster broke away in a direction."""
-    return about_to_slip(t, y, direction, segment, p)[1].acceleration
+    """Acceleration z'' (m/s^2) of a breakaway in a direction, less what locked-in forces hold back."""
+    return about_to_slip(t, y, direction, segment, p)[1].acceleration + _held_back(y, direction, segment, p)
+
+
+@inlined
+def _with_base(load, acceleration):
+    """The loads under another acceleration of the base."""
+    return Loads(load.tangential, load.normal, load.vertical, load.lateral, load.frame, acceleration)
+
+
+@inner
+def _balance(load, column_mu, bolster_mu, p):
+    """Base acceleration at which z'' = 0, and z'' per base acceleration.
+
+    NaN if a normal force is negative there.
+    """
+    mu = Coefficients(column_mu, bolster_mu, 0.0, 0.0)
+    at_rest = reactions(_with_base(load, 0.0), mu, p)[0].acceleration
+    inertia = reactions(Loads(0.0, 0.0, 0.0, 0.0, 0.0, 1.0), mu, p)[0].acceleration
+    limit = -at_rest / inertia
+    there = reactions(_with_base(load, limit), mu, p)[0]
+    return limit if min(there.column, there.bolster) > 0.0 else nan, inertia
+
+
+@inner
+def _verge(y, direction, segment, p):
+    """Loads and signed coefficients of a stuck bolster that is about to slip in a direction."""
+    mode = slipping(direction, segment, 1, p)
+    column_mu, bolster_mu = coefficients(0.0, y, mode, p)
+    return loads(0.0, y, mode, p), column_mu, bolster_mu
+
+
+@term("jamming", off="0.0")
+def _locked_in(y, direction, segment, p):
+    """Base acceleration (m/s^2) by which locked-in forces delay a breakaway."""
+    load, column_mu, bolster_mu = _verge(y, direction, segment, p)
+    least = _balance(load, column_mu, bolster_mu, p)[0]
+    most = least
+    for column_sign, bolster_sign in ((1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
+        other = _balance(load, column_sign * column_mu, bolster_sign * bolster_mu, p)[0]
+        if direction * (most - other) > 0.0:
+            most = other
+    return 0.0 if isnan(least) else p.jamming.locked_in * (most - least)
+
+
+@term("jamming", off="0.0")
+def _held_back(y, direction, segment, p):
+    """Acceleration z'' (m/s^2) that locked-in forces take from a breakaway."""
+    load, column_mu, bolster_mu = _verge(y, direction, segment, p)
+    return -_balance(load, column_mu, bolster_mu, p)[1] * _locked_in(y, direction, segment, p)
+
+
+@inner
+def breakaway_input(y, direction, segment, p):
+    """Base acceleration at which a stuck bolster slips in a direction; NaN if a normal force is negative.
+
+    ``segment`` of the travel of the bolster.
+    """
+    load, column_mu, bolster_mu = _verge(y, direction, segment, p)
+    return _balance(load, column_mu, bolster_mu, p)[0] + _locked_in(y, direction, segment, p)
 
 
 @inner
@@ -29,10 +97,12 @@ def mode_at_zero_velocity(t, y, segment, p):
     backward, falling, backward_unique = about_to_slip(t, y, -1, segment, p)
     unique = forward_unique and backward_unique
     unique = unique and not (rising.acceleration > 0.0 and falling.acceleration < 0.0)
+    upward = rising.acceleration + _held_back(y, 1, segment, p)
+    downward = falling.acceleration + _held_back(y, -1, segment, p)
     nearly_none = ROUNDING * (p.suspension.gravity + abs(acceleration(t, p)))
-    if rising.acceleration <= nearly_none and falling.acceleration >= -nearly_none:
+    if upward <= nearly_none and downward >= -nearly_none:
         return ContactMode(0, 0, 0, 1, 1, 0, segment, 1), unique
-    mode = with_clock(forward if rising.acceleration > 0.0 else backward, 0)
+    mode = with_clock(forward if upward > 0.0 else backward, 0)
     if friction.static(1, y, p) == friction.sliding(0.0, p):
         return mode, unique
     mode, _, certain = solve_for_signs(t, y, mode, p)
