@@ -53,9 +53,7 @@ def test_every_effect_is_defined_in_its_family():
 
 def test_equations_are_those_of_the_effects():
     written = {
-        re.match(r"`(\w+)`", cells[0])[1]: cells[1]
-        for cells in rows("## The effects")
-        if cells[0][0] == "`"
+        re.match(r"`(\w+)`", cells[0])[1]: cells[1] for cells in rows("## The effects") if cells[0][0] == "`"
     }
     for name, effect in EFFECTS.items():
         for line in equations.of(REGISTERED[name], effect.quantities, effect.systems[0]).lines:

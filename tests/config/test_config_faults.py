@@ -2,6 +2,7 @@
 
 from math import inf, nan
 
+import numpy as np
 import pytest
 
 from wedgesweep import config
@@ -274,3 +275,22 @@ def test_an_effect_that_a_law_has_no_place_for(law, effect):
 def test_an_effect_that_one_of_the_model_excludes_is_no_candidate(more, possible):
     own = "[oscillator]\nmass_kg = 1.0\nspring_N_per_mm = 1.0\nnormal_force_N = 1.0\n"
     assert ("damper_play" in config.parse(own + more + SWEEP).possible_effects) == possible
+
+
+def test_locked_in_forces_need_set_valued_friction_and_nothing_that_yields():
+    def may_jam(model):
+        return "jamming" in config.parse(model).possible_effects
+
+    assert may_jam(SWEEP)
+    assert not may_jam(SWEEP.replace("coulomb", "exponential"))
+    assert not may_jam("[suspension]\nlocked_in = 0.5\n" + SWEEP)
+    assert not may_jam('[suspension]\njoints = "unilateral"\n' + SWEEP)
+    column = "[effects.column_compliance]\nstiffness_N_per_mm = 100.0\n"
+    assert not may_jam(SWEEP + column)
+    (problem,) = problems("[suspension]\nlocked_in = 0.5\n" + SWEEP + column)
+    assert "suspension.locked_in" in problem
+    assert "effects.column_compliance" in problem
+    assert (
+        config.parse("[suspension]\nlocked_in = 0.5\n" + SWEEP).records(np.array([0]))["jamming"]["locked_in"]
+        == 0.5
+    )

@@ -13,8 +13,9 @@ from wedgesweep import toml
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
-from wedgesweep.effects import EFFECTS, go_together, lift_off
+from wedgesweep.effects import EFFECTS, go_together, jamming, lift_off
 from wedgesweep.effects.base import OSCILLATOR
+from wedgesweep.friction import LAWS
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.inputs.kinds import made as input_of
 from wedgesweep.inputs.sampled import Input, transient_of
@@ -90,10 +91,10 @@ class Config:
     def possible_effects(self) -> tuple[str, ...]:
         """Names of the effects that a model may lack.
 
-        Of a suspension these are all but what its joints do not go with. An oscillator has no wedge. If it
-        rubs, more friction of its surface is another level of friction; if not, there is nothing that the
-        effects on the law of friction could change. Some laws have what an effect would add. Under a force
-        the base is at rest. A mass on a belt has no rod. Some effects exclude others.
+        Of a suspension these are all but what its joints and its law do not go with. An oscillator has no
+        wedge. If it rubs, more friction of its surface is another level of friction; if not, there is nothing
+        that the effects on the law of friction could change. Some laws have what an effect would add. Under a
+        force the base is at rest. A mass on a belt has no rod. Some effects exclude others.
         """
         if self.system != OSCILLATOR:
             return tuple(
@@ -113,8 +114,10 @@ class Config:
         return tuple(name for name in names if go_together((*self.effects, name)))
 
     def _may_have(self, effect: str) -> bool:
-        """Whether the model of a suspension can have a further effect, as far as its joints are concerned."""
-        if effect != lift_off.NAME and not self.opens:
+        """Whether the model of a suspension can have a further effect: joints and law of friction decide."""
+        if effect == jamming.NAME and not any(LAWS[law].SET_VALUED for law in self.sweep.laws):
+            return False
+        if effect not in (lift_off.NAME, jamming.NAME) and not self.opens:
             return True
         added = self.document["effects"] | {effect: {}}
         return not any(contradictions(self.document | {"effects": added}))
