@@ -32,15 +32,16 @@ def init(paths: tuple[Path, ...], files: tuple[Path, ...], force: bool) -> None:
     test and numbers of the model seem to be, with questions where that is not clear. If FILE is a
     measured.toml, the numbers of a model are estimated once more, and PATH is that of the model.
     """
-    from wedgesweep import config
-    from wedgesweep.guess import first_files
-
     if files:
+        from wedgesweep.guess import first_files
+
         written = [path for path in paths if path.suffix in ENDINGS[TOML][:1]]
         data = [*files, *(path for path in paths if path not in written)]
         default = first_files.MODEL if all(map(is_measured, data)) else "measured.toml"
         _init_from(written or [Path(default)], data, force)
         return
+    from wedgesweep import config
+
     path = _output([*paths] or [Path("wedgesweep.toml")], force)
     _put(config.template(), path)
 

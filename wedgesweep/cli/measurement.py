@@ -128,7 +128,7 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
 
     recordings = loop_data(measurement).recordings
     for test, own in zip(measurement.tests, recordings, strict=True):
-        share = own.noise / float(own.force.std())
+        share = own.noise_share
         if share > NOISY:
             mend = "average it down, or lower lowpass_hz"
             log.warning(f"warning: {test.file}: noise is {100.0 * share:.0f} % of the force; {mend}")
@@ -138,7 +138,7 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
             f"{test.duration:.4g}",
             f"{test.time.size}",
             f"{own.low_pass.cutoff:.4g}",
-            f"{own.noise:.3g} N ({100.0 * own.noise / float(own.force.std()):.2g} %)",
+            f"{own.noise:.3g} N ({100.0 * own.noise_share:.2g} %)",
             f"{1e3 * own.motion.noise[1]:.3g} mm/s",
             f"{len(own.blocks)}",
         )

@@ -7,7 +7,7 @@ the fifth power of the cut-off frequency, which therefore has an upper limit (``
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 from scipy import signal
@@ -18,9 +18,14 @@ from scipy.optimize import brentq
 from wedgesweep.measured.kinds import HIGHEST
 
 ORDER = 4
-# Noise of the displacement, by the force of inertia, makes up at most this share of the force; the cut-off is
-# the highest one at which that holds, between LOWEST and HIGHEST of the sampling rate.
+# Noise of the displacement makes up at most this share of the force, by inertia, and of the velocity; the
+# cut-off is the highest one at which that holds, between LOWEST and HIGHEST of the sampling rate.
 NOISE_SHARE, LOWEST = 0.005, 1e-3
+# A line of a spectrum belongs to the motion if its power is so many times that of the noise; all lines but
+# for this share (rms) of the velocity pass.
+STANDS_OUT, NOT_PASSED = 10.0, 0.01
+# Mean power of a velocity in an octave, over that in the loudest one, that belongs to the motion for sure.
+LOUD = 0.1
 # Cut-off of the filter that the motion passes first, over that in which forces are compared: derivatives are
 # right wherever forces are compared.
 WIDER = 2.0
@@ -127,8 +132,41 @@ def white_noise(values: np.ndarray, rate: float, jumps: bool = False) -> float:
     return size / share * (1.0 + TWO_SIDED / sqrt(2.0 * kept.sum() * share**2))
 
 
-def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
-    """Cut-off (Hz) at which noise of the force of inertia is NOISE_SHARE of the force.
+def chosen_cutoff(displacement: np.ndarray, std: float, force: float, mass: float, rate: float) -> float:
+    """Cut-off (Hz) for a recorded displacement (n,) in m: see ``highest_cutoff``; the motion passes."""
+    speed, passes = _spread(displacement, std, rate)
+    return max(highest_cutoff(std, force, mass, rate, speed), min(passes, HIGHEST * rate))
+
+
+def _spread(displacement: np.ndarray, std: float, rate: float) -> tuple[float, float]:
+    """Rms (m/s) of the velocity, and the frequency (Hz) up to which it has its power.
+
+    Beyond it are neither lines that stand out of white noise (m) of this ``std`` nor, as noise of another
+    colour may do so, less power than at still higher frequencies.
+    """
+    window = np.hanning(displacement.size)
+    lines = np.abs(np.fft.rfft((displacement - displacement.mean()) * window)) ** 2
+    frequency = np.fft.rfftfreq(displacement.size, 1.0 / rate)
+    speeds = lines * (2.0 * pi * frequency) ** 2
+    power = np.where(lines > STANDS_OUT * std**2 * (window**2).sum(), speeds, 0.0)
+    above = np.cumsum(power[::-1])[::-1]
+    speed = float(np.sqrt(2.0 * above[0] / (window**2).sum() / displacement.size))
+    passed = int(np.argmax(above <= NOT_PASSED**2 * above[0]))
+    return speed, min(float(frequency[passed]), _quietest(speeds, frequency))
+
+
+def _quietest(speeds: np.ndarray, frequency: np.ndarray) -> float:
+    """Frequency (Hz) at which the octave with the least power of a velocity begins, above all loud ones."""
+    edges = [max(int(speeds.argmax()), 1)]
+    while 2 * edges[-1] < speeds.size:
+        edges.append(2 * edges[-1])
+    levels = np.array([speeds[first : 2 * first].mean() for first in edges])
+    last = int(np.flatnonzero(levels >= LOUD * levels.max())[-1])
+    return float(frequency[edges[last + int(levels[last:].argmin())]])
+
+
+def highest_cutoff(std: float, force: float, mass: float, rate: float, speed: float = inf) -> float:
+    """Cut-off (Hz) at which noise is NOISE_SHARE of the force, by inertia, or of the velocity.
 
     At least LOWEST, at most HIGHEST of the sampling rate.
 
@@ -142,11 +180,17 @@ def highest_cutoff(std: float, force: float, mass: float, rate: float) -> float:
         Mass that the motion accelerates (kg).
     rate : float
         Sampling rate (Hz).
+    speed : float, optional
+        Rms of the velocity (m/s).
     """
-    allowed, limit = NOISE_SHARE * force / mass, HIGHEST * rate
+    limit = HIGHEST * rate
 
     def excess(cutoff: float) -> float:
-        return LowPass(cutoff, rate).noise(std, 2) - allowed
+        low_pass = LowPass(cutoff, rate)
+        return (
+            max(low_pass.noise(std, 2) * mass / force, low_pass.noise(std, 1) / max(speed, 1e-300))
+            - NOISE_SHARE
+        )
 
     if excess(limit) <= 0.0:
         return limit

@@ -8,7 +8,7 @@ import numpy as np
 from wedgesweep.measured.declarations import INPUT, LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.measurement import TestRecord
 
-# The motion of a loop must come back by this share of its range, or friction looks like a spring.
+# A motion that comes back by less than this share of its range goes one way.
 RETURNS = 0.1
 # Least swing in the first part of a free motion over that in the last one, and that part (share).
 DECAYS, PART = 1.2, 0.25
@@ -65,12 +65,14 @@ def loop_faults(test: TestRecord, file: str, at: str) -> list[str]:
     if test.cutoff is not None and not test.cutoff <= HIGHEST * test.sampling_rate:
         fault = f"{test.cutoff:g} Hz is more than {HIGHEST:g} times the sampling rate"
         return [f"{at}.lowpass_hz: {fault} of {test.sampling_rate:g} Hz; lower it, or omit it"]
-    steps = np.diff(test.displacement)
-    there, back = steps[steps > 0.0].sum(), -steps[steps < 0.0].sum()
-    if min(there, back) < RETURNS * float(np.ptp(test.displacement)):
-        fault = "the displacement goes one way only, which cannot tell friction from a spring"
-        return [f"{file}: {fault}; record at least one cycle, or write another kind ({at}.kind)"]
     return []
+
+
+def goes_one_way(displacement: np.ndarray) -> bool:
+    """Whether a motion (n,) hardly comes back."""
+    steps = np.diff(displacement)
+    there, back = steps[steps > 0.0].sum(), -steps[steps < 0.0].sum()
+    return bool(min(there, back) < RETURNS * float(np.ptp(displacement)))
 
 
 def transient_faults(test: TestRecord, file: str, at: str) -> list[str]:

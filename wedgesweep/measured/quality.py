@@ -4,8 +4,9 @@ import numpy as np
 from scipy.special import stdtrit
 
 from wedgesweep.measured.cycles import Cycles, cut
-from wedgesweep.measured.declarations import STEADY
+from wedgesweep.measured.declarations import LOOP, STEADY
 from wedgesweep.measured.frequency import IMPROBABLE, stands_out
+from wedgesweep.measured.kinds import goes_one_way
 from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.noise_estimate import NoiseEstimate, estimate_noise
 from wedgesweep.measured.stationarity import MEND, remedy
@@ -33,6 +34,11 @@ def warnings(test: TestRecord) -> list[str]:
         if test.kind == STEADY
         for warning in _of_channel(test, samples)
     ]
+    if test.kind == LOOP and test.displacement is not None and goes_one_way(test.displacement):
+        fault = (
+            "displacement: it goes one way only, so that constant friction looks like the zero of the force"
+        )
+        found.append(f"{fault}, and a spring like friction that rises; record at least one cycle")
     if test.recorded_s is not None:
         found.append(f"{test.duration:.4g} s of {test.recorded_s:.4g} s are used (from_s, to_s)")
     return found

@@ -145,11 +145,17 @@ class LoopData(SampledData):
 
     @cached_property
     def units(self) -> NaturalUnits:
-        """Natural units of the model under the largest motion."""
+        """Natural units: travel, time and force of the largest loops; no mass need matter in them.
+
+        A wedge has those of its suspension.
+        """
         motions = [own.motion for own in self.recordings]
         travel = max(0.5 * float(np.ptp(each.displacement)) for each in motions)
-        speed = max(float(np.abs(each.velocity).max()) for each in motions)
-        return self.model.natural_units(travel, speed / travel)
+        time = travel / max(float(np.abs(each.velocity).max()) for each in motions)
+        if self.model.system != "oscillator":
+            return self.model.natural_units(travel, 1.0 / time)
+        force = max(float(own.force.std()) for own in self.recordings)
+        return NaturalUnits(force * time**2 / travel, travel, time)
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         return (ZERO,) if self._zeros_are_free else ()

@@ -17,7 +17,7 @@ from wedgesweep.diagnose.loop import motion_noise
 from wedgesweep.diagnose.loop.force_noise import KnownNoise, of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
-from wedgesweep.diagnose.smoothing import LowPass, Motion, highest_cutoff, motion, white_noise
+from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, motion, white_noise
 from wedgesweep.effects import merge
 from wedgesweep.errors import InputError
 from wedgesweep.solvers import imposed_motion
@@ -77,6 +77,11 @@ class Recording:
         """Standard deviation (N) of a compared force."""
         own = self._passed_on[0][self.known]
         return float(np.sqrt(self.spectrum.covariance(np.zeros(1, int))[0] + own.mean()))
+
+    @property
+    def noise_share(self) -> float:
+        """Noise over the rms of the force, both where friction is known."""
+        return self.noise / float(self.force[self.known].std())
 
     @property
     def _passed_on(self) -> np.ndarray:
@@ -227,12 +232,12 @@ def recording(
     Raises
     ------
     InputError
-        For a record that is too short, or hardly moves.
+        For a record that is too short, hardly moves, or is nothing but noise.
     """
     displacement, force = samples
     mass = moving_mass(model, law)
     noise = white_noise(displacement, rate)
-    low_pass = LowPass(cutoff or highest_cutoff(noise, float(force.std()), mass, rate), rate)
+    low_pass = LowPass(cutoff or chosen_cutoff(displacement, noise, float(force.std()), mass, rate), rate)
     ends = low_pass.settling
     places = np.arange(ends, displacement.size - ends, low_pass.stride)
     if not places.size:
@@ -247,7 +252,11 @@ def recording(
     white = low_pass.noise(white_noise(force, rate, jumps=True))
     left = tuple(low_pass(each)[ends : -ends : low_pass.stride] for each in differences)
     found = Recording(name, model, law, low_pass, own, noise, places, compared, known, blocks, white, left)
-    return found.renewed({}, np.zeros(len(blocks)))
+    found = found.renewed({}, np.zeros(len(blocks)))
+    if found.noise_share > 1.0:
+        problem = f"its noise is {100.0 * found.noise_share:.0f} % of the force, so that it shows nothing"
+        raise InputError([f"{problem}; measure a larger force, lower lowpass_hz, or correct the columns"])
+    return found
 
 
 def moving_mass(model: Config, law: str) -> float:

@@ -12,6 +12,9 @@ from wedgesweep.diagnose.transient.window import RecordWindow
 from wedgesweep.errors import InputError
 from wedgesweep.measured import Measurement, TestRecord
 
+# Parts of a record, in the loudest of which its motion must be larger than its noise.
+PARTS, TINY = 8, 1e-300
+
 
 def transient_data(measurement: Measurement) -> TransientData:
     """Windows of all tests."""
@@ -27,6 +30,7 @@ def transient_data(measurement: Measurement) -> TransientData:
             test.name, channels[number], test.sampling_rate, spectra[number], given, number, orders
         )
         record = _as_simulated(record, measurement)
+        _refuse_noise(test.file, channels[number], spectra[number])
         try:
             found += windows(record, model, measurement.law, fewest)
         except InputError as error:
@@ -38,6 +42,18 @@ def transient_data(measurement: Measurement) -> TransientData:
         measurement.input_gain_std if any(own.driven for own in found) else 0.0,
         evidence=evidence,
     )
+
+
+def _refuse_noise(file: str, channels: np.ndarray, spectra: list[NoiseSpectrum]) -> None:
+    """Raise InputError if the motion is smaller than the noise of all channels, where it is largest."""
+    parts = [[part.std() for part in np.array_split(channel, PARTS)] for channel in channels]
+    shares = [
+        spectrum.std / max(float(np.sqrt(max(max(own) ** 2 - spectrum.std**2, 0.0))), TINY)
+        for own, spectrum in zip(parts, spectra, strict=True)
+    ]
+    if min(shares) > 1.0:
+        problem = f"noise is {100.0 * min(min(shares), 9.99):.0f} % of the motion where that is largest"
+        raise InputError([f"{file}: {problem}; excite more, or measure it with less noise"])
 
 
 def _names(measurement: Measurement, test: TestRecord) -> list[str]:
