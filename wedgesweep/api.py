@@ -78,7 +78,7 @@ def simulate_case(
     config : Config
         The suspension or oscillator, its effects and the solver; the cases of its sweep are not run.
     amplitude_mm : float
-        Input amplitude of the side frame or base (mm).
+        Input amplitude of the side frame or base (mm; mrad of a rotation).
     amplitude_N : float
         Amplitude of the force (N), if the config's sweep says ``excitation = "force"``.
     beta, frequency_hz : float

@@ -15,12 +15,14 @@ from wedgesweep.natural_units import (
     Dimension,
     NaturalUnits,
 )
+from wedgesweep.rotation import ENDINGS
 
 # How much wider than the searched range the range is in which a number may be followed: times the width, or
 # as a factor of a logarithm. Ends that a number must not reach are left this share of the way.
 WIDER, SHORT = 10.0, 0.01
 # Longest suffix first, so that "_N_per_mm" is not read as "_mm".
 SI_FACTORS = {
+    **{other: 1.0 for other, _ in ENDINGS.values()},
     "_N_per_mm3": 1e9,
     "_N_per_mm": 1e3,
     "_N_s2_per_m2": 1.0,
@@ -51,6 +53,8 @@ DIMENSIONS = {
     "_N": Dimension(mass=1, length=1, time=-2),
     "_s": TIME,
 }
+# A rotation has an angle in place of a length, and so on; omega_n stays a frequency.
+DIMENSIONS = {other: DIMENSIONS[ending] for ending, (other, _) in ENDINGS.items()} | DIMENSIONS
 
 
 @dataclass(frozen=True)

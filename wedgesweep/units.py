@@ -24,7 +24,7 @@ UNITS = {
     "velocity": {
         **_prefixed("m/s", "mucnk"),
         **{"km/h": 1.0 / 3.6, "in/s": INCH, "ft/s": FOOT},
-        **{"rad/s": 1.0, "deg/s": TURN / 360.0, "rpm": TURN / 60.0},
+        **{"rad/s": 1.0, "mrad/s": 1e-3, "deg/s": TURN / 360.0, "rpm": TURN / 60.0},
     },
     "acceleration": {
         **_prefixed("m/s^2", "muc"),
@@ -70,6 +70,11 @@ WORDS = {
         **dict.fromkeys(("meter", "meters", "metres"), "m"),
     },
 }
+
+
+def angular(unit: str) -> bool:
+    """Whether a unit is one of an angle, its rates or a torque."""
+    return any(part in unit for part in ("rad", "deg", "rpm", "N m"))
 
 
 def usual(unit: str) -> str:

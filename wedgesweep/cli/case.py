@@ -35,7 +35,7 @@ PICTURE = "phase-portrait"
 @click.option("--law", help="Friction law; default: the config's first.")
 @click.option("--beta", type=float, help="Input frequency as a ratio to omega_n.")
 @click.option("--frequency", type=float, metavar="HZ", help="Input frequency in Hz, instead of --beta.")
-@click.option("--amplitude", type=float, metavar="MM", help="Input amplitude in mm.")
+@click.option("--amplitude", type=float, metavar="MM", help="Input amplitude in mm, of a rotation in rad.")
 @click.option(
     "--force", type=float, metavar="N", help="Amplitude of the force in N, if the config's input is a force."
 )
@@ -73,6 +73,8 @@ def case(
         wanted = "a force: give --force" if given.forced else "a motion: give --amplitude"
         message = f"{config_path}: its input is {wanted}"
         raise Failure(message)
+    if given.turns and amplitude is not None:
+        amplitude *= 1e3  # a rotation's rad is a length of 1 m
     settings = single_case(given, amplitude, beta, frequency, law, force)
     print_remark(settings)
     stem = output or Path(_name(config_path, settings))
@@ -103,7 +105,8 @@ def _print_remarks(ds: "xr.Dataset") -> None:
 
 def _name(config_path: Path, settings: "Config") -> str:
     law, beta, amplitude = settings.sweep.case(0)
-    size = f"{amplitude:.6g}N" if settings.forced else f"{amplitude * 1e3:.6g}mm"
+    length = f"{amplitude:.6g}rad" if settings.turns else f"{amplitude * 1e3:.6g}mm"
+    size = f"{amplitude:.6g}N" if settings.forced else length
     return f"{config_path.stem}-{law}-{beta:.6g}-{size}"
 
 
@@ -132,7 +135,8 @@ def _print_numbers(ds: "xr.Dataset") -> None:
     for variable in VARIABLES + OF_LIFT_OFF:
         if variable.dims or variable.name in ("status", "message") or variable.name not in ds:
             continue
-        factor, unit = DISPLAY_UNITS.get(variable.units, (1.0, variable.units))
+        si = ds[variable.name].attrs.get("units", variable.units)
+        factor, unit = DISPLAY_UNITS.get(si, (1.0, si))
         value = ds[variable.name].item() * factor
         # Where nothing slips there is no phase and no normal force of slip.
         number = f"{value + 0.0:.6g}" if isfinite(value) else formatting.NONE

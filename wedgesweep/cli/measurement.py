@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from wedgesweep import rotation
 from wedgesweep.cli.messages import log
 
 if TYPE_CHECKING:
@@ -44,7 +45,13 @@ def print_measurement(measurement: "Measurement") -> None:
 
 
 def _table(measurement: "Measurement") -> list[tuple[str, ...]]:
-    """Headings, units and a row for each of the tests of one kind."""
+    """Headings, units and a row for each of the tests of one kind, in the units of the model."""
+    rows = _rows(measurement)
+    return [tuple(map(rotation.in_units, row)) for row in rows] if measurement.model.turns else rows
+
+
+def _rows(measurement: "Measurement") -> list[tuple[str, ...]]:
+    """The same in the units of a translation."""
     if measurement.kind == "loop":
         return [LOOP_HEADINGS, LOOP_UNITS, *_loop_rows(measurement)]
     if measurement.kind == "transient":

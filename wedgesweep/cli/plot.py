@@ -74,7 +74,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
     type=POSITIVE,
     multiple=True,
     metavar="MM",
-    help="Input amplitude in mm (of a force in N); the nearest one in OUT is drawn; may be repeated.",
+    help="Input amplitude in mm or rad (of a force in N); the nearest one in OUT is drawn; may be repeated.",
 )
 @click.option("--law", help="Friction law to draw; default: all.")
 @click.pass_context
@@ -150,10 +150,11 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
     if not isinstance(found, xr.Dataset):
         return given
     forced = found.attrs.get("excitation") == "force"
+    length = Pick("amplitude", 1.0, "rad") if found.attrs.get("motion") else Pick("amplitude", 1e-3, "mm")
     units = {
         "beta": Pick("beta", 1.0, ""),
         "frequency": Pick("beta", 2.0 * pi / found.attrs["omega_n"], "Hz"),
-        "amplitude": Pick("amplitude", 1.0, "N") if forced else Pick("amplitude", 1e-3, "mm"),
+        "amplitude": Pick("amplitude", 1.0, "N") if forced else length,
     }
     for name in units.keys() & given.keys():
         pick, values = units[name], given.pop(name)

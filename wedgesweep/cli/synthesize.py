@@ -97,7 +97,8 @@ def synthesize(
     from wedgesweep.synthesize.campaign import synthesize as make
     from wedgesweep.synthesize.options import Options
 
-    settings, tests = config.load(config_path), plan.load(plan_path)
+    settings = config.load(config_path)
+    tests = plan.load(plan_path, settings.turns)
     directory = output or Path(f"{config_path.stem}-measured")
     announce_compiling()
     for remark in make(settings, str(config_path), tests, Options(**options), directory, count_jobs(n_jobs)):

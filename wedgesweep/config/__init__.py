@@ -6,12 +6,13 @@ from math import isnan, sqrt
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import __version__, toml
+from wedgesweep import __version__, rotation, toml
 from wedgesweep.config import commented
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import root
 from wedgesweep.config.model import OSCILLATOR, UNIT_FREQUENCY, Config
+from wedgesweep.config.turned import turned_root
 from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.inputs import record
 from wedgesweep.kinds import CONFIG, confusion
@@ -52,8 +53,13 @@ def parse(text: str, source: str = "<config>", directory: Path = Path()) -> Conf
 def from_document(given: Mapping[str, Any], source: str = "<config>", directory: Path = Path()) -> Config:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
     problems: list[str] = []
-    document = root("input" in given).read(given, "", problems)
-    problems += _of_other_keys(problems, contradictions(document))
+    if rotation.turns(given):
+        turned, table = turned_root("input" in given)
+        document = turned.back(table.read(given, "", problems))
+        problems += map(rotation.text, _of_other_keys(problems, contradictions(document)))
+    else:
+        document = root("input" in given).read(given, "", problems)
+        problems += _of_other_keys(problems, contradictions(document))
     recorded = document.get("input", {})
     if not problems and recorded.get("kind") == "record" and "sha256" not in recorded:
         problems += _located(recorded, directory)
@@ -61,7 +67,7 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
         raise ConfigError([f"{source}: {problem}" for problem in problems])
     document["sweep"].setdefault("omega_n_rad_per_s", _natural_frequency(document))
     if OSCILLATOR in document and "title" not in given:
-        document["title"] = "friction oscillator"
+        document["title"] = "friction oscillator" if not rotation.turns(document) else "rotor with friction"
     found = Config(document)
     if SOFTENING in found.effects and found.system != OSCILLATOR:
         _require_rest(found, source)
@@ -108,6 +114,7 @@ def schema() -> dict[str, Any]:
         "$id": f"urn:wedgesweep:config:{__version__}",
         "version": __version__,
         **root().schema(),
+        "anyOf": [root().shape(), turned_root()[1].shape()],
     }
 
 

@@ -8,7 +8,8 @@ from wedgesweep.config.input_contradictions import input_contradictions
 from wedgesweep.effects import EFFECTS, jamming, lift_off, of_system, with_lift_off
 from wedgesweep.effects.base import OSCILLATOR, SUSPENSION
 from wedgesweep.friction.names import LAW_NAMES, OSCILLATOR_LAWS
-from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD
+from wedgesweep.rotation import ROTATION
+from wedgesweep.systems.oscillator.parameters import OF_BASE, OF_LAW, OF_ROD, PENDULUM
 from wedgesweep.systems.suspension.parameters import LOCKED_IN, UNILATERAL
 
 # What some laws of oscillators do without an effect.
@@ -83,6 +84,7 @@ def _excitation(document: Mapping[str, Any]) -> Iterator[str]:
 def _oscillator(document: Mapping[str, Any]) -> Iterator[str]:
     own, sweep = document["oscillator"], document.get("sweep", {})
     given = [sweep, *_cases(sweep)]
+    yield from _rotation(own, sweep)
     no_reference = own.get("spring_N_per_mm") == 0.0 and "omega_n_rad_per_s" not in sweep
     if no_reference and any("beta" in each for each in given):
         yield "sweep.beta: without a spring there is no omega_n; write frequency_hz"
@@ -153,6 +155,18 @@ def _joints(document: Mapping[str, Any]) -> Iterator[str]:
     for name in effects:
         if name not in (*possible, lift_off.NAME):
             yield f"effects.{name}: does not go with unilateral joints; valid here: {', '.join(possible)}"
+
+
+def _rotation(own: Mapping[str, Any], sweep: Mapping[str, Any]) -> Iterator[str]:
+    """What only a rotation, or only a mass that does not rub on its base, has."""
+    if own.get("restoring_force") == PENDULUM and own.get("motion") != ROTATION:
+        yield 'oscillator.restoring_force: a pendulum turns; write motion = "rotation", or "linear"'
+    on_base = own.get("contact") == "base" and sweep.get("excitation") != "force"
+    if own.get("input_coupling", 1.0) != 1.0 and on_base:
+        yield (
+            "oscillator.input_coupling: a mass that rubs on its base moves with all of it; "
+            'write contact = "ground", or remove it'
+        )
 
 
 def _bristles(document: Mapping[str, Any]) -> Iterator[str]:

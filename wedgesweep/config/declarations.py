@@ -13,14 +13,18 @@ from wedgesweep.friction import LAWS
 from wedgesweep.friction.names import LAW_NAMES
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.quantity import Quantity
+from wedgesweep.rotation import MOTIONS, ROTATION
 from wedgesweep.solvers.names import SOLVERS
 from wedgesweep.systems.oscillator.parameters import (
     BASE,
     BELT_VELOCITY,
     BRISTLES,
     CONTACTS,
+    COUPLING,
     EXCITATIONS,
+    LINEAR,
     OSCILLATOR,
+    RESTORING,
 )
 from wedgesweep.systems.suspension.parameters import JOINTS, LOCKED_IN, RESTITUTION, SUSPENSION, UNILATERAL
 
@@ -195,6 +199,21 @@ OSCILLATOR_TABLE = table(
         default=BASE,
     ),
     Number.of(BELT_VELOCITY, optional=True, example=200.0),
+    Choice(
+        key="motion",
+        meaning="rotation: angles for lengths, torques for forces, and keys in rad, N m and kg m^2",
+        choices=MOTIONS,
+        optional=True,
+        example=ROTATION,
+    ),
+    Choice(
+        key="restoring_force",
+        meaning="of the spring; pendulum: of a rotation, k sin(x), where the spring is m g l",
+        choices=RESTORING,
+        optional=True,
+        example=LINEAR,
+    ),
+    Number.of(COUPLING, optional=True, example=0.5),
     *(
         Number.of(quantity, optional=True, example=example)
         for quantity, example in zip(BRISTLES, (100.0, 300.0, 0.4), strict=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep import toml
+from wedgesweep import rotation, toml
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
@@ -31,9 +31,22 @@ UNIT_FREQUENCY = 2.0 * pi
 
 @dataclass(frozen=True)
 class Config:
-    """A checked config. ``document`` holds every key in its own unit; the properties are SI."""
+    """A checked config. ``document`` holds every key in its own unit; the properties are SI.
+
+    That of a rotation has the keys of a translation, with angles as lengths; ``written`` has its own keys.
+    """
 
     document: dict[str, Any]
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an oscillator that turns."""
+        return rotation.turns(self.document)
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The document with the keys that a file has."""
+        return rotation.written(self.document) if self.turns else self.document
 
     @property
     def title(self) -> str:
@@ -83,9 +96,10 @@ class Config:
     def oscillator(self) -> dict[str, Any]:
         """SI numbers of the oscillator, and its contact."""
         given = self.document[OSCILLATOR]
-        optional = (oscillator.BELT_VELOCITY, *oscillator.BRISTLES)
+        optional = (oscillator.BELT_VELOCITY, *oscillator.BRISTLES, oscillator.COUPLING)
         more = [each for each in optional if each.key in given]
-        return {**_si((*oscillator.OSCILLATOR, *more), given), "contact": given["contact"]}
+        words = {name: given[name] for name in ("contact", "restoring_force") if name in given}
+        return {**_si((*oscillator.OSCILLATOR, *more), given), **words}
 
     @property
     def possible_effects(self) -> tuple[str, ...]:
@@ -275,7 +289,7 @@ class Config:
 
     def to_toml(self) -> str:
         """The resolved config with every key, ranges expanded; ``parse`` of it gives the same config."""
-        return toml.dumps(self.document)
+        return toml.dumps(self.written)
 
     @property
     def remark(self) -> str | None:

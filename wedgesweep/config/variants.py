@@ -40,4 +40,5 @@ def single_case(
         problem = "input: a single case is of a sine; remove [input], or use 'wedgesweep run'"
         raise ConfigError([problem])
     solver = config.document["solver"] | {"keep_waveforms": True, "continuation": False}
-    return from_document(config.document | {"sweep": grid, "solver": solver}, "case")
+    single = Config(config.document | {"sweep": grid, "solver": solver})
+    return from_document(single.written, "case")

@@ -91,6 +91,8 @@ def as_named(text: str, system: str) -> str:
 
 
 UNITS = {
+    **{"_N_m_s2_per_rad2": "N m s²/rad²", "_N_m_s_per_rad": "N m s/rad", "_N_m_per_rad3": "N m/rad³"},
+    **{"_N_m_per_rad": "N m/rad", "_rad_per_s2": "rad/s²", "_kg_m2": "kg m²", "_N_m": "N m", "_rad": "rad"},
     "_N_per_mm3": "N/mm³",
     "_N_per_mm": "N/mm",
     "_N_s2_per_m2": "N s²/m²",

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wedgesweep import rotation
 from wedgesweep.figures import catalogue, diagnosis, transient
 from wedgesweep.files import written
 
@@ -88,7 +89,27 @@ def draw(
     except ValueError as error:
         message = f"{name}: {error}"
         raise ValueError(message) from error
-    return panels.figure.figure  # of a subfigure: the figure that it is part of
+    whole = panels.figure.figure  # of a subfigure: the figure that it is part of
+    if _turns(data):
+        _relabel(panels.figure)
+    return whole
+
+
+def _turns(data: "xr.Dataset | DiagnosisResult") -> bool:
+    """Whether the data are of an oscillator that turns."""
+    from wedgesweep.diagnosis_result import DiagnosisResult
+
+    attributes = data.data.attrs if isinstance(data, DiagnosisResult) else data.attrs
+    return attributes.get("motion") == rotation.ROTATION
+
+
+def _relabel(figure: "Figure | SubFigure") -> None:
+    """Write all texts of a figure in the units and words of a rotation, in place."""
+    from matplotlib.text import Text
+
+    for label in figure.findobj(Text):
+        if isinstance(label, Text):
+            label.set_text(rotation.label(label.get_text()))
 
 
 def options(kind: catalogue.FigureKind) -> tuple[str, ...]:

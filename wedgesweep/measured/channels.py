@@ -21,6 +21,7 @@ from wedgesweep.measured.declarations import (
     UNCERTAIN,
 )
 from wedgesweep.uncertain import DISTORTION
+from wedgesweep.units import angular
 
 # Responses that are compared at a time.
 MOST_RESPONSES = 2
@@ -146,7 +147,7 @@ def model_faults(
     model: Config, columns: Mapping[str, Mapping[str, Any]], kinds: Iterable[str] = (STEADY,)
 ) -> list[str]:
     """Faults of the base model beside the channels and kinds of the tests."""
-    faults, effects = [], model.effects
+    faults, effects = _unit_faults(model, columns), model.effects
     if model.opens and {*kinds} != {STEADY}:
         faults.append(f"joints that lift off are simulated in tests of kind {STEADY} only; let them hold")
     if INPUT not in columns:
@@ -158,3 +159,14 @@ def model_faults(
         fault = "the absolute motion of the bolster does not follow from that of the table"
         faults.append(f"effects.fixture_resonance: {fault}; measure the motion against the side frame")
     return faults
+
+
+def _unit_faults(model: Config, columns: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Channels in units of the other motion: angles of a mass that moves, or lengths of one that turns."""
+    wanted = "an angle or a torque" if model.turns else "a length or a force"
+    mend = "oscillator.motion of the model, or the unit"
+    return [
+        f"measurement.columns.{name}.unit: {each['unit']} is not a unit of {wanted}; correct {mend}"
+        for name, each in columns.items()
+        if name != "time" and "unit" in each and angular(each["unit"]) != model.turns
+    ]

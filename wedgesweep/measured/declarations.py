@@ -144,7 +144,7 @@ class RecordTable(Table):
     """Keys of a test."""
 
     def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
-        stated = (AMPLITUDE.key, FORCE_AMPLITUDE.key)
+        stated = [key for key in self.keys if key.startswith("amplitude_") and key != AMPLITUDE_STD.key]
         if isinstance(value, dict) and "amplitude_std" in value and not value.keys() & set(stated):
             at = f"{path}." if path else ""
             problems.append(f"{at}amplitude_std: given without {' or '.join(stated)}; omit it")

@@ -5,8 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import toml
+from wedgesweep import rotation, toml
 from wedgesweep.config import Config
+from wedgesweep.config.turned import Turned
 from wedgesweep.errors import InputError
 from wedgesweep.files import missing
 from wedgesweep.hints import shortened
@@ -23,7 +24,7 @@ MODEL = "give the path of a config, from here"
 def read(path: Path, model: Path | None = None) -> Measurement:
     """Read a measured.toml and its files; raises MeasuredError with everything that is wrong."""
     problems: list[str] = []
-    given = _document(path, problems)
+    given = _document(path, model, problems)
     measurement = given.get("measurement", {})
     columns = measurement.get("columns", {})
     by_kind = _columns_by_kind(measurement)
@@ -88,16 +89,33 @@ def _override_faults(path: Path, measurement: dict[str, Any], config: Config) ->
     return faults
 
 
-def _document(path: Path, problems: list[str]) -> dict[str, Any]:
-    """The checked document; its faults go to ``problems``."""
+def _document(path: Path, model: Path | None, problems: list[str]) -> dict[str, Any]:
+    """The checked document, with the keys of a translation; its faults go to ``problems``."""
     try:
         given = toml.load(path, "a measured.toml")
     except InputError as error:
         raise MeasuredError(error.problems) from error
     found: list[str] = []
-    document = ROOT.read(given, "", found)
+    turned = Turned()
+    root = turned.table(ROOT) if _turns(model or path.parent / _named_model(given)) else ROOT
+    document: dict[str, Any] = turned.back(root.read(given, "", found))
     problems.extend(f"{path}: {problem}" for problem in found)
     return document
+
+
+def _named_model(given: Mapping[str, Any]) -> str:
+    """The model that an unchecked document names; a fault of it is told later."""
+    measurement = given.get("measurement")
+    named = measurement.get("model") if isinstance(measurement, Mapping) else None
+    return named if isinstance(named, str) else ""
+
+
+def _turns(model: Path) -> bool:
+    """Whether a model is an oscillator that turns; a fault of its file is told later."""
+    try:
+        return rotation.turns(toml.load(model, "a TOML file"))
+    except (InputError, OSError, ValueError):
+        return False
 
 
 def _tests(
@@ -128,7 +146,8 @@ def _tests(
         own = by_kind[given.get("kind", STEADY)]
         if given.get("undriven"):
             own = {name: each for name, each in own.items() if name != INPUT}
-        problems.extend(f"{at}.{fault}" for fault in channels.keys_faults(given, own, model))
+        told = rotation.text if model is not None and model.turns else str
+        problems.extend(f"{at}.{told(fault)}" for fault in channels.keys_faults(given, own, model))
         changes = given.get("columns", {})
         unknown = [name for name in changes if name not in own]
         problems.extend(f"{at}.columns.{name}: no such channel; declare it above" for name in unknown)

@@ -20,7 +20,7 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
     ConfigError
         If a name is unknown or a number is out of range.
     """
-    document = deepcopy(model.document)
+    document = deepcopy(model.written)
     unknown = []
     for name, number in numbers.items():
         *sections, key = name.split(".")

@@ -24,6 +24,11 @@ CAPTIONS = {
     "velocity is dry friction, a slope over velocity a damper, a slope over displacement a spring; a loop "
     "over both has memory. Grey: the misfit of the test may be noise, and so may the force.",
 }
+# Headings of the noise, and keys of diagnosis.json.
+NOISE = {
+    "noise, displacement [mm]": "noise_displacement_mm",
+    "noise, velocity [mm/s]": "noise_velocity_mm_per_s",
+}
 PEAK_TO_PEAK = "Peak-to-peak over frequency; lines join tests of about the same input amplitude."
 
 
@@ -83,20 +88,17 @@ def _described(test: dict[str, Any]) -> str:
 
 def _table(result: DiagnosisResult) -> Markup:
     unit = phrases.amplitude_unit(result.document["misfit"]["tests"][0])
-    head = ["test", "frequency [Hz]", f"amplitude [{unit}]", f"fitted amplitude [{unit}]", "periods"]
-    head += [
-        "noise, displacement [mm]",
-        "noise, velocity [mm/s]",
-        *(f"Q/dof {model}" for model in result.models),
-    ]
-    rows = [_row(test, result.models) for test in result.document["misfit"]["tests"]]
+    size = phrases.split_key(f"amplitude_{unit}")[1]
+    noise = phrases.columns(NOISE, result.document)
+    head = ["test", "frequency [Hz]", f"amplitude [{size}]", f"fitted amplitude [{size}]", "periods"]
+    head += [*noise, *(f"Q/dof {model}" for model in result.models)]
+    rows = [_row(test, [*noise.values()], result.models) for test in result.document["misfit"]["tests"]]
     return html.details("Table of all tests", html.table("All tests and their misfit", head, rows))
 
 
-def _row(test: dict[str, Any], models: Sequence[str]) -> list[str]:
+def _row(test: dict[str, Any], noise: Sequence[str], models: Sequence[str]) -> list[str]:
     unit = phrases.amplitude_unit(test)
     keys = ("frequency_hz", f"amplitude_{unit}", f"amplitude_fitted_{unit}", "periods")
-    noise = ("noise_displacement_mm", "noise_velocity_mm_per_s")
     numbers = [formatting.short(test[key]) for key in (*keys, *noise)]
     return [test["name"], *numbers, *(formatting.number(_ratio(test, model)) for model in models)]
 

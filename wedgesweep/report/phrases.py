@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import Any, NamedTuple
 
-from wedgesweep import formatting
+from wedgesweep import formatting, rotation
 from wedgesweep.diagnosis_result import DiagnosisResult
 from wedgesweep.effects import EFFECTS
 from wedgesweep.equations.symbols import unit_of
@@ -185,7 +185,7 @@ def separated(document: Mapping[str, Any]) -> Separated | None:
 def next_test(test: Mapping[str, Any]) -> str:
     """The recommended test: a test at 20 Hz and 0.1 mm, a release from 2 mm, a sine-sweep, a loop."""
     if test.get("motion") == "release":
-        return f"a release from {_size(test, 'start_mm')}"
+        return f"a release from {_start(test)}"
     if test.get("motion") == "sweep":
         return f"a sine-sweep from {_band(test)} with {_amplitude(test)}"
     name = "the force under a sine of" if test.get("kind") == "loop" else "a test at"
@@ -196,7 +196,7 @@ def instruction(test: Mapping[str, Any]) -> str:
     """What to do for the recommended test, as an order."""
     if test.get("motion") == "release":
         seconds = _size(test, "duration_s", 2)
-        return f"Release the mass at rest from {_size(test, 'start_mm')} and record its motion for {seconds}"
+        return f"Release the mass at rest from {_start(test)} and record its motion for {seconds}"
     seconds = _size(test, "duration_s", 2)
     if test.get("motion") == "sweep":
         return f"Sweep a sine of {_amplitude(test)} from {_band(test)} in {seconds}; record input and motion"
@@ -204,12 +204,24 @@ def instruction(test: Mapping[str, Any]) -> str:
     return f"Impose {sine} for {seconds}; record displacement and force"
 
 
-UNITS = {"hz": "Hz", "mm": "mm", "s": "s", "N": "N"}
+def columns(named: Mapping[str, str], document: Mapping[str, Any]) -> dict[str, str]:
+    """Headings and keys of a table, in the units of the diagnosis."""
+    if document["model"].get("motion") != rotation.ROTATION:
+        return dict(named)
+    turned = {key: rotation.turned_key(key)[0] for key in named.values()}
+    return {
+        f"{name.partition('[')[0]}[{split_key(turned[key])[1]}]" if turned[key] != key else name: turned[key]
+        for name, key in named.items()
+    }
+
+
+def _start(test: Mapping[str, Any]) -> str:
+    return _size(test, "start_rad" if "start_rad" in test else "start_mm")
 
 
 def _size(test: Mapping[str, Any], key: str, digits: int = 3) -> str:
     """A number of a test with its unit."""
-    return f"{short(test[key], digits)}{NO_BREAK}{UNITS[key.rpartition('_')[2]]}"
+    return f"{short(test[key], digits)}{NO_BREAK}{split_key(key)[1]}"
 
 
 def _amplitude(test: Mapping[str, Any]) -> str:
@@ -221,5 +233,5 @@ def _band(test: Mapping[str, Any]) -> str:
 
 
 def amplitude_unit(test: Mapping[str, Any]) -> str:
-    """Unit of the input amplitude of a test: mm, or N of a force."""
-    return "N" if "amplitude_N" in test else "mm"
+    """Ending of the key of a test's input amplitude: mm, N of a force, rad and N_m of a rotation."""
+    return next(unit for unit in ("N", "N_m", "rad", "mm") if f"amplitude_{unit}" in test)

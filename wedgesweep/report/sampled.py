@@ -60,9 +60,8 @@ def section(result: DiagnosisResult, draw: InlineFigures, heading: str, place: s
     kind, order = result.document["kind"], by_misfit(result.data).tolist()
     tests = result.document["misfit"]["tests"]
     # Channels that no test has are left out.
-    columns = {
-        name: key for name, key in COLUMNS[kind].items() if any(each.get(key) is not None for each in tests)
-    }
+    named = phrases.columns(COLUMNS[kind], result.document)
+    columns = {name: key for name, key in named.items() if any(each.get(key) is not None for each in tests)}
     head = ["test", "samples", *columns, *(f"error, {model}" for model in result.models)]
     rows = [_row(test, list(columns.values()), result.models) for test in tests]
     return html.section(

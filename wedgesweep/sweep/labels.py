@@ -3,6 +3,7 @@
 from typing import TypedDict
 
 from wedgesweep.config import Config
+from wedgesweep.rotation import ROTATION
 from wedgesweep.sweep.variables import CONTINUED, OF_LIFT_OFF, TRANSIENT, VARIABLES
 
 # Variables that only joints of a suspension have, and those that only unilateral ones have.
@@ -30,6 +31,7 @@ class Attributes(TypedDict, total=False):
     contact: str
     excitation: str
     reference: str
+    motion: str
 
 
 def attributes(config: Config) -> Attributes:
@@ -41,6 +43,7 @@ def attributes(config: Config) -> Attributes:
         "contact": config.oscillator["contact"],
         "excitation": config.excitation,
         "reference": "" if config.transient else _reference(config),
+        **({"motion": ROTATION} if config.turns else {}),
     }
 
 

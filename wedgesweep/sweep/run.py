@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wedgesweep import formatting
+from wedgesweep import formatting, rotation
 from wedgesweep.config import Case, Config
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
@@ -257,13 +257,14 @@ class Sweep:
         """Assemble the dataset from the records of all cases."""
         shape, coords = self.config.case_coordinates()
         coords |= self._time()
-        return dataset.assemble(
+        assembled = dataset.assemble(
             records,
             dataset.coordinates(coords, self.sizes),
             shape,
             {**self._physics(), **provenance.attributes(self.config, started, self.command)},
             labels.long_names(self.config),
         )
+        return rotation.with_units(assembled) if self.config.turns else assembled
 
     def _time(self) -> dict[str, Any]:
         """Coordinates of the stored waveforms of an input that does not repeat: time, and the input."""

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from wedgesweep import rotation
 from wedgesweep.config import Config
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 from wedgesweep.synthesize.motion import RTOL, Motion
@@ -40,7 +41,12 @@ def measured(title: str, config: Config, plan: Plan, options: Options) -> dict[s
         unit = next(iter(UNITS[options.record_input]))
         columns["input"] = {"column": "u", "unit": unit, "quantity": options.record_input}
     head = {"title": title, "model": "model.toml", "columns": columns, "uncertain": plan.uncertain}
-    return {"measurement": {**head, "test": tests}}
+    document = {"measurement": {**head, "test": tests}}
+    if not config.turns:
+        return document
+    for channel in columns.values():
+        channel["unit"] = rotation.UNITS.get(channel["unit"], channel["unit"])
+    return rotation.written(document)
 
 
 def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: Options) -> dict[str, Any]:
@@ -62,7 +68,7 @@ def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: 
         for test in truth.tests
         if test.plan.kind != STEADY
     ]
-    return {
+    document = {
         "effects": truth.config.document["effects"],
         "friction_law": truth.law,
         "uncertain": _uncertain(truth),
@@ -72,6 +78,7 @@ def truth_document(truth: Truth, steady: Truth, motions: list[Motion], options: 
         "solver": {"method": "radau", "rtol": RTOL},
         "tests": tests,
     }
+    return rotation.written(document) if truth.config.turns else document
 
 
 def _uncertain(truth: Truth) -> dict[str, Any]:

@@ -6,9 +6,10 @@ from math import nan
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import toml
+from wedgesweep import rotation, toml
 from wedgesweep.config.keys import Choice, Flag, Number
 from wedgesweep.config.tables import TableList, table
+from wedgesweep.config.turned import Turned
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import (
     AMPLITUDE,
@@ -102,17 +103,19 @@ class Plan:
     source: str = "tests"
 
 
-def load(path: Path) -> Plan:
-    """Read a tests.toml; raises InputError with everything that is wrong."""
-    return from_document(toml.load(path, "a tests.toml"), str(path))
+def load(path: Path, turns: bool = False) -> Plan:
+    """Read a tests.toml of one that ``turns`` or not; raises InputError with everything that is wrong."""
+    return from_document(toml.load(path, "a tests.toml"), str(path), turns)
 
 
-def from_document(given: Mapping[str, Any], source: str = "tests") -> Plan:
+def from_document(given: Mapping[str, Any], source: str = "tests", turns: bool = False) -> Plan:
     """Check the tables of a tests.toml; raises InputError with everything that is wrong."""
     problems: list[str] = []
-    document = ROOT.read(given, "", problems)
+    turned = Turned()
+    root, told = (turned.table(ROOT), rotation.text) if turns else (ROOT, str)
+    document = turned.back(root.read(given, "", problems))
     for i, test in enumerate(document.get("test", ())):
-        problems += [f"test[{i}].{fault}" for fault in _faults(test)]
+        problems += [f"test[{i}].{told(fault)}" for fault in _faults(test)]
     if problems:
         raise InputError([f"{source}: {problem}" for problem in problems])
     return Plan(tuple(map(_planned, document["test"])), document["uncertain"], source)

@@ -26,7 +26,7 @@ from wedgesweep.natural_units import NaturalUnits
 # Effects on how a motion comes about, or on its sensors: where the motion is imposed, no force shows them.
 OF_MOTION = (
     *("input_distortion", "stray_vibration", "fixture_resonance", "column_compliance"),
-    *("displacement_gain", "velocity_lag", "cross_slip", "lift_off"),
+    *("displacement_gain", "velocity_lag", "input_gain", "cross_slip", "lift_off"),
 )
 # Zero of the displacement over half the range of the motion, and its standard deviation.
 ZERO, ZERO_STD = NuisanceParameter(step=1e-3, max_step=0.1), 0.3

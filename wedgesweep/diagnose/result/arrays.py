@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from wedgesweep import __version__
+from wedgesweep import __version__, rotation
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import BY_MODEL, BY_TEST, FitData, Variables
 from wedgesweep.diagnose.model import Fit
@@ -37,7 +37,7 @@ def _dataset(found: Diagnosis, data: FitData, base: Fit, extended: Fit) -> xr.Da
         ),
         "dof": (BY_TEST, data.dof, "1", "degrees of freedom"),
     }
-    return xr.Dataset(
+    made = xr.Dataset(
         {
             name: (dims, values, {"units": unit, "long_name": meaning})
             for name, (dims, values, unit, meaning) in {**own.variables, **misfit}.items()
@@ -52,3 +52,4 @@ def _dataset(found: Diagnosis, data: FitData, base: Fit, extended: Fit) -> xr.Da
             **labels.attributes(data.model),
         },
     )
+    return rotation.with_units(made) if data.model.turns else made

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep import __version__
+from wedgesweep import __version__, rotation
 from wedgesweep.config import Config
 from wedgesweep.diagnose.changes import SLIGHT, summary
 from wedgesweep.diagnose.cross_validation import Gain
@@ -32,7 +32,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
     finding, data = found.finding, found.data
     best = finding.best or found.base
     hidden = _not_testable(found)
-    return {
+    content = {
         "verdict": finding.verdict,
         "reason": {"code": finding.reason.code, **_finite(finding.numbers)},
         "causes": _causes(finding.cause),
@@ -71,6 +71,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "method": _method(found),
         "candidates": _candidates(found, hidden),
     }
+    return rotation.written(content) if data.model.turns else content
 
 
 def _finite(numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -90,7 +91,8 @@ def _surface(model: Config) -> dict[str, Any]:
     """What an oscillator rubs on, and what drives it."""
     if model.system != "oscillator":
         return {}
-    return {"contact": model.oscillator["contact"], "excitation": model.excitation}
+    about = {"contact": model.oscillator["contact"], "excitation": model.excitation}
+    return about | ({"motion": rotation.ROTATION} if model.turns else {})
 
 
 def _never_steady(fit: Fit) -> list[str]:

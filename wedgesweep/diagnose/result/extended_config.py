@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from wedgesweep import effects, toml
+from wedgesweep import effects
+from wedgesweep.config import Config
 from wedgesweep.config.keys import SMALLEST
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
@@ -18,7 +19,7 @@ def extended(found: Diagnosis) -> str:
     document["effects"] = _as_written(effects.merge(document["effects"], {**nuisance, **best.values}))
     cases = [{"friction_law": data.law, **case} for case in data.cases(best)]
     if not cases:
-        return _heading(found) + toml.dumps(document)
+        return _heading(found) + Config(document).to_toml()
     document["solver"] = _steady(document["solver"])
     document["sweep"] = {
         "omega_n_rad_per_s": data.model.sweep.omega_n,
@@ -26,7 +27,7 @@ def extended(found: Diagnosis) -> str:
         # Repeated tests are one case.
         "case": [case for place, case in enumerate(cases) if case not in cases[:place]],
     }
-    return _heading(found) + toml.dumps(document)
+    return _heading(found) + Config(document).to_toml()
 
 
 def _as_written(numbers: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:

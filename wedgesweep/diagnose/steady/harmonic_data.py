@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import Arrays, FitData
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
@@ -236,7 +236,8 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return self.decorrelated(real(both[0] - both[1]))
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        return tuple(name for name in effects if name != TONE or self.tone is not None)
+        hidden = {INPUT_GAIN, *(() if self.tone is not None else (TONE,))}
+        return tuple(name for name in effects if name not in hidden)
 
     def with_undetected(self, effect: str) -> Self:
         """The data as if a tone had been looked for, between the harmonics, and only noise been found."""

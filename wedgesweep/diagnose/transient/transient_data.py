@@ -23,7 +23,7 @@ from wedgesweep.diagnose.evaluation import (
     Point,
     Scenario,
 )
-from wedgesweep.diagnose.fit_data import Arrays
+from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays
 from wedgesweep.diagnose.model import TOLERANCE, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
@@ -143,7 +143,7 @@ class TransientData(SampledData):
         if not any(own.driven for own in data.windows):
             return data
         (values,) = data.known_values([scenario], OF_INPUT)
-        starts, gains = data._states(scenario.point), data._gain(scenario.point)
+        starts, gains = data._states(scenario.point), data._gain(scenario)
         own = zip(data.windows, starts, gains, strict=True)
         found = tuple(each.decorrelation(values, start, gain, TOLERANCE) for each, start, gain in own)
         return replace(data, decorrelations=found)
@@ -224,9 +224,10 @@ class TransientData(SampledData):
         both = np.concatenate([mass, bodies], axis=1)
         return both.reshape(self.tests, -1, len(START)) * self._scale[:, None]
 
-    def _gain(self, point: Point) -> np.ndarray:
-        """True input over the recorded one in each test, (T,)."""
-        return np.exp(point.nuisance[:, len(START)]) if self.gain_std else np.ones(self.tests)
+    def _gain(self, scenario: Scenario) -> np.ndarray:
+        """True input over the recorded one in each test, (T,): gain common to all times that of each test."""
+        common = np.full(self.tests, scenario.values.get(INPUT_GAIN, {"scale": 1.0})["scale"])
+        return common * np.exp(scenario.point.nuisance[:, len(START)]) if self.gain_std else common
 
     def nuisances(self, effects: Iterable[str], point: Point) -> tuple[NuisanceParameter, ...]:
         known = (*START, GAIN) if self.gain_std else START
@@ -260,6 +261,8 @@ class TransientData(SampledData):
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {order for own in self.windows for order in own.shown_as_measured}
         hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
+        if self.gain_std or not any(own.driven for own in self.windows):
+            hidden.add(INPUT_GAIN)
         if any(own.converted for own in self.windows):
             hidden.add("fixture_resonance")  # such channels show the motion against the table
         return tuple(name for name in effects if name not in hidden)
@@ -267,7 +270,7 @@ class TransientData(SampledData):
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:
         values = self.known_values(scenarios, OF_INPUT)
         starts = np.array([self._states(each.point) for each in scenarios])
-        gains = np.array([self._gain(each.point) for each in scenarios])
+        gains = np.array([self._gain(each) for each in scenarios])
         work.add(len(values) * sum(own.periods for own in self.windows))
         found: list[Any] = [None] * self.tests
         for rows in self._together(len(values)):

@@ -43,7 +43,7 @@ def label(data: xr.Dataset, test: int) -> str:
 
 def amplitude(data: xr.Dataset, value: float, digits: int) -> str:
     """Write an input amplitude (m or N) with its unit."""
-    if data["amplitude"].attrs.get("units") == "N":
+    if data["amplitude"].attrs.get("units", "m").startswith("N"):
         return f"{value:.{digits}g} N"
     return f"{value * style.MM:.{digits}g} mm"
 

@@ -20,6 +20,7 @@ from wedgesweep.friction import code
 from wedgesweep.friction import lugre_bristles as bristles
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems import records
+from wedgesweep.systems.oscillator import pendulum
 
 EQUATIONS = ("m x'' + c (x' - u') + k (x - u) + mu N = F + R",)
 OSCILLATOR = (
@@ -28,6 +29,8 @@ OSCILLATOR = (
     Quantity("damping_N_s_per_m", 0.0, "viscous damping beside the spring, c", minimum=0.0),
     Quantity("normal_force_N", 0.0, "normal force on the rubbing surface, N", minimum=0.0),
 )
+# Share of the input that acts, as behind a lever.
+COUPLING = Quantity("input_coupling", nan, "share of the input that acts, as behind a driver arm", above=0.0)
 BELT_VELOCITY = Quantity("belt_velocity_mm_per_s", nan, 'velocity of the belt, for contact = "belt"')
 # Numbers of the bristles of the law "lugre".
 BRISTLES = (
@@ -37,8 +40,11 @@ BRISTLES = (
         "bristle_viscous_N_s_per_m", nan, "viscous friction beside them, sigma_2; default: 0", minimum=0.0
     ),
 )
-# The bristles are a state, as effects have them.
+# The bristles are a state, and a pendulum's sine is a force, as effects have them.
 known.REGISTERED[bristles.NAME] = bristles
+known.REGISTERED[pendulum.NAME] = pendulum
+# How the restoring force grows with the displacement.
+LINEAR, PENDULUM = RESTORING = ("linear", pendulum.NAME)
 # What the rubbing surface moves with, and what the input moves.
 BASE, GROUND, BELT = CONTACTS = ("base", "ground", "belt")
 FORCE = "force"
@@ -75,8 +81,8 @@ def _kits(names: tuple[str, ...], series: bool) -> tuple[np.dtype, np.dtype]:
     """Record types by kit, with or without the Fourier series of an input."""
     simple = [name for name in names if not known.EFFECTS[name].extends]
     part = records.SERIES if series else []
-    bent = (bristles.NAME, [(name, np.float64) for name in bristles.NUMBERS])
-    return _dtype([(PLAIN, np.int64), *part], simple), _dtype([*part, bent], names)
+    more = [(own.NAME, [(name, np.float64) for name in own.NUMBERS]) for own in (bristles, pendulum)]
+    return _dtype([(PLAIN, np.int64), *part], simple), _dtype([*part, *more], names)
 
 
 def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
@@ -111,7 +117,8 @@ def record(
         Of the input: m, or N under a force; rad/s.
     oscillator : mapping
         SI numbers by the names of their quantities; ``contact`` is one of CONTACTS (default: base),
-        ``belt_velocity`` (m/s) goes with a belt, and those of BRISTLES with the law "lugre".
+        ``belt_velocity`` (m/s) goes with a belt, and those of BRISTLES with the law "lugre";
+        ``restoring_force`` is one of RESTORING (default: linear).
     friction, effects : mapping
         SI numbers by the names of their quantities; what is not given has its default.
     input_kind : str
@@ -133,7 +140,10 @@ def record(
     for name in SCALED:
         own[SCALED[name]] *= effects.get(name, {}).get("scale", 1.0)
     records.set_effects(p, (name for name in effect_names() if name not in SCALED), effects)
-    own["kit"] = bool(records.acting(p, effect_names())) or law == bristles.NAME
+    swings = oscillator.get("restoring_force") == PENDULUM
+    p["input_gain"]["scale"] *= oscillator.get(COUPLING.name, 1.0)
+    p[pendulum.NAME]["stiffness"] = own["spring"] if swings else 0.0
+    own["kit"] = bool(records.acting(p, effect_names())) or law == bristles.NAME or swings
     if law == bristles.NAME:
         _set_bristles(p, oscillator)
     if p["presliding"]["length"] > 0.0:

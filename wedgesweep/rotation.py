@@ -1,0 +1,109 @@
+"""An oscillator that turns: the same equations, with angles for lengths and torques for forces.
+
+Inside of the package an angle of 1 rad is a length of 1 m, a torque of 1 N m a force of 1 N, an inertia of
+1 kg m^2 a mass of 1 kg. Files, figures and reports have the keys and units of a rotation: this module renames
+and scales them.
+"""
+
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+TRANSLATION, ROTATION = MOTIONS = ("translation", "rotation")
+# Keys with names of their own in a rotation.
+KEYS = {"mass_kg": "inertia_kg_m2", "normal_force_N": "friction_N_m"}
+# Endings of keys in a translation and in a rotation, and the number of the latter over that of the former.
+ENDINGS = {
+    "_N_per_mm3": ("_N_m_per_rad3", 1e9),
+    "_N_per_mm": ("_N_m_per_rad", 1e3),
+    "_N_s2_per_m2": ("_N_m_s2_per_rad2", 1.0),
+    "_N_s_per_m": ("_N_m_s_per_rad", 1.0),
+    "_m_per_s2": ("_rad_per_s2", 1.0),
+    "_mm_per_s": ("_rad_per_s", 1e-3),
+    "_kg": ("_kg_m2", 1.0),
+    "_mm": ("_rad", 1e-3),
+    "_N": ("_N_m", 1.0),
+}
+LENGTH = "_mm"
+# Units in texts, and what a rotation has in their place.
+UNITS = {
+    **{"mm/s": "mrad/s", "mm": "mrad", "µm": "µrad", "m/s²": "rad/s²", "m/s^2": "rad/s^2", "m/s": "rad/s"},
+    **{"m or m/s": "rad or rad/s", "m, m/s or m/s^2": "rad, rad/s or rad/s^2"},
+    **{"m s-1": "rad s-1", "m s-2": "rad s-2", "m": "rad", "N s": "N m s", "N": "N m"},
+}
+_KEY = re.compile(rf"\b(?:{'|'.join([*KEYS, *(rf'[a-z_]+{ending}' for ending in ENDINGS)])})\b")
+_UNIT = re.compile(rf"(?<=[\[\d ])(?:{'|'.join(sorted(map(re.escape, UNITS), key=len)[::-1])})(?=[\],;. ]|$)")
+
+
+def turns(document: Mapping[str, Any]) -> bool:
+    """Whether a config is one of an oscillator that turns."""
+    own = document.get("oscillator")
+    return isinstance(own, Mapping) and own.get("motion") == ROTATION
+
+
+def turned_key(key: str) -> tuple[str, float]:
+    """Key of a rotation, and its number over that of a translation."""
+    if key in KEYS:
+        return KEYS[key], 1.0
+    for ending, (other, factor) in ENDINGS.items():
+        if key.endswith(ending):
+            return key.removesuffix(ending) + other, factor
+    return key, 1.0
+
+
+def written(document: Any) -> Any:
+    """A document of a translation with the keys and numbers of a rotation; texts name its keys, too."""
+    if isinstance(document, list):
+        return [written(value) for value in document]
+    if isinstance(document, str):
+        return text(document)
+    if not isinstance(document, Mapping):
+        return document
+    turned = {}
+    for key, value in document.items():
+        effect, dot, name = key.rpartition(".")
+        name, factor = turned_key(name)
+        renamed = f"{effect}{dot}{name}"
+        turned[renamed] = scaled(value, factor) if renamed != key else written(value)
+    return turned
+
+
+def scaled(value: Any, factor: float) -> Any:
+    """Numbers times a factor, to the 15 digits that come back when they are divided by it."""
+    if isinstance(value, list):
+        return [scaled(each, factor) for each in value]
+    if isinstance(value, Mapping):
+        return {key: scaled(each, factor) for key, each in value.items()}
+    if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    return float(f"{value * factor:.15g}")
+
+
+def text(words: str) -> str:
+    """A text with the keys of a rotation."""
+    return _KEY.sub(lambda match: turned_key(match.group())[0], words)
+
+
+def in_units(words: str) -> str:
+    """A text in the units of a rotation."""
+    if words in UNITS:
+        return UNITS[words]
+    return _UNIT.sub(lambda match: UNITS[match.group()], words)
+
+
+def label(words: str) -> str:
+    """A text of a figure; one with a unit in brackets is a label, and has the words of a rotation, too."""
+    if "[" in words:
+        words = words.replace("displacement", "angle").replace("force", "torque")
+    return in_units(words)
+
+
+def with_units(dataset: "xr.Dataset") -> "xr.Dataset":
+    """A dataset of a translation with the units of a rotation, in place."""
+    for values in dataset.variables.values():
+        if (si := values.attrs.get("units")) in UNITS:
+            values.attrs["units"] = UNITS[si]
+    return dataset
