@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from wedgesweep import toml
+from wedgesweep import rotation, toml
 from wedgesweep.guess.columns import INPUT, Chosen
 from wedgesweep.guess.model import Numbers
 from wedgesweep.guess.tests import UNKNOWN_RATE, Guessed
@@ -129,7 +129,7 @@ def _test(test: Guessed, first: Guessed, path: Path) -> Iterator[str]:
     if test.part.end is not None:
         yield f"to_s = {test.part.end!r}"
     if test.kind == STEADY and INPUT not in test.run.channels:
-        yield f"{ASK}how large is the motion of the base (amplitude_mm) or the force (amplitude_N)?"
+        yield f"{ASK}how large is the motion of the base (amplitude_mm or _rad) or the force (amplitude_N)?"
         yield "# amplitude_mm = 1.0"
     own, others = _with_time(test), _with_time(first)
     for name in [name for name in others if name in own]:
@@ -149,30 +149,35 @@ def _with_time(test: Guessed) -> dict[str, Chosen]:
 
 def model(found: Numbers, forced: bool, turns: bool) -> str:
     """Text of a config: a mass on a spring, or what turns on one."""
-    mass, length = ("moment of inertia in kg m^2; ", "N m/rad over 1000; ") if turns else ("", "")
     notes = {
         "mass": "no record shows it: state what you know" if "mass" in found.unseen else "by the record",
         "damping": "the diagnosis tells what damps it" if "damping" in found.unseen else "by the record",
     }
-    friction = f"; the record shows about {found.friction:.3g} N" if found.friction else ""
-    amplitude = "amplitude_N" if forced else "amplitude_mm"
+    size = f"{found.friction:.3g} {'N m' if turns else 'N'}"
+    friction = f"; the record shows about {size}" if found.friction else ""
+
+    def number(key: str, value: float) -> str:
+        name, factor = rotation.turned_key(key) if turns else (key, 1.0)
+        return f"{name} = {factor * value:.4g}"
+
     return "\n".join(
         (
             "# The model on trial. Replace guesses by what you know of the rig.",
             'title = "first model"',
             "",
             "[oscillator]",
-            f"mass_kg = {found.mass:.4g}  # {mass}{notes['mass']}",
-            f"spring_N_per_mm = {1e-3 * found.spring:.4g}  # {length}by the record",
-            f"damping_N_s_per_m = {found.damping:.4g}  # {notes['damping']}",
-            f"normal_force_N = 0.0  # no friction, so that the diagnosis looks for it{friction}",
+            *(['motion = "rotation"  # channels are angles and torques'] if turns else []),
+            f"{number('mass_kg', found.mass)}  # {notes['mass']}",
+            f"{number('spring_N_per_mm', 1e-3 * found.spring)}  # by the record",
+            f"{number('damping_N_s_per_m', found.damping)}  # {notes['damping']}",
+            f"{number('normal_force_N', 0.0)}  # no friction, so that the diagnosis looks for it{friction}",
             f'contact = "{"ground" if forced else "base"}"',
             "",
             "[sweep]  # of no matter for a diagnosis, except for excitation",
             'friction_law = "coulomb"',
             f'excitation = "{"force" if forced else "base"}"',
             "frequency_hz = 1.0",
-            f"{amplitude} = 1.0",
+            number("amplitude_N" if forced else "amplitude_mm", 1.0),
             "",
         )
     )

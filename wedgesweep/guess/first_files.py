@@ -1,6 +1,6 @@
 """Writes a first measured.toml and its model for the files of a measurement."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from wedgesweep.measured import Measurement, consistency
 from wedgesweep.measured.declarations import LOOP
 from wedgesweep.readers import ReadError
 from wedgesweep.readers.survey import survey
+from wedgesweep.units import angular
 
 MODEL = "model.toml"
 # Times that a file is written: as it is, with the signs of channels, and with the numbers at these signs.
@@ -54,8 +55,8 @@ def write(path: Path, files: Sequence[Path]) -> list[Path]:
 def write_model(path: Path, data: Path) -> None:
     """Write a model with the numbers that the records of a measured.toml show; raises InputError."""
     measurement = measured.read(data)
-    turns = _turning(str(each["unit"]) for each in measurement.columns.values())
-    write_text(path, document.model(numbers(measurement), measurement.model.forced, turns))
+    found, model = numbers(measurement), measurement.model
+    write_text(path, document.model(found, model.forced, model.turns))
 
 
 def _with_signs(tests: Sequence[Guessed], measurement: Measurement) -> list[Guessed]:
@@ -73,8 +74,4 @@ def _is_forced(test: Guessed) -> bool:
 
 
 def _turns(test: Guessed) -> bool:
-    return _turning(each.unit for each in test.run.channels.values())
-
-
-def _turning(units: Iterable[str]) -> bool:
-    return any(part in unit for unit in units for part in ("rad", "deg", "rpm", "N m"))
+    return any(angular(each.unit) for each in test.run.channels.values())
