@@ -116,8 +116,7 @@ class RecordedInputData(CorrelatedHarmonics):
         return (AMPLITUDE,)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        shown = {*super().candidates(effects), *(() if self.input_gain_std else (INPUT_GAIN,))}
-        return tuple(name for name in effects if name in shown and name not in self.hidden)
+        return tuple(name for name in super().candidates(effects) if name not in self.hidden)
 
     def records(self, scenario: Scenario) -> np.ndarray:
         left_out = (*self.hidden, INPUT_GAIN)

@@ -260,9 +260,7 @@ class TransientData(SampledData):
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {order for own in self.windows for order in own.shown_as_measured}
-        hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
-        if self.gain_std or not any(own.driven for own in self.windows):
-            hidden.add(INPUT_GAIN)
+        hidden = {*OF_INPUT, INPUT_GAIN, *(name for name, order in OF_SENSORS.items() if order not in shown)}
         if any(own.converted for own in self.windows):
             hidden.add("fixture_resonance")  # such channels show the motion against the table
         return tuple(name for name in effects if name not in hidden)
