@@ -79,3 +79,15 @@ def test_motion_begins_at_the_breakaway_acceleration(excess):
     numbers = steady(record, settle_periods=3)
     assert (numbers["stick_fraction"] < 1.0) == (excess > 0)
     assert (numbers["amplitude_ratio"] > 0.0) == (excess > 0)
+
+
+def test_the_unit_of_velocity_is_a_factor_of_sliding_friction():
+    """mu_d (v/unit)^-0.1: ten times the unit is 10^0.1 times mu_d, whatever the threshold."""
+    for threshold in (1e-3, 3e-3):
+        own = {"threshold_velocity": threshold, "static": 0.4}
+        unit = parameters.record("exponential", 1e-3, 1.2 * OMEGA_N, friction={**own, "velocity_unit": 1e-2})
+        more = {**own, "dynamic": 0.29 * 10.0**0.1}
+        level = parameters.record("exponential", 1e-3, 1.2 * OMEGA_N, friction=more)
+        assert fast(unit).numbers["peak_to_peak"] == pytest.approx(
+            fast(level).numbers["peak_to_peak"], rel=1e-9
+        )

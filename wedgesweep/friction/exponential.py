@@ -1,6 +1,7 @@
 """Exponential friction (the paper's Eq. 3): beyond the ramp it falls slowly with velocity.
 
-The paper prints v^(-0.1), which has a meaning only for v in units of v_t.
+The paper prints v^(-0.1), whose value depends on the unit of v. Its program works in mm, so that the unit is
+1 mm/s unless another one is given; in m/s friction would be twice as large.
 """
 
 from math import nan
@@ -11,7 +12,7 @@ from wedgesweep.compiled import inlined
 
 EQUATIONS = (
     "mu = mu_s v/v_t  for |v| <= v_t",
-    "mu = mu_d sign(v) (|v|/v_t)^velocity_exponent  for |v| > v_t",
+    "mu = mu_d sign(v) (|v|/velocity_unit)^velocity_exponent  for |v| > v_t",
 )
 SET_VALUED = False
 
@@ -29,7 +30,8 @@ def static(p):
 @inlined
 def sliding(speed, p):
     """Coefficient beyond the ramp, at a speed (m/s)."""
-    return p.friction.mu_d * max(speed / p.friction.v_t, FLAT_BELOW) ** p.friction.exponent
+    slowest = FLAT_BELOW * p.friction.v_t
+    return p.friction.mu_d * (max(speed, slowest) / p.friction.unit) ** p.friction.exponent
 
 
 @inlined
@@ -40,4 +42,7 @@ def exponent(p):
 
 def bound(p: np.void) -> float:
     """Largest coefficient; NaN: a positive exponent has none."""
-    return nan if p["friction"]["exponent"] > 0.0 else max(p["friction"]["mu_s"], p["friction"]["mu_d"])
+    own = p["friction"]
+    if own["exponent"] > 0.0:
+        return nan
+    return max(own["mu_s"], own["mu_d"] * (own["v_t"] / own["unit"]) ** own["exponent"])

@@ -13,6 +13,15 @@ FRICTION = (
         minimum=-1.0,
         maximum=1.0,
     ),
+    Quantity(
+        "velocity_unit_mm_per_s",
+        1.0,
+        "velocity at which the exponential law's decay begins at mu_d",
+        above=0.0,
+    ),
 )
 # Names of the same numbers in parameter records.
-SYMBOLS = {"dynamic": "mu_d", "static": "mu_s", "threshold_velocity": "v_t", "velocity_exponent": "exponent"}
+SYMBOLS = {
+    **{"dynamic": "mu_d", "static": "mu_s", "threshold_velocity": "v_t"},
+    **{"velocity_exponent": "exponent", "velocity_unit": "unit"},
+}
