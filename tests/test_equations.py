@@ -48,7 +48,15 @@ def test_every_fitted_number_of_an_effect_stands_in_its_equations(name, system):
 
 def test_symbols_with_a_dimension_have_a_unit():
     without = {"mu", "mu_s", "mu_d", "mu_c", "mu_b", "mu_0", "r", "b", "scale", "peak", "rate", "asymmetry"}
-    without |= {"damping_ratio", "exponent", "velocity_exponent", "second", "third", "restitution"}
+    without |= {
+        "damping_ratio",
+        "exponent",
+        "velocity_exponent",
+        "second",
+        "third",
+        "restitution",
+        "locked_in",
+    }
     for each in all_stated():
         unitless = {name for name, meaning in each.meanings.items() if not meaning.unit}
         vectors = {name for name in unitless if "unit vector" in each.meanings[name].text}

@@ -1,6 +1,6 @@
 """Claims on the suspension as a whole: rest position, resonance, frictionless limit, lift-off."""
 
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 import xarray as xr
@@ -44,7 +44,7 @@ def rest_position(runs: Runs) -> Finding:
         f"Table 1 gives {rest:.4f} mm, or {mirrored_rest(runs.paper):.4f} mm if the columns lean the other "
         "way. The rest position is proportional to 1/stiffness: all springs scaled by "
         f"{_spring_scale(runs):.4f} (paper-y0.toml) give {scaled:.4f} mm, and also the paper's resonance "
-        "(claim 3).",
+        f"(claim 3). Springs of half the stiffness, as in a model of one half, give {2.0 * rest:.3f} mm.",
         (near("rest position under gravity (mm)", rest, -2.1941, READ_OFF),),
     )
 
@@ -69,7 +69,8 @@ def resonance(runs: Runs) -> Finding:
         f"{here:.3f} omega_n, {hertz:.1f} Hz",
         f"On the grid the ratio is largest at beta = {by_law(peaks, 'g')}. With the springs scaled by "
         f"{_spring_scale(runs):.4f}, which give the paper's y_0, the resonance is {scaled:.3f} omega_n, "
-        f"{scaled_hertz:.1f} Hz, and the ratio is largest at beta = {by_law(_peaks(runs.scaled), 'g')}. The "
+        f"{scaled_hertz:.1f} Hz, and the ratio is largest at beta = {by_law(_peaks(runs.scaled), 'g')}; with "
+        f"springs of half the stiffness it is {here / sqrt(2.0):.3f} omega_n. The "
         "paper's y_0 and its resonance agree with each other, and both contradict its Table 1.",
         (
             near("resonance over omega_n, frictionless", here, 0.8, READ_OFF),
