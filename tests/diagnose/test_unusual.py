@@ -75,7 +75,7 @@ def measured(tmp_path):
 def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
     out = measured.parent / "found"
     said = invoke("diagnose", measured, "-o", out, "--effects", "preload,friction_level,wedge_stiffness")
-    assert "already part of the base model, so no candidates: preload" in said
+    assert "no candidate: preload is part of the model already" in said
     found = read(out)
     assert found.verdict == "nothing-missing"
     # What is uncertain scales the model's own number.

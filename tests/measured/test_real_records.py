@@ -21,6 +21,17 @@ friction_law = "coulomb"
 beta = 1.0
 amplitude_mm = 1.0
 """
+ROTOR = """
+[oscillator]
+motion = "rotation"
+inertia_kg_m2 = 1.0
+spring_N_m_per_rad = 20.0
+contact = "ground"
+[sweep]
+friction_law = "coulomb"
+beta = 1.0
+amplitude_rad = 1.0
+"""
 SEAL = """
 time = { column = 1, unit = "ms" }
 displacement = { column = 5, unit = "mm" }
@@ -95,7 +106,8 @@ SETS = {
 def test_each_set_is_read_as_delivered(tmp_path, name):
     columns, kind, keys, files, words = SETS[name]
     force = 'excitation = "force"\namplitude_N = 1.0' if name == "rack" else "amplitude_mm = 1.0"
-    (tmp_path / "model.toml").write_text(MODEL.replace("amplitude_mm = 1.0", force))
+    model = ROTOR if columns is TORSION else MODEL.replace("amplitude_mm = 1.0", force)
+    (tmp_path / "model.toml").write_text(model)
     tests = (f'[[measurement.test]]\nfile = "{REAL / file}"\nkind = "{kind}"\n{keys}' for file in files)
     text = f'[measurement]\nmodel = "model.toml"\n[measurement.columns]{columns}{"".join(tests)}'
     (tmp_path / "measured.toml").write_text(text)
@@ -107,7 +119,7 @@ def test_each_set_is_read_as_delivered(tmp_path, name):
 
 
 def test_ten_runs_side_by_side_are_ten_tests(tmp_path):
-    (tmp_path / "model.toml").write_text(MODEL)
+    (tmp_path / "model.toml").write_text(ROTOR)
     tests = "".join(
         f'[[measurement.test]]\nfile = "{REAL}/torsion-oscillator/free-decays.csv"\nkind = "transient"\n'
         f'columns.time.column = "Time (s) Run #{run}"\n'

@@ -1,6 +1,6 @@
 """A checked config: every key in its own unit, and SI numbers of all that is simulated."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -13,7 +13,7 @@ from wedgesweep import rotation, toml
 from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.input_contradictions import is_force
-from wedgesweep.effects import EFFECTS, go_together, jamming, lift_off
+from wedgesweep.effects import EFFECTS, go_together, jamming, lift_off, of_system
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction import LAWS
 from wedgesweep.friction.quantities import FRICTION
@@ -34,9 +34,11 @@ class Config:
     """A checked config. ``document`` holds every key in its own unit; the properties are SI.
 
     That of a rotation has the keys of a translation, with angles as lengths; ``written`` has its own keys.
+    ``nominal_load``: normal force (N) of the oscillator of which this one has the numbers of a test.
     """
 
     document: dict[str, Any]
+    nominal_load: float | None = None
 
     @property
     def turns(self) -> bool:
@@ -99,33 +101,52 @@ class Config:
         optional = (oscillator.BELT_VELOCITY, *oscillator.BRISTLES, oscillator.COUPLING)
         more = [each for each in optional if each.key in given]
         words = {name: given[name] for name in ("contact", "restoring_force") if name in given}
-        return {**_si((*oscillator.OSCILLATOR, *more), given), **words}
+        numbers = _si((*oscillator.OSCILLATOR, *more), given)
+        nominal = {} if self.nominal_load is None else {"nominal_load": self.nominal_load}
+        return {**numbers, **words, **nominal}
 
     @property
     def possible_effects(self) -> tuple[str, ...]:
-        """Names of the effects that a model may lack.
+        """Names of the effects that a model may lack, whatever its tests are."""
+        excluded = self.excluded_effects()
+        return tuple(name for name in EFFECTS if name not in excluded)
 
-        Of a suspension these are all but what its joints and its law do not go with. An oscillator has no
-        wedge. If it rubs, more friction of its surface is another level of friction; if not, there is nothing
-        that the effects on the law of friction could change. Some laws have what an effect would add. Under a
-        force the base is at rest. A mass on a belt has no rod. Some effects exclude others.
+    def excluded_effects(self, loads_differ: bool = False) -> dict[str, str]:
+        """Effects that a model cannot lack, and why.
+
+        ``loads_differ``: whether the normal force of an oscillator differs from test to test.
         """
+        known = of_system(self.system)
+        excluded = dict.fromkeys((name for name in EFFECTS if name not in known), "acts on no part of it")
         if self.system != OSCILLATOR:
-            return tuple(
-                name for name in suspension.effect_names() if name in self.effects or self._may_have(name)
-            )
+            why = "does not go with its joints or its law of friction"
+            return excluded | {
+                name: why for name in known if not (name in self.effects or self._may_have(name))
+            }
+        for names, why in self._excluded_of_oscillator(loads_differ):
+            excluded |= dict.fromkeys(names, why)
+        others = {name: go_together((*self.effects, name)) for name in known}
+        return excluded | {
+            name: "does not go with an effect of the model" for name, fine in others.items() if not fine
+        }
+
+    def _excluded_of_oscillator(self, loads_differ: bool) -> Iterator[tuple[Iterable[str], str]]:
+        """Effects that an oscillator cannot lack, and why."""
         rubs = self.oscillator["normal_force"] * max(self.friction["dynamic"], self.friction["static"]) > 0.0
-        without = {oscillator.LATERAL} if rubs else {*oscillator.OF_FRICTION}
+        if rubs and not loads_differ:
+            yield (oscillator.LATERAL,), "is friction_level where the normal force is the same in all tests"
+        if not rubs:
+            yield oscillator.OF_FRICTION, "changes friction, and the model has none"
+        if not (rubs and loads_differ):
+            yield (oscillator.OF_LOAD,), "shows only where the normal force differs from test to test"
         if self.oscillator["spring"] == 0.0:
-            without.update(oscillator.OF_SPRING)
+            yield oscillator.OF_SPRING, "acts on a spring, and the model has none"
         if self.forced:
-            without.add(oscillator.OF_BASE)
+            yield (oscillator.OF_BASE,), "moves the base, which is at rest under a force"
         if self.oscillator["contact"] == oscillator.BELT or not (rubs or self.oscillator["damping"]):
-            without.add(oscillator.OF_ROD)
+            yield (oscillator.OF_ROD,), "needs a rod to a damper, and the model has none"
         for law in self.sweep.laws:
-            without.update(oscillator.OF_LAW.get(law, ()))
-        names = (name for name in oscillator.effect_names() if name not in without)
-        return tuple(name for name in names if go_together((*self.effects, name)))
+            yield oscillator.OF_LAW.get(law, ()), f"has no place in the law {law}"
 
     def _may_have(self, effect: str) -> bool:
         """Whether the model of a suspension can have a further effect: joints and law of friction decide."""

@@ -28,6 +28,7 @@ from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.diagnose.work import Untried
 from wedgesweep.effects import EFFECTS, SCALES, acting
+from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.measured import Measurement
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
@@ -307,13 +308,27 @@ def _candidates(
     effects: Sequence[str], measurement: Measurement, progress: Callable[[str], None]
 ) -> tuple[str, ...]:
     """Effects that the base model may lack."""
-    possible = measurement.model.possible_effects
-    effects = [name for name in effects if name in possible]
-    in_base = acting(measurement.model.effects)
-    contained = [name for name in effects if name in in_base and name not in SCALES]
-    if contained:
-        progress(f"already part of the base model, so no candidates: {', '.join(contained)}")
-    return tuple(name for name in effects if name not in contained)
+    excluded = excluded_effects(measurement)
+    asked = set() if set(effects) == set(EFFECTS) else set(effects)
+    for name in [
+        name for name in effects if name in excluded and (name in asked or excluded[name] == IN_BASE)
+    ]:
+        progress(f"no candidate: {name} {excluded[name]}")
+    return tuple(name for name in effects if name not in excluded)
+
+
+IN_BASE = "is part of the model already"
+
+
+def excluded_effects(measurement: Measurement) -> dict[str, str]:
+    """Effects that the base model of a measurement cannot lack, and why."""
+    model = measurement.model
+    differ = (
+        model.system == OSCILLATOR
+        and len({measurement.model_of(test).oscillator["normal_force"] for test in measurement.tests}) > 1
+    )
+    contained = [name for name in acting(model.effects) if name not in SCALES]
+    return model.excluded_effects(differ) | dict.fromkeys(contained, IN_BASE)
 
 
 def refit_cause(

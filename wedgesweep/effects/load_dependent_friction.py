@@ -1,15 +1,17 @@
 """Coefficients of friction that depend on the normal force (Hertzian contacts: exponent 1/3).
 
-Each face has its own N; N and mu are solved together. Neutral and default: exponent = 0. Default: reference
-= the normal force on the column face at frictionless rest, not fitted.
+Each face has its own N; N and mu are solved together. That of an oscillator is given and differs from test to
+test only, so that its coefficients are scaled (``factor``). Neutral and default: exponent = 0. Default:
+reference = the normal force on the column face at frictionless rest, or the oscillator's own, not fitted.
 """
 
+from collections.abc import Mapping
 from math import nan
 
 import numpy as np
 
 from wedgesweep.compiled import term
-from wedgesweep.effects.base import NUMERICAL, SUSPENSION, Effect
+from wedgesweep.effects.base import NUMERICAL, Effect
 from wedgesweep.quantity import Quantity
 
 EQUATIONS = ("mu -> mu (|N|/reference)^(-exponent)",)
@@ -18,7 +20,6 @@ EFFECT = Effect(
     name="load_dependent_friction",
     family="friction-law",
     branch=NUMERICAL,
-    systems=(SUSPENSION,),
     meaning="coefficients of friction that depend on the normal force",
     quantities=(
         Quantity(
@@ -32,7 +33,8 @@ EFFECT = Effect(
         Quantity(
             "reference_N",
             0.0,
-            "normal force at which the coefficients are the nominal ones; 0: the column face's at rest",
+            "normal force at which the coefficients are the nominal ones; 0: the column face's at rest, or "
+            "an oscillator's",
             minimum=0.0,
         ),
     ),
@@ -63,6 +65,14 @@ def coefficient(mu, normal, p):
         return mu
     load = max(abs(normal), LEAST_LOAD)
     return mu * (load / p.load_dependent_friction.reference) ** (-p.load_dependent_friction.exponent)
+
+
+def factor(numbers: Mapping[str, float], normal: float, nominal: float) -> float:
+    """Factor of the coefficients of an oscillator under a normal force (N), by the effect's numbers (SI)."""
+    reference = numbers.get("reference", 0.0) or nominal
+    if normal <= 0.0 or reference <= 0.0:
+        return 1.0
+    return float((normal / reference) ** -numbers.get("exponent", 0.0))
 
 
 def bound(mu: float, p: np.void) -> float:

@@ -12,6 +12,7 @@ from wedgesweep.measured.declarations import (
     AMPLITUDE,
     FORCE_AMPLITUDE,
     INPUT,
+    KNOWN_FORCE,
     LOOP,
     STEADY,
     TRANSIENT,
@@ -57,6 +58,10 @@ def build_record(
     if given.get("detrend", False):
         columns = {each: _straightened(time, samples, frequency) for each, samples in columns.items()}
     columns, time, thinned = _shortened(given, columns, time, frequency)
+    if (known := columns.pop(KNOWN_FORCE, None)) is not None:
+        # Only the sum with the force that is measured, or drives the mass, acts.
+        beside = "force" if given.get("kind") == LOOP else INPUT
+        columns[beside] = columns[beside] + known
     amplitudes = [given[each.key] * each.factor for each in (AMPLITUDE, FORCE_AMPLITUDE) if each.key in given]
     test = TestRecord(
         name=name,
@@ -113,7 +118,7 @@ def _size_faults(signals: Signals) -> Iterator[str]:
             yield f"{name}: no samples in the part that is used; correct the columns, or from_s and to_s"
         elif largest > LARGEST:
             yield f"{name}: {largest:.3g} in SI units is too large; correct the unit or the file"
-        elif name != "time" and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
+        elif name not in ("time", KNOWN_FORCE) and np.ptp(samples) <= max(SMALLEST, ROUNDING * largest):
             yield f"{name} is constant; there is no vibration in it"
 
 

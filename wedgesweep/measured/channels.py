@@ -13,6 +13,7 @@ from wedgesweep.measured.declarations import (
     INPUT,
     INPUT_GAIN_STD,
     INPUT_HARMONICS_STD,
+    KNOWN_FORCE,
     LOOP,
     RELATIVE,
     RESPONSES,
@@ -38,6 +39,7 @@ def faults(
     """
     gain_std = stds[INPUT_GAIN_STD.key]
     found = [fault for kind, own in by_kind.items() for fault in channel_faults(own, gain_std, kind)]
+    found += [fault for kind, own in by_kind.items() for fault in _known_force_faults(own, kind)]
     if stds[INPUT_HARMONICS_STD.key]:
         found += [f"{INPUT_HARMONICS_STD.key}: {fault}" for fault in _harmonics_faults(by_kind)]
     if DISTORTION in stds[UNCERTAIN.key]:
@@ -46,6 +48,15 @@ def faults(
     if found or model is None:
         return found
     return [fault for kind, own in by_kind.items() for fault in excitation_faults(own, model, kind)]
+
+
+def _known_force_faults(columns: Mapping[str, Mapping[str, Any]], kind: str) -> list[str]:
+    """Why a known force has nothing to be added to."""
+    recorded = columns.get(INPUT, {}).get("quantity")
+    if KNOWN_FORCE not in columns or kind == LOOP or recorded == FORCE:
+        return []
+    mend = f'record loops, or an {INPUT} with quantity = "{FORCE}" (this one, if there is no other)'
+    return [f"{KNOWN_FORCE}: it is not simulated beside a base that moves, in tests of kind {kind}; {mend}"]
 
 
 def _harmonics_faults(by_kind: Mapping[str, Mapping[str, Any]]) -> list[str]:

@@ -18,6 +18,8 @@ from wedgesweep.units import UNITS
 # Channels that show the response, and what a recorded input may be.
 RESPONSES = ("displacement", "velocity", "acceleration", "force")
 INPUT = "input"
+# A recorded force on the mass beside what drives it.
+KNOWN_FORCE = "known_force"
 QUANTITIES = ("displacement", "velocity", "acceleration", "force")
 RELATIVE, ABSOLUTE = "relative", "absolute"
 # Effects that scale a number of the model, which may be declared uncertain.
@@ -30,9 +32,9 @@ STEADY, TRANSIENT, LOOP = KINDS = ("steady", "transient", "loop")
 MIXED = "mixed"
 # Channels of each kind where several kinds share one declaration.
 CHANNELS = {
-    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT),
-    TRANSIENT: ("time", "displacement", "velocity", "acceleration", INPUT),
-    LOOP: ("time", "displacement", "force"),
+    STEADY: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE),
+    TRANSIENT: ("time", "displacement", "velocity", "acceleration", INPUT, KNOWN_FORCE),
+    LOOP: ("time", "displacement", "force", KNOWN_FORCE),
 }
 
 FREQUENCY = Quantity("frequency_hz", nan, "input frequency; estimated if absent", above=0.0)
@@ -179,7 +181,7 @@ def columns_of(columns: Mapping[str, Any], kind: str, alone: bool) -> dict[str, 
 def units(channel: str, quantity: str | None = None) -> dict[str, float]:
     """Units of a channel, by name, and their sizes in SI; an input has those of its quantity."""
     if channel != INPUT:
-        return UNITS[channel]
+        return UNITS["force" if channel == KNOWN_FORCE else channel]
     if quantity is not None:
         return UNITS[quantity]
     return {name: size for each in QUANTITIES for name, size in UNITS[each].items()}
@@ -264,6 +266,9 @@ COLUMNS = table(
     _channel("acceleration", "relative acceleration, x'' - y''", "a", "m/s^2", OF, optional=True),
     _channel("force", "force on the mass", "f", "N", optional=True),
     _channel(INPUT, "input as recorded", "u", "mm", QUANTITY, optional=True),
+    _channel(
+        KNOWN_FORCE, "force on the mass beside force or input, as of a pressure", "p", "N", optional=True
+    ),
     example="measurement.columns",
 )
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.measured.declarations import INPUT, LOOP, STEADY, TRANSIENT
+from wedgesweep.measured.declarations import INPUT, KNOWN_FORCE, LOOP, STEADY, TRANSIENT
 from wedgesweep.measured.measurement import TestRecord
 
 # A motion that comes back by less than this share of its range goes one way.
@@ -27,7 +27,7 @@ MOTIONS = ("displacement", "velocity", "acceleration")
 DISPLAY_UNITS = {"displacement": (1e-3, "mm"), "velocity": (1e-3, "mm/s"), "acceleration": (1.0, "m/s^2")}
 # What is compared, and what else a test may have, by kind.
 NEEDED = {"transient": (), "loop": ("displacement", "force")}
-OPTIONAL = {"transient": (*MOTIONS, INPUT), "loop": ()}
+OPTIONAL = {"transient": (*MOTIONS, INPUT, KNOWN_FORCE), "loop": (KNOWN_FORCE,)}
 MEANING = {
     "transient": "a transient is a motion from some start, free or under a recorded input",
     "loop": "a loop is the force under a recorded displacement",

@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 from wedgesweep.config import Config, from_document
+from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.errors import ConfigError
 from wedgesweep.hints import hint
 
@@ -36,7 +38,10 @@ def with_numbers(model: Config, numbers: Mapping[str, float], source: str = "mod
             place[key] = number
     if unknown:
         raise ConfigError(unknown)
-    return from_document(document, source)
+    changed = from_document(document, source)
+    if model.system != OSCILLATOR:
+        return changed
+    return replace(changed, nominal_load=model.oscillator["normal_force"])
 
 
 def faults(model: Config, given: Mapping[str, Any], source: str) -> list[str]:

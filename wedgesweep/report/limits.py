@@ -2,6 +2,7 @@
 
 from wedgesweep import formatting
 from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.effects import EFFECTS
 from wedgesweep.report import html, phrases
 from wedgesweep.report.html import Markup
 
@@ -21,6 +22,19 @@ def section(result: DiagnosisResult) -> Markup:
         "What these tests can show",
         table if rows else html.paragraph("These tests would not have shown any effect."),
         html.paragraph(_hidden(result.document["not_testable"])),
+        _excluded(result),
+    )
+
+
+def _excluded(result: DiagnosisResult) -> Markup:
+    """Effects of the system that were no candidates, and why."""
+    system = phrases.system(result.document)
+    excluded = result.document.get("excluded", {}).items()
+    rows = [(name, why) for name, why in excluded if name in EFFECTS and system in EFFECTS[name].systems]
+    if not rows:
+        return Markup()
+    return html.details(
+        "Effects that were no candidates", html.table("No candidates", ("effect", "it"), rows, 2)
     )
 
 

@@ -12,7 +12,7 @@ from wedgesweep import __version__, rotation
 from wedgesweep.config import Config
 from wedgesweep.diagnose.changes import SLIGHT, summary
 from wedgesweep.diagnose.cross_validation import Gain
-from wedgesweep.diagnose.diagnosis import Diagnosis
+from wedgesweep.diagnose.diagnosis import Diagnosis, excluded_effects
 from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, parameter_penalty
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit
@@ -46,6 +46,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
             score.effect: {score.key: finite(score.detectable)} for score in found.scores if score.testable
         },
         "not_testable": hidden,
+        "excluded": excluded_effects(found.measurement),
         "next_test": _next_test(found.next_test),
         "ladder": [_level(each) for each in found.ladder],
         "extended": list(best.effects),

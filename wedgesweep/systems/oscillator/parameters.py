@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import effects as known
-from wedgesweep.effects import base
+from wedgesweep.effects import base, load_dependent_friction
 from wedgesweep.excitation import has_series
 from wedgesweep.friction import code
 from wedgesweep.friction import lugre_bristles as bristles
@@ -52,6 +52,9 @@ EXCITATIONS = (BASE, FORCE)
 
 # Effects that scale a number of the oscillator.
 SCALED = {"bolster_stiffness": "spring", "bolster_mass": "mass"}
+# An effect that scales the coefficients of friction, and all that have no part of their own in a record.
+OF_LOAD = load_dependent_friction.EFFECT.name
+ADJUSTED = (*SCALED, OF_LOAD)
 # A motion of the base beside the input.
 OF_BASE = "stray_vibration"
 # Effects on the spring.
@@ -89,7 +92,7 @@ def _dtype(parts: list[tuple], names: Iterable[str]) -> np.dtype:
     # ``absolute``: the displacement is against the ground, not against the base.
     own = [*((name, np.int64) for name in ("kit", "absolute", "forced")), ("belt_velocity", np.float64)]
     own += [(quantity.name, np.float64) for quantity in OSCILLATOR]
-    effects = records.effect_parts(name for name in names if name not in SCALED)
+    effects = records.effect_parts(name for name in names if name not in ADJUSTED)
     return np.dtype([*parts, *effects, *records.COMMON, ("oscillator", own)])
 
 
@@ -118,7 +121,8 @@ def record(
     oscillator : mapping
         SI numbers by the names of their quantities; ``contact`` is one of CONTACTS (default: base),
         ``belt_velocity`` (m/s) goes with a belt, and those of BRISTLES with the law "lugre";
-        ``restoring_force`` is one of RESTORING (default: linear).
+        ``restoring_force`` is one of RESTORING (default: linear), and ``nominal_load`` (N) the normal force
+        at which coefficients are the nominal ones.
     friction, effects : mapping
         SI numbers by the names of their quantities; what is not given has its default.
     input_kind : str
@@ -139,16 +143,26 @@ def record(
     records.set_common(case, law, friction, (amplitude, omega))
     for name in SCALED:
         own[SCALED[name]] *= effects.get(name, {}).get("scale", 1.0)
-    records.set_effects(p, (name for name in effect_names() if name not in SCALED), effects)
+    parts = [name for name in effect_names() if name not in ADJUSTED]
+    records.set_effects(p, parts, effects)
+    _scale_friction(p, oscillator, effects.get(OF_LOAD, {}))
     swings = oscillator.get("restoring_force") == PENDULUM
     p["input_gain"]["scale"] *= oscillator.get(COUPLING.name, 1.0)
     p[pendulum.NAME]["stiffness"] = own["spring"] if swings else 0.0
-    own["kit"] = bool(records.acting(p, effect_names())) or law == bristles.NAME or swings
+    own["kit"] = bool(records.acting(p, parts)) or law == bristles.NAME or swings
     if law == bristles.NAME:
         _set_bristles(p, oscillator)
     if p["presliding"]["length"] > 0.0:
         p["friction"]["set_valued"] = 0  # bristles yield before they slip
     return case
+
+
+def _scale_friction(p: np.void, oscillator: Mapping[str, Any], numbers: Mapping[str, float]) -> None:
+    """Scale the coefficients of friction of a record by its normal force, in place."""
+    normal = float(p["oscillator"]["normal_force"])
+    factor = load_dependent_friction.factor(numbers, normal, oscillator.get("nominal_load", normal))
+    for name in ("mu_s", "mu_d"):
+        p["friction"][name] *= factor
 
 
 def _set_bristles(p: np.void, oscillator: Mapping[str, Any]) -> None:

@@ -1,0 +1,100 @@
+"""Friction of an oscillator whose normal force differs from test to test: parts of it, told apart."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wedgesweep import api
+from wedgesweep.diagnose.diagnosis import excluded_effects
+
+MODEL = """
+[oscillator]
+mass_kg = 1.0
+spring_N_per_mm = 0.2
+normal_force_N = 10.0
+contact = "ground"
+[friction]
+dynamic = 0.3
+static = 0.3
+[sweep]
+friction_law = "coulomb"
+frequency_hz = 1.0
+amplitude_mm = 1.0
+"""
+MEASURED = """
+[measurement]
+model = "model.toml"
+[measurement.columns]
+time = { column = "t", unit = "s" }
+displacement = { column = "x", unit = "mm", of = "absolute" }
+force = { column = "F", unit = "N" }
+"""
+TEST = """
+[[measurement.test]]
+file = "{0}.csv"
+kind = "loop"
+model = {{ "oscillator.normal_force_N" = {0} }}
+"""
+LOADS, SAME = (5.0, 10.0, 20.0, 40.0), (10.0, 10.0)
+CANDIDATES = ("guide_friction", "load_dependent_friction", "friction_level", "viscous_damping")
+PART, EXPONENT = 1.5, 1.0 / 3.0
+
+
+def constant_part(normal: float) -> float:
+    """Friction (N) of a constant and a proportional part."""
+    return 0.3 * normal + PART
+
+
+def falling(normal: float) -> float:
+    """Friction (N) whose coefficient falls with load from the model's at its own normal force."""
+    return 0.3 * normal * (normal / 10.0) ** -EXPONENT
+
+
+def write(folder: Path, friction, loads=LOADS) -> Path:
+    """Loops at 1 Hz and 20 mm under each load (N), with 1 % of noise."""
+    random, time, omega = np.random.default_rng(3), np.arange(3000) / 500.0, 2.0 * np.pi
+    text = MEASURED
+    for load in dict.fromkeys(loads):
+        x = 0.02 * np.sin(omega * time)
+        force = (200.0 - omega**2) * x + friction(load) * np.sign(np.cos(omega * time))
+        force = force + 0.01 * force.std() * random.standard_normal(time.size)
+        np.savetxt(
+            folder / f"{load}.csv",
+            np.column_stack([time, 1e3 * x, force]),
+            "%.9g",
+            ",",
+            "\n",
+            "t,x,F",
+            "",
+            "",
+        )
+        text += TEST.format(load)
+    (folder / "model.toml").write_text(MODEL)
+    (folder / "measured.toml").write_text(text)
+    return folder / "measured.toml"
+
+
+@pytest.mark.acceptance
+@pytest.mark.parametrize(
+    ("friction", "effect", "key", "true"),
+    [
+        (constant_part, "guide_friction", "force_N", PART),
+        (falling, "load_dependent_friction", "exponent", EXPONENT),
+    ],
+)
+def test_the_part_of_friction_that_was_hidden_is_named(tmp_path, friction, effect, key, true):
+    measurement = api.read_measurement(write(tmp_path, friction))
+    found = api.diagnose_measurement(measurement, effects=CANDIDATES, n_jobs=1)
+    assert (found.verdict, [cause["effect"] for cause in found.causes]) == ("named", [effect])
+    low, high = found.causes[0]["parameters"][key]["ci95"]
+    assert low <= true <= high
+
+
+def test_candidates_need_loads_that_differ(tmp_path):
+    several = excluded_effects(api.read_measurement(write(tmp_path, constant_part)))
+    assert not {"guide_friction", "load_dependent_friction"} & several.keys()
+    one = excluded_effects(api.read_measurement(write(tmp_path, constant_part, SAME)))
+    assert one["guide_friction"].startswith("is friction_level")
+    assert one["load_dependent_friction"].startswith("shows only where")
+    assert one["preload"] == "acts on no part of it"
