@@ -26,7 +26,7 @@ def solved(study: Config) -> xr.Dataset:
     dtype = variables.record_dtype({"phase": 0, "harmonic": variables.HARMONICS, "part": 2})
     cases = study.records()
     found = solve_cases(cases, np.arange(len(cases)), study.solver, inf, dtype)
-    shape, coordinates = study.case_coordinates()
+    shape, coordinates = study.sweep.shape, study.case_coordinates()
     return xr.Dataset({name: (variables.GRID, found[name].reshape(shape)) for name in NAMES}, coordinates)
 
 

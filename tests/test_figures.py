@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from tests import fixture_dataset
 from wedgesweep import config, figures
+from wedgesweep.config.physics import physics
 from wedgesweep.figures import (
     amplitude_ratio,
     bifurcation,
@@ -21,7 +22,6 @@ from wedgesweep.figures import (
     validity,
 )
 from wedgesweep.friction import LAWS
-from wedgesweep.sweep.run import Sweep
 
 KINDS = sorted(figures.DESCRIPTIONS)
 FROM_LISTS = ("friction-laws", "phase-portrait")
@@ -179,7 +179,8 @@ def test_a_new_figure_is_one_file(dataset, tmp_path, monkeypatch):
     monkeypatch.setitem(figures.FIGURES, toy.name, toy)
     drawn = figures.draw(dataset, "histogram", bins=7)
     assert len(drawn.axes[0].patches) == 7
-    assert drawn.get_suptitle() == "Stick fractions"
+    # Above it stands the title of the sweep.
+    assert drawn.get_suptitle() == "synthetic\nStick fractions"
 
 
 @pytest.mark.few(4)
@@ -276,20 +277,19 @@ def test_each_law_is_drawn_with_its_own_numbers(dataset):
 
 
 @pytest.mark.parametrize("held", ["", "[effects.bolster_stiffness]\nscale = 1.1\n"])
-def test_small_motions_do_not_depend_on_whether_joints_may_open(tmp_path, held):
+def test_small_motions_do_not_depend_on_whether_joints_may_open(held):
     grid = '[sweep]\nfriction_law = "coulomb"\nbeta = [1.0, 2.0]\namplitude_mm = 1.0\n'
     unilateral = '[suspension]\njoints = "unilateral"\nrestitution = 0.3\n[solver]\nmethod = "event-driven"\n'
-    sweeps = [Sweep(config.parse(grid + held + joints), tmp_path / "study.nc") for joints in ("", unilateral)]
-    bilateral, opens = (sweep._physics() for sweep in sweeps)
+    bilateral, opens = (physics(config.parse(grid + held + joints)) for joints in ("", unilateral))
     assert opens == bilateral
     assert np.isfinite(list(opens.values())).all()
 
 
 def test_what_the_base_model_knows_is_not_said_of_effects_with_mechanics_of_their_own(tmp_path, dataset):
     (tmp_path / "crossing.toml").write_text(CROSSING)
-    physics = Sweep(config.load(tmp_path / "crossing.toml"), tmp_path / "crossing.nc")._physics()
-    assert np.isnan([physics["frictionless_resonance"], physics["breakaway_acceleration"]]).all()
-    unknown = dataset.assign_attrs(physics)
+    numbers = physics(config.load(tmp_path / "crossing.toml"))
+    assert np.isnan([numbers["frictionless_resonance"], numbers["breakaway_acceleration"]]).all()
+    unknown = dataset.assign_attrs(numbers)
     assert np.isnan(amplitude_ratio.frictionless_ratio(unknown, np.array([1.0, 2.0]))).all()
     assert not figures.draw(unknown, "amplitude-ratio").axes[0].get_legend_handles_labels()[1]
     assert "breakaway" not in str(

@@ -1,5 +1,6 @@
 """Numbers as a reader wants them: few digits, and powers of ten in place of 1e-5."""
 
+from collections.abc import Iterable
 from math import floor, isfinite, log10
 
 NONE = "–"
@@ -14,12 +15,15 @@ def counted(count: int, noun: str, plural: str = "") -> str:
     return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
 
 
-def case(law: str, beta: float, amplitude: float, unit: str = "m") -> str:
-    """A case in words; amplitude in m or N, or without a unit the scale of an input."""
+def case(
+    law: str, beta: float, amplitude: float, numbers: Iterable[tuple[str, float]] = (), unit: str = "m"
+) -> str:
+    """A case in words; its amplitude is in m or N, or a scale where ``unit`` is empty."""
+    more = "".join(f", {key} {value:.6g}" for key, value in numbers)
     if not unit:
-        return f"{law}, scale {amplitude:.6g}"
+        return f"{law}, scale {amplitude:.6g}{more}"
     size = f"{amplitude * 1e3:.6g} mm" if unit == "m" else f"{amplitude:.6g} {unit}"
-    return f"{law}, beta {beta:.6g}, amplitude {size}"
+    return f"{law}, beta {beta:.6g}, amplitude {size}{more}"
 
 
 def number(value: float | None, digits: int = 3) -> str:

@@ -99,6 +99,19 @@ class Quantity:
         return SI_FACTORS.get(self.suffix, 1.0)
 
     @cached_property
+    def unit(self) -> str:
+        """Unit of the key, as CF writes it: N mm-1."""
+        up, *down = self.suffix.strip("_").split("_per_")
+        above = [part for part in up.split("_") if part]
+        below = [
+            f"{part.rstrip('23')}-{part.lstrip('Nmsradkghz') or 1}"
+            for each in down
+            for part in each.split("_")
+        ]
+        units = {"deg": "degree", "hz": "Hz"}
+        return " ".join(units.get(part, part) for part in (*above, *below)) or "1"
+
+    @cached_property
     def dimension(self) -> Dimension:
         """Powers of mass, length and time."""
         return DIMENSIONS.get(self.suffix, SHARE)

@@ -1,6 +1,7 @@
 """TOML: a reader that refuses what nothing here can hold, and a writer, which the standard library lacks."""
 
 import json
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -59,20 +60,25 @@ def inline(value: Any) -> str:
     if isinstance(value, list):
         return f"[{', '.join(inline(item) for item in value)}]"
     if isinstance(value, dict):
-        return f"{{ {', '.join(f'{key} = {inline(item)}' for key, item in value.items())} }}"
+        return f"{{ {', '.join(f'{_name(key)} = {inline(item)}' for key, item in value.items())} }}"
     return str(value)
 
 
 def dumps(document: dict[str, Any], path: str = "") -> str:
-    """Format a document of nested tables as TOML; its keys must be bare keys."""
+    """Format a document of nested tables as TOML."""
     plain, tables = [], []
     for key, value in document.items():
         if isinstance(value, dict):
-            inside = dumps(value, f"{path}{key}.")
+            inside = dumps(value, f"{path}{_name(key)}.")
             needs_header = inside and not inside.startswith("\n")
-            tables.append(f"\n[{path}{key}]\n{inside}" if needs_header else inside)
+            tables.append(f"\n[{path}{_name(key)}]\n{inside}" if needs_header else inside)
         elif isinstance(value, list) and isinstance(value[0], dict):
-            tables += (f"\n[[{path}{key}]]\n{dumps(item)}" for item in value)
+            tables += (f"\n[[{path}{_name(key)}]]\n{dumps(item)}" for item in value)
         else:
-            plain.append(f"{key} = {inline(value)}\n")
+            plain.append(f"{_name(key)} = {inline(value)}\n")
     return "".join(plain + tables)
+
+
+def _name(key: str) -> str:
+    """A key, in quotes where TOML needs them."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else inline(key)

@@ -64,14 +64,14 @@ def test_grid_runs_in_c_order():
     assert read.case_list() == [
         Case(law, beta, 1e-4) for law in ("exponential", "coulomb") for beta in (1.0, 2.0)
     ]
-    shape, coordinates = read.case_coordinates()
-    assert shape == (2, 2, 1)
-    assert [dim for dim, _, _ in coordinates.values()] == [
-        "friction_law",
-        "beta",
-        "amplitude",
-        "beta",
-    ]
+    assert read.sweep.shape == (2, 2, 1)
+    dims = {name: dims for name, (dims, _, _) in read.case_coordinates().items()}
+    assert dims == {
+        "friction_law": ("friction_law",),
+        "beta": ("beta",),
+        "amplitude": ("amplitude",),
+        "frequency": ("beta",),
+    }
 
 
 def test_list_of_cases_stands_instead_of_a_grid():
@@ -79,10 +79,9 @@ def test_list_of_cases_stands_instead_of_a_grid():
     read = config.parse(text)
     beta = 2 * pi * 20 / read.sweep.omega_n
     assert read.case_list() == [Case("coulomb", 0.4, 3e-4), Case("coulomb", beta, 3e-4)]
-    assert not read.sweep.beta.size
-    shape, coordinates = read.case_coordinates()
-    assert shape == (2,)
-    assert {dim for dim, _, _ in coordinates.values()} == {"case"}
+    assert read.sweep.shape == (2,)
+    coordinates = read.case_coordinates()
+    assert {dims for dims, _, _ in coordinates.values()} == {("case",)}
     np.testing.assert_allclose(coordinates["frequency"][1][1], 20.0, rtol=1e-14)
     assert config.parse(read.to_toml()) == read
 

@@ -53,7 +53,8 @@ def test_template_stays_valid_with_its_cases_uncommented():
     before, after = config.template().split("\n[sweep]\n")
     cases = after[after.index("# [[sweep.case]]") :].split("\n\n")[0].splitlines()
     lines = [line.removeprefix("# ") for line in cases if not line.startswith(OTHERS)]
-    assert config.parse(before + "\n" + "\n".join(lines)).case_list() == [Case("coulomb", 0.4, 1e-3)]
+    expected = Case("coulomb", 0.4, 1e-3, (("suspension.wedge_angle_deg", 30.0),))
+    assert config.parse(before + "\n" + "\n".join(lines)).case_list() == [expected]
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)

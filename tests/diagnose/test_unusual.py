@@ -88,7 +88,7 @@ def test_a_model_with_effects_repeated_tests_and_one_that_sticks(measured):
     extended = config.load(out / "extended.toml")
     assert extended.effects["preload"] == {"force": 5.0}
     assert extended.effects["friction_level"]["scale"] == pytest.approx(0.8, abs=0.02)
-    assert len(extended.sweep.cases) == len(set(TESTS))
+    assert extended.sweep.count == len(set(TESTS))
     # The tests are steady, and so are the cases, whatever the model's own [solver] says.
     told = invoke("run", out / "extended.toml", "-o", measured.parent / "extended.nc", "--n-jobs", 1)
     assert f"{len(set(TESTS))} ok" in told

@@ -145,7 +145,7 @@ def test_every_case_is_in_one_chunk(shape, method):
 
 
 def test_rows_of_a_continuation_hold_all_frequencies():
-    rows, cases = Rows((2, 5, 3), continuation=True), np.arange(30).reshape(2, 5, 3)
+    rows, cases = Rows((2, 5, 3), along=1), np.arange(30).reshape(2, 5, 3)
     assert rows.cases(np.arange(rows.count)).tolist() == cases.swapaxes(1, 2).reshape(-1, 5).tolist()
     assert [rows.of(row).tolist() for row in rows.cases(np.arange(6))] == [[row] * 5 for row in range(6)]
     begun = np.append(rows.cases(np.array([1, 4])).ravel(), [0, 3])
@@ -166,15 +166,11 @@ def test_a_dataset_of_many_cases_is_summed_up_in_columns(tmp_path):
     records["status"], records["periodicity"], records["lift_off_fraction"] = 0, 0.0, 0.0
     records["status"][[5, 70_000]], records["message"][70_000] = 1, b"locks"
     records["periodicity"][:7] = 1.0
-    shape, coords = sweep.config.case_coordinates()
-    found = outcomes.of_dataset(
-        dataset.assemble(
-            records, dataset.coordinates(coords, sweep.sizes), shape, {}, labels.long_names(sweep.config)
-        )
-    )
+    coords = dataset.coordinates(sweep.config.case_coordinates(), sweep.sizes)
+    dims = dict(zip(sweep.config.sweep.dims, sweep.config.sweep.shape, strict=True))
+    found = outcomes.of_dataset(dataset.assemble(records, coords, dims, {}, labels.long_names(sweep.config)))
     assert {str(outcome): count for outcome, count in found.counts.items()} == {"ok": 89_998, "locked": 2}
     assert (found.unsettled, found.lifted, found.failures.tolist()) == (6, 0, [5, 70_000])
-    assert found[70_000].law == "coulomb"
+    assert found[70_000].case.law == "coulomb"
     assert str(found[70_000]).endswith("mm: locked: locks")
-    case = sweep.config.sweep.case(70_000)
-    assert (found[70_000].beta, found[70_000].amplitude) == (case.beta, case.amplitude)
+    assert found[70_000].case == sweep.config.sweep.case(70_000)

@@ -104,7 +104,7 @@ def _print_remarks(ds: "xr.Dataset") -> None:
 
 
 def _name(config_path: Path, settings: "Config") -> str:
-    law, beta, amplitude = settings.sweep.case(0)
+    law, beta, amplitude, _ = settings.sweep.case(0)
     length = f"{amplitude:.6g}rad" if settings.turns else f"{amplitude * 1e3:.6g}mm"
     size = f"{amplitude:.6g}N" if settings.forced else length
     return f"{config_path.stem}-{law}-{beta:.6g}-{size}"
@@ -130,7 +130,7 @@ def _print_numbers(ds: "xr.Dataset") -> None:
     from wedgesweep.sweep.variables import OF_LIFT_OFF, VARIABLES
 
     law, beta, amplitude = (ds[name].item() for name in ("friction_law", "beta", "amplitude"))
-    where = formatting.case(law, beta, amplitude, ds["amplitude"].attrs["units"])
+    where = formatting.case(law, beta, amplitude, unit=ds["amplitude"].attrs["units"])
     click.echo(f"{where}, {ds['frequency'].item():.6g} Hz")
     for variable in VARIABLES + OF_LIFT_OFF:
         if variable.dims or variable.name in ("status", "message") or variable.name not in ds:

@@ -122,17 +122,19 @@ def check(config_path: Path) -> None:
 
 
 def _grid(settings: "Config") -> str:
-    """Describe the number of cases as the product of the grid's axes."""
-    sweep, count = settings.sweep, settings.sweep.count
-    if sweep.cases is not None:
-        return f"{count}, listed individually"
-    parts = [formatting.counted(len(sweep.friction_law), "friction law")]
-    if settings.transient:
-        parts.append(formatting.counted(sweep.amplitude.size, "scale"))
-    else:
-        parts.append(formatting.counted(sweep.beta.size, "frequency", "frequencies"))
-        parts.append(formatting.counted(sweep.amplitude.size, "amplitude"))
-    return f"{count} = {' x '.join(parts)}"
+    """Describe the number of cases as the product of the sweep's axes."""
+    sweep = settings.sweep
+    if sweep.dims == ("case",):
+        return f"{sweep.count}, listed individually"
+    names = {"friction_law": "friction law", "beta": "frequency", "sample": "sample"}
+    parts = []
+    for dim, size in zip(sweep.dims, sweep.shape, strict=True):
+        name = names.get(dim, dim)
+        if dim in (*names, "frequency", "amplitude", "scale"):
+            parts.append(formatting.counted(size, name, "frequencies" if name == "frequency" else ""))
+        else:
+            parts.append(f"{size} of {name}")
+    return f"{sweep.count} = {' x '.join(parts)}"
 
 
 def _put(text: str, path: Path) -> None:

@@ -13,7 +13,7 @@ from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import DATASET, FiniteRange, GivenPath, require_place_for
-from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, transient
+from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, samples, transient
 from wedgesweep.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
 ALL = "all"
-OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS)
+OF_DATASETS = (*DESCRIPTIONS, *transient.DESCRIPTIONS, *samples.DESCRIPTIONS)
 # What drawing raises where a part of a diagnosis is missing or of another kind.
 DAMAGE = (LookupError, TypeError, AttributeError, AssertionError)
 # So many values are listed one by one.
@@ -44,6 +44,10 @@ For a dataset, KIND is one of
 \b
 For a dataset whose input does not repeat ([input] in its config), one of
 {_table(transient.DESCRIPTIONS)}
+
+\b
+For a dataset of samples ([sweep.sample] in its config), one of
+{_table(samples.DESCRIPTIONS)}
 
 \b
 For the directory of a diagnosis, one of
@@ -77,6 +81,23 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
     help="Input amplitude in mm or rad (of a force in N); the nearest one in OUT is drawn; may be repeated.",
 )
 @click.option("--law", help="Friction law to draw; default: all.")
+@click.option(
+    "--x",
+    metavar="AXIS",
+    help="Axis along x: a dimension of OUT such as frequency, or a key such as "
+    "suspension.wedge_angle_deg; map and lines draw over any.",
+)
+@click.option("--y", metavar="AXIS", help="Axis along y of a map.")
+@click.option("--color", metavar="AXIS", help="Axis that is the colour of lines.")
+@click.option("--facet", metavar="AXIS", help="Axis with a panel for each value.")
+@click.option("--variable", metavar="NAME", help="Variable to draw, as in OUT.")
+@click.option(
+    "--at",
+    metavar="AXIS=VALUE",
+    multiple=True,
+    help="Value of another axis, in its unit (amplitudes in mm or N); the nearest one in OUT is drawn; may "
+    "be repeated. Default: the middle, or where most cases slip.",
+)
 @click.pass_context
 def plot(
     ctx: click.Context,
@@ -147,6 +168,8 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
     import xarray as xr
 
     given = {name: value for name, value in picks.items() if value not in (None, ())}
+    if "at" in given:
+        given["at"] = _values(found, given["at"])
     if not isinstance(found, xr.Dataset):
         return given
     forced = found.attrs.get("excitation") == "force"
@@ -166,6 +189,26 @@ def _options(found: "xr.Dataset | DiagnosisResult", picks: dict[str, Any]) -> di
             _warn_unless_there(found, name, value, pick)
         given[pick.variable] = [value * pick.factor for value in values] if several else values * pick.factor
     return given
+
+
+def _values(found: "xr.Dataset | DiagnosisResult", texts: tuple[str, ...]) -> dict[str, float | str]:
+    """Values of axes out of texts such as "wedge_angle_deg=30", in the units of the dataset."""
+    import xarray as xr
+
+    values: dict[str, float | str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals:
+            message = f"--at {text}: not AXIS=VALUE"
+            raise click.UsageError(message)
+        try:
+            values[name] = float(value)
+        except ValueError:
+            values[name] = value
+    forced = isinstance(found, xr.Dataset) and found.attrs.get("excitation") == "force"
+    if isinstance(size := values.get("amplitude"), float) and not forced:
+        values["amplitude"] = size * 1e-3
+    return values
 
 
 def _warn_unless_there(ds: "xr.Dataset", name: str, value: float, pick: Pick) -> None:

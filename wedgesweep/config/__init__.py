@@ -1,17 +1,18 @@
 """Config of a sweep: TOML with the unit in every key, checked, and SI from here on."""
 
 import logging
-from collections.abc import Iterable, Mapping
-from math import isnan, sqrt
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isnan
 from pathlib import Path
 from typing import Any
 
 from wedgesweep import __version__, rotation, toml
-from wedgesweep.config import commented
-from wedgesweep.config.cases import AmplitudeUnit, Case, Cases
+from wedgesweep.config import commented, sample
+from wedgesweep.config.axes import ZIP, corners, is_model_key, with_nominal, with_numbers
+from wedgesweep.config.cases import NATURAL, AmplitudeUnit, Case, Cases, natural_frequency
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import root
-from wedgesweep.config.model import OSCILLATOR, UNIT_FREQUENCY, Config
+from wedgesweep.config.model import OSCILLATOR, Config
 from wedgesweep.config.turned import turned_root
 from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.inputs import record
@@ -58,20 +59,48 @@ def from_document(given: Mapping[str, Any], source: str = "<config>", directory:
         document = turned.back(table.read(given, "", problems))
         problems += map(rotation.text, _of_other_keys(problems, contradictions(document)))
     else:
-        document = root("input" in given).read(given, "", problems)
+        document = root("input" in given).read(with_nominal(given), "", problems)
         problems += _of_other_keys(problems, contradictions(document))
+    if not problems and rotation.turns(given) and _varied(document):
+        problems.append(
+            "sweep: numbers of an oscillator that turns do not vary in a sweep; run a config for each"
+        )
+    if not problems:
+        problems += _of_varied(document)
     recorded = document.get("input", {})
     if not problems and recorded.get("kind") == "record" and "sha256" not in recorded:
         problems += _located(recorded, directory)
     if problems:
         raise ConfigError([f"{source}: {problem}" for problem in problems])
-    document["sweep"].setdefault("omega_n_rad_per_s", _natural_frequency(document))
+    if not _varied(document).keys() & {key for keys in NATURAL.values() for key in keys}:
+        document["sweep"].setdefault("omega_n_rad_per_s", natural_frequency(document))
     if OSCILLATOR in document and "title" not in given:
         document["title"] = "friction oscillator" if not rotation.turns(document) else "rotor with friction"
     found = Config(document)
     if SOFTENING in found.effects and found.system != OSCILLATOR:
-        _require_rest(found, source)
+        for numbers in ({}, *corners(_varied(document))):
+            _require_rest(found, source, numbers)
     return found
+
+
+def _varied(document: Mapping[str, Any]) -> dict[str, Sequence[float]]:
+    """Values of the numbers of the model that a checked sweep varies, by dotted key."""
+    sweep = document["sweep"]
+    listed: dict[str, list[float]] = {}
+    for case in sweep.get("case", ()):
+        for key in filter(is_model_key, case):
+            listed.setdefault(key, []).append(case[key])
+    axes = {key: values for key, values in sweep.get("axes", {}).items() if key != ZIP}
+    return {**listed, **axes} | (sample.drawn(sweep["sample"]) if "sample" in sweep else {})
+
+
+def _of_varied(document: Mapping[str, Any]) -> Iterator[str]:
+    """Contradictions between numbers that the sweep varies, or of one of them with the rest."""
+    for numbers in corners(_varied(document)):
+        for problem in contradictions(with_numbers(document, numbers)):
+            where = ", ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
+            yield f"sweep, at {where}: {problem}"
+            return
 
 
 def _of_other_keys(problems: Iterable[str], found: Iterable[str]) -> list[str]:
@@ -91,18 +120,10 @@ def _located(recorded: dict[str, Any], directory: Path) -> list[str]:
     return []
 
 
-def _natural_frequency(document: Mapping[str, Any]) -> float:
-    """The omega_n (rad/s) that beta refers to; 1 Hz where there is no spring."""
-    own = document.get(OSCILLATOR)
-    if own is None:
-        own = document["suspension"]
-        return sqrt(own["bolster_spring_N_per_mm"] * 1e3 / own["bolster_mass_kg"])
-    return sqrt(own["spring_N_per_mm"] * 1e3 / own["mass_kg"]) or UNIT_FREQUENCY
-
-
-def _require_rest(found: Config, source: str) -> None:
+def _require_rest(found: Config, source: str, numbers: Mapping[str, float]) -> None:
     """Refuse springs that soften so much that they have no equilibrium under the weight."""
-    if isnan(found.record(Case("static-dynamic", 1.0, 1e-3))["geometry"]["rest"][0]):
+    case = Case("static-dynamic", 1.0, 1e-3, tuple(numbers.items()))
+    if isnan(found.record(case)["geometry"]["rest"][0]):
         problem = "leaves the springs no equilibrium under the weight; it must be larger"
         raise ConfigError([f"{source}: effects.{SOFTENING}.coefficient_N_per_mm3: {problem}"])
 

@@ -4,6 +4,7 @@ from typing import Any
 
 from wedgesweep import toml
 from wedgesweep.config import inputs
+from wedgesweep.config.axes import TABLES, WithNumbers
 from wedgesweep.config.keys import Key
 from wedgesweep.config.tables import GridOrList, Table, TableList
 
@@ -36,6 +37,9 @@ def _body(table: Table, path: str, mark: str) -> str:
         for key in group:
             off = mark or key is not written or (key.optional and path + key.key not in CHOSEN)
             lines.append(_entry(key, path, "# " if off else ""))
+    if isinstance(table, WithNumbers):
+        name, value = table.example
+        lines.append(f'# "{name}" = {toml.inline(value)}  # or any other number of {", ".join(TABLES)}\n')
     return "".join(lines)
 
 

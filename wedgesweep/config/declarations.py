@@ -1,10 +1,14 @@
 """Declaration of every config key with its default, range and meaning."""
 
+from collections.abc import Mapping
 from math import nan, sqrt
 from typing import Any
 
+from wedgesweep.config.axes import NO_NUMBER, TOGETHER, Axes, WithNumbers, numbers_of
 from wedgesweep.config.inputs import INPUT, SCALE
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
+from wedgesweep.config.sample import KEYS as SAMPLE_KEYS
+from wedgesweep.config.sample import Sample
 from wedgesweep.config.series import Series, Several
 from wedgesweep.config.tables import GridOrList, Table, TableList, table
 from wedgesweep.effects import EFFECTS
@@ -81,10 +85,7 @@ OMEGA_N_KEY = Number.of(OMEGA_N, optional=True, example=85.3565)
 
 LAWS_KEY = Several(key="friction_law", meaning="friction laws", item=LAW, example=list(LAW_NAMES))
 
-GRID = table(
-    "sweep",
-    "the cases: every law at every frequency and amplitude",
-    LAWS_KEY,
+INPUT_KEYS = (
     (
         _series(BETA, {"start": 0.1, "stop": 3.0, "num": 30}),
         _series(FREQUENCY, [20.0, 30.0]),
@@ -94,35 +95,70 @@ GRID = table(
         _series(AMPLITUDE, [0.005, 0.015, 0.1, 0.3, 1.0]),
         _series(FORCE_AMPLITUDE, [1.0, 2.0]),
     ),
-    OMEGA_N_KEY,
 )
 
-LISTED = table(
-    "sweep",
-    "a list of cases",
-    OMEGA_N_KEY,
-    EXCITATION,
-    TableList(
-        key="case",
-        meaning="one case each",
-        item=table(
-            "case",
-            "one case",
-            LAW,
-            (Number.of(BETA, example=0.4), Number.of(FREQUENCY, example=20.0)),
-            (Number.of(AMPLITUDE, example=1.0), Number.of(FORCE_AMPLITUDE, example=1.0)),
+
+def _grid(numbers: Mapping[str, Number], transient: bool) -> Table:
+    """[sweep] as a grid, under a sine or beside an [input]; ``numbers`` may vary."""
+    where = (
+        "under [input]: every law at every scale"
+        if transient
+        else "every law at every frequency and amplitude"
+    )
+    return table(
+        "sweep",
+        f"the cases {where}" if transient else f"the cases: {where}",
+        LAWS_KEY,
+        *((SCALE,) if transient else INPUT_KEYS),
+        OMEGA_N_KEY,
+        (
+            Axes(
+                key="axes",
+                meaning="other axes of the grid: values of numbers of the model",
+                groups=((TOGETHER,),),
+                numbers=numbers,
+                optional=True,
+                unknown=NO_NUMBER,
+                example=("suspension.wedge_angle_deg", {"start": 28, "stop": 45, "num": 18}),
+            ),
+            Sample(
+                key="sample",
+                meaning="instead of axes: samples of numbers of the model",
+                groups=tuple((key,) for key in SAMPLE_KEYS),
+                numbers=numbers,
+                optional=True,
+                unknown=NO_NUMBER,
+                example=("friction.dynamic", "0.29 +- 5 %"),
+            ),
         ),
-    ),
-)
+        unknown="no key of a [sweep] beside an [input]" if transient else Table.unknown,
+    )
 
-SCALED = table(
-    "sweep",
-    "the cases under [input]: every law at every scale",
-    LAWS_KEY,
-    SCALE,
-    OMEGA_N_KEY,
-    unknown="no key of a [sweep] beside an [input]",
-)
+
+def _listed(numbers: Mapping[str, Number]) -> Table:
+    """[sweep] as a list of cases."""
+    return table(
+        "sweep",
+        "a list of cases",
+        OMEGA_N_KEY,
+        EXCITATION,
+        TableList(
+            key="case",
+            meaning="one case each",
+            item=WithNumbers(
+                key="case",
+                meaning="one case",
+                groups=(
+                    (LAW,),
+                    (Number.of(BETA, example=0.4), Number.of(FREQUENCY, example=20.0)),
+                    (Number.of(AMPLITUDE, example=1.0), Number.of(FORCE_AMPLITUDE, example=1.0)),
+                ),
+                numbers=numbers,
+                example=("suspension.wedge_angle_deg", 30.0),
+            ),
+        ),
+    )
+
 
 SOLVER = table(
     "solver",
@@ -223,11 +259,25 @@ OSCILLATOR_TABLE = table(
 
 def root(transient: bool = False) -> Table:
     """The whole config, with the effects that are registered by now; ``transient``: it has an [input]."""
-    cases = GridOrList(key="sweep", meaning="the cases", grid=GRID, listed=LISTED, scaled=SCALED)
+    model = _model()
+    varying = numbers_of(model)
+    scaled = _grid(varying, transient=True)
+    grid, listed = _grid(varying, transient=False), _listed(varying)
+    cases = GridOrList(key="sweep", meaning="the cases", grid=grid, listed=listed, scaled=scaled)
+    title = Text(key="title", meaning="title of the sweep", default="wedge suspension")
+    return table("", "Config of wedgesweep", title, *model.groups, scaled if transient else cases, SOLVER)
+
+
+def numbers() -> dict[str, Number]:
+    """The numbers of models that a sweep may vary, by dotted key."""
+    return numbers_of(_model())
+
+
+def _model() -> Table:
+    """The tables of what is simulated."""
     return table(
         "",
-        "Config of wedgesweep",
-        Text(key="title", meaning="title of the sweep", default="wedge suspension"),
+        "the model and its input",
         (
             table(
                 "suspension",
@@ -266,6 +316,4 @@ def root(transient: bool = False) -> Table:
             default={},
         ),
         INPUT,
-        SCALED if transient else cases,
-        SOLVER,
     )

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from wedgesweep import rotation, toml
-from wedgesweep.config.cases import AmplitudeUnit, Case, Cases, of_sweep
+from wedgesweep.config.axes import dimension, with_numbers
+from wedgesweep.config.cases import UNIT_FREQUENCY, AmplitudeUnit, Case, Cases, natural_frequency, of_document
 from wedgesweep.config.contradictions import contradictions
+from wedgesweep.config.declarations import numbers
 from wedgesweep.config.input_contradictions import is_force
 from wedgesweep.effects import EFFECTS, go_together, jamming, lift_off, of_system
 from wedgesweep.effects.base import OSCILLATOR
@@ -25,8 +27,8 @@ from wedgesweep.simulate import Settings, Transient
 from wedgesweep.systems.oscillator import parameters as oscillator
 from wedgesweep.systems.suspension import parameters as suspension
 
-# What beta refers to where there is no spring: 1 Hz, in rad/s.
-UNIT_FREQUENCY = 2.0 * pi
+# Records of models that are kept (900 bytes each).
+MOST_KEPT = 4096
 
 
 @dataclass(frozen=True)
@@ -175,7 +177,7 @@ class Config:
 
     @cached_property
     def sweep(self) -> Cases:
-        return of_sweep(self.document["sweep"], self.transient)
+        return of_document(self.document)
 
     @cached_property
     def solver(self) -> Settings:
@@ -215,40 +217,74 @@ class Config:
 
     def case_list(self) -> list[Case]:
         """All cases, which may be many: ``sweep.case`` makes one of them."""
-        laws, *numbers = (each.tolist() for each in self.sweep.at(np.arange(self.sweep.count)))
-        return [Case(self.sweep.laws[law], *pair) for law, *pair in zip(laws, *numbers, strict=True)]
+        return [self.sweep.case(index) for index in range(self.sweep.count)]
 
-    def case_coordinates(
-        self,
-    ) -> tuple[tuple[int, ...], dict[str, tuple[str, Any, dict[str, str]]]]:
-        """Shape of the cases; dimension, values and attributes of their coordinates."""
+    def case_coordinates(self) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
+        """Coordinates of the cases: dimensions, values and attributes of each, by name."""
         sweep = self.sweep
-        if self.transient:
-            about = "what multiplies the input, or the start of a release"
-            return (len(sweep.friction_law), sweep.amplitude.size), {
-                "friction_law": ("friction_law", list(sweep.friction_law), {"long_name": "friction law"}),
-                "scale": ("scale", sweep.amplitude, {"units": "1", "long_name": about}),
-            }
-        if sweep.cases is None:
-            dims = ["friction_law", "beta", "amplitude"]
-            laws, betas, amplitudes = list(sweep.friction_law), sweep.beta, sweep.amplitude
-        else:
-            dims = ["case"] * 3
-            laws = [case.law for case in sweep.cases]
-            _, betas, amplitudes = sweep.at(np.arange(sweep.count))
-        frequencies = betas * sweep.omega_n / (2.0 * pi)
-        unit, amplitude = ("N", "amplitude of the force") if self.forced else ("m", "input amplitude a")
-        beta = "input frequency over 1 Hz" if self.has_no_spring else "input frequency over omega_n"
-        return sweep.shape, {
-            "friction_law": (dims[0], laws, {"long_name": "friction law"}),
-            "beta": (dims[1], betas, {"units": "1", "long_name": beta}),
-            "amplitude": (dims[2], amplitudes, {"units": unit, "long_name": amplitude}),
-            "frequency": (dims[1], frequencies, {"units": "Hz", "long_name": "input frequency"}),
-        }
+        names = {name: (axis.dim,) for axis in sweep.axes for name in axis.columns}
+        columns: dict[str, Any] = {name: (dims, sweep.column(name)) for name, dims in names.items()}
+        if not self.transient:
+            columns |= self._frequencies(columns)
+        found = {dimension(name): (*column, self._about(name)) for name, column in columns.items()}
+        found["friction_law"] = (found["friction_law"][0], list(sweep.friction_law), found["friction_law"][2])
+        return found
+
+    def _frequencies(self, columns: Mapping[str, Any]) -> dict[str, Any]:
+        """Dimensions and values of beta or frequency, which is no column, and of omega_n if it varies."""
+        sweep = self.sweep
+        natural = [key for key, _ in sweep.natural if key in sweep.places]
+        dims, indices = sweep.along(("beta", "frequency", *natural))
+        found: dict[str, Any] = {}
+        if "beta" not in columns:
+            found["beta"] = dims, sweep.betas(indices)
+        if "frequency" not in columns:
+            found["frequency"] = dims, sweep.betas(indices) * sweep.omega_ns(indices) / (2.0 * pi)
+        if natural:
+            dims, indices = sweep.along(natural)
+            found["omega_n"] = dims, sweep.omega_ns(indices)
+        return found
+
+    def _about(self, name: str) -> dict[str, str]:
+        """Attributes of a coordinate."""
+        if name in self.sweep.keys:
+            number = numbers()[name]
+            return {"units": number.quantity.unit, "long_name": number.meaning, "key": name}
+        force = self.forced and not self.transient
+        return {
+            "friction_law": {"long_name": "friction law"},
+            "scale": {"units": "1", "long_name": "what multiplies the input, or the start of a release"},
+            "beta": {
+                "units": "1",
+                "long_name": f"input frequency over {'1 Hz' if self.has_no_spring else 'omega_n'}",
+            },
+            "frequency": {"units": "Hz", "long_name": "input frequency"},
+            "amplitude": {
+                "units": "N" if force else "m",
+                "long_name": "amplitude of the force" if force else "input amplitude a",
+            },
+            "omega_n": {"units": "rad s-1", "long_name": "omega_n that beta refers to"},
+        }[name]
 
     def record(self, case: Case) -> np.ndarray:
         """Parameter record of a case, shape (1,)."""
-        return self.record_with(self.effects, case.law, case.amplitude, case.beta * self.sweep.omega_n)
+        model = self.at(dict(case.numbers))
+        return model.record_with(model.effects, case.law, case.amplitude, case.beta * model.omega_n)
+
+    def at(self, numbers: Mapping[str, float]) -> "Config":
+        """The config of a model with other numbers, by dotted key; its sweep stays what it is."""
+        return Config(with_numbers(self.document, numbers)) if numbers else self
+
+    def alone(self, numbers: Mapping[str, float]) -> "Config":
+        """The config of a model with these numbers whose sweep varies nothing else."""
+        changed = self.at(numbers)
+        rest = {key: each for key, each in self.document["sweep"].items() if key not in ("axes", "sample")}
+        return Config(changed.document | {"sweep": {**rest, "omega_n_rad_per_s": changed.omega_n}})
+
+    @property
+    def omega_n(self) -> float:
+        """What beta refers to (rad/s) for the nominal model."""
+        return self.document["sweep"].get("omega_n_rad_per_s") or natural_frequency(self.document)
 
     def record_with(
         self, effects: Mapping[str, Mapping[str, float]], law: str, amplitude: float = 1.0, omega: float = 1.0
@@ -265,10 +301,15 @@ class Config:
         return self.excitation == "force"
 
     @property
+    def case_unit(self) -> str:
+        """SI unit of the amplitude of a case; none of the scale of an [input]."""
+        return "" if self.transient else "N" if self.forced else "m"
+
+    @property
     def has_no_spring(self) -> bool:
         """Whether there is no natural frequency that frequencies could be compared with."""
-        own, omega_n = self.document.get(OSCILLATOR, {}), self.document["sweep"]["omega_n_rad_per_s"]
-        return own.get("spring_N_per_mm") == 0.0 and omega_n == UNIT_FREQUENCY
+        own = self.document.get(OSCILLATOR, {})
+        return own.get("spring_N_per_mm") == 0.0 and self.omega_n == UNIT_FREQUENCY
 
     @property
     def amplitude_unit(self) -> AmplitudeUnit:
@@ -296,17 +337,40 @@ class Config:
     def records(self, indices: np.ndarray | None = None) -> np.ndarray:
         """Parameter records of the cases of these indices, shape (n,); by default of all."""
         sweep = self.sweep
-        laws, betas, amplitudes = sweep.at(np.arange(sweep.count) if indices is None else indices)
-        records = self.records_of_laws[laws]
-        # Only amplitude and frequency differ between the cases of a law.
+        indices = np.arange(sweep.count) if indices is None else indices
+        laws, omegas, amplitudes = sweep.at(indices)
+        # Only amplitude and frequency differ between the cases of a law and a model.
+        models, places = np.unique(
+            np.column_stack([laws, sweep.varying(indices)]), axis=0, return_inverse=True
+        )
+        records = np.concatenate([self._of_model(int(law), *rest) for law, *rest in models.tolist()])
+        records = records[places.ravel()]
         records["input"]["amplitude"] = amplitudes
-        records["input"]["omega"] = betas * sweep.omega_n
+        records["input"]["omega"] = omegas
         return records
+
+    def _of_model(self, law: int, *numbers: float) -> np.ndarray:
+        """Parameter record, shape (1,), of a law and a model, whose numbers are those of ``sweep.keys``."""
+        kept = self._records_of_models
+        if (law, *numbers) not in kept:
+            if len(kept) >= MOST_KEPT:
+                kept.clear()
+            named = tuple(zip(self.sweep.keys, numbers, strict=True))
+            kept[law, *numbers] = self.record(Case(self.sweep.laws[law], 1.0, 1.0, named))
+        return kept[law, *numbers]
+
+    @cached_property
+    def _records_of_models(self) -> dict[tuple[float, ...], np.ndarray]:
+        return {}
 
     @cached_property
     def records_of_laws(self) -> np.ndarray:
-        """Parameter records of one case of each of ``sweep.laws``."""
-        return np.concatenate([self.record(Case(law, 1.0, 1.0)) for law in self.sweep.laws])
+        """Parameter records of each law, of the nominal model and of the ends of what varies."""
+        columns = {key: self.sweep.column(key) for key in self.sweep.keys}
+        ends = [tuple((key, end(each).item()) for key, each in columns.items()) for end in (np.min, np.max)]
+        models = dict.fromkeys([(), *ends])
+        cases = [Case(law, 1.0, 1.0, numbers) for law in self.sweep.laws for numbers in models]
+        return np.concatenate([self.record(case) for case in cases])
 
     def to_toml(self) -> str:
         """The resolved config with every key, ranges expanded; ``parse`` of it gives the same config."""
@@ -343,7 +407,9 @@ class Config:
 
     @property
     def sha256(self) -> str:
-        return sha256(self.to_toml().encode()).hexdigest()
+        """Digest of all but the title, on which no result depends."""
+        rest = {key: value for key, value in self.document.items() if key != "title"}
+        return sha256(toml.dumps(rest).encode()).hexdigest()
 
 
 def _si(quantities: Iterable[Quantity], given: Mapping[str, float]) -> dict[str, float]:

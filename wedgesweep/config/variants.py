@@ -1,6 +1,10 @@
 """Other configs made of one: with another solver, or of a single case."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from wedgesweep.config import Config, from_document
+from wedgesweep.config.axes import with_numbers
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.errors import ConfigError
 
@@ -20,11 +24,12 @@ def single_case(
     frequency_hz: float | None,
     law: str | None,
     amplitude_N: float | None = None,
+    numbers: Mapping[str, float] = MappingProxyType({}),
 ) -> Config:
     """The same config with a grid of one case, whose waveforms are kept; raises ConfigError.
 
     Either ``beta`` or ``frequency_hz`` is given, and one of the amplitudes; ``law`` is by default the
-    config's first.
+    config's first. ``numbers`` of the model, by dotted key, are by default its nominal ones.
     """
     given = {
         "friction_law": law.lower() if law else config.sweep.laws[0],
@@ -33,12 +38,12 @@ def single_case(
         "excitation": config.document["sweep"].get("excitation"),
         "amplitude_mm": amplitude_mm,
         "amplitude_N": amplitude_N,
-        "omega_n_rad_per_s": None if config.has_no_spring else config.sweep.omega_n,
+        "omega_n_rad_per_s": config.document["sweep"].get("omega_n_rad_per_s"),
     }
     grid = {key: value for key, value in given.items() if value is not None}
     if config.transient:
         problem = "input: a single case is of a sine; remove [input], or use 'wedgesweep run'"
         raise ConfigError([problem])
     solver = config.document["solver"] | {"keep_waveforms": True, "continuation": False}
-    single = Config(config.document | {"sweep": grid, "solver": solver})
-    return from_document(single.written, "case")
+    document = with_numbers(config.document, numbers) | {"sweep": grid, "solver": solver}
+    return from_document(Config(document).written, "case")

@@ -1,9 +1,9 @@
 """Figures of a sweep's dataset and of a diagnosis, one figure per file.
 
-A file here (in ``transient/`` where the input does not repeat, in ``diagnosis/`` of a diagnosis) that defines
-``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)`` is a figure; no list names it. ``NEEDS`` names
-the variables and attributes that it needs of a dataset. The keywords of ``draw`` are the figure's options, in
-SI units as the dataset is; mm exist on axes only.
+A file here (in ``transient/`` where the input does not repeat, in ``samples/`` of samples, in
+``diagnosis/``) that defines ``NAME``, ``DESCRIPTION`` and ``draw(target, data, **picks)`` is a figure; no
+list names it. ``NEEDS`` names the variables and attributes that it needs of a dataset. The keywords of
+``draw`` are the figure's options, in SI units as the dataset is; mm exist on axes only.
 """
 
 import io
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wedgesweep import rotation
-from wedgesweep.figures import catalogue, diagnosis, transient
+from wedgesweep.figures import catalogue, diagnosis, samples, transient
 from wedgesweep.files import written
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 FORMATS = (".png", ".pdf", ".svg")
 DOTS_PER_INCH = 200
-# The pick that figures of all datasets share.
-LAW = "law"
+# The picks that figures of all datasets share: a law, and values of axes by name.
+LAW, AT = "law", "at"
 
 FIGURES = catalogue.declared(Path(__file__).parent, __name__)
 DESCRIPTIONS = {name: kind.description for name, kind in FIGURES.items()}
@@ -56,7 +56,8 @@ def draw(
     **picks
         Options of the figure, by the names that ``figures.FIGURES[name].picks`` lists: ``beta`` (frequency
         ratio), ``amplitude`` or ``amplitudes`` (m) of a dataset, ``tests`` (indices) of a diagnosis; and
-        ``law`` of any dataset. The nearest values that the data hold are drawn, if they are near.
+        ``law`` and ``at`` (values of axes by name) of any dataset. The nearest values that the data hold are
+        drawn, if they are near.
 
     Returns
     -------
@@ -71,7 +72,7 @@ def draw(
     """
     import xarray as xr
 
-    from wedgesweep.figures import cases
+    from wedgesweep.figures import cases, models
 
     kinds = of(data)
     if name not in kinds:
@@ -82,10 +83,15 @@ def draw(
         _require_known(picks, options(kind))
         checked = data
         if isinstance(data, xr.Dataset):
+            if not kind.any_axes:
+                data = models.of_one(data, picks.pop(AT, {}))
             checked = cases.checked(data, kind.needs, kind.case_lists)
             if (law := picks.pop(LAW, None)) is not None:
                 checked = cases.of_law(checked, law)
         panels = kind.load().draw(figure if ax is None else ax, checked, **picks)
+        if isinstance(checked, xr.Dataset):
+            named = (str(checked.attrs.get(name, "")) for name in ("title", "model"))
+            panels.head("; ".join(filter(None, named)))
     except ValueError as error:
         message = f"{name}: {error}"
         raise ValueError(message) from error
@@ -114,7 +120,11 @@ def _relabel(figure: "Figure | SubFigure") -> None:
 
 def options(kind: catalogue.FigureKind) -> tuple[str, ...]:
     """Names of the picks of a figure: a law of any dataset, and its own."""
-    return kind.picks if kind.module.startswith(diagnosis.__name__) else (*kind.picks, LAW)
+    return (
+        kind.picks
+        if kind.module.startswith(diagnosis.__name__)
+        else tuple(dict.fromkeys((*kind.picks, LAW, AT)))
+    )
 
 
 def _require_known(picks: Mapping[str, Any], known: Sequence[str]) -> None:
@@ -130,6 +140,8 @@ def of(data: "xr.Dataset | DiagnosisResult") -> dict[str, catalogue.FigureKind]:
 
     if isinstance(data, DiagnosisResult):
         return diagnosis.FIGURES
+    if "sample" in data.dims:
+        return samples.FIGURES
     return transient.FIGURES if "scale" in data.coords else FIGURES
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-CONSTANTS = ("NAME", "DESCRIPTION", "NEEDS", "CASE_LISTS")
+CONSTANTS = ("NAME", "DESCRIPTION", "NEEDS", "CASE_LISTS", "ANY_AXES")
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,8 @@ class FigureKind:
     """A figure as its file declares it.
 
     ``needs`` are the variables and attributes that a sweep's dataset must have, and ``case_lists`` tells
-    whether the figure also draws a dataset that is a list of cases instead of a grid.
+    whether the figure also draws a dataset that is a list of cases instead of a grid; ``any_axes``, whether
+    it draws several models at once.
     """
 
     name: str
@@ -24,6 +25,7 @@ class FigureKind:
     module: str
     needs: tuple[str, ...] = ()
     case_lists: bool = False
+    any_axes: bool = False
 
     @property
     def picks(self) -> tuple[str, ...]:

@@ -38,6 +38,15 @@ class Panels:
             ax.set_title(ax.get_title() or self._wrapped(what, ax.bbox.width), fontsize=10)
             return
         lines = [self._wrapped(text, self.figure.bbox.width) for text in (what, note) if text]
+        self._write(lines)
+
+    def head(self, study: str) -> None:
+        """Put the title of the sweep above what the figure shows; given axes do not show it."""
+        if study and not self.embedded:
+            shown = self.figure.get_suptitle()
+            self._write([self._wrapped(study, self.figure.bbox.width), *([shown] if shown else [])])
+
+    def _write(self, lines: Sequence[str]) -> None:
         # Where nothing lays the figure out, the title stays at the same distance from its upper edge.
         free = self.figure.get_layout_engine() is None
         height = self.figure.bbox.height / self.figure.dpi

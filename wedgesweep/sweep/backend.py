@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import joblib
+import numpy as np
 
 from wedgesweep import plugins
 from wedgesweep.errors import SweepError
@@ -95,8 +96,16 @@ def _joblib(**options: Any) -> Solve:
 
 
 def count_jobs(n_jobs: int | None) -> int:
-    """Return the number of jobs: as given, or one for each processor that this process may use."""
-    return n_jobs or joblib.cpu_count()
+    """Return the number of jobs: as given, or one for each processor that this process may use.
+
+    Raises SweepError if it is no whole number of at least 1.
+    """
+    if n_jobs is None:
+        return joblib.cpu_count()
+    if isinstance(n_jobs, bool) or not isinstance(n_jobs, int | np.integer) or n_jobs < 1:
+        message = f"n_jobs: {n_jobs!r} is no number of jobs; write 1 or more, or None for one per processor"
+        raise SweepError(message)
+    return int(n_jobs)
 
 
 def local(method: str) -> Backend:

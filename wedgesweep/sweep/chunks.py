@@ -1,7 +1,7 @@
 """Chunks of a sweep's cases for the jobs, made one at a time: cases are counted, not listed.
 
-Cases that depend on each other form a row: in a continuation all frequencies of one law and amplitude,
-otherwise each case is a row by itself.
+Cases that depend on each other form a row: in a continuation all frequencies of otherwise equal cases, else
+each case is a row by itself.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,15 +17,20 @@ CHUNK, CHUNKS = 200, 64
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows of a sweep whose case dimensions have the sizes ``shape``."""
+    """The rows of a sweep whose axes have the sizes ``shape``; ``along``: the axis of a row, if any."""
 
     shape: tuple[int, ...]
-    continuation: bool = False
+    along: int | None = None
 
     @property
     def width(self) -> int:
         """Number of cases of a row."""
-        return self.shape[1] if self.continuation else 1
+        return 1 if self.along is None else self.shape[self.along]
+
+    @property
+    def stride(self) -> int:
+        """Difference between the indices of neighbours in a row."""
+        return 1 if self.along is None else prod(self.shape[self.along + 1 :])
 
     @property
     def count(self) -> int:
@@ -34,18 +39,13 @@ class Rows:
 
     def cases(self, rows: np.ndarray) -> np.ndarray:
         """Indices of the cases of some rows, shape (n, width)."""
-        if not self.continuation:
-            return rows[:, None]
-        _, frequencies, amplitudes = self.shape
-        law, amplitude = np.divmod(rows[:, None], amplitudes)
-        return (law * frequencies + np.arange(frequencies)) * amplitudes + amplitude
+        before, after = np.divmod(rows[:, None], self.stride)
+        return (before * self.width + np.arange(self.width)) * self.stride + after
 
     def of(self, indices: np.ndarray) -> np.ndarray:
         """Row that each case belongs to."""
-        if not self.continuation:
-            return indices
-        law, _, amplitude = np.unravel_index(indices, self.shape)
-        return law * self.shape[2] + amplitude
+        before, after = np.divmod(indices, self.width * self.stride)
+        return before * self.stride + after % self.stride
 
     def complete(self, indices: np.ndarray) -> np.ndarray:
         """Rows all of whose cases are among these different ones, in increasing order."""

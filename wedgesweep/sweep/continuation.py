@@ -1,7 +1,7 @@
 """Sweeps up and down in beta: each case starts from the steady state of its neighbour.
 
-Which of several coexisting responses is found depends on the initial state. A row holds the cases of one law
-and one amplitude at all frequencies. It is run up and then down in beta: the sweep up starts from rest, the
+Which of several coexisting responses is found depends on the initial state. A row holds the cases of one law,
+model and amplitude at all frequencies. It is run up and then down in beta: the sweep up starts from rest, the
 sweep down from the end of the sweep up. Each case starts from the state of the one before it at phase 0 of
 the input, or from rest if that case failed.
 """
@@ -36,11 +36,14 @@ def solve_rows(cases: np.ndarray, indices: np.ndarray, settings: Settings, dtype
 
 
 def _rows(cases: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield the indices of the cases of each law and amplitude, sorted by frequency."""
-    given, law = cases["input"], cases["friction"]["law"]
-    order = np.lexsort((given["omega"], given["amplitude"], law))
-    ends = (np.diff(law[order]) != 0) | (np.diff(given["amplitude"][order]) != 0.0)
-    yield from np.split(order, np.flatnonzero(ends) + 1)
+    """Yield the indices of the cases that differ in frequency only, sorted by it."""
+    rest = cases.copy()
+    rows: dict[bytes, list[int]] = {}
+    rest["input"]["omega"] = 0.0
+    for place, record in enumerate(rest):
+        rows.setdefault(record.tobytes(), []).append(place)
+    for row in map(np.array, rows.values()):
+        yield row[np.argsort(cases["input"]["omega"][row])]
 
 
 def up_and_down(row: np.ndarray) -> np.ndarray:

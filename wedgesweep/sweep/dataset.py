@@ -32,23 +32,22 @@ log = logging.getLogger(__name__)
 def assemble(
     records: np.ndarray,
     coords: Mapping[str, Any],
-    shape: tuple[int, ...],
+    case_dims: Mapping[str, int],
     attrs: Mapping[str, Any],
     long_names: Mapping[str, str],
 ) -> "xr.Dataset":
     """Assemble the dataset from the records of all cases, in any order.
 
-    ``shape`` holds the sizes of the case dimensions: three for a grid (friction_law, beta, amplitude), two
-    where the input does not repeat (friction_law, scale), one for a list (case). ``long_names``: of the
-    variables that the system has.
+    ``case_dims``: names and sizes of the axes of the sweep; ``long_names``: of the variables that the system
+    has.
     """
     import xarray as xr
 
-    case_dims: tuple[str, ...] = {3: GRID, 2: SCALED, 1: ("case",)}[len(shape)]
     in_order = (records["index"][:-1] <= records["index"][1:]).all()
     ordered = records if in_order else records[np.argsort(records["index"])]
     variables = {}
-    for variable in TRANSIENT if case_dims == SCALED else VARIABLES + OF_LIFT_OFF + CONTINUED:
+    dims, shape = tuple(case_dims), tuple(case_dims.values())
+    for variable in TRANSIENT if "scale" in dims else VARIABLES + OF_LIFT_OFF + CONTINUED:
         if variable.name not in (records.dtype.names or ()) or variable.name not in long_names:
             continue
         values = ordered[variable.name]
@@ -56,7 +55,7 @@ def assemble(
             values = np.array([text.decode("utf-8", "replace") for text in values.tolist()], object)
         values = values.reshape(shape + values.shape[1:])
         about = _attributes(variable, long_names[variable.name])
-        variables[variable.name] = (case_dims + variable.dims, values, about)
+        variables[variable.name] = (dims + variable.dims, values, about)
     return xr.Dataset(variables, coords, {"Conventions": "CF-1.13", **attrs})
 
 
@@ -153,21 +152,22 @@ def _faults(ds: "xr.Dataset") -> Iterator[str]:
     """What tells a dataset from that of a sweep: coordinates, dimensions, and the kinds of its variables."""
     if not isinstance(ds.attrs.get("config", ""), str):
         yield "its attribute config is no text"
-    if "scale" in ds.coords:
-        yield from (f"no coordinate {name}" for name in SCALED if name not in ds.coords)
-        yield from (f"no variable {name}" for name in ("status", "message") if name not in ds)
-        known = {variable.name: variable for variable in TRANSIENT}
-        yield from _shape_faults(ds, known, SCALED, SCALED)
-        return
-    if not isinstance(ds.attrs.get("omega_n"), float):
+    scaled = "scale" in ds.coords
+    if not (scaled or isinstance(ds.attrs.get("omega_n"), float)):
         yield "its attribute omega_n is no number"
-    yield from (f"no coordinate {name}" for name in (*GRID, "frequency") if name not in ds.coords)
-    yield from (f"no variable {name}" for name in REQUIRED if name not in ds)
-    if "beta" not in ds.coords:
-        return
-    case_dims = ("case",) if ds["beta"].dims == ("case",) else GRID
-    known = {variable.name: variable for variable in VARIABLES + OF_LIFT_OFF + CONTINUED}
-    yield from _shape_faults(ds, known, case_dims, (*GRID, "frequency"))
+    coords = SCALED if scaled else (*GRID, "frequency")
+    yield from (f"no coordinate {name}" for name in coords if name not in ds.coords)
+    required = ("status", "message") if scaled else REQUIRED
+    yield from (f"no variable {name}" for name in required if name not in ds)
+    if "status" in ds and "friction_law" in ds.coords:
+        variables = TRANSIENT if scaled else VARIABLES + OF_LIFT_OFF + CONTINUED
+        known = {variable.name: variable for variable in variables}
+        yield from _shape_faults(ds, known, _case_dims(ds), coords)
+
+
+def _case_dims(ds: "xr.Dataset") -> tuple[str, ...]:
+    """The dimensions of the cases: those of the status that are coordinates, or a list or samples."""
+    return tuple(str(dim) for dim in ds["status"].dims if dim in ds.coords or dim in ("case", "sample"))
 
 
 def _shape_faults(
@@ -175,11 +175,11 @@ def _shape_faults(
 ) -> Iterator[str]:
     """What is wrong with dimensions and types of known variables and of coordinates."""
     for name in [each for each in ds.variables if each in known or each in coords]:
-        found = ds[name]
-        dims, kinds = _expected(str(name), known.get(str(name)), case_dims)
+        found, variable = ds[name], known.get(str(name))
+        dims = case_dims + variable.dims if variable else tuple(dim for dim in case_dims if dim in found.dims)
         if found.dims != dims:
             yield f"{name} has the dimensions {', '.join(map(str, found.dims))}, not {', '.join(dims)}"
-        elif found.dtype.kind not in kinds:
+        elif found.dtype.kind not in ("OUT" if _is_text(str(name), variable) else "bfiu"):
             yield f"{name} holds {found.dtype}"
         elif not found.size:
             yield f"{name} is empty"
@@ -187,14 +187,8 @@ def _shape_faults(
             yield f"{name} holds numbers without a meaning"
 
 
-def _expected(
-    name: str, variable: Variable | None, case_dims: tuple[str, ...]
-) -> tuple[tuple[str, ...], str]:
-    """Dimensions of a variable or coordinate, and the kinds of numpy types that it may have."""
-    if variable is None:
-        own = {"frequency": "beta"}.get(name, name)
-        return (own if len(case_dims) > 1 else "case",), "OUT" if name == "friction_law" else "bfiu"
-    return case_dims + variable.dims, "OUT" if variable.dtype == "str" else "bfiu"
+def _is_text(name: str, variable: Variable | None) -> bool:
+    return variable.dtype == "str" if variable else name == "friction_law"
 
 
 def _reason(error: Exception) -> str:

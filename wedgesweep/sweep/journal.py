@@ -16,7 +16,7 @@ from zlib import crc32
 import numpy as np
 
 from wedgesweep.errors import MismatchError, SweepError
-from wedgesweep.files import json_object, naming, read_bytes, regular
+from wedgesweep.files import json_object, naming, read_bytes, regular, written
 from wedgesweep.sweep.fingerprint import differences
 
 try:
@@ -90,6 +90,17 @@ def discard(path: Path) -> None:
         path.unlink()
     finally:
         os.close(file)
+
+
+def rewrite(path: Path, records: np.ndarray, header: dict[str, str]) -> None:
+    """Put a journal of these records in the place of another one that no run has open, or of none."""
+    file = _locked(path) if path.exists() else None
+    try:
+        with written(path) as temporary, Journal(temporary, records.dtype, header) as made:
+            made.append(records)
+    finally:
+        if file is not None:
+            os.close(file)
 
 
 def header(path: Path) -> dict[str, str]:

@@ -78,7 +78,7 @@ def _reference(config: Config) -> str:
     if not config.forced:
         return "the amplitude of u"
     sprung = config.oscillator["spring"] > 0.0
-    unforced = not config.sweep.amplitude.any() and config.sweep.cases is None
+    unforced = not config.sweep.amplitude.any() and "case" not in config.sweep.dims
     if unforced:
         return "belt velocity over " + ("omega_n" if sprung else "omega")
     return "force amplitude over " + ("k" if sprung else "m omega^2")

@@ -3,13 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from wedgesweep import formatting
 from wedgesweep.outcome import Outcome, settled
+
+if TYPE_CHECKING:
+    from wedgesweep.config import Case
 
 LIFT_OFF = "lift_off_fraction"
 # A variable of unilateral joints.
@@ -19,14 +22,12 @@ COLUMNS = ("status", "period", "periodicity", LIFT_OFF)
 
 
 class CaseResult(NamedTuple):
-    """How one case ended; amplitude in ``unit``, m or N, or "" for the scale of an input.
+    """How one case ended; its amplitude is in ``unit``, m or N, or "" for the scale of an input.
 
     ``period``, ``periodicity`` and ``lift_off_fraction`` are the dataset's variables of these names.
     """
 
-    law: str
-    beta: float
-    amplitude: float
+    case: "Case"
     status: Outcome
     message: str
     period: int
@@ -45,7 +46,7 @@ class CaseResult(NamedTuple):
         return self.lift_off_fraction > 0.0
 
     def __str__(self) -> str:
-        where = formatting.case(self.law, self.beta, self.amplitude, self.unit)
+        where = formatting.case(*self.case, unit=self.unit)
         return f"{where}: {self.status}: {self.message}"
 
 
@@ -53,24 +54,22 @@ class CaseResult(NamedTuple):
 class Outcomes:
     """How cases ended: columns, shape (n,), as a sweep may have millions of cases.
 
-    ``describe_case`` gives law, beta, amplitude, unit and message of one of them.
+    ``describe_case`` gives one of them, the unit of its amplitude, and its message.
     """
 
     status: np.ndarray
     period: np.ndarray
     periodicity: np.ndarray
     lift_off_fraction: np.ndarray
-    describe_case: Callable[[int], tuple[str, float, float, str, str]]
+    describe_case: Callable[[int], "tuple[Case, str, str]"]
 
     def __len__(self) -> int:
         return len(self.status)
 
     def __getitem__(self, place: int) -> CaseResult:
-        law, beta, amplitude, unit, message = self.describe_case(place)
+        case, unit, message = self.describe_case(place)
         return CaseResult(
-            law,
-            beta,
-            amplitude,
+            case,
             Outcome(self.status[place]),
             message,
             int(self.period[place]),
@@ -106,32 +105,26 @@ def of_dataset(ds: xr.Dataset) -> Outcomes:
     """How each case of a dataset ended."""
     if LIFT_OFF not in ds or OPENS in ds:  # normal forces are given, or joints may lift off
         ds = ds.assign({LIFT_OFF: xr.zeros_like(ds["status"], float)})
-    if "scale" in ds.coords:
-        return _of_transients(ds)
-    unit = ds["amplitude"].attrs.get("units", "m")
+    scaled = "scale" in ds.coords
+    size = "scale" if scaled else "amplitude"
+    unit = "" if scaled else ds[size].attrs.get("units", "m")
+    keys = {name: ds[name].attrs["key"] for name in ds.coords if "key" in ds[name].attrs}
+    names = ["friction_law", *(["beta"] * (not scaled)), size, "message", *keys]
     shape, dims = ds["status"].shape, ds["status"].dims
 
-    def described(place: int) -> tuple[str, float, float, str, str]:
+    def described(place: int) -> "tuple[Case, str, str]":
+        # It takes a second to load, and most sweeps have no case to name.
+        from wedgesweep.config import Case
+
         at = dict(zip(dims, (int(each) for each in np.unravel_index(place, shape)), strict=True))
-        case = ds[["friction_law", "beta", "amplitude", "message"]].isel(at)
-        law, beta, amplitude, message = (
-            case[name].item() for name in ("friction_law", "beta", "amplitude", "message")
-        )
-        return law, beta, amplitude, unit, message
+        here = ds[names].isel(at)
+        found = {name: here[name].item() for name in names}
+        numbers = tuple((key, found[name]) for name, key in keys.items())
+        case = Case(found["friction_law"], found.get("beta", 1.0), found[size], numbers)
+        return case, unit, found["message"]
 
-    columns = {name: ds[name].values.ravel() for name in COLUMNS}
+    columns = {name: ds[name].values.ravel() for name in COLUMNS if name in ds}
+    if scaled:  # nothing has to settle
+        nothing = np.zeros(ds["status"].size)
+        columns |= {"period": nothing + 1.0, "periodicity": nothing}
     return Outcomes(**columns, describe_case=described)
-
-
-def _of_transients(ds: xr.Dataset) -> Outcomes:
-    """How each case of a dataset ended whose input does not repeat."""
-    shape, nothing = ds["status"].shape, np.zeros(ds["status"].size)
-
-    def described(place: int) -> tuple[str, float, float, str, str]:
-        law, scale = np.unravel_index(place, shape)
-        case = ds[["friction_law", "scale", "message"]].isel(friction_law=int(law), scale=int(scale))
-        return case["friction_law"].item(), 1.0, case["scale"].item(), "", case["message"].item()
-
-    # Nothing has to settle.
-    status, lifted = ds["status"].values.ravel(), ds[LIFT_OFF].values.ravel()
-    return Outcomes(status, nothing + 1.0, nothing, lifted, described)

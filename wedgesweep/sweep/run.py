@@ -6,29 +6,27 @@ from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
-from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wedgesweep import formatting, rotation
-from wedgesweep.config import Case, Config
+from wedgesweep import config, formatting, rotation
+from wedgesweep.config import Config
+from wedgesweep.config.physics import physics
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
 from wedgesweep.processes import interrupts_ignored
 from wedgesweep.simulate import Settings
-from wedgesweep.sweep import dataset, journal, labels, provenance, transients, variables
+from wedgesweep.sweep import dataset, growth, journal, labels, provenance, transients, variables
 from wedgesweep.sweep.backend import Backend, Pool, local
 from wedgesweep.sweep.cases import Chunk, compile_once, solve_cases
 from wedgesweep.sweep.chunks import Rows
 from wedgesweep.sweep.fingerprint import differences, fingerprint
 from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.workers import Workers
-from wedgesweep.systems import has_own_mechanics, kits
-from wedgesweep.systems.oscillator import parameters as oscillator
-from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
+from wedgesweep.systems import kits
 
 # Not needed until there are results; it takes a third of a second to load.
 if TYPE_CHECKING:
@@ -85,7 +83,9 @@ class Sweep:
     @property
     def rows(self) -> Rows:
         """The cases, those together that depend on each other."""
-        return Rows(self.config.sweep.shape, self.settings.continuation)
+        cases = self.config.sweep
+        along = next((cases.places[name] for name in ("beta", "frequency") if name in cases.places), None)
+        return Rows(cases.shape, along if self.settings.continuation else None)
 
     @property
     def journal_path(self) -> Path:
@@ -110,17 +110,55 @@ class Sweep:
     def stored(self) -> "xr.Dataset | None":
         """Return the dataset of an earlier run if it is complete, else None.
 
-        Raises MismatchError if ``out`` holds another sweep, SweepError if it is no sweep's dataset.
+        Raises MismatchError if ``out`` holds another sweep whose cases this one does not have, SweepError if
+        it is no sweep's dataset.
         """
         if self.journal_path.exists() or not self.out.exists():
             return None
         found = _read_sweep(self.out)
-        there = {**json_object(found.attrs["fingerprint"]), "config": found.attrs["config"]}
-        differing = differences(there, self.journal_header)
-        if differing:
-            message = f"{self.out}: holds another sweep ({'; '.join(differing)})"
+        if found.attrs["title"] == self.config.title and not differences(_header(found), self.fingerprint):
+            return found
+        self._carried(found)
+        return None
+
+    def _carried(self, found: "xr.Dataset") -> np.ndarray:
+        """Records of an earlier dataset, numbered as cases of this sweep; MismatchError if it lacks any."""
+        kept = self._grown(_header(found), lambda dtype: growth.records_of(found, dtype))
+        if kept is None:
+            differing = "; ".join(differences(_header(found), self.journal_header))
+            message = f"{self.out}: holds another sweep ({differing})"
             raise MismatchError(message)
-        return found
+        return kept
+
+    def _grown(self, header: dict[str, str], records: Callable[[np.dtype], np.ndarray]) -> np.ndarray | None:
+        """Records of an earlier sweep, numbered as cases of this one; None if it lacks any or is another."""
+        ours = {**self.fingerprint, "config_sha256": header.get("config_sha256", "")}
+        if differences(header, ours):
+            return None
+        there = Sweep(config.parse(header["config"]), self.out)
+        known = records(there.dtype)
+        kept = growth.carried(known, (there.config, there.rows), (self.config, self.rows))
+        return kept if len(kept) == len(known) else None
+
+    def _journal(self, fresh: bool) -> Journal:
+        """The journal, open; unless ``fresh`` cases of an earlier run of a smaller sweep are in it."""
+        path = self.journal_path
+        if fresh:
+            self.discard()
+        elif self.out.exists() and not path.exists():
+            self._begin_with(self._carried(_read_sweep(self.out)))
+        try:
+            return Journal(path, self.dtype, self.journal_header)
+        except MismatchError:
+            kept = self._grown(journal.header(path), lambda dtype: journal.read(path, dtype))
+            if kept is None:
+                raise
+            self._begin_with(kept)
+            return Journal(path, self.dtype, self.journal_header)
+
+    def _begin_with(self, kept: np.ndarray) -> None:
+        log.info("%s: %d of %d cases are there from an earlier run", self.out, len(kept), self.count)
+        journal.rewrite(self.journal_path, kept, self.journal_header)
 
     def discard(self) -> None:
         """Delete the journal of earlier runs; their dataset stays until another one takes its place.
@@ -168,16 +206,14 @@ class Sweep:
         Raises
         ------
         MismatchError
-            The journal belongs to another sweep.
+            An earlier run has cases that this sweep lacks, or was of another version.
         SweepError
             The sweep cannot start, go on or be stored.
         """
         started = datetime.now(UTC)
         with ExitStack() as opened:
             pool = self._open(opened, backend or local(self.settings.method), n_jobs)
-            if fresh:
-                self.discard()
-            kept = opened.enter_context(Journal(self.journal_path, self.dtype, self.journal_header))
+            kept = opened.enter_context(self._journal(fresh))
             parts = opened.enter_context(closing(self._all_records(kept, pool, case_timeout, tell)))
             records = self._empty()
             for part in parts:
@@ -248,20 +284,22 @@ class Sweep:
         failed = records[records["status"] != Outcome.OK]
         if failed.size:
             case = self.config.sweep.case(failed[0]["index"])
-            unit = "N" if self.config.forced else "m"
-            where = formatting.case(*case, "" if self.config.transient else unit)
+            where = formatting.case(*case, unit=self.config.case_unit)
             message = f"{where}: {failed[0]['message'].decode()}"
             raise CaseFailedError(message)
 
     def assembled(self, records: np.ndarray, started: datetime) -> "xr.Dataset":
         """Assemble the dataset from the records of all cases."""
-        shape, coords = self.config.case_coordinates()
-        coords |= self._time()
+        sweep, coords = self.config.sweep, {**self.config.case_coordinates(), **self._time()}
         assembled = dataset.assemble(
             records,
             dataset.coordinates(coords, self.sizes),
-            shape,
-            {**self._physics(), **provenance.attributes(self.config, started, self.command)},
+            dict(zip(sweep.dims, sweep.shape, strict=True)),
+            {
+                **physics(self.config),
+                **labels.attributes(self.config),
+                **provenance.attributes(self.config, started, self.command),
+            },
             labels.long_names(self.config),
         )
         return rotation.with_units(assembled) if self.config.turns else assembled
@@ -273,27 +311,10 @@ class Sweep:
             return {}
         return transients.coordinates(self.config.input, transient, self.config.document["input"])
 
-    def _physics(self) -> dict[str, Any]:
-        """Properties of the system that figures refer to (SI)."""
-        p = self.config.records(np.array([0]))[0]
-        if self.config.system == "oscillator":
-            decay = oscillator.friction_decay(p)
-            return {
-                "omega_n": self.config.sweep.omega_n,
-                "frictionless_resonance": oscillator.resonance(p) or nan,
-                "breakaway_acceleration": oscillator.breakaway_acceleration(p),
-                **({"friction_decay_per_cycle": decay} if self.config.transient else {}),
-                **labels.attributes(self.config),
-            }
-        numbers = {"omega_n": self.config.sweep.omega_n, "rest_position": float(p["geometry"]["rest"])}
-        model = self.config.closed  # as far as the resonance and breakaway from rest are concerned
-        if has_own_mechanics(model.records_of_laws).any():  # not defined for the extended mechanics
-            return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}
-        coulomb = model.record(Case("coulomb", 1.0, 1e-3))[0]
-        return numbers | {
-            "frictionless_resonance": resonance(p),
-            "breakaway_acceleration": breakaway_acceleration(coulomb),
-        }
+
+def _header(ds: "xr.Dataset") -> dict[str, str]:
+    """Fingerprint and config of a dataset, as the header of its journal had them."""
+    return {**json_object(ds.attrs["fingerprint"]), "config": ds.attrs["config"]}
 
 
 def _read_sweep(path: Path) -> "xr.Dataset":

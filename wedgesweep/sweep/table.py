@@ -31,20 +31,26 @@ def variables_of(ds: xr.Dataset, chosen: Sequence[str] | None) -> list[str]:
         if samples:
             message = f"{name}: a waveform of {samples[0]} samples a case; read it with xarray"
             raise SweepError(message)
-        if name not in (*scalar, *spectra, *(each for each in COORDINATES if each in ds.coords)):
+        if name not in (*scalar, *spectra, *ds.coords):
             message = f"{name}: no such variable; valid here: {', '.join((*scalar, *spectra))}"
             raise SweepError(message)
-    return [name for name in dict.fromkeys(chosen) if name not in COORDINATES]
+    return [name for name in dict.fromkeys(chosen) if name not in ds.coords]
+
+
+def varied(ds: xr.Dataset) -> list[str]:
+    """Coordinates that are numbers of the model."""
+    return [str(name) for name in ds.coords if "key" in ds[name].attrs]
 
 
 def rows(ds: xr.Dataset, variables: Sequence[str]) -> Iterator[list[list[str]]]:
     """The header, then rows of cells, some at a time; numbers in full precision.
 
-    The first columns are the case: law, and beta, frequency and amplitude, or the scale of an input. A
+    The first columns are the case: law, and beta, frequency and amplitude, or the scale of an input, and
+    numbers of the model that the sweep varies. A
     column's name ends with its unit in brackets; the parts of a variable that has several a case are columns
     of their own.
     """
-    names = [name for name in COORDINATES if name in ds.coords]
+    names = [*(name for name in COORDINATES if name in ds.coords), *varied(ds)]
     columns = [column for name in (*names, *variables) for column in _columns(ds, name)]
     yield [[header for header, _ in columns]]
     count = ds["status"].size

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import config
+from wedgesweep.config import Case
 from wedgesweep.errors import SweepError
 from wedgesweep.sweep import journal, variables
 from wedgesweep.sweep.dataset import journal_of
@@ -36,11 +37,10 @@ def outcomes_of(out: Path) -> Outcomes:
         message = f"{path}: damaged in its first line, whose config is not that of the records"
         raise SweepError(message)
     records = journal.read(path, Sweep(settings, path).dtype)
-    unit = "" if settings.transient else "N" if settings.forced else "m"
 
-    def described(place: int) -> tuple[str, float, float, str, str]:
+    def described(place: int) -> tuple[Case, str, str]:
         case = settings.sweep.case(records["index"][place])
-        return (*case, unit, records["message"][place].decode())
+        return case, settings.case_unit, records["message"][place].decode()
 
     nothing = np.zeros(len(records))
     lifted = nothing if settings.opens else records[LIFT_OFF]

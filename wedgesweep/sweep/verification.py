@@ -124,7 +124,7 @@ def _task(sweep: Sweep, stored: dict[str, np.ndarray], index: int) -> _Task:
         whole = period * -(-window.periods // period)
         window, start = replace(window, settle_periods=period, periods=whole), _state(sweep, index)
     return _Task(
-        formatting.case(*case, "N" if sweep.config.forced else "m"),
+        formatting.case(*case, unit=sweep.config.case_unit),
         record,
         window,
         start,

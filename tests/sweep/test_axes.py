@@ -1,0 +1,260 @@
+"""Any number of the model as an axis: one dimension each, cases known by their numbers, sweeps that grow."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests import small_sweep
+from wedgesweep import config
+from wedgesweep.errors import ConfigError, MismatchError
+from wedgesweep.sweep import dataset, outcomes, unfinished
+from wedgesweep.sweep.journal import Journal
+from wedgesweep.sweep.run import CaseFailedError, Sweep
+
+SOLVER = """
+[solver]
+method = "event-driven"
+settle_periods = 3
+kept_periods = 2
+samples_per_period = 32
+keep_waveforms = false
+"""
+SWEEP = """
+[sweep]
+friction_law = "coulomb"
+frequency_hz = [10.0, 20.0]
+amplitude_mm = 0.3
+"""
+ANGLES = """
+[sweep.axes]
+"suspension.wedge_angle_deg" = [30, 37.5]
+friction.dynamic = [0.1, 0.2, 0.3]
+"""
+
+
+def sweep(folder, axes=ANGLES, **more):
+    text = SWEEP
+    for name, value in more.items():
+        text = text.replace(f"{name} = ", f"{name} = {value} #")
+    return Sweep(config.parse(text + axes + SOLVER), folder / "axes.nc")
+
+
+def solved(made: Sweep) -> list[int]:
+    """Run a sweep; the indices of the cases that were solved, not taken from an earlier run."""
+    parts = []
+    made.run(n_jobs=1, progress=lambda records, total: parts.append(records["index"].tolist()))
+    return sorted(index for part in parts[1:] for index in part)
+
+
+def fixed(wedge: float, dynamic: float, mass: float = 0.7) -> xr.Dataset:
+    """A sweep of the same frequencies with these numbers in its tables."""
+    numbers = f"wedge_angle_deg = {wedge}\nbolster_mass_kg = {mass}\n[friction]\ndynamic = {dynamic}\n"
+    return Sweep(config.parse("[suspension]\n" + numbers + SWEEP + SOLVER), None).run_here()
+
+
+def test_each_axis_is_a_dimension_with_units_and_values_are_those_of_single_configs(tmp_path):
+    ds = sweep(tmp_path).run(n_jobs=1)
+    assert ds["amplitude_ratio"].dims == (
+        *("friction_law", "wedge_angle_deg", "friction_dynamic"),
+        *("frequency", "amplitude"),
+    )
+    angle = ds["wedge_angle_deg"]
+    assert (angle.attrs["units"], angle.attrs["key"]) == ("degree", "suspension.wedge_angle_deg")
+    for wedge, dynamic in product(ds["wedge_angle_deg"].values, ds["friction_dynamic"].values):
+        here = ds.sel(wedge_angle_deg=wedge, friction_dynamic=dynamic)
+        alone = fixed(wedge, dynamic)
+        assert here["amplitude_ratio"].values.tolist() == alone["amplitude_ratio"].values.tolist()
+        assert here["frequency"].values.tolist() == alone["frequency"].values.tolist()
+    assert xr.load_dataset(tmp_path / "axes.nc")["status"].shape == (1, 2, 3, 2, 1)
+
+
+def test_frequencies_in_hertz_are_common_where_omega_n_varies(tmp_path):
+    ds = sweep(tmp_path, "[sweep.axes]\nsuspension.bolster_mass_kg = [0.5, 0.7]\n").run(n_jobs=1)
+    assert ds["frequency"].values.tolist() == [10.0, 20.0]
+    assert ds["beta"].dims == ("bolster_mass_kg", "frequency")
+    assert ds["omega_n"].values == pytest.approx(np.sqrt(5100.0 / np.array([0.5, 0.7])), rel=1e-15)
+    light = fixed(37.5, 0.29, mass=0.5)
+    assert (
+        ds.sel(bolster_mass_kg=0.5)["amplitude_ratio"].values.tolist()
+        == light["amplitude_ratio"].values.tolist()
+    )
+
+
+def test_a_given_beta_is_that_of_each_model(tmp_path):
+    text = SWEEP.replace("frequency_hz = [10.0, 20.0]", "beta = [0.8, 1.5]")
+    axes = "[sweep.axes]\nsuspension.bolster_spring_N_per_mm = [4.0, 5.1]\n"
+    read = config.parse(text + axes + SOLVER)
+    omega = read.records()["input"]["omega"].reshape(2, 2)
+    assert omega == pytest.approx(np.outer(np.sqrt(np.array([4000.0, 5100.0]) / 0.7), [0.8, 1.5]), rel=1e-15)
+    assert read.case_coordinates()["frequency"][0] == ("bolster_spring_N_per_mm", "beta")
+
+
+def test_axes_that_go_together_are_one_dimension(tmp_path):
+    axes = """
+[sweep.axes]
+suspension.bolster_mass_kg = [0.5, 0.7, 0.9]
+suspension.bolster_spring_N_per_mm = [5.0, 4.0, 5.0]
+zip = ["suspension.bolster_mass_kg", "suspension.bolster_spring_N_per_mm"]
+"""
+    read = sweep(tmp_path, axes).config
+    assert read.sweep.dims == ("friction_law", "bolster_mass_kg", "frequency", "amplitude")
+    coordinates = read.case_coordinates()
+    assert coordinates["bolster_spring_N_per_mm"][0] == coordinates["omega_n"][0] == ("bolster_mass_kg",)
+    assert config.parse(read.to_toml()) == read
+
+
+def test_listed_cases_have_numbers_too(tmp_path):
+    listed = """
+[[sweep.case]]
+friction_law = "coulomb"
+frequency_hz = 20.0
+amplitude_mm = 0.3
+suspension.wedge_angle_deg = 30.0
+[[sweep.case]]
+friction_law = "coulomb"
+frequency_hz = 10.0
+amplitude_mm = 0.3
+"suspension.wedge_angle_deg" = 37.5
+"""
+    ds = Sweep(config.parse(listed + SOLVER), tmp_path / "listed.nc").run(n_jobs=1)
+    assert ds["wedge_angle_deg"].dims == ("case",)
+    expected = [fixed(30.0, 0.29).isel(beta=1), fixed(37.5, 0.29).isel(beta=0)]
+    assert ds["amplitude_ratio"].values.tolist() == [each["amplitude_ratio"].item() for each in expected]
+
+
+def test_effects_vary_from_off_to_on_and_need_no_table(tmp_path):
+    axes = "[sweep.axes]\neffects.guide_friction.force_N = [0.0, 2.0]\n"
+    ds = sweep(tmp_path, axes).run(n_jobs=1)
+    assert ds["guide_friction_force_N"].attrs["units"] == "N"
+    off = ds.sel(guide_friction_force_N=0.0)["amplitude_ratio"].values
+    assert off.tolist() == fixed(37.5, 0.29)["amplitude_ratio"].values.tolist()
+    assert (ds.sel(guide_friction_force_N=2.0)["amplitude_ratio"].values < off).any()
+
+
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        ('[sweep.axes]\n"suspension.wedge_angel_deg" = [1]', 'did you mean "suspension.wedge_angle_deg"?'),
+        ("[sweep.axes]\nfriction.dynamic = [0.2, 0.1]", "increasing order"),
+        ("[sweep.axes]\nfriction.dynamic = [0.2, -0.1]", 'sweep.axes."friction.dynamic"[1]'),
+        ("[sweep.axes]\nsuspension.column_angle_deg = [-40, 4]", "column_angle_deg = -40"),
+        ("[sweep.axes]\nsuspension.column_angle_deg = [-4, 0, 4]", "bolster face does not slip"),
+        ('[sweep.axes]\nfriction.dynamic = [0.1]\nzip = ["friction.dynamic", "a.b"]', "a.b is no axis"),
+        ("[sweep.axes]\nsolver.rtol = [1e-6]", "no number of a model"),
+    ],
+)
+def test_wrong_axes_are_named(tmp_path, axes, words):
+    with pytest.raises(ConfigError, match="sweep") as caught:
+        sweep(tmp_path, axes)
+    assert words in str(caught.value)
+
+
+def test_a_longer_axis_computes_new_cases_only(tmp_path):
+    sweep(tmp_path).run(n_jobs=1)
+    small = xr.load_dataset(tmp_path / "axes.nc")
+    grown = sweep(tmp_path, ANGLES.replace("37.5]", "33.0, 37.5]"))
+    grown = Sweep(
+        config.parse(grown.config.to_toml().replace("[30.0, 33.0, 37.5]", "[30.0, 37.5, 40.0]")), grown.out
+    )
+    assert grown.stored() is None
+    assert len(solved(grown)) == 6
+    ds = xr.load_dataset(tmp_path / "axes.nc")
+    kept = ds.sel(wedge_angle_deg=[30.0, 37.5])
+    for name in small.data_vars:
+        assert np.array_equal(
+            kept[name].values, small[name].values, equal_nan=small[name].dtype.kind == "f"
+        ), name
+    fresh = Sweep(grown.config, tmp_path / "fresh.nc").run(n_jobs=1)
+    small_sweep.assert_same_numbers(ds, fresh)
+
+
+def test_an_axis_added_to_a_plain_sweep_reuses_its_cases(tmp_path):
+    plain = sweep(tmp_path, "")
+    plain.run(n_jobs=1)
+    assert solved(sweep(tmp_path, "[sweep.axes]\nfriction.dynamic = [0.1, 0.29]\n")) == [0, 1]
+
+
+def test_an_interrupted_sweep_grows_and_resumes(tmp_path):
+    small = sweep(tmp_path)
+    with Journal(small.journal_path, small.dtype, small.journal_header) as journal:
+        journal.append(small.solve(np.array([0, 5, 7])))
+    more = ANGLES.replace("0.3]", "0.3, 0.4]")
+    grown = sweep(tmp_path, more)
+    assert len(solved(grown)) == 16 - 3
+    fresh = Sweep(grown.config, tmp_path / "fresh.nc").run(n_jobs=1)
+    small_sweep.assert_same_numbers(xr.load_dataset(tmp_path / "axes.nc"), fresh)
+
+
+@pytest.mark.parametrize("change", ["[suspension]\nwedge_mass_kg = 0.2\n", "[friction]\nstatic = 0.4\n"])
+def test_a_changed_model_never_reuses_a_case(tmp_path, change):
+    sweep(tmp_path).run(n_jobs=1)
+    changed = Sweep(config.parse(change + SWEEP + ANGLES + SOLVER), tmp_path / "axes.nc")
+    with pytest.raises(MismatchError):
+        changed.stored()
+    before = (tmp_path / "axes.nc").read_bytes()
+    with pytest.raises(MismatchError):
+        changed.run(n_jobs=1)
+    assert (tmp_path / "axes.nc").read_bytes() == before
+
+
+def test_a_sweep_that_shrinks_or_is_solved_otherwise_discards_nothing(tmp_path):
+    made = sweep(tmp_path)
+    made.run(n_jobs=1)
+    fewer = sweep(tmp_path, ANGLES.replace(", 0.3]", "]"))
+    finer = Sweep(config.parse(SWEEP + ANGLES + SOLVER + "rtol = 1e-8\n"), made.out)
+    for other in (fewer, finer):
+        with pytest.raises(MismatchError, match="there"):
+            other.stored()
+
+
+def test_a_new_title_neither_refuses_nor_runs_anything(tmp_path):
+    sweep(tmp_path).run(n_jobs=1)
+    renamed = Sweep(config.parse('title = "new"\n' + SWEEP + ANGLES + SOLVER), tmp_path / "axes.nc")
+    assert renamed.stored() is None
+    assert solved(renamed) == []
+    assert xr.load_dataset(tmp_path / "axes.nc").attrs["title"] == "new"
+
+
+def test_rows_of_a_continuation_are_reused_whole_or_not_at_all(tmp_path):
+    text = """
+[sweep]
+friction_law = "coulomb"
+frequency_hz = [30.0, 31.0]
+amplitude_mm = [0.3]
+[sweep.axes]
+suspension.wedge_angle_deg = [37.5]
+[solver]
+method = "event-driven"
+settle = "steady"
+continuation = true
+keep_waveforms = false
+"""
+    Sweep(config.parse(text), tmp_path / "rows.nc").run(n_jobs=1)
+    wider = Sweep(config.parse(text.replace("[37.5]", "[37.5, 38.0]")), tmp_path / "rows.nc")
+    assert solved(wider) == [2, 3]
+    longer = Sweep(config.parse(text.replace("31.0]", "31.0, 32.0]")), tmp_path / "rows.nc")
+    with pytest.raises(MismatchError):
+        longer.stored()
+
+
+def test_status_export_and_errors_name_the_numbers(tmp_path):
+    # With this lean and friction the normal forces are not unique.
+    axes = "[sweep.axes]\nsuspension.column_angle_deg = [-4.0, 4.0]\nfriction.dynamic = [0.29, 0.5]\n"
+    made = sweep(tmp_path, axes, amplitude_mm="2.0", frequency_hz="15.0")
+    ds = made.run(n_jobs=1)
+    found = outcomes.of_dataset(ds)
+    words = "suspension.column_angle_deg -4, friction.dynamic 0.5"
+    assert [words in str(found[place]) for place in found.failures] == [True]
+    with pytest.raises(CaseFailedError, match=words):
+        made.run(n_jobs=1, fail_fast=True, fresh=True)
+    made.out.unlink()
+    assert words in str(unfinished.outcomes_of(made.out)[len(unfinished.outcomes_of(made.out)) - 1])
+    assert unfinished.dataset_of(made.out)["status"].dims == ds["status"].dims
+
+
+def test_a_dataset_with_axes_is_one_of_a_sweep(tmp_path):
+    made = sweep(tmp_path)
+    ds = made.run(n_jobs=1)
+    assert dataset.read_sweep(made.out).sizes == ds.sizes

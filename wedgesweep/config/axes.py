@@ -1,0 +1,260 @@
+"""Numbers of the model that a sweep varies: dotted keys such as "suspension.wedge_angle_deg"."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from wedgesweep.config.inputs import Levels
+from wedgesweep.config.keys import Key, Number, Whole
+from wedgesweep.config.series import Series
+from wedgesweep.config.tables import Table
+from wedgesweep.hints import hint, show
+
+ZIP = "zip"
+NO_NUMBER = "no number of a model that may vary"
+# Tables whose numbers may vary; those whose names the dimensions of a dataset leave out.
+TABLES = ("suspension", "oscillator", "friction", "effects")
+# A tolerance, and the numbers of a range or a distribution that stand for it.
+TOLERANCE = re.compile(r"\s*([-+.\deE]+?)\s*(?:\+-|±)\s*([.\deE]+)\s*(%?)\s*")
+MIDDLES = ("start", "mean", "median", "low")
+LEFT_OUT = ("suspension", "oscillator", "effects")
+# Tables that hold numbers without a default.
+WITHOUT_DEFAULT = ("oscillator", "effects")
+# More combinations of extreme values than this are not checked for contradictions.
+MOST_CORNERS = 4096
+
+
+def is_model_key(name: str) -> bool:
+    """Whether a name is the dotted key of a number of the model."""
+    return "." in name
+
+
+def dimension(key: str) -> str:
+    """Name of a key in datasets: wedge_angle_deg, friction_dynamic, preload_force_N."""
+    table, _, rest = key.partition(".")
+    return (rest if table in LEFT_OUT else key).replace(".", "_")
+
+
+def numbers_of(tables: Table) -> dict[str, Number]:
+    """All numbers that may vary, by dotted key."""
+    return dict(_numbers(tables, ""))
+
+
+def _numbers(table: Table, path: str) -> Iterator[tuple[str, Number]]:
+    for key in table.keys.values():
+        if not path and key.key not in TABLES:
+            continue
+        if isinstance(key, Number) and not isinstance(key, Whole):
+            yield f"{path}{key.key}", key
+        elif isinstance(key, Table):
+            yield from _numbers(key, f"{path}{key.key}.")
+
+
+def flat(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys of a table that was written with or without quotes."""
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        if (
+            isinstance(value, dict)
+            and name.split(".")[0] in TABLES
+            and name.count(".") < 2
+            and _nested(value)
+        ):
+            found |= flat({f"{name}.{inner}": each for inner, each in value.items()})
+        else:
+            found[name] = value
+    return found
+
+
+def _nested(value: Mapping[str, Any]) -> bool:
+    """Whether a table is a part of a dotted key, and not a range or a distribution."""
+    return not {"start", "distribution"} & value.keys()
+
+
+def given_number(document: Mapping[str, Any], key: str) -> float:
+    """The number of a dotted key in a document that has it."""
+    place: Any = document
+    for name in key.split("."):
+        place = place[name]
+    return float(place)
+
+
+def with_numbers(document: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
+    """A document with other numbers, by dotted key; tables that are not there are made."""
+    changed = dict(document)
+    for key, number in numbers.items():
+        *tables, name = key.split(".")
+        place = changed
+        for table in tables:
+            inside = place.get(table, {})
+            place[table] = dict(inside) if isinstance(inside, dict) else inside
+            place = place[table]
+        if isinstance(place, dict):
+            place[name] = number
+    return changed
+
+
+def with_nominal(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A config with a number in place of each that it only varies, and that has no default: the first one."""
+    sweep = given.get("sweep")
+    if not isinstance(sweep, dict):
+        return given
+    listed = sweep.get("case")
+    tables = [sweep.get("axes"), sweep.get("sample"), *(listed if isinstance(listed, list) else ())]
+    firsts: dict[str, Any] = {}
+    for each in tables:
+        if isinstance(each, dict):
+            firsts = {key: _first(value) for key, value in flat(each).items() if is_model_key(key)} | firsts
+    absent = {
+        key: value
+        for key, value in firsts.items()
+        if value is not None and key.split(".")[0] in WITHOUT_DEFAULT and not _stands(given, key)
+    }
+    return with_numbers(given, absent)
+
+
+def _first(values: Any) -> Any:
+    """A number out of the values of an axis, a distribution or a case; None where there is none."""
+    while isinstance(values, list | dict | str):
+        if isinstance(values, str):
+            parts = TOLERANCE.fullmatch(values)
+            values = float(parts[1]) if parts else None
+        elif isinstance(values, list):
+            values = values[0] if values else None
+        else:
+            values = next((values[name] for name in MIDDLES if name in values), None)
+    return values
+
+
+def _stands(given: Mapping[str, Any], key: str) -> bool:
+    """Whether a config has a number itself, or a default of it."""
+    table, _, name = key.partition(".")
+    place: Any = given.get(table, {})
+    if table == "effects" and isinstance(place, dict):
+        effect, _, name = name.partition(".")
+        place = place.get(effect, {})
+    return isinstance(place, dict) and name in place
+
+
+@dataclass(frozen=True, kw_only=True)
+class WithNumbers(Table):
+    """A table that also has dotted keys of ``numbers`` of the model, each with a value of some kind."""
+
+    numbers: Mapping[str, Number]
+
+    def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            return super().read(value, path, problems)
+        given = flat(value)
+        read = super().read({key: given[key] for key in given if not is_model_key(key)}, path, problems)
+        for key in filter(is_model_key, given):
+            if key in self.numbers:
+                at = f'{path}."{key}"'
+                read[key] = self.read_number(self.numbers[key], given[key], at, problems, read)
+            else:
+                near = hint(key, _near(key, self.numbers))
+                problems.append(f"{path}.{key}: {NO_NUMBER}; {near}")
+        return {key: each for key, each in read.items() if each is not None}
+
+    def read_number(
+        self, number: Number, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
+    ) -> Any:
+        """Check the value of a dotted key; ``read`` holds the other keys."""
+        return number.read(value, path, problems)
+
+    def number_shape(self, number: Number) -> dict[str, Any]:
+        """JSON schema of the value of a dotted key."""
+        return number.shape()
+
+    def shape(self) -> dict[str, Any]:
+        own = super().shape()
+        for key, number in self.numbers.items():
+            about = {"description": number.meaning} | self.number_shape(number)
+            own["properties"][key] = about
+            # The same without quotes: a table in a table.
+            *tables, name = key.split(".")
+            place = own
+            for table in tables:
+                closed = {"properties": {}, "additionalProperties": False}
+                empty = {"type": "object", "description": f"numbers of {table}", **closed}
+                place = place["properties"].setdefault(table, empty)
+            place["properties"][name] = about
+        return own
+
+
+def _near(key: str, numbers: Mapping[str, Number]) -> list[str]:
+    """The numbers of the same table, of which there are few enough to list."""
+    table = key.split(".")[0]
+    return [name for name in numbers if name.startswith(f"{table}.")] or [f"{name}.KEY" for name in TABLES]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Groups(Key):
+    """Groups of keys that go together; a single group may be written without the outer brackets."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> list[list[str]] | None:
+        groups = (
+            [value] if isinstance(value, list) and all(isinstance(each, str) for each in value) else value
+        )
+        named = isinstance(groups, list) and all(
+            isinstance(group, list) and len(group) > 1 and all(isinstance(key, str) for key in group)
+            for group in groups
+        )
+        if not named:
+            problems.append(f'{path}: {show(value)} is no list of keys that go together; write ["a", "b"]')
+            return None
+        names = [key for group in groups for key in group]
+        problems.extend(f"{path}: {key} is repeated; keep one" for key in names if names.count(key) > 1)
+        return groups
+
+    def shape(self) -> dict[str, Any]:
+        names = {"type": "array", "items": {"type": "string"}, "minItems": 2}
+        return {"anyOf": [names, {"type": "array", "items": names}]}
+
+
+TOGETHER = Groups(
+    key=ZIP,
+    meaning="axes that go together: their first values, their second ones, ...",
+    optional=True,
+    example=["suspension.bolster_mass_kg", "suspension.wedge_mass_kg"],
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axes(WithNumbers):
+    """[sweep.axes]: values of numbers, and which of them go together."""
+
+    def read(self, value: Any, path: str, problems: list[str]) -> dict[str, Any]:
+        read = super().read(value, path, problems)
+        for group in read.get(ZIP, ()):
+            absent = [key for key in group if key not in read]
+            problems.extend(f"{path}.{ZIP}: {key} is no axis; {hint(key, read)}" for key in absent)
+            if not absent and len({len(read[key]) for key in group}) > 1:
+                problems.append(f"{path}.{ZIP}: {', '.join(group)} hold different numbers of values")
+        return read
+
+    def read_number(
+        self, number: Number, value: Any, path: str, problems: list[str], read: Mapping[str, Any]
+    ) -> Any:
+        series = Series(key=number.key, meaning="", item=number)
+        # What goes together with another axis need not increase.
+        follows = any(path.endswith(f'"{key}"') for group in read.get(ZIP, ()) for key in group[1:])
+        kind = (
+            Levels(key=number.key, meaning="", item=number) if follows and isinstance(value, list) else series
+        )
+        return kind.read(value, path, problems)
+
+    def number_shape(self, number: Number) -> dict[str, Any]:
+        return Series(key=number.key, meaning="", item=number).shape()
+
+
+def corners(values: Mapping[str, Any]) -> Iterator[dict[str, float]]:
+    """Each value of each key alone, where they are few, and all combinations of smallest and largest ones."""
+    for key, own in values.items():
+        if len(own) <= MOST_CORNERS:
+            yield from ({key: float(value)} for value in own)
+    ends = [(float(min(own)), float(max(own))) for own in values.values()]
+    if 2 ** len(ends) <= MOST_CORNERS:
+        yield from (dict(zip(values, each, strict=True)) for each in product(*ends))

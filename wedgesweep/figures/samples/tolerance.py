@@ -1,0 +1,52 @@
+"""What tolerances do to a response: percentiles over the samples, over frequency."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from wedgesweep.figures import models, over_axes, style
+from wedgesweep.figures.panels import Panels, Target, panels
+
+NAME = "tolerance"
+DESCRIPTION = "percentiles of a variable over frequency (or --x), from samples"
+NEEDS = ("status",)
+ANY_AXES = True
+
+PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
+
+
+def draw(
+    target: Target,
+    ds: xr.Dataset,
+    x: str | None = None,
+    facet: str | None = None,
+    variable: str = "amplitude_ratio",
+    at: Mapping[str, Any] = MappingProxyType({}),
+) -> Panels:
+    """Draw bands of percentiles of a variable, a panel for each law or each value of ``facet``."""
+    over_axes.variable_of(ds, variable)
+    if "sample" not in ds.dims:
+        message = "needs samples: [sweep.sample] in the config"
+        raise ValueError(message)
+    along = models.coordinate(ds, x or ("frequency" if "frequency" in ds.dims else "beta"))
+    parts, chosen = over_axes.samples(ds, facet, at, along)
+    made = panels(target, len(parts), size=(3.3, 3.2))
+    for ax, (title, part) in zip(made.axes, parts, strict=True):
+        place, values = over_axes.values(part, along), part[variable].transpose("sample", ...).values
+        bands = np.nanpercentile(values.astype(float), PERCENTILES, axis=0)
+        count = len(PERCENTILES)
+        for inner in range(count // 2):
+            label = f"{PERCENTILES[inner]:g} to {PERCENTILES[count - 1 - inner]:g} %"
+            shade = {"color": style.BLUE, "alpha": 0.2 + 0.2 * inner, "linewidth": 0.0}
+            ax.fill_between(place, bands[inner], bands[count - 1 - inner], label=label, **shade)
+        ax.plot(place, bands[count // 2], color=style.BLUE, linewidth=1.4, label="median")
+        ax.set_title(title, fontsize=10)
+    style.label(made.axes, over_axes.label(ds, along), over_axes.short(ds, variable))
+    made.legend(*made.axes[0].get_legend_handles_labels())
+    missing = int(ds[variable].isnull().sum())
+    notes = (chosen, f"{ds.sizes['sample']} samples", f"{missing} cases without a value" if missing else "")
+    made.title(f"Percentiles: {over_axes.meaning(ds, variable)}", "; ".join(filter(None, notes)))
+    return made
