@@ -46,8 +46,8 @@ def laid_out(
         raise ValueError(message)
     left = sorted((dim for dim in ds["status"].dims if dim not in taken), key=lambda dim: -ds.sizes[dim])
     free = iter(str(dim) for dim in left if ds.sizes[dim] > 1)
-    numeric = iter([dim for dim in left if ds[dim].dtype.kind not in "OUT"])
-    chosen: dict[str, str | None] = {"x": asked.get("x") or str(next(numeric, "beta"))}
+    numeric = (str(dim) for dim in left if ds[dim].dtype.kind not in "OUT")
+    chosen: dict[str, str | None] = {"x": asked.get("x") or next(numeric, "beta")}
     for name in ("other", "facet"):
         chosen[name] = asked.get(name) or next((dim for dim in free if dim not in chosen.values()), None)
     layout = Layout(str(chosen["x"]), chosen["other"], chosen["facet"])
@@ -72,7 +72,7 @@ def unit(ds: xr.Dataset, name: str) -> str:
 
 def values(ds: xr.Dataset, name: str) -> np.ndarray:
     """Values of an axis for a reader: amplitudes in mm."""
-    return ds[name].values * (labels.of(ds).factor if name == "amplitude" else 1)
+    return ds[name].values * labels.of(ds).factor if name == "amplitude" else ds[name].values
 
 
 def written(ds: xr.Dataset, name: str, value: Any) -> str:
