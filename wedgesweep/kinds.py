@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 from wedgesweep.files import read_bytes, regular
+from wedgesweep.processes import apart
 
 CONFIG, MEASURED, SWEEP, DIAGNOSIS, DATASET = "config", "measured", "sweep", "diagnosis", "dataset"
 # What `check` takes.
@@ -68,8 +69,11 @@ def kind_of(path: Path) -> str | None:
 def _kind_of_netcdf(path: Path) -> str | None:
     import netCDF4
 
-    try:
+    def of_a_sweep() -> bool:
         with netCDF4.Dataset(path) as found:
-            return SWEEP if "beta" in found.variables else DATASET
+            return "beta" in found.variables
+
+    try:
+        return SWEEP if apart(of_a_sweep) else DATASET
     except (OSError, RuntimeError, AttributeError):  # netCDF4 raises any of them
         return DATASET

@@ -7,13 +7,15 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
 KILL = getattr(signal, "SIGKILL", signal.SIGTERM)  # Windows has the latter only
 # Signals that a terminal sends to all processes of a command; Windows has no SIGHUP.
 OF_THE_TERMINAL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name))
+# Processor time (s), and time (s) in all, that a library may take to read a file.
+MOST_WORK, MOST_WAIT = 30, 600.0
 # Time (s) between two looks at the parent.
 INTERVAL = 1.0
 
@@ -38,10 +40,10 @@ def interrupts_ignored() -> Iterator[None]:
 
 
 def apart(function: Callable[..., Any], *arguments: Any) -> Any:
-    """Call a function in a fork of this process; raises OSError if that dies of it.
+    """Call a function in a fork of this process; raises OSError if that dies of it or finds no end.
 
-    Libraries that read damaged files may end the process they run in. Where processes cannot fork, the
-    function is called here.
+    Libraries that read damaged files may end the process they run in, or turn in circles. Where processes
+    cannot fork, the function is called here.
     """
     if not hasattr(os, "fork"):
         return function(*arguments)
@@ -54,11 +56,14 @@ def apart(function: Callable[..., Any], *arguments: Any) -> Any:
         process.start()
     sending.close()
     try:
+        if not receiving.poll(MOST_WAIT):
+            raise EOFError
         found = receiving.recv()
     except EOFError as error:
-        message = "damaged: the library that reads it gave up"
+        message = "damaged: the library that reads it gave up, or found no end"
         raise OSError(message) from error
     finally:
+        process.kill()
         process.join()
     if isinstance(found, Exception):
         raise found
@@ -66,6 +71,10 @@ def apart(function: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def _answer(sending: Connection, function: Callable[..., Any], arguments: tuple) -> None:
+    with suppress(ImportError, ValueError):  # Windows has no limits, and one may be lower already
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (MOST_WORK, MOST_WORK + 1))
     try:
         found = function(*arguments)
     except Exception as error:  # goes to the process that asked

@@ -196,12 +196,37 @@ def stored(given: Specimens, place: Path, draw: Random) -> Command:
     ending = draw.choice(list(given.stored))
     text = mutations.toml(given.measured[0]).replace("one.csv", f"one{ending}")
     for number, name in enumerate("tdv", 1):
-        column = {".tdms": f'"x/{name}"', ".npy": f"{number}", ".wav": f"{number}"}.get(ending, f'"{name}"')
+        numbered = ending in (".npy", ".wav", ".uff")
+        inside = "bench/" if ending in (".tdms", ".h5") else ""
+        column = f"{number}" if numbered else f'"{inside}{name}"'
         text = text.replace(f'column = "{name}"', f"column = {column}")
     (place / "measured.toml").write_text(text)
     content = given.stored[ending]
     (place / f"one{ending}").write_bytes(mutations.raw(content, draw) if draw.random() < 0.9 else content)
     return ["check", "measured.toml"]
+
+
+def first(given: Specimens, place: Path, draw: Random) -> Command:
+    """A file of any format, or two, in any state, of which a first measured.toml is written."""
+    files = []
+    for number in range(draw.choice((1, 1, 1, 2))):
+        name, content = _any_format(given, draw)
+        (place / f"{number}{name}").write_bytes(
+            mutations.raw(content, draw) if draw.random() < 0.6 else content
+        )
+        files.append(f"{number}{name}")
+    return ["init", "measured.toml", "--data", *files]
+
+
+def _any_format(given: Specimens, draw: Random) -> tuple[str, bytes]:
+    """Ending and content of a file; text may lack its header, or be in any dialect and encoding."""
+    ending = draw.choice([".csv", ".csv", ".nc", *given.stored])
+    if ending != ".csv":
+        return ending, given.stored.get(ending, given.netcdf)
+    text = _dialect(given.csv[draw.choice(list(given.csv))], draw)
+    text = text.partition("\n")[2] if draw.random() < 0.3 else text
+    text = mutations.text(text, draw) if draw.random() < 0.7 else text
+    return ending, text.encode(draw.choice(ENCODINGS), "replace")
 
 
 def clock(given: Specimens, place: Path, draw: Random) -> Command:
@@ -398,6 +423,7 @@ KINDS: dict[Kind, float] = {
     matlab: 7.0,
     netcdf: 6.0,
     stored: 5.0,
+    first: 5.0,
     clock: 5.0,
     dataset: 5.0,
     figure: 1.0,

@@ -167,35 +167,17 @@ def _netcdf(path: Path) -> bytes:
 
 def _stored(directory: Path) -> dict[str, bytes]:
     """Return the vibration in further formats, by ending, as far as their libraries are here."""
+    import pytest
+
+    from tests import fixture_formats
+
     columns = dict(zip("tdv", vibration().T, strict=True))
-    np.savez(directory / "one.npz", **columns)
     np.save(directory / "one.npy", vibration())
     wavfile.write(directory / "one.wav", int(RATE), (vibration() / 200.0).astype("f4"))
-    with suppress(ImportError):
-        import h5py
-
-        with h5py.File(directory / "one.h5", "w") as file:
-            file.update(columns)
-    with suppress(ImportError):
-        import pyarrow
-        from pyarrow import parquet
-
-        parquet.write_table(pyarrow.table(columns), directory / "one.parquet")
-    with suppress(ImportError):
-        import openpyxl
-
-        book = openpyxl.Workbook()
-        for row in ("tdv", *vibration().tolist()):
-            book.active.append(list(row))
-        book.save(directory / "one.xlsx")
-    with suppress(ImportError):
-        import nptdms
-
-        with nptdms.TdmsWriter(directory / "one.tdms") as writer:
-            writer.write_segment([nptdms.ChannelObject("x", name, each) for name, each in columns.items()])
-    endings = ("npz", "npy", "wav", "h5", "parquet", "xlsx", "tdms")
-    files = (directory / f"one.{ending}" for ending in endings)
-    return {file.suffix: file.read_bytes() for file in files if file.exists()}
+    for name, write in (*fixture_formats.SPECIMENS, ("one.uff", fixture_formats.uff)):
+        with suppress(pytest.skip.Exception):
+            write(directory / name, columns)
+    return {file.suffix: file.read_bytes() for file in sorted(directory.glob("one.*"))}
 
 
 def _journal(sweep: Any) -> bytes:

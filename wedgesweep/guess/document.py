@@ -111,12 +111,10 @@ def _dialect(surveys: Sequence[Survey]) -> Iterator[str]:
 
 def _uncertain(found: Numbers, kind: str) -> Iterator[str]:
     """Numbers of the model that come from the records."""
-    yield from ("", "# The numbers of the model are guesses so far; leave out what you know better.")
-    yield "[measurement.uncertain]"
-    if found.spring:
-        yield f"bolster_stiffness = {GUESSED}  # of the spring"
-    if kind == LOOP and "mass" not in found.unseen:
-        yield f"bolster_mass = {GUESSED}  # of the mass"
+    guessed = {"bolster_stiffness": found.spring > 0.0, "bolster_mass": kind == LOOP and not found.unseen}
+    if any(guessed.values()):
+        yield from ("", "# Spring and mass of the model are guesses so far; leave out what you know better.")
+        yield from ("[measurement.uncertain]", *(f"{name} = {GUESSED}" for name in guessed if guessed[name]))
 
 
 def _test(test: Guessed, first: Guessed, path: Path) -> Iterator[str]:

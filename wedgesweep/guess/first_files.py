@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from wedgesweep import measured
 from wedgesweep.errors import InputError
 from wedgesweep.files import write_text
@@ -23,6 +25,7 @@ MOST_LOOKS = 3
 UNKNOWN = Numbers(1.0, 1e3, 0.0, unseen=("mass", "damping"))
 
 
+@np.errstate(all="ignore")  # numbers in the files may be of any size
 def write(path: Path, files: Sequence[Path]) -> list[Path]:
     """Write a measured.toml at a path and a model beside it; return both.
 

@@ -10,8 +10,11 @@ from wedgesweep.readers.table import Channel, Wanted
 
 
 def hdf5(file: Path, wanted: Wanted) -> dict[str, Channel | None]:
-    """Datasets, with the unit in their attribute ``units`` or ``unit``."""
-    h5py = module("h5py")
+    """Datasets, with the unit in their attribute ``units`` or ``unit``; in a process apart, as netCDF."""
+    return apart(_hdf5, module("h5py"), file, wanted)
+
+
+def _hdf5(h5py: Any, file: Path, wanted: Wanted) -> dict[str, Channel | None]:
     with h5py.File(file, "r") as opened:
         names: list[str] = []
         opened.visititems(lambda name, each: names.append(name) if isinstance(each, h5py.Dataset) else None)
