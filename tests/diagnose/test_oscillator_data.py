@@ -8,8 +8,8 @@ import pytest
 from tests.command import invoke
 from wedgesweep import config, measured
 from wedgesweep.diagnose.diagnosis import diagnose
-from wedgesweep.diagnose.steady.correlated import stated
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
+from wedgesweep.diagnose.steady.harmonic_data import stated
 from wedgesweep.measured.measurement import Measurement, TestRecord
 
 M, C, K = 2.0, 6.0, 800.0

@@ -13,8 +13,8 @@ from wedgesweep.diagnose.evaluation import Scenario
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.steady import simulation
-from wedgesweep.diagnose.steady.correlated import stated
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
+from wedgesweep.diagnose.steady.harmonic_data import stated
 from wedgesweep.diagnose.steady.recorded_input import without_noise
 from wedgesweep.measured.measurement import Measurement, TestRecord
 from wedgesweep.measured.overrides import with_numbers

@@ -14,9 +14,8 @@ from wedgesweep.diagnose.diagnosis import diagnose, explain
 from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search
-from wedgesweep.diagnose.steady.correlated import stated
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData, stated
 from wedgesweep.diagnose.steady.stated_input import with_uncertain_harmonics
 from wedgesweep.diagnose.steady.whitened import real
 from wedgesweep.measured.measurement import Measurement, TestRecord

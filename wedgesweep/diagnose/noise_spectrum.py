@@ -15,6 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wedgesweep.periodogram import power_of, without_trend
+
 # Poles r that are tried, and iterations of a and b for each (multiplicative updates, see Fevotte and others,
 # 2009, Neural Computation 21, 793).
 POLES = np.array([0.0, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.995, 0.999])
@@ -116,16 +118,8 @@ def of_noise(
 
 def periodogram(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (rad a sample), and power at them, under a Hann window; without 0 and the first bin."""
-    place = np.arange(samples.size) - 0.5 * (samples.size - 1)
-    level = samples - samples.mean() - place * (place @ samples) / (place @ place)
-    power = power_of(level)[2:]
-    return (np.arange(power.size) + 2) * 2.0 * pi / samples.size, power
-
-
-def power_of(samples: np.ndarray) -> np.ndarray:
-    """Power (n // 2 + 1,) of samples (n,) of zero mean under a Hann window, by frequency from 0 on."""
-    window = np.hanning(samples.size)
-    return np.abs(np.fft.rfft(samples * window)) ** 2 / (window**2).sum()
+    found = power_of(without_trend(samples))[2:]
+    return (np.arange(found.size) + 2) * 2.0 * pi / samples.size, found
 
 
 class Choice(NamedTuple):

@@ -1,13 +1,14 @@
-"""Tests that are compared in time or along an imposed motion."""
+"""Tests that are compared in time or along an imposed motion; a long record is cut into several of them."""
 
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 
+from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import (
     Comparison,
     Evaluation,
@@ -18,6 +19,9 @@ from wedgesweep.diagnose.evaluation import (
 )
 from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData
 from wedgesweep.diagnose.model import Fit
+
+# Blocks of a record that are left out in turn, at most.
+MOST_BLOCKS = 12
 
 
 class SampledData(FitData):
@@ -37,8 +41,21 @@ class SampledData(FitData):
 
     @property
     @abstractmethod
-    def noise(self) -> np.ndarray:
-        """Standard deviation (T, m) of decorrelated values; 0 where nothing is compared."""
+    def numbers(self) -> np.ndarray:
+        """Number (T,) of the record that each test is a part of."""
+
+    @property
+    @abstractmethod
+    def independent_noise(self) -> np.ndarray:
+        """Standard deviation (T, m) of values with independent noise; 0 where nothing is compared."""
+
+    @abstractmethod
+    def combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
+        """Test, some of its values, and their decorrelation, wherever noise is correlated."""
+
+    @abstractmethod
+    def chosen_tests(self, rows: np.ndarray) -> Self:
+        """The recorded data of some of the tests."""
 
     @property
     @abstractmethod
@@ -60,6 +77,14 @@ class SampledData(FitData):
         return self.recorded if self.resampled is None else self.resampled
 
     @cached_property
+    def noise(self) -> np.ndarray:
+        """Standard deviation (T, m) of decorrelated values; 0 where nothing is compared."""
+        noise = self.independent_noise
+        for t, part, each in self.combinations():
+            noise[t, part] = each.std
+        return noise
+
+    @cached_property
     def weight(self) -> np.ndarray:
         """1 where something is compared, else 0, (T, m)."""
         return (self.noise > 0.0).astype(float)
@@ -72,6 +97,24 @@ class SampledData(FitData):
     @property
     def tests(self) -> int:
         return len(self.names)
+
+    @property
+    def measured_tests(self) -> int:
+        return np.unique(self.numbers).size
+
+    def subset(self, rows: np.ndarray) -> Self:
+        part = self.chosen_tests(np.arange(self.tests)[rows])
+        if self.resampled is None:
+            return part
+        resampled = self.resampled[rows][:, : part.recorded.shape[1]]
+        return replace(part, resampled=resampled)  # type: ignore[type-var]
+
+    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
+        """Each record; of a single record blocks of successive tests."""
+        if np.ptp(self.numbers) > 0:
+            return [("record", np.flatnonzero(self.numbers == each)) for each in np.unique(self.numbers)]
+        blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))
+        return [("block", rows) for rows in blocks]
 
     @property
     def observations(self) -> np.ndarray:
@@ -95,11 +138,17 @@ class SampledData(FitData):
 
     def decorrelated(self, values: np.ndarray) -> np.ndarray:
         """Orthogonal combinations of values (..., T, m) whose noise is independent."""
-        return values
+        found = values.copy()
+        for t, part, each in self.combinations():
+            found[..., t, part] = values[..., t, part] @ each.matrix.T
+        return found
 
     def correlated(self, values: np.ndarray) -> np.ndarray:
         """What ``decorrelated`` turns into values (..., T, m)."""
-        return values
+        found = values.copy()
+        for t, part, each in self.combinations():
+            found[..., t, part] = values[..., t, part] @ each.matrix
+        return found
 
     def zero(self, values: np.ndarray) -> np.ndarray:
         """Zero of the sensor (..., T, 1) that fits values (..., T, m) best, measured less simulated ones."""
@@ -177,7 +226,7 @@ class SampledData(FitData):
             for each in scenarios
         ]
 
-    def numbers(self, point: Point) -> list[dict[str, Any]]:
+    def described(self, point: Point) -> list[dict[str, Any]]:
         """Numbers of each test for diagnosis.json, at a point of the extended model."""
         return [{}] * self.tests
 
@@ -188,14 +237,22 @@ class SampledData(FitData):
     def rows(self, base: Fit, extended: Fit) -> list[dict[str, Any]]:
         """Numbers of the tests; errors are the rms of the residual over that of the response."""
         errors = zip(*(self.error(fit.evaluation) for fit in (base, extended)), strict=True)
-        own = zip(self.numbers(extended.point), self.observations, errors, strict=True)
+        own = zip(self.described(extended.point), self.observations, errors, strict=True)
         return [
-            {**numbers, "samples": int(samples), "error_base": before, "error_extended": after}
-            for numbers, samples, (before, after) in own
+            {**described, "samples": int(samples), "error_base": before, "error_extended": after}
+            for described, samples, (before, after) in own
         ]
 
     def arrays(self, base: Fit, extended: Fit) -> Arrays:
         return self.shown(np.array([self.with_zero(fit.evaluation) for fit in (base, extended)]))
+
+
+def padded(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Values (..., k) of each test as (..., T, m), with zeros at the end."""
+    found = np.zeros((*parts[0].shape[:-1], len(parts), max(part.shape[-1] for part in parts)))
+    for t, part in enumerate(parts):
+        found[..., t, : part.shape[-1]] = part
+    return found
 
 
 def best_of_each_test(evaluations: Sequence[Evaluation]) -> Evaluation:

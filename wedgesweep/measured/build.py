@@ -24,8 +24,9 @@ from wedgesweep.measured.measurement import TestRecord
 from wedgesweep.measured.plausibility import channel_faults
 from wedgesweep.measured.quality import trend_faults
 from wedgesweep.measured.signals import Signal, Signals, selected
-from wedgesweep.measured.stationarity import stationarity_faults, without_trend
+from wedgesweep.measured.stationarity import stationarity_faults
 from wedgesweep.measured.steadiness import MOST_SAMPLES, frequency_faults
+from wedgesweep.periodogram import without_trend
 
 # Bounds of a channel in SI units, and the variation that is rounding, over its size.
 LARGEST, SMALLEST, ROUNDING = 1e12, 1e-15, 1e-13

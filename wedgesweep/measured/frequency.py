@@ -16,6 +16,7 @@ import numpy as np
 
 from wedgesweep.measured.cycles import FIRST_HARMONICS, SEEN, Cycles, cut
 from wedgesweep.measured.noise_estimate import estimate_noise
+from wedgesweep.periodogram import power_of
 
 # Fewer cycles give no estimate of the scatter.
 FEWEST_CYCLES = 4
@@ -182,9 +183,8 @@ def _strongest(time: np.ndarray, signal: np.ndarray) -> float:
     """
     count = time.size
     step = (time[-1] - time[0]) / (count - 1)
-    length = PADDING * 2 ** int(np.ceil(np.log2(count)))
-    spectrum = np.abs(np.fft.rfft((signal - signal.mean()) * np.hanning(count), length))
-    frequencies = np.fft.rfftfreq(length, step)
+    spectrum = power_of(signal - signal.mean(), PADDING)
+    frequencies = np.arange(spectrum.size) / (PADDING * count * step)
     spectrum[(frequencies < 1.5 / (count * step)) | (frequencies > 0.25 / step)] = 0.0
     return float(frequencies[spectrum.argmax()])
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wedgesweep.measured.measurement import TestRecord
+from wedgesweep.periodogram import power_of, without_trend
 
 PARTS = 4
 # A steady vibration under noise or a beating tone stays below this ratio of rms between parts of a record.
@@ -59,9 +60,9 @@ def stationarity_faults(test: TestRecord, file: str) -> list[str]:
 
 def _outliers(signal: np.ndarray) -> str:
     """What to do about the few samples, of shape (n,), that hold much of the power; else empty."""
-    power = np.sort(without_trend(signal) ** 2)[::-1]
+    squares = np.sort(without_trend(signal) ** 2)[::-1]
     few = max(signal.size // FEW, 1)
-    share = power[:few].sum() / power.sum()
+    share = squares[:few].sum() / squares.sum()
     if share < MUCH:
         return ""
     where = f"{100.0 * share:.0f} % of its power lies in {few} of {signal.size} samples"
@@ -78,14 +79,8 @@ def stationarity(signal: np.ndarray, rate: float) -> Stationarity:
     return Stationarity(levels, moved, (centres[0], centres[1]))
 
 
-def without_trend(signal: np.ndarray) -> np.ndarray:
-    """The signal, shape (n,), less the straight line through it (least squares)."""
-    place = np.arange(signal.size) - 0.5 * (signal.size - 1)
-    return signal - signal.mean() - place * (place @ signal) / (place @ place)
-
-
 def _cumulative_power(signal: np.ndarray) -> np.ndarray:
     """Share of the power up to each frequency; NaN without any power."""
-    power = np.abs(np.fft.rfft(without_trend(signal) * np.hanning(signal.size))) ** 2
+    total = np.cumsum(power_of(without_trend(signal)))
     with np.errstate(invalid="ignore"):
-        return np.cumsum(power) / power.sum()
+        return total / total[-1]

@@ -5,7 +5,7 @@ forces; each block has an unknown zero of the force, and an oscillator's one of 
 springs that are not linear act by their place. A wedge's displacement counts from rest, as its friction does.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
@@ -14,12 +14,13 @@ import numpy as np
 
 from wedgesweep.config import Config
 from wedgesweep.diagnose import work
+from wedgesweep.diagnose.decorrelation import Decorrelation
 from wedgesweep.diagnose.evaluation import NoStart, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import Arrays
 from wedgesweep.diagnose.loop.recording import Recording
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.sampled_data import SampledData
+from wedgesweep.diagnose.sampled_data import SampledData, padded
 from wedgesweep.measured.declarations import LOOP
 from wedgesweep.natural_units import NaturalUnits
 
@@ -60,8 +61,8 @@ class LoopData(SampledData):
         return own.name if len(own.blocks) == 1 else f"{own.name} {block + 1}"
 
     @property
-    def measured_tests(self) -> int:
-        return len({number for number, _ in self.chosen})
+    def numbers(self) -> np.ndarray:
+        return np.array([number for number, _ in self.chosen])
 
     @property
     def model(self) -> Config:  # type: ignore[override]
@@ -72,20 +73,17 @@ class LoopData(SampledData):
     def law(self) -> str:  # type: ignore[override]
         return self.recordings[0].law
 
-    def _combined(self, values: np.ndarray, back: bool) -> np.ndarray:
-        """Independent combinations of forces (..., T, m), or forces of such combinations."""
-        found = np.zeros_like(values)
+    def combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
         for t, (number, block) in enumerate(self.chosen):
-            matrix = self.recordings[number].decorrelated[block].matrix
-            own = slice(0, len(matrix))
-            found[..., t, own] = values[..., t, own] @ (matrix if back else matrix.T)
-        return found
+            each = self.recordings[number].decorrelated[block]
+            yield t, slice(0, each.std.size), each
 
-    def decorrelated(self, values: np.ndarray) -> np.ndarray:
-        return self._combined(values, back=False)
+    @property
+    def independent_noise(self) -> np.ndarray:
+        return np.zeros_like(self.recorded)
 
-    def correlated(self, values: np.ndarray) -> np.ndarray:
-        return self._combined(values, back=True)
+    def chosen_tests(self, rows: np.ndarray) -> Self:
+        return replace(self, chosen=tuple(self.chosen[row] for row in rows), resampled=None)
 
     def renewed(self, scenario: Scenario) -> Self:
         """The data with the noise of the motion as the force in a scenario passes it on."""
@@ -98,26 +96,13 @@ class LoopData(SampledData):
 
     def padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
         """Values (..., k) of each recording as blocks (..., T, m), zeros after the end of a block."""
-        return self._wide(
+        return padded(
             [values[number][..., self.recordings[number].blocks[block]] for number, block in self.chosen]
         )
-
-    @staticmethod
-    def _wide(parts: Sequence[np.ndarray]) -> np.ndarray:
-        """Values (..., k) of each test as (..., T, m), with zeros at the end."""
-        found = np.zeros((*parts[0].shape[:-1], len(parts), max(part.shape[-1] for part in parts)))
-        for t, part in enumerate(parts):
-            found[..., t, : part.shape[-1]] = part
-        return found
 
     @cached_property
     def recorded(self) -> np.ndarray:
         return np.where(self.seen, self.padded([own.force for own in self.recordings]), 0.0)
-
-    @cached_property
-    def noise(self) -> np.ndarray:
-        own = [self.recordings[number].decorrelated[block].std for number, block in self.chosen]
-        return self._wide(own)
 
     @cached_property
     def size(self) -> np.ndarray:
@@ -163,13 +148,6 @@ class LoopData(SampledData):
     def start(self) -> tuple[np.ndarray, NoStart]:
         return np.zeros((self.tests, int(self._zeros_are_free))), NoStart()
 
-    def subset(self, rows: np.ndarray) -> Self:
-        chosen = tuple(self.chosen[row] for row in np.arange(self.tests)[rows])
-        part = replace(self, chosen=chosen, resampled=None)
-        if self.resampled is None:
-            return part
-        return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
-
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         return tuple(name for name in effects if name not in OF_MOTION)
 
@@ -194,14 +172,7 @@ class LoopData(SampledData):
                 found[number][:, block] = [size * each.point.nuisance[t, 0] for each in scenarios]
         return found
 
-    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        """Each recording, or each block where there is only one."""
-        numbers = np.array([number for number, _ in self.chosen])
-        if np.ptp(numbers) == 0:
-            return [("block", np.array([t])) for t in range(self.tests)]
-        return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
-
-    def numbers(self, point: Point) -> list[dict[str, Any]]:
+    def described(self, point: Point) -> list[dict[str, Any]]:
         recordings = [self.recordings[number] for number, _ in self.chosen]
         return [
             {

@@ -7,8 +7,7 @@ import numpy as np
 from wedgesweep.diagnose.channel_factors import channel_factors
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.steady import tone
-from wedgesweep.diagnose.steady.correlated import stated
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData, stated
 from wedgesweep.diagnose.steady.recorded_input import (
     InputHarmonics,
     RecordedInputData,

@@ -40,6 +40,8 @@ STICKS = 0.01
 IMPLAUSIBLE = 0.3
 # Relative standard deviation of an amplitude that is held as stated.
 HELD = 1e-4
+# A covariance is replaced if the variance of some combination of residuals changes by more than this factor.
+CHANGED = 1.1
 # Frequencies or amplitudes closer than this (relative) are left out together in cross-validation.
 SAME_GROUP = 0.02
 
@@ -130,19 +132,8 @@ class HarmonicData(WhitenedHarmonics, FitData):
         ]
         return stacked(each)
 
-    def decorrelated(self, residual: np.ndarray) -> np.ndarray:
-        """Residuals (..., T, m) over the noise of the responses, transformed to unit covariance.
-
-        They have it already unless the input is not exactly known (CorrelatedHarmonics).
-        """
-        return residual
-
-    def correlated(self, noise: np.ndarray) -> np.ndarray:
-        """The inverse of ``decorrelated``: values that it turns into some noise (..., T, m)."""
-        return noise
-
     def power_of(self, response: SteadyResponse) -> np.ndarray:
-        return (np.abs(response.whitened) ** 2).sum(axis=(-2, -1))
+        return self.squared(response.whitened)
 
     def _simulate(self, scenarios: Sequence[Scenario], tolerance: float) -> Simulated:
         rows = [self.records(each) for each in scenarios]
@@ -195,14 +186,10 @@ class HarmonicData(WhitenedHarmonics, FitData):
             return phase, aliases
         left = self.whitened - self.rotated(whitened, phase)
         both = np.stack([left - self.whiten(aliases), left])
-        with_aliases, without = self._squared(both)
+        with_aliases, without = self.squared(both)
         aliases[with_aliases > without + FILTERED] = 0.0
         phase = self.start_phase(whitened, self.whiten(aliases))
         return phase, np.where(aliases != 0.0, self.aliases(simulated, phase), 0.0)
-
-    def _squared(self, left: np.ndarray) -> np.ndarray:
-        """Squared misfit (..., T) of a whitened residual (..., T, C, H)."""
-        return (np.abs(left) ** 2).sum((-2, -1))
 
     def with_model_error(self, size: float) -> Self:
         return replace(self, model_error=size)
@@ -243,7 +230,40 @@ class HarmonicData(WhitenedHarmonics, FitData):
         """The data as if a tone had been looked for, between the harmonics, and only noise been found."""
         frequency = tone.between(self.spectra)
         spectra = tuple(s.with_undetected_tone(frequency) for s in self.spectra)
-        return replace(self, spectra=spectra, tone=frequency)
+        wider = replace(self, spectra=spectra, tone=frequency, by_input=None)
+        if self.by_input is None:
+            return wider
+        # Errors of an input do not matter at a tone between its harmonics.
+        harmonic = np.zeros((2, self.shape[0], wider.columns), bool)
+        harmonic[..., : self.shape[1]] = True
+        place, by_input = np.flatnonzero(harmonic), np.zeros((self.tests, harmonic.size, harmonic.size))
+        by_input[:, place[:, None], place] = self.by_input
+        return replace(wider, by_input=by_input)
+
+    def covariance(self, scenario: Scenario) -> np.ndarray | None:
+        """Of residuals over the noise of the responses (T, m, m) in a scenario; None for exact inputs."""
+        return None
+
+    def bare(self) -> Self:
+        """The data as if inputs were exactly known."""
+        return replace(self, by_input=None)
+
+    def with_covariance(self, scenario: Scenario) -> Self:
+        """The data with the covariance of their residuals in a scenario."""
+        covariance = self.covariance(scenario)
+        if covariance is None:
+            return self
+        back = self.matrices(self.unwhiten)
+        by_input = back @ (covariance - np.eye(covariance.shape[-1])) @ np.swapaxes(back, 1, 2)
+        return replace(self, by_input=by_input)
+
+    def renewed(self, scenario: Scenario) -> Self:
+        there = self.with_covariance(scenario)
+        if self.whitening is None or there.whitening is None:
+            return self
+        both = self.whitening @ np.linalg.inv(there.whitening)
+        ratio = np.linalg.eigvalsh(both @ np.swapaxes(both, 1, 2))
+        return there if np.abs(np.log(ratio)).max() > np.log(CHANGED) else self
 
     def extra_nuisances(self, effects: Iterable[str]) -> np.ndarray:
         """One in each test with a tone that these effects explain: its phase."""
@@ -354,6 +374,11 @@ class HarmonicData(WhitenedHarmonics, FitData):
         travel = max(float(np.abs(each.mean[0]).sum()) for each in self.spectra)
         rms, orders = own.rms[:2], tuple(range(len(noise)))
         return Sensors(self.model, self.law, 1.0 / own.interval, noise, rms, travel, orders)
+
+
+def stated(data: HarmonicData) -> Scenario:
+    """The scenario of the base model as stated, each test starting at rest."""
+    return Scenario({}, Point(np.zeros(0), *data.start()))
 
 
 def groups_of_equal(values: np.ndarray) -> list[np.ndarray]:

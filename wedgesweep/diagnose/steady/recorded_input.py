@@ -19,8 +19,7 @@ from wedgesweep import excitation
 from wedgesweep.diagnose.evaluation import Evaluation, NuisanceParameter, Point, Scenario
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import TIGHT
-from wedgesweep.diagnose.steady.correlated import CorrelatedHarmonics
-from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, Simulated
+from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
 
 # Effects of sensors: the number that is set, and its value without the effect.
@@ -90,7 +89,7 @@ def without_noise(measured: np.ndarray, variance: np.ndarray) -> tuple[np.ndarra
 
 
 @dataclass(frozen=True)
-class RecordedInputData(CorrelatedHarmonics):
+class RecordedInputData(HarmonicData):
     """Harmonics of steady tests whose input was recorded.
 
     ``inputs``: the recorded inputs. ``hidden``: effects that these channels cannot show.

@@ -26,16 +26,13 @@ import numpy as np
 from wedgesweep.diagnose.evaluation import Evaluation, Scenario
 from wedgesweep.diagnose.fit_parameters import Values
 from wedgesweep.diagnose.model import TIGHT
-from wedgesweep.diagnose.steady.correlated import CorrelatedHarmonics, stated
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData
+from wedgesweep.diagnose.steady.harmonic_data import HarmonicData, stated
 from wedgesweep.diagnose.steady.whitened import real
 from wedgesweep.effects import merge
 from wedgesweep.uncertain import DISTORTION, harmonic_of, with_harmonic
 
 # Orders of the harmonics that inputs have.
 ORDERS = {"second": 2, "third": 3}
-# Columns k and q of their real and imaginary parts.
-COLUMNS = 4 * len(ORDERS)
 # The finite-difference step of a harmonic is the standard deviation of its real part, but at least this over
 # its order: the error of simulations would hide smaller steps.
 LEAST_STEP = 1e-4
@@ -45,7 +42,7 @@ NEWTON_STEPS, NEWTON_LENGTH, NEGLIGIBLE = 12, 0.05, 1e-7
 
 
 @dataclass(frozen=True)
-class StatedInputData(CorrelatedHarmonics):
+class StatedInputData(HarmonicData):
     """Harmonics of steady tests whose inputs are stated; ``harmonics_std``: of those of the input."""
 
     harmonics_std: float = 0.0
@@ -78,24 +75,10 @@ class StatedInputData(CorrelatedHarmonics):
         linear, quadratic = 0.5 * size * (above - below), 0.5 * size**2 * (above + below)
         return np.where(known, linear, 0.0), np.where(known, sqrt(3.0) * quadratic, 0.0)
 
-    @cached_property
-    def _passed_on(self) -> np.ndarray:
-        """Independent columns (T, m, COLUMNS) of what the inputs' harmonics add."""
-        variance, vectors = np.linalg.eigh(self.by_input)
-        return vectors[..., -COLUMNS:] * np.sqrt(np.maximum(variance[:, None, -COLUMNS:], 0.0))
-
-    def _transformed_whitening(self, turn: np.ndarray) -> np.ndarray:
-        vectors, std, _ = np.linalg.svd(turn @ self._passed_on, full_matrices=False)
-        change = 1.0 / np.hypot(std, 1.0) - 1.0
-        return np.eye(turn.shape[-1]) + (vectors * change[:, None, :]) @ np.swapaxes(vectors, 1, 2)
-
     def _distorted(self, values: Values, name: str, change: complex) -> Values:
         """Values of effects (SI) with a change of one harmonic of the input."""
         own = merge(self.model.effects, values).get(DISTORTION, {})
         return {**values, DISTORTION: with_harmonic(own, name, harmonic_of(own, name) + change)}
-
-    def _squared(self, left: np.ndarray) -> np.ndarray:
-        return (self.decorrelated(real(left)) ** 2).sum(-1)
 
     @cached_property
     def _precision(self) -> np.ndarray:

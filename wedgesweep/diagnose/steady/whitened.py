@@ -3,6 +3,7 @@
 Arrays are padded to the same number of channels and harmonics; what a test does not have weighs nothing.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, nan, pi
@@ -16,6 +17,9 @@ from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 
 # Number of start phases that are tried, and of Newton steps from the best one; their largest length (rad).
 PHASES, NEWTON_STEPS, NEWTON_LENGTH = 256, 4, 0.02
+# Least variance of a combination of residuals, over that of the responses' own noise: sampling errors of the
+# noise that channels and input share may make it smaller, or negative.
+LEAST_VARIANCE = 0.1
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,8 @@ class WhitenedHarmonics:
     phase (rad) of the input at the first sample of each record, None before a first fit has found it.
     ``models``: the base model of each test, if they differ.
     ``model_error``: relative error that a model may have; its variance is part of that of the harmonics.
+    ``by_input`` (T, m, m): covariance that errors of the inputs add to the harmonics as real vectors (see
+    ``real``), in m and m/s; None for inputs that are exactly known.
     """
 
     model: Config
@@ -43,6 +49,7 @@ class WhitenedHarmonics:
     input_phase: np.ndarray | None = None
     models: tuple[Config, ...] | None = None
     model_error: float = 0.0
+    by_input: np.ndarray | None = None
 
     @property
     def tests(self) -> int:
@@ -89,7 +96,7 @@ class WhitenedHarmonics:
 
     def subset(self, rows: np.ndarray) -> Self:
         """The same data with some of the tests."""
-        return replace(
+        some = replace(
             self,
             names=tuple(self.names[i] for i in rows),
             spectra=tuple(self.spectra[i] for i in rows),
@@ -98,6 +105,14 @@ class WhitenedHarmonics:
             input_phase=None if self.input_phase is None else self.input_phase[rows],
             models=None if self.models is None else tuple(self.models[i] for i in rows),
         )
+        if self.by_input is None:
+            return some
+        # They may be padded to fewer channels or harmonics.
+        kept = np.zeros((2, self.shape[0], self.columns), bool)
+        kept[:, : some.shape[0], : some.shape[1]] = True
+        kept[:, : some.shape[0], self.shape[1] :] = True
+        place = np.flatnonzero(kept)
+        return replace(some, by_input=self.by_input[rows][:, place[:, None], place])
 
     def _padded(self, values: list[np.ndarray], fill: float) -> np.ndarray:
         full = np.full((self.tests, self.shape[0], self.columns), fill, dtype=values[0].dtype)
@@ -169,8 +184,48 @@ class WhitenedHarmonics:
 
     @cached_property
     def power(self) -> np.ndarray:
-        """Sum of squares of the whitened measurement, (T,)."""
-        return (np.abs(self.whitened) ** 2).sum(axis=(-2, -1))
+        """Squared misfit of a simulation of nothing at all, (T,)."""
+        return self.squared(self.whitened)
+
+    def squared(self, whitened: np.ndarray) -> np.ndarray:
+        """Squared misfit (..., T) of whitened harmonics (..., T, C, H)."""
+        return (self.decorrelated(real(whitened)) ** 2).sum(-1)
+
+    @cached_property
+    def whitening(self) -> np.ndarray | None:
+        """Symmetric matrices (T, m, m) that give residuals over the noise of the responses unit covariance.
+
+        None for inputs that are exactly known: they have it already.
+        """
+        if self.by_input is None:
+            return None
+        turn = self.matrices(self.whiten)
+        values, vectors = np.linalg.eigh(
+            np.eye(turn.shape[-1]) + turn @ self.by_input @ np.swapaxes(turn, 1, 2)
+        )
+        std = np.sqrt(np.maximum(values, LEAST_VARIANCE))
+        return (vectors / std[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+
+    def decorrelated(self, residual: np.ndarray) -> np.ndarray:
+        """Residuals (..., T, m) over the noise of the responses, transformed to unit covariance."""
+        if self.whitening is None:
+            return residual
+        return np.einsum("tij,...tj->...ti", self.whitening, residual)
+
+    def correlated(self, noise: np.ndarray) -> np.ndarray:
+        """The inverse of ``decorrelated``: values that it turns into some noise (..., T, m)."""
+        if self.whitening is None:
+            return noise
+        return np.einsum("tij,...tj->...ti", np.linalg.inv(self.whitening), noise)
+
+    def matrices(self, function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """A linear function of harmonics (..., T, C, H) as matrices (T, m, m) for real vectors."""
+        size = self.shape[0] * self.columns
+        unit = np.eye(size, dtype=complex).reshape(size, 1, self.shape[0], self.columns)
+        columns = function(np.repeat(unit, self.tests, axis=1)).reshape(size, self.tests, size)
+        found = columns.transpose(1, 2, 0)
+        top = np.concatenate([found.real, -found.imag], axis=2)
+        return np.concatenate([top, np.concatenate([found.imag, found.real], axis=2)], axis=1)
 
     def whiten(self, harmonics: np.ndarray) -> np.ndarray:
         """Harmonics (..., T, C, H) over their noise, complex, the channels' common noise removed."""

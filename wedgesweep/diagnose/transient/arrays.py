@@ -15,7 +15,7 @@ BY_SAMPLE, BY_CHANNEL = ("test", "sample"), ("test", "channel", "sample")
 CHANNELS, CHANNEL_UNIT = ("displacement", "velocity", "acceleration"), "m, m/s or m/s^2"
 
 
-def numbers(data: "TransientData", point: Point) -> list[dict[str, Any]]:
+def described(data: "TransientData", point: Point) -> list[dict[str, Any]]:
     """Numbers of each window for diagnosis.json, with the starts of a point."""
     starts = 1e3 * data.starts(point)
     return [

@@ -8,9 +8,10 @@ import numpy as np
 from scipy import signal
 
 from wedgesweep.diagnose.noise_bins import noise_of_record
-from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum, power_of
+from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
 from wedgesweep.diagnose.smoothing import derivative
 from wedgesweep.diagnose.transient.input_noise import InputNoise
+from wedgesweep.periodogram import power_of
 from wedgesweep.sampled_input import INTEGRATED, SampledInput, from_samples
 
 # Cut-off of the input over the highest frequency that stands out in it: what lies above is noise, whose
@@ -124,7 +125,6 @@ def no_input(span: float) -> SampledInput:
 
 def _power(samples: np.ndarray) -> np.ndarray:
     """Power (n // 2 + 1,) of samples (n,) by frequency, averaged over neighbours."""
-    power = power_of(samples - samples.mean())
-    width = max(int(AVERAGED * power.size), 3)
-    kernel = np.ones(2 * width + 1)
-    return np.convolve(power, kernel, mode="same") / np.convolve(np.ones(power.size), kernel, mode="same")
+    found = power_of(samples - samples.mean())
+    kernel = np.ones(2 * max(int(AVERAGED * found.size), 3) + 1)
+    return np.convolve(found, kernel, mode="same") / np.convolve(np.ones(found.size), kernel, mode="same")

@@ -27,7 +27,7 @@ from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays
 from wedgesweep.diagnose.model import TOLERANCE, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors, median_test
 from wedgesweep.diagnose.noise_spectrum import NoiseBins
-from wedgesweep.diagnose.sampled_data import SampledData, best_of_each_test
+from wedgesweep.diagnose.sampled_data import SampledData, best_of_each_test, padded
 from wedgesweep.diagnose.transient import arrays
 from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, standing_out
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
@@ -41,8 +41,6 @@ RELEASE, SWEEP = "release", "sweep"
 OF_INPUT = ("input_distortion", "stray_vibration", "cross_slip")
 # Effects of sensors, and the derivative of the displacement whose sensor has each.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
-# Blocks of a record that are left out in turn, at most.
-MOST_BLOCKS = 12
 # Displacement and velocity of the start, over the largest displacement (times omega_n for the velocity).
 START = (NuisanceParameter(step=1e-4, max_step=0.1), NuisanceParameter(step=1e-4, max_step=0.1))
 # The same of each of BODIES, in their order.
@@ -83,8 +81,8 @@ class TransientData(SampledData):
         return tuple(own.name for own in self.windows)
 
     @property
-    def measured_tests(self) -> int:
-        return len({own.number for own in self.windows})
+    def numbers(self) -> np.ndarray:
+        return np.array([own.number for own in self.windows])
 
     @property
     def model(self) -> Config:  # type: ignore[override]
@@ -97,41 +95,21 @@ class TransientData(SampledData):
 
     def _padded(self, values: Sequence[np.ndarray]) -> np.ndarray:
         """Values (..., C, k) of each test as (..., T, m), with zeros at the end."""
-        flat = [each.reshape(*each.shape[:-2], -1) for each in values]
-        found = np.zeros((*flat[0].shape[:-1], len(flat), max(each.shape[-1] for each in flat)))
-        for t, each in enumerate(flat):
-            found[..., t, : each.shape[-1]] = each
-        return found
+        return padded([each.reshape(*each.shape[:-2], -1) for each in values])
 
     @cached_property
     def recorded(self) -> np.ndarray:
         return self._padded([own.compared for own in self.windows])
 
-    @cached_property
-    def noise(self) -> np.ndarray:
-        noise = self._padded([own.noise for own in self.windows])
-        for t, part, each in self._combinations():
-            noise[t, part] = each.std
-        return noise
+    @property
+    def independent_noise(self) -> np.ndarray:
+        return self._padded([own.noise for own in self.windows])
 
-    def _combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
-        """Test, coefficients and their decorrelation, for all channels with correlated noise."""
+    def combinations(self) -> Iterator[tuple[int, slice, Decorrelation]]:
         for t, both in enumerate(self.decorrelations or ()):
             for channel, each in enumerate(both):
                 first = channel * self.windows[t].coefficients
                 yield t, slice(first, first + each.std.size), each
-
-    def decorrelated(self, values: np.ndarray) -> np.ndarray:
-        found = values.copy()
-        for t, part, each in self._combinations():
-            found[..., t, part] = values[..., t, part] @ each.matrix.T
-        return found
-
-    def correlated(self, values: np.ndarray) -> np.ndarray:
-        found = values.copy()
-        for t, part, each in self._combinations():
-            found[..., t, part] = values[..., t, part] @ each.matrix
-        return found
 
     def renewed(self, scenario: Scenario) -> Self:
         """The data with their noise as a scenario has it.
@@ -249,14 +227,10 @@ class TransientData(SampledData):
         start = np.array([own.guess for own in self.windows]) / self._scale
         return np.pad(start, ((0, 0), (0, int(self.gain_std > 0.0) + len(BODY_STARTS)))), NoStart()
 
-    def subset(self, rows: np.ndarray) -> Self:
-        windows = tuple(self.windows[row] for row in np.arange(self.tests)[rows])
-        known = self.decorrelations
-        kept = None if known is None else tuple(known[row] for row in np.arange(self.tests)[rows])
-        part = replace(self, windows=windows, resampled=None, decorrelations=kept)
-        if self.resampled is None:
-            return part
-        return replace(part, resampled=self.resampled[rows][:, : part.recorded.shape[1]])
+    def chosen_tests(self, rows: np.ndarray) -> Self:
+        known, windows = self.decorrelations, tuple(self.windows[row] for row in rows)
+        kept = None if known is None else tuple(known[row] for row in rows)
+        return replace(self, windows=windows, resampled=None, decorrelations=kept)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {order for own in self.windows for order in own.shown_as_measured}
@@ -302,7 +276,7 @@ class TransientData(SampledData):
 
     def representative(self, evaluation: Evaluation) -> np.ndarray:
         """Of each few successive windows of a record the one that fits worst, if there are many."""
-        numbers, misfit = np.array([own.number for own in self.windows]), evaluation.chi2_by_test
+        numbers, misfit = self.numbers, evaluation.chi2_by_test
         size = min(self.tests // FEWEST_WINDOWS, MOST_REPRESENTED)
         if size < 2:
             return np.arange(self.tests)
@@ -323,16 +297,8 @@ class TransientData(SampledData):
         misfit = evaluation.chi2_by_test
         return float(misfit[standing_out(misfit, self.dof)].sum())
 
-    def held_out_groups(self) -> list[tuple[str, np.ndarray]]:
-        """Each record; of a single record blocks of successive windows."""
-        numbers = np.array([own.number for own in self.windows])
-        if np.ptp(numbers) > 0:
-            return [("record", np.flatnonzero(numbers == number)) for number in np.unique(numbers)]
-        blocks = np.array_split(np.arange(self.tests), min(self.tests, MOST_BLOCKS))
-        return [("block", rows) for rows in blocks]
-
-    def numbers(self, point: Point) -> list[dict[str, Any]]:
-        return arrays.numbers(self, point)
+    def described(self, point: Point) -> list[dict[str, Any]]:
+        return arrays.described(self, point)
 
     def shown(self, simulated: np.ndarray) -> Arrays:
         return arrays.arrays(self, simulated)
