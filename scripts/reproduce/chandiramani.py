@@ -45,6 +45,7 @@ PROMISING = 2
 # Number of observations that each hypothesis satisfies. If a run finds another number, something has changed.
 RECORDED = {
     "small-input": 5,
+    "jamming": 5,
     "preload": 7,
     "guide-friction": 6,
     "fixture-resonance": 6,

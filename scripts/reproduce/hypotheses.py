@@ -90,6 +90,7 @@ def _within(quantity: Quantity, share: float) -> float:
 
 HYPOTHESES = (
     Hypothesis("small-input", "the friction law alone, at a small input", ()),
+    Hypothesis("jamming", "forces locked in at rest", ("jamming",), (COULOMB,)),
     Hypothesis("preload", "more preload", ("preload",)),
     Hypothesis("guide-friction", "guide friction", ("guide_friction",)),
     Hypothesis("fixture-resonance", "fixture resonance", ("fixture_resonance",)),

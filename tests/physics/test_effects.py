@@ -15,7 +15,7 @@ from wedgesweep.friction import LAW_NAMES
 from wedgesweep.solvers import event_driven, periodic, radau
 from wedgesweep.solvers.trajectory import CaseError, Window
 from wedgesweep.systems.suspension import parameters
-from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration
+from wedgesweep.systems.suspension.rest import breakaway_accelerations
 
 LAWS = ("coulomb", "static-dynamic", "exponential")
 # A number whose default follows from the model.
@@ -344,7 +344,7 @@ def test_both_solvers_agree_from_the_same_start(name, law):
 @pytest.mark.parametrize("times", [1, 5, 15])
 def test_a_release_that_lasts_a_moment_is_not_missed(times, more):
     """The bolster is released by a bit more than holds it; a tone makes that a short moment."""
-    held = breakaway_acceleration(parameters.record("coulomb", 1e-4, OMEGA_N)[0])
+    held = breakaway_accelerations(parameters.record("coulomb", 1e-4, OMEGA_N))[0][0]
     tone = {"acceleration": 0.5 * (1.0 + more) * held, "frequency": times * OMEGA_N / (2.0 * pi)}
     record = parameters.record(
         "coulomb", 0.5 * (1.0 + more) * held / OMEGA_N**2, OMEGA_N, effects={NOT_PERIODIC: tone}

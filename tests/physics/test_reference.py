@@ -7,6 +7,7 @@ import pytest
 
 from tests.physics.cases import OMEGA_N, fast, steady
 from wedgesweep.systems.suspension import equilibrium, parameters
+from wedgesweep.systems.suspension.rest import breakaway_accelerations
 
 ROWS = json.loads((Path(__file__).parents[1] / "data" / "steady.json").read_text())
 
@@ -74,7 +75,7 @@ def test_laws_part_near_breakaway(law, beta, amplitude_mm, ratio):
 @pytest.mark.parametrize("excess", [-1e-6, 1e-3])
 def test_motion_begins_at_the_breakaway_acceleration(excess):
     omega = 1.5 * OMEGA_N
-    limit = equilibrium.breakaway_acceleration(parameters.record("coulomb", 1e-3, omega)[0])
+    limit = breakaway_accelerations(parameters.record("coulomb", 1e-3, omega))[0][0]
     record = parameters.record("coulomb", (1.0 + excess) * limit / omega**2, omega)
     numbers = steady(record, settle_periods=3)
     assert (numbers["stick_fraction"] < 1.0) == (excess > 0)

@@ -6,8 +6,7 @@ from scipy.optimize import linprog
 
 from tests.physics.cases import OMEGA_N, fast
 from wedgesweep.systems.suspension import parameters
-from wedgesweep.systems.suspension.equilibrium import breakaway_inputs
-from wedgesweep.systems.suspension.rest import rest_interval
+from wedgesweep.systems.suspension.rest import breakaway_inputs, rest_interval
 
 LEANS = [(4.0, (-0.736869, 1.451031)), (-4.0, (-0.947180, 4.678984))]
 
@@ -88,7 +87,7 @@ def test_interval_is_that_of_a_linear_programme(count):
 
 @pytest.mark.parametrize(("column_angle", "interval"), LEANS)
 def test_least_sticking_is_within_the_band(column_angle, interval):
-    up, down = breakaway_inputs(machine(column_angle)[0])
+    up, down = np.ravel(breakaway_inputs(machine(column_angle), 0.29))
     assert interval[0] - 1e-6 < up < 0.0 < down < interval[1] + 1e-6
 
 
@@ -101,7 +100,7 @@ def test_no_friction_no_band():
 @pytest.mark.parametrize(("column_angle", "interval"), LEANS)
 def test_motion_begins_where_locked_in_forces_end(column_angle, interval, locked_in):
     """Between the least sticking of Coulomb's law and the end of the band."""
-    least = breakaway_inputs(machine(column_angle)[0])
+    least = np.ravel(breakaway_inputs(machine(column_angle), 0.29))
     limit = min(abs(low + locked_in * (high - low)) for low, high in zip(least, interval, strict=True))
     for share, sticks in ((0.999, True), (1.001, False)):
         record = parameters.record(

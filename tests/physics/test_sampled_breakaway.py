@@ -9,7 +9,7 @@ from wedgesweep.config import from_document
 from wedgesweep.sampled_input import bend_leaves, from_samples, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import compact, state_count
-from wedgesweep.systems.suspension.equilibrium import _acceleration_on_verge
+from wedgesweep.systems.suspension.rest import breakaway_inputs
 
 CONFIG = from_document(
     {"suspension": {}, "sweep": {"friction_law": "coulomb", "beta": 1.0, "amplitude_mm": 1.0}}
@@ -63,14 +63,14 @@ def test_a_bolster_breaks_away_when_a_growing_acceleration_reaches_that_of_break
     begin = 0.1
     given = from_samples(sign * (begin + growth * time), 5e-4, "acceleration")
     row = _record(given, span, effects)
-    expected = (_breakaway(row[0], sign) - begin) / growth
+    expected = (_breakaway(row, sign) - begin) / growth
     assert 0.1 < expected < 0.9
     run = periodic.sampled(row, np.zeros((1, state_count())), 0, 1, samples, 1e-10)
     moves = np.flatnonzero(run.velocity[0] != 0.0)[0] / samples
     assert moves == pytest.approx(expected, abs=2.0 / samples)
 
 
-def _breakaway(p, side):
+def _breakaway(row, side):
     """Size of the base acceleration (m/s^2) to one side at which the bolster leaves its equilibrium."""
-    at_rest, inertia = _acceleration_on_verge(-side, float(p["friction"]["mu_d"]), p)
-    return abs(at_rest / inertia)
+    up, down = breakaway_inputs(row, row["friction"]["mu_d"])
+    return abs(float((down if side > 0 else up)[0]))

@@ -8,6 +8,7 @@ import xarray as xr
 
 from tests import small_sweep
 from wedgesweep import config
+from wedgesweep.config.physics import breakaway
 from wedgesweep.errors import ConfigError, MismatchError
 from wedgesweep.sweep import dataset, outcomes, unfinished
 from wedgesweep.sweep.journal import Journal
@@ -258,3 +259,14 @@ def test_a_dataset_with_axes_is_one_of_a_sweep(tmp_path):
     made = sweep(tmp_path)
     ds = made.run(n_jobs=1)
     assert dataset.read_sweep(made.out).sizes == ds.sizes
+
+
+def test_both_ends_of_breakaway_are_told_along_the_axes_that_change_them():
+    text = SWEEP.replace('"coulomb"', '["coulomb", "exponential"]')
+    text += '[sweep.axes]\n"suspension.column_angle_deg" = [-4.0, 4.0]\n'
+    told = breakaway(config.parse(text))
+    for name, expected in (("breakaway_min", (0.455585, 0.395971)), ("breakaway_max", (0.947180, 0.736869))):
+        dims, values, _ = told[name]
+        values = xr.DataArray(values, dims=dims).transpose("friction_law", ...)
+        np.testing.assert_allclose(values[0], expected, atol=1e-6)
+        assert values[1].isnull().all()  # a regularised law creeps at any input

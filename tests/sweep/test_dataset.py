@@ -11,6 +11,7 @@ import xarray as xr
 
 from tests import small_sweep
 from wedgesweep import config
+from wedgesweep.config.physics import BREAKAWAY
 from wedgesweep.errors import SweepError
 from wedgesweep.sweep import dataset, labels, provenance, variables
 from wedgesweep.sweep.variables import STATUSES, VARIABLES
@@ -33,7 +34,7 @@ def ds(sweep):
 
 
 def test_variables_have_the_declared_dimensions_units_and_names(ds):
-    assert set(ds.data_vars) == {variable.name for variable in VARIABLES}
+    assert set(ds.data_vars) == {variable.name for variable in VARIABLES} | set(BREAKAWAY)
     for variable in VARIABLES:
         found = ds[variable.name]
         assert found.dims == (*variables.GRID, *variable.dims)

@@ -75,14 +75,14 @@ class Config:
         return unilateral or lift_off.NAME in self.document["effects"]
 
     @cached_property
-    def closed(self) -> "Config":
-        """The config with joints that hold, as they all do in small motions."""
-        if not self.opens:
-            return self
-        bilateral = self.document["suspension"] | {"joints": suspension.BILATERAL}
-        bilateral.pop(suspension.RESTITUTION.key, None)
-        effects = {name: each for name, each in self.document["effects"].items() if name != lift_off.NAME}
-        return Config(self.document | {"suspension": bilateral, "effects": effects})
+    def at_rest(self) -> "Config":
+        """The config of a suspension with joints that hold, as they do at rest, and nothing locked in."""
+        without = ("joints", suspension.RESTITUTION.key, suspension.LOCKED_IN.key)
+        held = {key: value for key, value in self.document["suspension"].items() if key not in without}
+        effects = dict(self.document["effects"])
+        for name in (lift_off.NAME, jamming.NAME):
+            effects.pop(name, None)
+        return Config(self.document | {"suspension": held, "effects": effects})
 
     def natural_units(self, travel: float | None = None, omega: float | None = None) -> NaturalUnits:
         """Natural units of the model, whose measured motion has some travel (m) and angular frequency."""

@@ -1,13 +1,20 @@
-"""Properties of a config's nominal model that figures refer to."""
+"""Properties of a config's model that figures refer to."""
 
 from math import nan
+from typing import Any
 
-from wedgesweep.config.cases import Case
+import numpy as np
+
+from wedgesweep.config.cases import LAW, Case
 from wedgesweep.config.model import Config
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.systems import has_own_mechanics
 from wedgesweep.systems.oscillator import parameters as oscillator
-from wedgesweep.systems.suspension.equilibrium import breakaway_acceleration, resonance
+from wedgesweep.systems.suspension.equilibrium import resonance
+from wedgesweep.systems.suspension.rest import breakaway_accelerations
+
+# Variables of the dataset, and what Coulomb's law does at them.
+BREAKAWAY = {"breakaway_min": "allows", "breakaway_max": "enforces"}
 
 
 def physics(config: Config) -> dict[str, float]:
@@ -22,11 +29,27 @@ def physics(config: Config) -> dict[str, float]:
             **({"friction_decay_per_cycle": decay} if config.transient else {}),
         }
     numbers = {"omega_n": config.omega_n, "rest_position": float(p["geometry"]["rest"])}
-    model = config.closed  # as far as the resonance and breakaway from rest are concerned
+    model = config.at_rest
     if has_own_mechanics(model.records_of_laws).any():  # not defined for the extended mechanics
         return numbers | {"frictionless_resonance": nan, "breakaway_acceleration": nan}
-    coulomb = model.record(Case("coulomb", 1.0, 1e-3))[0]
-    return numbers | {
-        "frictionless_resonance": resonance(p),
-        "breakaway_acceleration": breakaway_acceleration(coulomb),
+    least, _ = breakaway_accelerations(model.record(Case("coulomb", 1.0, 1e-3)))
+    return numbers | {"frictionless_resonance": resonance(p), "breakaway_acceleration": float(least[0])}
+
+
+def breakaway(config: Config) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]:
+    """Dataset variables ``breakaway_min`` and ``breakaway_max`` over the axes that change them.
+
+    Least and most base acceleration (m/s2) at which Coulomb's law lets a suspension slip from rest; NaN where
+    friction is not set-valued, or effects have mechanics of their own. Inf: it jams.
+    """
+    if config.system == OSCILLATOR:
+        return {}
+    dims, cases = config.sweep.along((LAW, *config.sweep.keys))
+    rows = config.at_rest.records(cases.ravel())
+    defined = rows["friction"]["set_valued"].astype(bool) & ~has_own_mechanics(rows)
+    values = np.where(defined, breakaway_accelerations(rows), nan).reshape(2, *cases.shape)
+    about = "base acceleration at which Coulomb's law {} slip from rest"
+    return {
+        name: (dims, value, {"units": "m s-2", "long_name": about.format(verb)})
+        for (name, verb), value in zip(BREAKAWAY.items(), values, strict=True)
     }

@@ -1,5 +1,7 @@
 """Where the suspension sticks: stick fraction over frequency and input amplitude."""
 
+from math import nan
+
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
@@ -55,11 +57,20 @@ def _draw_law(ax: Axes, law: xr.Dataset, edges: Edges) -> QuadMesh:
 
 
 def _draw_breakaway(ax: Axes, ds: xr.Dataset) -> None:
+    """Draw where the bolster may slip from rest, and dashed where it has to."""
     lowest, highest = ax.get_xlim()
     beta = np.linspace(lowest, highest, 1001)[1:]
-    amplitude = ds.attrs["breakaway_acceleration"] / (beta * ds.attrs["omega_n"]) ** 2 * style.MM
-    ax.plot(beta, amplitude, color="white", linewidth=3.2)
-    ax.plot(beta, amplitude, color=style.VERMILLION, linewidth=1.8)
+    for acceleration, dashes in ((ds.attrs["breakaway_acceleration"], "-"), (_latest_breakaway(ds), "--")):
+        amplitude = acceleration / (beta * ds.attrs["omega_n"]) ** 2 * style.MM
+        ax.plot(beta, amplitude, color="white", linewidth=3.2)
+        ax.plot(beta, amplitude, color=style.VERMILLION, linewidth=1.8, linestyle=dashes)
+
+
+def _latest_breakaway(ds: xr.Dataset) -> float:
+    """Base acceleration (m/s2) at which slip from rest is enforced; NaN if none, or not one, is known."""
+    values = np.unique(ds["breakaway_max"]) if "breakaway_max" in ds else np.empty(0)
+    values = values[np.isfinite(values)]
+    return float(values[0]) if values.size == 1 else nan
 
 
 def _legend(made: Panels, ds: xr.Dataset) -> None:
@@ -69,6 +80,9 @@ def _legend(made: Panels, ds: xr.Dataset) -> None:
     handles: list[Artist] = []
     if np.isfinite(ds.attrs["breakaway_acceleration"]):
         handles.append(Line2D([], [], label="breakaway from rest, $a = A/ω^2$", **line))
+    if np.isfinite(_latest_breakaway(ds)):
+        label = "the same, if locked-in forces hold it"
+        handles.append(Line2D([], [], label=label, linestyle="--", **line))
     for marked, pattern, text in (
         (validity.lifted(ds), "////", "lift-off: outside of validity"),
         (validity.unsettled(ds), "....", "not settled"),

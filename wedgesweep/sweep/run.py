@@ -13,7 +13,7 @@ import numpy as np
 
 from wedgesweep import config, formatting, rotation
 from wedgesweep.config import Config
-from wedgesweep.config.physics import physics
+from wedgesweep.config.physics import breakaway, physics
 from wedgesweep.errors import MismatchError, SweepError
 from wedgesweep.files import json_object
 from wedgesweep.outcome import Outcome
@@ -302,6 +302,7 @@ class Sweep:
             },
             labels.long_names(self.config),
         )
+        assembled = assembled.assign(breakaway(self.config))
         return rotation.with_units(assembled) if self.config.turns else assembled
 
     def _time(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Equilibrium and resonance of the suspension without friction, and the input at which it breaks away."""
+"""Equilibrium and resonance of the suspension without friction."""
 
 from math import nan, sqrt
 
@@ -74,33 +74,3 @@ def _acceleration_per_displacement(p):
 def resonance(p: np.void) -> float:
     """Angular frequency (rad/s) of the suspension without friction and effects."""
     return sqrt(-_acceleration_per_displacement(p))
-
-
-@compiled
-def _acceleration_on_verge(direction, mu_d, p):
-    """Acceleration z'' at rest on the verge of slip in a direction, and its derivative by the base's u''."""
-    s, g = p.suspension, p.geometry
-    bolster = direction if g.bolster_ratio > 0.0 else -direction if g.bolster_ratio < 0.0 else 0.0
-    mu = Coefficients(direction * mu_d, bolster * mu_d, 0.0, 0.0)
-    wedge = s.wedge_preload - s.wedge_spring * g.column_ratio * g.cos_column * g.rest
-    vertical = -s.bolster_spring * g.rest - p.guide_friction.force * direction
-    return (
-        _response(wedge - s.wedge_mass * s.gravity, vertical - s.bolster_mass * s.gravity, 0.0, mu, p)[0],
-        _response(-s.wedge_mass, -s.bolster_mass, 0.0, mu, p)[0],
-    )
-
-
-def breakaway_inputs(p: np.void) -> tuple[float, float]:
-    """Base accelerations (m/s^2) from which both faces can slip up (negative) and down from the equilibrium.
-
-    Without friction both are 0. The normal forces stay positive on the way there, so that z'' is linear in
-    the base acceleration.
-    """
-    mu_d = float(p["friction"]["mu_d"])
-    (up, up_inertia), (down, down_inertia) = (_acceleration_on_verge(side, mu_d, p) for side in (1.0, -1.0))
-    return -up / up_inertia, -down / down_inertia
-
-
-def breakaway_acceleration(p: np.void) -> float:
-    """Smallest base acceleration (m/s^2) at which set-valued friction slips from the equilibrium."""
-    return min(map(abs, breakaway_inputs(p)))

@@ -9,7 +9,7 @@ is independent of friction on the other. With z'' = 0 and |T| <= mu N on both fa
 
 where W and V are the forces of springs and weight, and G that of a guide with friction. The admissible u''
 are an interval; its ends are vertices of a linear programme. Slip of both faces together is one vertex for
-each direction: the least sticking that Coulomb's law allows (``equilibrium.breakaway_acceleration``).
+each direction: the least sticking that Coulomb's law allows.
 """
 
 from itertools import combinations
@@ -40,6 +40,37 @@ def rest_interval(rows: np.ndarray, mu: np.ndarray | float) -> tuple[np.ndarray,
     lowest[possible & _jams(-1.0, equations, limits)] = -np.inf
     highest[possible & _jams(1.0, equations, limits)] = np.inf
     return lowest, highest
+
+
+def breakaway_inputs(rows: np.ndarray, mu: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Base accelerations u'' (m/s^2) from which both faces can slip up and down; else as ``rest_interval``.
+
+    Without friction both are 0. The normal forces stay positive on the way there.
+    """
+    up, down = (_verge(direction, rows, np.asarray(mu, float)) for direction in (1.0, -1.0))
+    return up, down
+
+
+def breakaway_accelerations(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and most amplitude of u'' (m/s^2) at which set-valued friction mu_d slips from the equilibrium.
+
+    The least is that of the solvers unless forces are locked in; see effects/jamming.py.
+    """
+    mu = rows["friction"]["mu_d"]
+    least, most = (np.abs(ends).min(axis=0) for ends in (breakaway_inputs(rows, mu), rest_interval(rows, mu)))
+    return least, most
+
+
+def _verge(direction: float, rows: np.ndarray, mu: np.ndarray) -> np.ndarray:
+    """Base acceleration (m/s^2) at which both faces and the guide are at the limit, as in slip."""
+    limits = np.zeros((*rows.shape, 3, UNKNOWNS))
+    limits[:, [0, 1, 2], [1, 3, 4]] = 1.0
+    limits[:, 0, 0] = -direction * mu
+    limits[:, 1, 2] = -direction * np.sign(rows["geometry"]["bolster_ratio"]) * mu
+    right = np.zeros((*rows.shape, 3))
+    right[:, 2] = -direction * rows["guide_friction"]["force"]
+    matrix = np.concatenate([_equations(rows), limits], axis=1)
+    return _solutions(matrix, np.concatenate([_loads(rows), right], axis=1))[:, -1]
 
 
 def _equations(rows: np.ndarray) -> np.ndarray:
