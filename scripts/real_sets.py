@@ -16,7 +16,7 @@ FILES = {
     "seal": [f"pneumatic-seal/Circle_{bar}bar.csv" for bar in (1, 3, 5, 7)],
     "torsion": ["torsion-oscillator/free-decays.csv"],
     "emps": ["emps.csv"],
-    "dyno": [f"damper-dyno/t1_{name}psi.csv" for name in DYNO],
+    **{f"dyno {number}": [f"damper-dyno/t1_{name}psi.csv"] for number, name in enumerate(DYNO, 1)},
     "spring": [f"spring-mass/experiment_{number}.csv" for number in (1, 2, 3)],
     "frame": ["frame-250g.csv", "frame-450g.csv"],
     "magnet": ["torsion-oscillator/free-decays-with-magnet.csv"],

@@ -231,3 +231,31 @@ def test_small_sets_get_in(tmp_path, name):
     _, found = begun(tmp_path, *sorted((REAL / "small" / name).glob("*.csv")))
     assert {test.kind for test in found.tests} == {"loop" if name in loops else "steady"}
     assert "input" in found.columns or name in loops
+
+
+def test_names_without_units_units_without_names_and_times_of_day(tmp_path):
+    t, d, f = loop()
+    header = "Uhrzeit;Winkel;Strom [A]"
+    rows = (f"10:00:{x:06.3f};{y:.5f};{z:.4f}" for x, y, z in zip(t, d / 50.0, f, strict=True))
+    (tmp_path / "one.csv").write_text("\n".join([header, *rows]))
+    _, found = begun(tmp_path, tmp_path / "one.csv")
+    assert found.columns["displacement"]["unit"] == "rad"
+    assert found.columns["force"]["unit"] == "N m"
+    assert found.tests[0].sampling_rate == pytest.approx(RATE)
+
+
+def test_a_resonance_is_not_read_the_wrong_way_round(tmp_path):
+    t = np.arange(4000) / RATE
+    omega, f = 2.0 * np.pi * 5.0, 20.0 * np.sin(2.0 * np.pi * (2.0 * t + t**2))
+    response = 1.0 / (2.0 * (omega**2 - (2.0 * np.pi * np.fft.rfftfreq(t.size, 1e-3)) ** 2) + 60j * omega)
+    d = 1e3 * np.fft.irfft(np.fft.rfft(f) * response, t.size)
+    text(tmp_path / "one.csv", t, d, f)
+    _, found = begun(tmp_path, tmp_path / "one.csv")
+    np.testing.assert_allclose(found.tests[0].force, f, atol=1e-5)
+    assert found.model.oscillator["spring"] == pytest.approx(2.0 * omega**2, rel=0.1)
+
+
+def test_a_counter_of_samples_is_no_time(tmp_path):
+    t, x = decay()
+    text(tmp_path / "one.csv", np.arange(t.size), x, header="n,x", decimals=3)
+    assert "holds no time" in begun(tmp_path, tmp_path / "one.csv", code=2)[0]

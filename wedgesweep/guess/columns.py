@@ -32,10 +32,12 @@ SYMBOLS = {
     INPUT: r"u|in|exc",
 }
 # Words of what drives a rig, and of what it was told to do, or what is of no use here.
-DRIVES = r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|floor|source|anreg|fuss|support|wall"
+DRIVES = r"input|excit|shaker|base|ground|table|driv(er|ing)|exciter|source|anreg|fuss|support|wall"
+# A count of samples, which is no time.
+COUNTS = r"n|nr\.?|no\.?|#|index|samples?|points?|count(er)?|row|scan"
 NOT_MEASURED = r"ref|desired|target|set.?p|command|cmd|soll|_des|error|not selected|status|trigger|limit"
 # A motor's current may stand for its torque.
-STANDS_FOR_FORCE = r"curr|amp|strom"
+STANDS_FOR_FORCE = r"curr|amp|strom|pwm|duty"
 # Points of a column for a quantity.
 OF_UNIT, OF_NAME, OF_FOREIGN, OF_COMMAND, OF_SHARED, OF_PROXY = 4.0, 3.0, -1.5, -4.0, 0.3, 1.0
 # Correlation from which two columns are one signal in two units, and one is the derivative of another.
@@ -54,6 +56,10 @@ STEPS = (1e-7, 0.5)
 DEGREES, METRES = 13.0, 0.05
 DAYS, EPOCH = (2e4, 8e4), (1e9, 4e9)
 RUN = re.compile(r"(?:run|trial|versuch|messung|repeat|rep|cycle)\W*(\d+)", re.IGNORECASE)
+# Units and names of angles and torques.
+ANGULAR = re.compile(
+    r"rad|deg|rpm|N m|ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau"
+)
 BRACKETS, WORDS = re.compile(r"[\[(]([^\[\]()]*)[\])]"), re.compile(r"[a-zA-ZäöüÄÖÜß/']+|\d+")
 
 
@@ -125,6 +131,8 @@ def is_time(column: Column) -> bool:
     values = values[np.isfinite(values)]
     if values.size < 3 or not values[0] < values[-1]:
         return False
+    if re.fullmatch(COUNTS, column.label.strip().lower()):
+        return False
     named = column.channel.unit == DATETIME or _names(column, TIME) or unit_of(column, [TIME]) in UNITS[TIME]
     onward = float((np.diff(values) >= 0.0).mean())
     if named:
@@ -143,7 +151,7 @@ def choose(columns: Sequence[Column]) -> Run:
     if not any(name in channels for name in MOTIONS):
         unnamed = [column for column in rest if not _names_anything(column)]
         channels |= _by_numbers(unnamed, None if time is None else time.channel.values)
-    chosen = {name: _with_unit(name, column) for name, column in channels.items()}
+    chosen = with_units(channels)
     if "velocity" in chosen and "displacement" in chosen:
         chosen["velocity"] = _derived(chosen, time)
     left = [each for each in columns if each is not time and all(each is not c for c in channels.values())]
@@ -310,7 +318,7 @@ def _explained(displacement: np.ndarray, force: np.ndarray) -> float:
         x, f = x[:size], f[:size]
         v = np.gradient(np.convolve(x, np.ones(9) / 9.0, mode="same"))
         speed = max(float(np.abs(v).std()), 1e-300)
-        parts = np.column_stack([np.ones(size), x, v, np.tanh(5.0 * v / speed)])
+        parts = np.column_stack([np.ones(size), x, v, np.tanh(5.0 * v / speed), np.gradient(v)])
         left = f - parts @ np.linalg.lstsq(parts, f, rcond=None)[0]
         return 1.0 - float(left.var() / max(f.var(), 1e-300))
 
@@ -331,7 +339,20 @@ def _derived(chosen: Mapping[str, Chosen], time: Column | None) -> Chosen:
     return replace(chosen["velocity"], keys={"derived": True}) if left < COMPUTED else chosen["velocity"]
 
 
-def _with_unit(name: str, column: Column) -> Chosen:
+def with_units(channels: Mapping[str, Column]) -> dict[str, Chosen]:
+    """Channels and their units: of angles and torques, or of lengths and forces, in all of them."""
+    turns = _turns(channels)
+    return {name: _with_unit(name, column, turns) for name, column in channels.items()}
+
+
+def _turns(channels: Mapping[str, Column]) -> bool:
+    """Whether channels are angles and torques: by a unit, else by a name."""
+    units = [unit_of(column, QUANTITIES) for column in channels.values()]
+    known = [unit for unit in units if any(unit in UNITS[quantity] for quantity in QUANTITIES)]
+    return any(map(ANGULAR.search, known or [column.label.lower() for column in channels.values()]))
+
+
+def _with_unit(name: str, column: Column, turns: bool) -> Chosen:
     """A channel and its unit; what is no unit of it, or is not known, is asked."""
     quantity = _quantity(column) or FORCE if name == INPUT else name
     keys: dict[str, object] = {"quantity": quantity} if name == INPUT else {}
@@ -339,7 +360,7 @@ def _with_unit(name: str, column: Column) -> Chosen:
     if unit in UNITS[quantity]:
         return Chosen(column, unit, keys)
     largest = float(np.nanmax(np.abs(column.channel.values)))
-    likely = _likely(quantity, column, largest)
+    likely = _likely(quantity, column, largest, turns)
     if unit in FOREIGN:
         question = f"the file holds {unit}: how many {likely} are 1 {unit}? Write that as scale"
         return Chosen(column, likely, {"scale": 1.0, **keys}, (question,))
@@ -347,17 +368,13 @@ def _with_unit(name: str, column: Column) -> Chosen:
     return Chosen(column, likely, keys, (question,))
 
 
-def _likely(quantity: str, column: Column, largest: float) -> str:
-    """A unit where the file names none: by the name, or by the size."""
-    label = column.label.lower()
-    turns = re.search(
-        r"ang[lu]|winkel|theta|phi|\bq|rotat|joint|torsion|pendul|torque|omega|\btau|rpm", label
-    )
+def _likely(quantity: str, column: Column, largest: float, turns: bool) -> str:
+    """A unit where the file names none, by the size."""
     if quantity == FORCE:
         return "N m" if turns else "N"
     if quantity == "acceleration":
         return "rad/s^2" if turns else "m/s^2"
-    if "rpm" in label:
+    if "rpm" in column.label.lower():
         return "rpm"
     unit = ("deg" if largest > DEGREES else "rad") if turns else ("m" if largest < METRES else "mm")
     return unit if quantity == "displacement" else f"{unit}/s"

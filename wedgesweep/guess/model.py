@@ -29,7 +29,7 @@ TESTS = 6
 class Numbers:
     """SI numbers of an oscillator; ``friction`` (N) is what dry friction takes beside them.
 
-    ``remarks``: on each number by its name, where it does not come from the record.
+    ``unseen``: numbers that do not come from the records.
     """
 
     mass: float

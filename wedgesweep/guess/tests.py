@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wedgesweep.guess.columns import FORCE, INPUT, MOTIONS, Chosen, Run, choose, runs_of
+from wedgesweep.guess.columns import FORCE, INPUT, MOTIONS, Chosen, Run, choose, runs_of, with_units
 from wedgesweep.guess.kind import WHOLE, Part, from_release, kind_of, parts_of
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 from wedgesweep.readers.survey import Survey
@@ -61,12 +61,12 @@ def _rate(survey: Survey) -> float | None:
 
 def _joined(test: Guessed, other: Guessed) -> Guessed:
     """A test with the channels of another file, which has no motion of its own."""
-    rate = _rate_beside(test, other)
-    added = {
-        name: replace(each, keys={**(each.keys or {}), "file": other.file, **rate})
-        for name, each in other.run.channels.items()
-    }
-    return replace(test, run=replace(test.run, channels={**test.run.channels, **added}))
+    rate, both = _rate_beside(test, other), {**test.run.channels, **other.run.channels}
+    channels = with_units({name: each.column for name, each in both.items()})
+    for name in other.run.channels:
+        keys = {**(channels[name].keys or {}), "file": other.file, **rate}
+        channels[name] = replace(channels[name], keys=keys)
+    return replace(test, run=replace(test.run, channels=channels))
 
 
 def _rate_beside(test: Guessed, other: Guessed) -> dict[str, float]:

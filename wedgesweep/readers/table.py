@@ -15,7 +15,9 @@ from wedgesweep.units import DAY
 Name = str | int
 # The unit of time stamps that are dates; their values are seconds since midnight of the first day.
 DATETIME = "datetime"
-ISO = re.compile(r"\s*\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+ISO = re.compile(r"\s*(\d{4}-\d\d-\d\d[T ]\d\d:\d\d|\d\d:\d\d:\d\d)")
+# The day of times without one.
+DAYLESS = "1970-01-01 "
 # The second of several columns with a name, and a column of a matrix.
 REPEATED, OF_A_MATRIX = re.compile(r"(.*)#(\d+)"), re.compile(r"(.*)\[(\d+)\]")
 BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
@@ -86,9 +88,11 @@ def seconds_of_dates(values: Sequence[Any]) -> tuple[np.ndarray, dict[int, str]]
         if value is None or value in ("", "nan") or value != value:
             continue
         try:
-            stamp = value if isinstance(value, datetime) else datetime.fromisoformat(str(value).strip())
+            text = str(value).strip()
+            dated = DAYLESS + text if text[2:3] == ":" else text
+            stamp = value if isinstance(value, datetime) else datetime.fromisoformat(dated)
         except ValueError:
-            faults[row] = f"{show(str(value))} is no ISO 8601 date"
+            faults[row] = f"{show(str(value))} is no ISO 8601 date or time"
             continue
         stamp = stamp.astimezone(UTC) if stamp.tzinfo else stamp.replace(tzinfo=UTC)
         first = first or stamp.replace(hour=0, minute=0, second=0, microsecond=0)
