@@ -10,8 +10,9 @@ from wedgesweep import formatting
 from wedgesweep.cli.compiling import announce_compiling
 from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import CONFIG, PLUGIN, OutputPath, command_line
+from wedgesweep.cli.options import AT, CONFIG, PLUGIN, OutputPath, axis_values, command_line
 from wedgesweep.cli.run import print_remark
+from wedgesweep.friction import LAWS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,6 +40,7 @@ PICTURE = "phase-portrait"
 @click.option(
     "--force", type=float, metavar="N", help="Amplitude of the force in N, if the config's input is a force."
 )
+@AT
 @click.option(
     "-o",
     "--output",
@@ -49,16 +51,15 @@ PICTURE = "phase-portrait"
 def case(
     config_path: Path,
     law: str | None,
-    beta: float | None,
-    frequency: float | None,
-    amplitude: float | None,
-    force: float | None,
+    at: tuple[str, ...],
     output: Path | None,
+    **sine: float | None,
 ) -> None:
     """Solve one case of any law, frequency and amplitude.
 
     Prints its numbers and writes its waveforms (netCDF) and its phase portrait (PNG).
     """
+    beta, frequency, amplitude, force = (sine[key] for key in ("beta", "frequency", "amplitude", "force"))
     if (beta is None) == (frequency is None):
         message = "give either --beta or --frequency"
         raise click.UsageError(message)
@@ -75,7 +76,7 @@ def case(
         raise Failure(message)
     if given.turns and amplitude is not None:
         amplitude *= 1e3  # a rotation's rad is a length of 1 m
-    settings = single_case(given, amplitude, beta, frequency, law, force)
+    settings = single_case(given, amplitude, beta, frequency, law, force, _numbers(at))
     print_remark(settings)
     stem = output or Path(_name(config_path, settings))
     _require_no_sweep(_with_suffix(stem, ".nc"))
@@ -91,6 +92,15 @@ def case(
     _write(ds, stem)
 
 
+def _numbers(at: tuple[str, ...]) -> dict[str, float]:
+    """Numbers of the model, by dotted key; their names are checked with the config."""
+    numbers = {name: value for name, value in axis_values(at).items() if isinstance(value, float)}
+    if len(numbers) < len(at):
+        message = "--at: a number is needed after each key, as in --at suspension.wedge_angle_deg=30"
+        raise click.UsageError(message)
+    return numbers
+
+
 def _print_remarks(ds: "xr.Dataset") -> None:
     """Warn of what makes the numbers of a solved case doubtful."""
     from wedgesweep.sweep import outcomes
@@ -99,6 +109,10 @@ def _print_remarks(ds: "xr.Dataset") -> None:
     if result.lifted:
         share = f"{100.0 * result.lift_off_fraction:.2g} % of the slipping time"
         log.warning(f"outside of the model's validity: a joint pulls in {share}; a real one would lift off")
+    creeps = ds["stick_fraction"].item() == 1.0 and ds["peak_to_peak"].item() > 0.0
+    if creeps and not LAWS[result.case.law].SET_VALUED:
+        travel = f"{ds['peak_to_peak'].item() * 1e3:.3g} mm"
+        log.warning(f"a stick fraction of 1 is no rest: {result.case.law} creeps all the time, by {travel}")
     if not result.settled:
         log.warning("not settled: the response still changes from period to period")
 

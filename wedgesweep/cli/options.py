@@ -3,6 +3,7 @@
 import os
 import shlex
 import sys
+from collections.abc import Iterable
 from math import inf, isfinite
 from pathlib import Path
 from typing import Any, ClassVar
@@ -60,6 +61,31 @@ PLUGIN = click.option(
     metavar="FILE",
     help="Python file with an effect of your own (docs/extending.md); may be repeated.",
 )
+
+
+AT = click.option(
+    "--at",
+    metavar="AXIS=VALUE",
+    multiple=True,
+    help="Value of a number of the model, such as suspension.wedge_angle_deg=30; may be repeated. Of a "
+    "dataset the nearest one is drawn, of any axis (amplitudes in mm or N); default: the middle, or where "
+    "most cases slip.",
+)
+
+
+def axis_values(texts: Iterable[str]) -> dict[str, float | str]:
+    """Values out of texts such as "suspension.wedge_angle_deg=30"; words stay words."""
+    values: dict[str, float | str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not (name and equals):
+            message = f"--at {text}: not AXIS=VALUE"
+            raise click.UsageError(message)
+        try:
+            values[name] = float(value)
+        except ValueError:
+            values[name] = value
+    return values
 
 
 class FiniteRange(click.FloatRange):

@@ -12,7 +12,7 @@ from click.core import ParameterSource
 from wedgesweep import figures
 from wedgesweep.cli.failure import Failure
 from wedgesweep.cli.messages import log
-from wedgesweep.cli.options import DATASET, FiniteRange, GivenPath, require_place_for
+from wedgesweep.cli.options import AT, DATASET, FiniteRange, GivenPath, axis_values, require_place_for
 from wedgesweep.figures import DESCRIPTIONS, FORMATS, diagnosis, samples, transient
 from wedgesweep.outcome import Outcome
 
@@ -91,13 +91,7 @@ POSITIVE = FiniteRange(min=0.0, min_open=True)
 @click.option("--color", metavar="AXIS", help="Axis that is the colour of lines.")
 @click.option("--facet", metavar="AXIS", help="Axis with a panel for each value.")
 @click.option("--variable", metavar="NAME", help="Variable to draw, as in OUT.")
-@click.option(
-    "--at",
-    metavar="AXIS=VALUE",
-    multiple=True,
-    help="Value of another axis, in its unit (amplitudes in mm or N); the nearest one in OUT is drawn; may "
-    "be repeated. Default: the middle, or where most cases slip.",
-)
+@AT
 @click.pass_context
 def plot(
     ctx: click.Context,
@@ -195,16 +189,7 @@ def _values(found: "xr.Dataset | DiagnosisResult", texts: tuple[str, ...]) -> di
     """Values of axes out of texts such as "wedge_angle_deg=30", in the units of the dataset."""
     import xarray as xr
 
-    values: dict[str, float | str] = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals:
-            message = f"--at {text}: not AXIS=VALUE"
-            raise click.UsageError(message)
-        try:
-            values[name] = float(value)
-        except ValueError:
-            values[name] = value
+    values = axis_values(texts)
     forced = isinstance(found, xr.Dataset) and found.attrs.get("excitation") == "force"
     if isinstance(size := values.get("amplitude"), float) and not forced:
         values["amplitude"] = size * 1e-3

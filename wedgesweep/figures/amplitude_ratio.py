@@ -4,9 +4,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 
 from wedgesweep.figures import cases, labels, style, validity
+from wedgesweep.figures.maps import cell_edges
 from wedgesweep.figures.panels import Panels, Target, panels
 
 NAME = "amplitude-ratio"
@@ -17,6 +19,8 @@ NEEDS = ("amplitude_ratio", "omega_n", "frictionless_resonance", "config")
 LEAST_STIFFNESS = 1e-6
 LOWEST = 0.01  # of the axis; smaller ratios do not matter
 FEW_BETAS = 40  # up to here every case gets a dot
+# More cases of a law than this are drawn as a density: lines and marks would cover each other.
+MOST_CASES, BINS = 10_000, 120
 
 
 def frictionless_ratio(ds: xr.Dataset, beta: np.ndarray) -> np.ndarray:
@@ -66,6 +70,16 @@ def _draw_reference(ax: Axes, ds: xr.Dataset) -> None:
     ax.plot(beta, ratio, color="black", linestyle="--", linewidth=1, label=label, zorder=3)
 
 
+def _draw_density(ax: Axes, law: xr.Dataset, top: float) -> QuadMesh:
+    """Draw the share of amplitudes at each frequency whose ratio lies in a bin, in place of lines."""
+    ratios = law["amplitude_ratio"].transpose("beta", "amplitude").values
+    edges = np.geomspace(LOWEST, top, BINS)
+    counts = np.stack([np.histogram(row[np.isfinite(row)], edges)[0] for row in ratios], axis=1)
+    shares = np.ma.masked_equal(counts / ratios.shape[1], 0.0)
+    beta = cell_edges(law["beta"].values, False)
+    return ax.pcolormesh(beta, edges, shares, cmap=style.SEQUENTIAL, rasterized=True)
+
+
 def _draw_law(ax: Axes, law: xr.Dataset, norm: LogNorm, factor: float) -> bool:
     marker = "." if law.sizes["beta"] <= FEW_BETAS else ""
     missing = False
@@ -94,11 +108,12 @@ def _explain(made: Panels, ds: xr.Dataset, norm: LogNorm, missing: bool) -> None
         alone = f", {words.size(ds['amplitude'].item(), 4)}"
     marks = validity.handles(ds)
     made.legend(marks, [str(mark.get_label()) for mark in marks])
-    notes = (
-        f"ratios below {LOWEST} are not shown",
-        "$\\times$ no result (failed or not run)" if missing else "",
-        validity.shares(ds),
-    )
+    _title(made, ds, alone, "$\\times$ no result (failed or not run)" if missing else "")
+
+
+def _title(made: Panels, ds: xr.Dataset, alone: str, note: str) -> None:
+    words = labels.of(ds)
+    notes = (f"ratios below {LOWEST} are not shown", note, validity.shares(ds))
     made.title(
         f"Half peak-to-peak of ${words.motion}$ ({words.whose}) over {words.reference}{alone}",
         "; ".join(filter(None, notes)),
@@ -117,9 +132,12 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     made = panels(target, len(names), size=(3.3, 3.8))
     axes = made.axes
     axes[0].set_yscale("log")
-    missing = False
+    missing, density = False, None
     for ax, law in zip(axes, names, strict=True):
-        missing |= _draw_law(ax, ds.sel(friction_law=law), norm, words.factor)
+        if ds["beta"].size * ds["amplitude"].size > MOST_CASES:
+            density = _draw_density(ax, ds.sel(friction_law=law), top)
+        else:
+            missing |= _draw_law(ax, ds.sel(friction_law=law), norm, words.factor)
         _draw_reference(ax, ds)
         style.add_hertz_axis(ax, ds)
         ax.set_title(law, fontsize=10)
@@ -128,5 +146,9 @@ def draw(target: Target, ds: xr.Dataset) -> Panels:
     if axes[0].get_legend_handles_labels()[0]:
         axes[0].legend(fontsize=8, loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
     style.label(axes, style.BETA, words.ratio)
-    _explain(made, ds, norm, missing)
+    if density is None:
+        _explain(made, ds, norm, missing)
+    else:
+        made.colorbar(density, "share of the amplitudes [1]")
+        _title(made, ds, "", "")
     return made

@@ -20,14 +20,20 @@ STILL = 1e-6  # peak-to-peak over input amplitude, below which nothing moves
 
 def _from_grid(ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None) -> list[xr.Dataset]:
     """Take cases row by row: an amplitude per row, a law per column."""
-    here = ds["beta"].values
-    ds = ds.isel(beta=np.abs(here - 0.4).argmin() if beta is None else cases.nearest(ds["beta"], beta)[0])
+    ds = ds.isel(beta=_default(ds) if beta is None else cases.nearest(ds["beta"], beta)[0])
     ds = ds.isel(amplitude=cases.pick_amplitudes(ds, amplitudes, AMPLITUDES))
     return [
         ds.isel(amplitude=place).sel(friction_law=name)
         for place in range(ds.sizes["amplitude"])
         for name in cases.laws(ds)
     ]
+
+
+def _default(ds: xr.Dataset) -> int:
+    """Index of the beta nearest to 0.4, of those at which something slips."""
+    distance = np.abs(ds["beta"].values - 0.4)
+    slips = (ds["stick_fraction"] < cases.SLIPS).any(("friction_law", "amplitude")).values
+    return int(np.where(slips | ~slips.any(), distance, np.inf).argmin())
 
 
 def _from_list(ds: xr.Dataset, beta: float | None, amplitudes: ArrayLike | None) -> list[xr.Dataset]:
