@@ -112,3 +112,9 @@ def test_unknown_effects_and_figures_are_refused():
         ws.diagnose_measurement(measurement, effects=[])
     with pytest.raises(ValueError, match="no figure 'stick-mop'"):
         ws.plot(xr.Dataset(), "stick-mop")
+
+
+@pytest.mark.parametrize("n_jobs", [0, -1, 1.5, "x", True])
+def test_a_wrong_number_of_jobs_is_named(n_jobs):
+    with pytest.raises(SweepError, match="n_jobs"):
+        ws.run_sweep(config.parse(FAST), n_jobs=n_jobs)

@@ -7,9 +7,10 @@ import pytest
 import xarray as xr
 
 from tests import small_sweep
-from wedgesweep import config
+from wedgesweep import config, figures
 from wedgesweep.config.physics import breakaway
 from wedgesweep.errors import ConfigError, MismatchError
+from wedgesweep.figures import models
 from wedgesweep.sweep import dataset, outcomes, unfinished
 from wedgesweep.sweep.journal import Journal
 from wedgesweep.sweep.run import CaseFailedError, Sweep
@@ -270,3 +271,45 @@ def test_both_ends_of_breakaway_are_told_along_the_axes_that_change_them():
         values = xr.DataArray(values, dims=dims).transpose("friction_law", ...)
         np.testing.assert_allclose(values[0], expected, atol=1e-6)
         assert values[1].isnull().all()  # a regularised law creeps at any input
+
+
+def test_figures_draw_any_axes_and_pick_the_rest(tmp_path):
+    ds = sweep(tmp_path).run(n_jobs=1)
+    drawn = figures.draw(ds, "map", x="suspension.wedge_angle_deg", y="friction_dynamic", facet="frequency")
+    titles = [ax.get_title() for ax in drawn.axes]
+    assert titles[:2] == ["frequency 10 Hz", "frequency 20 Hz"]
+    assert drawn.axes[0].get_xlabel().endswith("[deg]")
+    lines = figures.draw(ds, "lines", x="frequency", color="friction_dynamic", at={"wedge_angle_deg": 30})
+    assert len(lines.axes[0].lines) >= 3
+    assert "wedge angle 30 deg" in lines.get_suptitle()
+    with pytest.raises(ValueError, match="no axis wedge_angel_deg"):
+        figures.draw(ds, "lines", x="wedge_angel_deg")
+    picked = figures.draw(ds, "amplitude-ratio", at={"friction_dynamic": 0.2})
+    assert "friction.dynamic = 0.2" in picked.get_suptitle().replace("\n", " ")
+
+
+def test_one_model_of_a_dataset_is_that_of_its_own_config(tmp_path):
+    axes = "[sweep.axes]\nsuspension.bolster_mass_kg = [0.5, 0.7]\nfriction.dynamic = [0.2]\n"
+    ds = sweep(tmp_path, axes).run(n_jobs=1)
+    one, alone = models.of_one(ds, {"suspension.bolster_mass_kg": 0.5}), fixed(37.5, 0.2, mass=0.5)
+    assert one["amplitude_ratio"].dims == alone["amplitude_ratio"].dims
+    assert one["amplitude_ratio"].values.tolist() == alone["amplitude_ratio"].values.tolist()
+    assert one["beta"].values == pytest.approx(alone["beta"].values, rel=1e-15)
+    for name in ("omega_n", "frictionless_resonance", "breakaway_acceleration", "rest_position"):
+        assert one.attrs[name] == alone.attrs[name]
+
+
+def test_the_model_drawn_by_default_moves(tmp_path):
+    ds = sweep(tmp_path, "[sweep.axes]\nfriction.dynamic = [0.1, 0.29, 0.3]\n", amplitude_mm="0.05").run(
+        n_jobs=1
+    )
+    assert (ds["stick_fraction"].sel(friction_dynamic=0.29) == 1.0).any()
+    stuck = ds.assign(stick_fraction=ds["stick_fraction"].where(ds["friction_dynamic"] < 0.2, 1.0))
+    assert "friction.dynamic = 0.1" in models.of_one(stuck).attrs["model"]
+
+
+def test_datasets_of_the_same_frequencies_join(tmp_path):
+    parts = [fixed(37.5, 0.29, mass=mass).swap_dims(beta="frequency") for mass in (0.5, 0.7)]
+    joined = xr.concat(parts, "bolster_mass", join="exact", coords="different", compat="equals")
+    assert joined["frequency"].values.tolist() == [10.0, 20.0]
+    assert joined["amplitude_ratio"].notnull().all()

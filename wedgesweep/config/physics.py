@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from wedgesweep.config.cases import LAW, Case
+from wedgesweep.config.cases import LAW, SAMPLE, Case
 from wedgesweep.config.model import Config
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.systems import has_own_mechanics
@@ -42,7 +42,8 @@ def breakaway(config: Config) -> dict[str, tuple[tuple[str, ...], np.ndarray, di
     Least and most base acceleration (m/s2) at which Coulomb's law lets a suspension slip from rest; NaN where
     friction is not set-valued, or effects have mechanics of their own. Inf: it jams.
     """
-    if config.system == OSCILLATOR:
+    # Of samples, a linear programme each would take longer than to solve them.
+    if config.system == OSCILLATOR or SAMPLE in config.sweep.dims:
         return {}
     dims, cases = config.sweep.along((LAW, *config.sweep.keys))
     rows = config.at_rest.records(cases.ravel())
