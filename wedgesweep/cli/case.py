@@ -12,7 +12,6 @@ from wedgesweep.cli.failure import SOME_FAILED, Failure
 from wedgesweep.cli.messages import log
 from wedgesweep.cli.options import AT, CONFIG, PLUGIN, OutputPath, axis_values, command_line
 from wedgesweep.cli.run import print_remark
-from wedgesweep.friction import LAWS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,6 +102,7 @@ def _numbers(at: tuple[str, ...]) -> dict[str, float]:
 
 def _print_remarks(ds: "xr.Dataset") -> None:
     """Warn of what makes the numbers of a solved case doubtful."""
+    from wedgesweep.friction import LAWS
     from wedgesweep.sweep import outcomes
 
     result = outcomes.of_dataset(ds)[0]
