@@ -15,8 +15,8 @@ from wedgesweep.diagnose.fit_parameters import Hypothesis
 from wedgesweep.diagnose.model import Model
 from wedgesweep.diagnose.search import Search
 from wedgesweep.diagnose.steady.from_measurement import harmonic_data
-from wedgesweep.diagnose.steady.harmonic_data import HarmonicData, stated
-from wedgesweep.diagnose.steady.stated_input import with_uncertain_harmonics
+from wedgesweep.diagnose.steady.harmonic_data import stated
+from wedgesweep.diagnose.steady.stated_input import distorted as with_harmonic
 from wedgesweep.diagnose.steady.whitened import real
 from wedgesweep.measured.measurement import Measurement, TestRecord
 
@@ -100,11 +100,13 @@ def test_the_covariance_is_that_of_the_transfer_function(velocity, model_error):
     np.testing.assert_allclose(whitened, np.tile(np.eye(expected.shape[1]), (3, 1, 1)), atol=0.02)
 
 
+def with_uncertain_harmonics(data, std):
+    data = replace(data, harmonics_std=std)
+    return data.with_covariance(stated(data))
+
+
 def test_without_the_key_nothing_is_different():
-    measurement = frictionless(std=0.0)
-    data = harmonic_data(measurement)
-    assert type(data) is HarmonicData
-    assert with_uncertain_harmonics(data, 0.0) is data
+    assert harmonic_data(frictionless(std=0.0)).by_input is None
 
 
 def chi2_over_dof(data, scenario):
@@ -247,7 +249,7 @@ def test_a_cause_beside_a_distortion_as_large_as_declared_is_named_alone():
 def test_a_model_that_distorts_is_distorted_further():
     own = BENCH + "[effects.input_distortion]\nsecond = 0.01\nsecond_phase_deg = 30.0\n"
     data = with_uncertain_harmonics(replace(distorted(STD), model=config.parse(own)), STD)
-    moved = data._distorted({}, "second", 0.01)["input_distortion"]
+    moved = with_harmonic(data, {}, "second", 0.01)["input_distortion"]
     both = 0.01 * np.exp(1j * np.radians(30.0)) + 0.01
     assert moved["second"] == pytest.approx(abs(both))
     assert moved["second_phase"] == pytest.approx(np.angle(both))

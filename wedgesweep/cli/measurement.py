@@ -26,6 +26,8 @@ TRANSIENT_UNITS = ("", "s", "", "natural", "", "mm", "of first response", "to th
 
 # Tests of a kind whose noise a diagnosis prints.
 NOISE_LINES = 12
+# Noise over the rms of a channel that is worth a warning.
+NOISY = 0.2
 
 
 def print_measurement(measurement: "Measurement") -> None:
@@ -131,14 +133,10 @@ def _transient_noise(windows: "Sequence[RecordWindow]") -> str:
 def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     """What is compared of each loop."""
     from wedgesweep.diagnose.loop.from_measurement import loop_data
-    from wedgesweep.measured.quality import NOISY
 
     recordings = loop_data(measurement).recordings
     for test, own in zip(measurement.tests, recordings, strict=True):
-        share = own.noise_share
-        if share > NOISY:
-            mend = "average it down, or lower lowpass_hz"
-            log.warning(f"warning: {test.file}: noise is {100.0 * share:.0f} % of the force; {mend}")
+        _warn_of_noise(test, "force", own.noise_share, "lower lowpass_hz")
     return [
         (
             test.file,
@@ -153,11 +151,21 @@ def _loop_rows(measurement: "Measurement") -> list[tuple[str, ...]]:
     ]
 
 
+def _warn_of_noise(test: "TestRecord", name: str, share: float, mend: str) -> None:
+    """Warn of noise that is more than NOISY of the rms of a channel."""
+    if share > NOISY:
+        what = f"noise is {100.0 * share:.0f} % of the {name}"
+        log.warning(f"warning: {test.file}: {what}; average it down, or {mend}")
+
+
 def _steady_rows(measurement: "Measurement", size: float) -> list[tuple[str, ...]]:
     """What is compared of each steady test; input amplitudes are in a unit of some size."""
     from wedgesweep.diagnose.steady.from_measurement import compared, recorded_spectra
 
     names, spectra = compared(measurement), recorded_spectra(measurement)
+    for test, own in zip(measurement.tests, spectra, strict=True):
+        for name, share in zip(names, own.sample_noise / own.rms, strict=False):
+            _warn_of_noise(test, name, float(share), "excite more")
     return [
         (
             test.file,

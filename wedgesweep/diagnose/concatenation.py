@@ -202,11 +202,19 @@ class Concatenation(FitData):
     def _evaluations(self, here: Evaluation) -> list[Evaluation]:
         """An evaluation as evaluations of the parts."""
         found = []
-        own = zip(self._points(here.point), *here.response, *self.layout[1:3], self.layout.rows, strict=True)
-        for point, response, size, columns, priors, rows in own:
-            prior = np.r_[here.nuisance_prior[rows][:, columns[:priors]].ravel(), here.uncertain_prior]
-            there = here.residual[rows, :size], prior, here.found_tests[rows]
-            found.append(Evaluation(point, response, *there, priors))
+        for i, (point, rows) in enumerate(zip(self._points(here.point), self.layout.rows, strict=True)):
+            priors = self.layout.priors[i]
+            nuisance_prior = here.nuisance_prior[rows][:, self.layout.columns[i][:priors]]
+            found.append(
+                Evaluation(
+                    point,
+                    here.response.parts[i],
+                    here.residual[rows, : here.response.sizes[i]],
+                    np.r_[nuisance_prior.ravel(), here.uncertain_prior],
+                    here.found_tests[rows],
+                    priors,
+                )
+            )
         return found
 
     def _scenarios(self, scenarios: Sequence[Scenario]) -> list[list[Scenario]]:

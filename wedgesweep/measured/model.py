@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from wedgesweep.config import Config, load, parse
+from wedgesweep.config import Config, load
 from wedgesweep.errors import ConfigError
 
 
@@ -10,15 +10,6 @@ def load_model(path: Path, problems: list[str]) -> tuple[Config | None, str]:
     """Read a config and its one friction law; faults go to ``problems``."""
     try:
         return with_law(load(path), str(path), problems)
-    except ConfigError as error:
-        problems.extend(error.problems)
-        return None, ""
-
-
-def parse_model(text: str, source: str, problems: list[str]) -> tuple[Config | None, str]:
-    """Read a config from TOML text, as ``load_model``."""
-    try:
-        return with_law(parse(text, source), source, problems)
     except ConfigError as error:
         problems.extend(error.problems)
         return None, ""

@@ -1,4 +1,4 @@
-"""What a usable record has that a reader should know of: trend, drift, outliers, flat tops, noise."""
+"""Warnings about usable records: trend, drift, outliers, flat tops."""
 
 import numpy as np
 from scipy.special import stdtrit
@@ -23,7 +23,6 @@ NO_NOISE = 1e-4
 MOST_TRIES = 30
 # Share of samples exactly at the extreme of a record, in runs of at least RUN, from which it is clipped.
 CLIPPED, RUN = 0.01, 3
-NOISY = 0.2
 
 
 def warnings(test: TestRecord) -> list[str]:
@@ -53,12 +52,7 @@ def _of_channel(test: TestRecord, samples: np.ndarray) -> list[str]:
         _outliers(test, samples, noise),
         _flat_tops(samples),
     )
-    found = [each for each in checks if each]
-    if noise.share > NOISY:
-        found.append(
-            f"noise is {100.0 * noise.share:.0f} % of the periodic part; average it down, or excite more"
-        )
-    return found
+    return [each for each in checks if each]
 
 
 def trend_faults(test: TestRecord, file: str) -> list[str]:

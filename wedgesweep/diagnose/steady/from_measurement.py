@@ -16,7 +16,6 @@ from wedgesweep.diagnose.steady.recorded_input import (
     without_noise,
 )
 from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence, spectrum
-from wedgesweep.diagnose.steady.stated_input import with_uncertain_harmonics
 from wedgesweep.effects import acting
 from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.natural_units import FREQUENCY
@@ -44,8 +43,9 @@ def harmonic_data(measurement: Measurement) -> HarmonicData:
         tone_std=found.std if found else 0.0,
         models=_models(measurement),
         model_error=measurement.model_error,
+        harmonics_std=measurement.input_harmonics_std,
     )
-    return with_uncertain_harmonics(data, measurement.input_harmonics_std)
+    return data.with_covariance(stated(data))
 
 
 def recorded_spectra(measurement: Measurement) -> tuple[Spectrum, ...]:

@@ -16,7 +16,7 @@ from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
-from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, tone
+from wedgesweep.diagnose.steady import amplitude_grid, arrays, simulation, stated_input, tone
 from wedgesweep.diagnose.steady.spectra import SIMULATED, Spectrum
 from wedgesweep.diagnose.steady.tone import TONE, TONE_FREQUENCY
 from wedgesweep.diagnose.steady.whitened import WhitenedHarmonics, real
@@ -42,6 +42,9 @@ IMPLAUSIBLE = 0.3
 HELD = 1e-4
 # A covariance is replaced if the variance of some combination of residuals changes by more than this factor.
 CHANGED = 1.1
+# Newton steps from the best start phase without a covariance, and in rad their largest length and a
+# negligible one.
+PHASE_STEPS, PHASE_LENGTH, NEGLIGIBLE = 12, 0.05, 1e-7
 # Frequencies or amplitudes closer than this (relative) are left out together in cross-validation.
 SAME_GROUP = 0.02
 
@@ -75,7 +78,12 @@ class Simulated(NamedTuple):
 
 @dataclass(frozen=True)
 class HarmonicData(WhitenedHarmonics, FitData):
-    """Harmonics of steady tests; see WhitenedHarmonics for the attributes."""
+    """Harmonics of steady tests; see WhitenedHarmonics for the attributes.
+
+    ``harmonics_std``: of each harmonic of a stated input, over its amplitude; 0 for exact sines.
+    """
+
+    harmonics_std: float = 0.0
 
     kind = STEADY
     offers = (STEADY,)
@@ -242,7 +250,28 @@ class HarmonicData(WhitenedHarmonics, FitData):
 
     def covariance(self, scenario: Scenario) -> np.ndarray | None:
         """Of residuals over the noise of the responses (T, m, m) in a scenario; None for exact inputs."""
-        return None
+        return stated_input.covariance(self, scenario) if self.harmonics_std else None
+
+    def start_phase(self, simulated: np.ndarray, other: np.ndarray | float = 0.0) -> np.ndarray:
+        """The phase of the least misfit under the covariance, by Newton's method."""
+        phase = super().start_phase(simulated, other)
+        if self.whitening is None:
+            return phase
+        orders, precision = self.turning_orders, self.whitening @ self.whitening
+        for _ in range(PHASE_STEPS):
+            turned = self.rotated(simulated, phase)
+            left, slope = real(self.whitened - other - turned), real(-1j * orders * turned)
+            weighted = (precision @ slope[..., None])[..., 0]
+            gauss = (weighted * slope).sum(-1)
+            bend = gauss + ((precision @ left[..., None])[..., 0] * real(orders**2 * turned)).sum(-1)
+            # Far from the minimum the misfit may bend the other way.
+            bend = np.where(bend > 0.0, bend, gauss)
+            step = np.divide(-(weighted * left).sum(-1), bend, out=np.zeros_like(bend), where=bend > 0.0)
+            step = np.clip(step, -PHASE_LENGTH, PHASE_LENGTH)
+            phase = phase + step
+            if np.abs(step).max(initial=0.0) < NEGLIGIBLE:
+                break
+        return phase
 
     def bare(self) -> Self:
         """The data as if inputs were exactly known."""
