@@ -21,7 +21,7 @@ NAMES = (
     *("viscous_damping", "directional_damping", "quadratic_drag"),
     *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),
-    *("velocity_lag", "displacement_gain", "input_gain"),
+    *("velocity_lag", "displacement_gain", "input_gain", "force_gain", "channel_delay"),
 )
 # The modules of all effects by name; ``register`` adds one that is not of this package.
 REGISTERED: dict[str, ModuleType] = {name: import_module(f"{__name__}.{name}") for name in NAMES}

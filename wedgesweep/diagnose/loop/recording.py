@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import sqrt
+from math import ceil, sqrt
 from typing import Self
 
 import numpy as np
+from scipy.ndimage import shift
 
 from wedgesweep import systems
 from wedgesweep.config import Config
@@ -18,7 +19,7 @@ from wedgesweep.diagnose.loop.force_noise import KnownNoise, of_force
 from wedgesweep.diagnose.loop.motion_noise import Derivatives
 from wedgesweep.diagnose.noise_spectrum import FROM_REPEATS, NoiseSpectrum, of_noise
 from wedgesweep.diagnose.smoothing import LowPass, Motion, chosen_cutoff, motion, white_noise
-from wedgesweep.effects import merge
+from wedgesweep.effects import channel_delay, force_gain, merge
 from wedgesweep.errors import InputError
 from wedgesweep.solvers import imposed_motion
 
@@ -40,6 +41,9 @@ MOST_BLOCKS = 12
 DEFLECTED = 1.0 / sqrt(3.0)
 # Error of a simulation over the rms of the force, which counts as noise.
 SIMULATED = 1e-4
+# Effects of the channels, and their numbers where they are off.
+FORCE_GAIN, CHANNEL_DELAY = force_gain.EFFECT.name, channel_delay.NAME
+NO_GAIN, NO_DELAY = force_gain.EFFECT.off, channel_delay.EFFECT.off
 NO_NOISE = NoiseSpectrum(0.0, 0.0, 0.0)
 
 
@@ -165,7 +169,10 @@ class Recording:
 
         ``zeros`` (n, blocks): what to add to the displacement (m) in each block.
         """
-        return self._compared(self._forces(scenarios, zeros, self.motion.parts))
+        forces = self._forces(scenarios, zeros, self.motion.parts)
+        delays = [values.get(CHANNEL_DELAY, NO_DELAY)["time"] for values in scenarios]
+        gains = np.array([values.get(FORCE_GAIN, NO_GAIN)["scale"] for values in scenarios])
+        return gains[:, None] * self._compared(forces, delays)
 
     def _forces(
         self,
@@ -193,12 +200,16 @@ class Recording:
         first = [self.places[block.start] for block in self.blocks[1:]]
         return np.searchsorted(first, np.arange(self.motion.velocity.size), side="right")
 
-    def _compared(self, forces: np.ndarray) -> np.ndarray:
-        """Forces (n, N) along the motion as they are compared."""
+    def _compared(self, forces: np.ndarray, delays: Sequence[float] = ()) -> np.ndarray:
+        """Forces (n, N) along the motion as they are compared, some time (s) late each."""
         lost = np.isnan(forces)
-        found = self.low_pass(np.where(lost, 0.0, forces))[:, self.places]
+        found, samples = self.low_pass(np.where(lost, 0.0, forces)), self.low_pass.rate * np.array(delays)
+        for row in np.flatnonzero(samples):
+            found[row] = shift(found[row], samples[row], order=5, mode="nearest")
+        found = found[:, self.places]
         if lost.any():
-            reach = np.ones(2 * self.low_pass.settling + 1)
+            late = ceil(np.abs(samples).max(initial=0.0))
+            reach = np.ones(2 * (self.low_pass.settling + late) + 1)
             near = np.array([np.convolve(row, reach, mode="same") > 0.5 for row in lost])
             found[near[:, self.places]] = np.nan
         return found

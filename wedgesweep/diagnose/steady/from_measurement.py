@@ -17,6 +17,7 @@ from wedgesweep.diagnose.steady.recorded_input import (
 )
 from wedgesweep.diagnose.steady.spectra import Spectrum, fitted, noise_coherence, spectrum
 from wedgesweep.effects import acting
+from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.measured import Measurement, TestRecord
 from wedgesweep.natural_units import FREQUENCY
 
@@ -135,7 +136,7 @@ def _hidden_effects(as_measured: set[str], converted: bool) -> tuple[str, ...]:
     was added to any channel.
     """
     found = [effect for effect, channel in OF_SENSORS.items() if channel not in as_measured]
-    return (*found, "fixture_resonance") if converted else tuple(found)
+    return (*found, "fixture_resonance", DELAY) if converted else tuple(found)
 
 
 # Quantity that a channel measures, the one that it is compared as, and of which motion: "relative" or

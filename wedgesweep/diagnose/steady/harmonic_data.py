@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from wedgesweep.diagnose.evaluation import Comparison, Evaluation, NuisanceParameter, Point, Scenario
-from wedgesweep.diagnose.fit_data import INPUT_GAIN, Arrays, FitData
+from wedgesweep.diagnose.fit_data import Arrays, FitData
 from wedgesweep.diagnose.model import Fit, Model
 from wedgesweep.diagnose.next_test.sensors import Sensors
 from wedgesweep.diagnose.noise_spectrum import NoiseSpectrum
@@ -31,6 +31,8 @@ from wedgesweep.systems.records import stacked
 
 # Columns of the nuisance parameters: logarithm of the amplitude over its reference, phase of the tone (rad).
 AMPLITUDE = NuisanceParameter(step=2e-3, max_step=0.1)
+# Effects that only a recorded input, or a recorded force, shows.
+OF_RECORDED = ("input_gain", "force_gain", "channel_delay")
 TONE_PHASE = NuisanceParameter(step=1e-2, max_step=0.3)
 # A record was low-passed before it was sampled if leaving out aliases takes this much off chi-squared.
 FILTERED = 1.0
@@ -231,7 +233,7 @@ class HarmonicData(WhitenedHarmonics, FitData):
         return self.decorrelated(real(both[0] - both[1]))
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        hidden = {INPUT_GAIN, *(() if self.tone is not None else (TONE,))}
+        hidden = {*OF_RECORDED, *(() if self.tone is not None else (TONE,))}
         return tuple(name for name in effects if name not in hidden)
 
     def with_undetected(self, effect: str) -> Self:

@@ -21,6 +21,7 @@ from wedgesweep.diagnose.fit_data import INPUT_GAIN
 from wedgesweep.diagnose.model import TIGHT
 from wedgesweep.diagnose.steady.harmonic_data import AMPLITUDE, HarmonicData, Simulated
 from wedgesweep.diagnose.steady.spectra import Spectrum
+from wedgesweep.effects.channel_delay import NAME as DELAY
 
 # Effects of sensors: the number that is set, and its value without the effect.
 SENSORS = (("displacement_gain", "scale", 1.0), ("velocity_lag", "time", 0.0))
@@ -115,7 +116,8 @@ class RecordedInputData(HarmonicData):
         return (AMPLITUDE,)
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
-        return tuple(name for name in super().candidates(effects) if name not in self.hidden)
+        shown = {*super().candidates(effects), DELAY, *(() if self.input_gain_std else (INPUT_GAIN,))}
+        return tuple(name for name in effects if name in shown and name not in self.hidden)
 
     def records(self, scenario: Scenario) -> np.ndarray:
         left_out = (*self.hidden, INPUT_GAIN)
@@ -144,6 +146,9 @@ class RecordedInputData(HarmonicData):
         from_zero = inputs.displacement * np.exp(-1j * inputs.phase[:, None] * np.arange(1, orders + 1))
         share = inputs.conversion[:, :channels] * from_zero[:, None]
         for found, scenario in zip(done.harmonics, scenarios, strict=True):
+            late = scenario.values.get(DELAY, {"time": 0.0})["time"]
+            turn = -1j * late * self.omega[:, None] * np.arange(1, found.shape[-1] + 1)
+            found *= np.exp(turn)[:, None]
             error = self._gain(scenario) - 1.0
             found[:, :channels, :orders] -= error[:, None, None] * share
         return done

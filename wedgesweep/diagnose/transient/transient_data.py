@@ -33,12 +33,13 @@ from wedgesweep.diagnose.transient.beyond_jumps import best_start, places, stand
 from wedgesweep.diagnose.transient.noise import Key, NoiseEvidence
 from wedgesweep.diagnose.transient.window import BODIES, RecordWindow, simulated_together
 from wedgesweep.effects import acting
+from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.natural_units import NaturalUnits
 
 # Next tests like these: free motions, and motions under an input.
 RELEASE, SWEEP = "release", "sweep"
 # Effects that are no candidates: of a sine as the input, or of what a recorded input contains already.
-OF_INPUT = ("input_distortion", "stray_vibration", "cross_slip")
+OF_INPUT = ("input_distortion", "stray_vibration", "cross_slip", "force_gain")
 # Effects of sensors, and the derivative of the displacement whose sensor has each.
 OF_SENSORS = {"displacement_gain": 0, "velocity_lag": 1}
 # Displacement and velocity of the start, over the largest displacement (times omega_n for the velocity).
@@ -234,9 +235,13 @@ class TransientData(SampledData):
 
     def candidates(self, effects: Sequence[str]) -> tuple[str, ...]:
         shown = {order for own in self.windows for order in own.shown_as_measured}
-        hidden = {*OF_INPUT, INPUT_GAIN, *(name for name, order in OF_SENSORS.items() if order not in shown)}
+        hidden = {*OF_INPUT, *(name for name, order in OF_SENSORS.items() if order not in shown)}
+        if self.gain_std:
+            hidden.add(INPUT_GAIN)
+        if not any(own.driven for own in self.windows):
+            hidden.update((INPUT_GAIN, DELAY))
         if any(own.converted for own in self.windows):
-            hidden.add("fixture_resonance")  # such channels show the motion against the table
+            hidden.update(("fixture_resonance", DELAY))  # such channels show the motion against the table
         return tuple(name for name in effects if name not in hidden)
 
     def simulated(self, scenarios: Sequence[Scenario]) -> np.ndarray:

@@ -26,6 +26,7 @@ from wedgesweep.diagnose.transient.input_noise import (
 )
 from wedgesweep.diagnose.transient.noise import ACCELERATION, Key
 from wedgesweep.effects import merge
+from wedgesweep.effects.channel_delay import NAME as DELAY
 from wedgesweep.sampled_input import SampledInput, set_sampled
 from wedgesweep.solvers import periodic
 from wedgesweep.systems import set_states, state_count
@@ -294,6 +295,8 @@ def simulated_together(
     rows = np.repeat(first.records(scenarios), count, axis=0)
     for place, own in enumerate(windows):
         own.drive(rows[place::count], own.input, gains[:, place])
+    late = np.array([each.get(DELAY, {"time": 0.0})["time"] for each in scenarios])
+    rows["series"]["begin"] += np.repeat(late, count)  # responses that are late follow an input that is
     motions = first.motions(rows, starts.reshape(n * count, -1, 2), tolerance)
     motions = motions.reshape(n, count, *motions.shape[1:])
     if first.converted:
