@@ -1,8 +1,9 @@
 """Numbers that a measurement declares uncertain, each with what is stated and a standard deviation.
 
 They are named by the effect that changes them. An effect that scales a number of the model, or the gain of a
-sensor, gives a factor, stated as 1. Harmonics of the input, the same in all tests, give a cosine and a sine
-part each, over the input's amplitude and stated as the model has them.
+sensor, gives a factor, stated as 1; a delay between channels gives a time, stated as 0. Harmonics of the input,
+the same in all tests, give a cosine and a sine part each, over the input's amplitude and stated as the model
+has them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,14 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wedgesweep.effects import EFFECTS, Numbers, input_distortion
+from wedgesweep.effects import EFFECTS, Numbers, channel_delay, input_distortion
 
 DISTORTION = input_distortion.EFFECT.name
 # Harmonics that inputs have, with the number of their phase.
 HARMONICS = {"second": "second_phase", "third": "third_phase"}
 # Parts of a harmonic.
 COSINE, SINE = "cos", "sin"
-FACTOR = ("scale",)
+FACTOR, DELAY = ("scale",), ("time",)
 # A change of any of these numbers that matters.
 SCALE = 0.1
 # Farther from what is stated (standard deviations) a number is a cause, and no model makes up for it.
@@ -80,7 +81,7 @@ class UncertainNumbers:
     @property
     def scale(self) -> np.ndarray:
         """Changes that matter, (u,)."""
-        return np.full(len(self), SCALE)
+        return np.array([each.std if each.part == DELAY else SCALE for each in self.numbers], float)
 
     def _each(self, name: str) -> np.ndarray:
         return np.array([getattr(each, name) for each in self.numbers], float)
@@ -95,7 +96,7 @@ class UncertainNumbers:
         for each, value in zip(self.numbers, x, strict=True):
             parts[each.effect][each.part] = float(value)
         return {
-            name: _harmonics(own) if name == DISTORTION else {"scale": own[FACTOR]}
+            name: _harmonics(own) if name == DISTORTION else {part[0]: value for part, value in own.items()}
             for name, own in parts.items()
         }
 
@@ -117,12 +118,13 @@ def uncertain_numbers(stds: Mapping[str, float], stated: Numbers) -> UncertainNu
     """Everything with a standard deviation, by effect, beside the ``stated`` effects (SI) of a model."""
     found: list[UncertainNumber] = []
     for name, std in stds.items():
-        found += _parts(std, stated.get(name, {})) if name == DISTORTION else [_factor(name, std)]
+        if name == DISTORTION:
+            found += _parts(std, stated.get(name, {}))
+        elif name == channel_delay.NAME:
+            found.append(UncertainNumber(name, DELAY, 0.0, std))
+        else:
+            found.append(UncertainNumber(name, FACTOR, 1.0, std))
     return UncertainNumbers(tuple(found))
-
-
-def _factor(effect: str, std: float) -> UncertainNumber:
-    return UncertainNumber(effect, FACTOR, 1.0, std)
 
 
 def _parts(std: float, stated: Mapping[str, float]) -> Iterable[UncertainNumber]:
@@ -137,8 +139,8 @@ def _part(numbers: Mapping[str, float] | None, part: tuple[str, ...], stated: fl
     """A fitted number, from those of its effect (SI); as stated without them."""
     if numbers is None:
         return stated
-    if part == FACTOR:
-        return numbers["scale"]
+    if part in (FACTOR, DELAY):
+        return numbers[part[0]]
     harmonic, turn = part
     value = harmonic_of(numbers, harmonic)
     return value.real if turn == COSINE else value.imag

@@ -108,3 +108,17 @@ def steady(frequency: float, late: float) -> np.ndarray:
     ratio = 1.0 / (STIFFNESS - MASS * omega**2 + 1j * DAMPING * omega)
     x = 20.0 * np.imag(ratio * np.exp(1j * omega * (time - late)))
     return np.column_stack([time, x, 20.0 * np.sin(omega * time)])
+
+
+@pytest.mark.acceptance
+def test_a_delay_that_is_known_to_so_much_is_fitted(tmp_path):
+    """Within its standard deviation it is no cause, and is told with its error."""
+    channels = FORCE.replace('unit = "N"', 'unit = "N", delay_ms = 1.0, delay_std_ms = 2.0')
+    path = save(tmp_path, "loop", channels, FRICTION, loops(late=DELAY))
+    measurement = api.read_measurement(path)
+    assert measurement.delay_std == pytest.approx(2e-3)
+    found = api.diagnose_measurement(measurement, effects=CANDIDATES, n_jobs=1)
+    assert found.verdict == "nothing-missing"
+    delay = found.document["uncertain"]["channel_delay"]
+    assert delay["time_s"] == pytest.approx(DELAY - 1e-3, rel=0.01)
+    assert delay["time_s_std"] < 1e-4

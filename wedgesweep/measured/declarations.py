@@ -190,6 +190,7 @@ def units(channel: str, quantity: str | None = None) -> dict[str, float]:
 SCALE = Quantity("scale", nan, "unit per number in the file: 200 where it holds volts, at 200 N/V")
 SIGN = Quantity("sign", nan, "1, or -1 for a channel of the other sign", minimum=-1.0, maximum=1.0)
 DELAY = Quantity("delay_ms", nan, "time by which this channel is late")
+DELAY_STD = Quantity("delay_std_ms", nan, "std of that time, which is then fitted", above=0.0)
 RATE = Quantity("rate_hz", nan, "sampling rate, where no column holds the time", above=0.0)
 VALID = {"sign": "1 or -1", "scale": "another number than 0"}
 # Keys that every channel has beside its column and its unit.
@@ -198,6 +199,7 @@ COMMON = (
     Number.of(SCALE, optional=True),
     Number.of(SIGN, optional=True),
     Number.of(DELAY, optional=True),
+    Number.of(DELAY_STD, optional=True),
     Number.of(RATE, optional=True),
     Texts(key="missing", meaning="texts of missing samples, beside NA, NaN, #N/A", optional=True),
 )

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from wedgesweep.files import missing
 from wedgesweep.hints import shortened
 from wedgesweep.measured import channels, overrides, repeated
 from wedgesweep.measured.build import build_record
-from wedgesweep.measured.declarations import INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
+from wedgesweep.measured.declarations import DELAY_STD, INPUT, INPUT_STDS, ROOT, STEADY, UNCERTAIN, columns_of
 from wedgesweep.measured.measurement import MeasuredError, Measurement, TestRecord
 from wedgesweep.measured.model import load_model
 from wedgesweep.measured.signals import read_signals
@@ -54,6 +55,7 @@ def read(path: Path, model: Path | None = None) -> Measurement:
         },
         **{name: measurement[name] for name in INPUT_STDS},
         model_error=measurement["model_error"],
+        delay_std=hypot(*(1e-3 * each.get(DELAY_STD.key, 0.0) for each in columns.values())),
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from wedgesweep.config import Config
+from wedgesweep.effects import channel_delay
 from wedgesweep.errors import InputError
 from wedgesweep.measured.declarations import MIXED, columns_of
 from wedgesweep.measured.frequency import refined_frequency
@@ -92,7 +93,7 @@ class Measurement:
     the name of the effect that scales them; ``columns`` the CSV header name and unit of each channel, with
     ``of`` of responses and ``quantity`` of the input. ``input_gain_std``: of a recorded input, relative.
     ``input_harmonics_std``: of each harmonic of a stated input, over its amplitude. ``model_error``: the
-    relative error that a model may have.
+    relative error that a model may have. ``delay_std`` (s): of the delay between channels; 0 if it is known.
     """
 
     path: Path
@@ -106,6 +107,12 @@ class Measurement:
     input_gain_std: float = 0.0
     input_harmonics_std: float = 0.0
     model_error: float = 0.0
+    delay_std: float = 0.0
+
+    @property
+    def uncertain_of_records(self) -> dict[str, float]:
+        """Standard deviations of uncertain numbers of the model, and of the delay (s) between channels."""
+        return dict(self.uncertain) | ({channel_delay.NAME: self.delay_std} if self.delay_std else {})
 
     @property
     def kinds(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ def loop_data(measurement: Measurement) -> LoopData:
         _recording(measurement, test, left.get(i, [])) for i, test in enumerate(measurement.tests)
     )
     chosen = tuple((i, block) for i, own in enumerate(recordings) for block in range(len(own.blocks)))
-    return LoopData(recordings, chosen, dict(measurement.uncertain), measurement.model_error)
+    return LoopData(recordings, chosen, measurement.uncertain_of_records, measurement.model_error)
 
 
 def _recording(measurement: Measurement, test: TestRecord, differences: list[np.ndarray]) -> Recording:

@@ -73,7 +73,8 @@ def uncertain(fit: Fit) -> dict[str, dict[str, float]]:
     found = uncertain_values(fit)
     std = np.sqrt(np.maximum(np.diag(fit.covariance)[size:], 0.0))
     for number, value in zip(fit.model.uncertain.numbers, std.tolist(), strict=True):
-        name = "std" if number.factor else f"{number.part[0]}_std"
+        keys = {quantity.name: quantity.key for quantity in EFFECTS[number.effect].quantities}
+        name = "std" if number.factor else f"{keys[number.part[0]]}_std"
         own = found[number.effect]
         own[name] = max(own.get(name, 0.0), value)
     return found

@@ -119,7 +119,7 @@ def _under_recorded_input(measurement: Measurement) -> RecordedInputData:
         spectra=spectra,
         amplitude=inputs.amplitude,
         amplitude_std=np.zeros(len(spectra)),
-        uncertain=dict(measurement.uncertain) | gain,
+        uncertain=measurement.uncertain_of_records | gain,
         models=_models(measurement),
         input_phase=inputs.phase,
         inputs=inputs,

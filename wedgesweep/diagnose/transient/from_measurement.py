@@ -37,7 +37,7 @@ def transient_data(measurement: Measurement) -> TransientData:
             raise InputError([f"{test.file}: {problem}" for problem in error.problems]) from error
     return TransientData(
         tuple(found),
-        dict(measurement.uncertain),
+        measurement.uncertain_of_records,
         measurement.model_error,
         measurement.input_gain_std if any(own.driven for own in found) else 0.0,
         evidence=evidence,
