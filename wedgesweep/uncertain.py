@@ -1,9 +1,9 @@
 """Numbers that a measurement declares uncertain, each with what is stated and a standard deviation.
 
 They are named by the effect that changes them. An effect that scales a number of the model, or the gain of a
-sensor, gives a factor, stated as 1; a delay between channels gives a time, stated as 0. Harmonics of the input,
-the same in all tests, give a cosine and a sine part each, over the input's amplitude and stated as the model
-has them.
+sensor, gives a factor, stated as 1; a delay between channels gives a time, stated as 0. Harmonics of the
+input, the same in all tests, give a cosine and a sine part each, over the input's amplitude and stated as the
+model has them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
