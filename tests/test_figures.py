@@ -410,3 +410,18 @@ def test_amplitudes_shown_by_default_slip(dataset):
     fraction = dataset["stick_fraction"].isel(amplitude=chosen)
     assert len(chosen) == 3
     assert (fraction < cases.SLIPS).any(["friction_law", "beta"]).all()
+
+
+def test_many_cases_are_a_density(dataset, monkeypatch):
+    monkeypatch.setattr(amplitude_ratio, "MOST_CASES", 50)
+    ax = figures.draw(dataset, "amplitude-ratio").axes[0]
+    assert [line.get_label() for line in ax.lines] == ["no friction"]
+    (mesh,) = ax.collections
+    shares = mesh.get_array()
+    assert 0.0 < shares.min() <= shares.max() <= 1.0
+
+
+def test_phase_portraits_show_motion_by_default(dataset):
+    still = dataset["stick_fraction"].where(dataset["beta"] > 0.9, 1.0)
+    drawn = figures.draw(dataset.assign(stick_fraction=still), "phase-portrait")
+    assert "β$ = 1 (" in drawn.axes[0].get_title()
