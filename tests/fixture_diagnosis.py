@@ -58,6 +58,19 @@ CASES = {
     "none-of-mine": (0.6, [], [], 12),
 }
 
+# Nodes of a map of an empirical force, and what is stored of it.
+PLACES, SPEEDS = 5, 7
+EMPIRICAL = {
+    "offered": True,
+    "accuracy": 0.02,
+    "accuracy_held_out": 0.03,
+    "named": {"effects": ["stribeck"], "accuracy": 0.1, "accuracy_held_out": 0.12},
+    "degrees_of_freedom": 12.3,
+    "step_N": 0.4,
+    "nearest": [{"form": "damper (viscous_damping)", "share": 0.8, "ci95": [0.7, 0.9]}],
+    "next_place": {"displacement_mm": 0.5, "velocity_mm_per_s": 40.0},
+}
+
 
 def write(directory, verdict="named", **options):
     """Write both files of a diagnosis into a directory."""
@@ -155,6 +168,8 @@ def _dataset(tests, missing, share, channels, known):
         "dof": (("test",), np.full(tests, 2 * channels * HARMONICS - 1)),
     }
     coordinates = {
+        "force_place": np.linspace(-1e-3, 1e-3, PLACES),
+        "force_speed": np.linspace(-0.1, 0.1, SPEEDS),
         "test": [f"run-{place:02d}" for place in range(tests)],
         "model": ["base", "extended"],
         "channel": ["displacement", "velocity"][:channels],
@@ -162,7 +177,19 @@ def _dataset(tests, missing, share, channels, known):
         "part": ["real", "imaginary"],
         "phase": np.arange(PHASES) / PHASES,
     }
+    variables |= _missing_force()
     return xr.Dataset(variables, coordinates, {"title": TEXT["title"]})
+
+
+def _missing_force():
+    """An empirical force that was not measured in one corner."""
+    force = np.add.outer(np.linspace(-1.0, 1.0, PLACES), np.linspace(1.0, -1.0, SPEEDS))
+    force[0, 0] = np.nan
+    found = {"missing_force": (("force_place", "force_speed"), force)}
+    for over, count in (("place", PLACES), ("speed", SPEEDS)):
+        found[f"missing_force_over_{over}"] = ((f"force_{over}",), np.linspace(-1.0, 1.0, count))
+        found[f"missing_force_over_{over}_std"] = ((f"force_{over}",), np.full(count, 0.1))
+    return found
 
 
 def _parts(values):
@@ -193,6 +220,7 @@ def _document(verdict, data, causes, attempt, rivals, known):
             "tests": _tests(data, known),
         },
         "gain": _gain(held_out),
+        "empirical_force": EMPIRICAL if verdict == "none-of-mine" else None,
         "detectable": DETECTABLE,
         "not_testable": NOT_TESTABLE,
         "next_test": dict(NEXT) if verdict in ("tied", "data-insufficient") else None,

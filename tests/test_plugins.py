@@ -41,11 +41,11 @@ def test_fault_is_told_with_file_and_line(fault, tmp_path):
     with pytest.raises(InputError) as caught:
         plugins.load(file)
     line = str(caught.value).splitlines()[0]
-    assert line.startswith(f"{file}: ")
+    assert line.startswith(f"{file}:")
     assert told in line
     if fault != "no effect":  # there is no line to name
         changed = next(i for i, text in enumerate(HYPOTHESIS.splitlines(), 1) if good.splitlines()[0] in text)
-        declared = int(line.split(": line ")[1].split(":")[0])
+        declared = int(line.removeprefix(f"{file}:").split(":")[0])
         assert 0 <= changed - declared <= 10
     assert "quintic_stiffness" not in effects.EFFECTS
     assert "my_effect" not in sys.modules

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from wedgesweep import config as configs
 from wedgesweep import figures, measured
 from wedgesweep.config import Config, variants
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, candidates
 from wedgesweep.errors import InputError, SweepError
 from wedgesweep.files import NETCDF, mismatch
 from wedgesweep.hints import hint
@@ -222,7 +222,8 @@ def diagnose_measurement(
     measurement : Measurement
         From ``read_measurement``.
     effects : sequence of str, optional
-        Names of the candidates; all effects by default.
+        Names of the candidates; all effects by default. With "empirical_force" among them the missing force
+        is fitted as a table whatever the verdict is; without only where no name explains it.
     n_jobs : int, optional
         Number of threads; one per processor by default.
     progress : callable, optional
@@ -271,7 +272,7 @@ def diagnose_measurement(
 
 def _candidates(effects: Sequence[str] | None) -> tuple[str, ...]:
     if effects is None:
-        return tuple(EFFECTS)
+        return candidates()
     unknown = [
         f"effects: unknown effect {name}; {hint(name, EFFECTS)}" for name in effects if name not in EFFECTS
     ]

@@ -14,6 +14,8 @@ from wedgesweep.files import json_object, read_bytes, read_text, write_text
 from wedgesweep.sweep import dataset
 
 JSON, DATASET, EXTENDED = "diagnosis.json", "diagnosis.nc", "extended.toml"
+# The base model with the force that it lacks, and the table of that force.
+FORCE_CONFIG, FORCE_TABLE = "empirical.toml", "empirical-force.csv"
 # Dataset of the tests of one kind among several.
 PARTS = {kind: f"diagnosis-{kind}.nc" for kind in ("steady", "transient", "loop")}
 VERDICTS = ("nothing-missing", "named", "consistent-with", "tied", "data-insufficient", "none-of-mine")
@@ -80,12 +82,15 @@ class DiagnosisResult:
         The base model with the effects found, as a config that runs the measured tests.
     parts : mapping of str to xarray.Dataset
         Where tests of several kinds were measured: content of diagnosis-KIND.nc, by kind.
+    force_files : mapping of str to str
+        Where a force was offered that no name explains: content of empirical.toml and its table, by file.
     """
 
     document: dict[str, Any]
     data: xr.Dataset
     extended_toml: str = ""
     parts: Mapping[str, xr.Dataset] = field(default_factory=dict)
+    force_files: Mapping[str, str] = field(default_factory=dict)
 
     def of_kind(self, kind: str) -> "DiagnosisResult":
         """The result with the tests of one kind only."""
@@ -127,6 +132,10 @@ class DiagnosisResult:
             if kind in self.parts:
                 dataset.write(self.parts[kind], directory / file)
         write_text(directory / EXTENDED, self.extended_toml)
+        for file in (FORCE_CONFIG, FORCE_TABLE):
+            (directory / file).unlink(missing_ok=True)
+            if file in self.force_files:
+                write_text(directory / file, self.force_files[file])
         write_text(directory / JSON, text)
 
     @property

@@ -84,7 +84,7 @@ def described(error: BaseException) -> str | None:
     """An error that a function of a loaded file has raised, with file and line; None for any other error."""
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         if Path(frame.filename) in _loaded:
-            return f"{frame.filename}: line {frame.lineno}: {type(error).__name__}: {error}"
+            return f"{frame.filename}:{frame.lineno}: {type(error).__name__}: {error}"
     return None
 
 
@@ -97,10 +97,10 @@ class _Source:
     def at(self, declared: str, problem: str) -> str:
         """A problem with something that the file declares."""
         line = self._lines.get(declared)
-        return f"{self._name}: " + (f"line {line}: " if line else "") + f"{declared}: {problem}"
+        return f"{self._name}{f':{line}' if line else ''}: {declared}: {problem}"
 
     def in_line(self, line: int, problem: str) -> str:
-        return f"{self._name}: line {line}: {problem}"
+        return f"{self._name}:{line}: {problem}"
 
 
 def _declared(tree: ast.Module) -> Iterator[tuple[str, int]]:
@@ -127,15 +127,15 @@ def _module(file: Path, shown: str) -> ModuleType:
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        raise InputError([f"{shown}: {_where(error, file)}{type(error).__name__}: {error}"]) from error
+        raise InputError([f"{shown}{_where(error, file)}: {type(error).__name__}: {error}"]) from error
     return module
 
 
 def _where(error: Exception, file: Path) -> str:
     if isinstance(error, SyntaxError):
-        return f"line {error.lineno}: " if error.filename == str(file) else ""
+        return f":{error.lineno}" if error.filename == str(file) else ""
     lines = [each.lineno for each in traceback.extract_tb(error.__traceback__) if each.filename == str(file)]
-    return f"line {lines[-1]}: " if lines else ""
+    return f":{lines[-1]}" if lines else ""
 
 
 def _problems(module: ModuleType, source: _Source) -> Iterator[str]:

@@ -5,7 +5,7 @@ from math import cos, exp, hypot, log, sin
 import numpy as np
 
 from tests.physics.compiled_mechanics import owned
-from wedgesweep.effects import EFFECTS, of_system
+from wedgesweep.effects import EFFECTS, empirical_force, of_system
 from wedgesweep.effects.base import SUSPENSION
 
 # Where in the range that a fit searches a quantity is taken; not its middle, which may be neutral.
@@ -31,6 +31,13 @@ def typical(name, place=PLACE):
     return found
 
 
+def tabulated(displacement, velocity):
+    """SI numbers of an empirical force: a damper that grows with travel, and a spring that stiffens."""
+    z, v = np.meshgrid(*empirical_force.nodes(1.0, 1.0), indexing="ij")
+    forces = -0.3 * v * (1.0 + z**2) - 0.3 * z**3
+    return {"displacement": displacement, "velocity": velocity, "forces": tuple(forces.ravel())}
+
+
 def mild(name):
     """``typical`` where that would drive the paper's suspension far out of its range."""
     changes = {
@@ -49,6 +56,7 @@ def mild(name):
         "cross_slip": {"velocity": 5e-3},
         "stribeck": {"peak": 0.05, "velocity": 5e-3},
         "ageing": {"rate": 0.05},
+        "empirical_force": tabulated(1e-3, 0.05),
     }
     return typical(name) | changes.get(name, {})
 
@@ -70,6 +78,14 @@ def coefficient(velocity, across, at_rest, p):
         beyond = speed - (0.0 if law["set_valued"] else threshold)
         mu += (law["mu_s"] - law["mu_d"] + stribeck["peak"]) * exp(-beyond / stribeck["velocity"])
     return mu * velocity / speed if speed else 0.0
+
+
+def _tabulated(table, x, velocity):
+    """The force of a table; a suspension's counts displacement from rest."""
+    if table["velocity"] == 0.0:
+        return 0.0
+    place, speed = np.array([x / table["displacement"]]), np.array([velocity / table["velocity"]])
+    return (empirical_force.interpolation(place, speed) @ table["forces"])[0]
 
 
 def base_acceleration(t, p):
@@ -137,6 +153,7 @@ def residual(t, y, mode, p, result):
         * velocity
         + p["quadratic_drag"]["coefficient"] * abs(velocity) * velocity
         + p["end_stop"]["stiffness"] * beyond
+        - _tabulated(p["empirical_force"], x, velocity)
         - s["bolster_spring"] * np.clip(x, -p["backlash"]["clearance"], p["backlash"]["clearance"])
         + p["guide_friction"]["force"] * guide
         + 2 * on_bolster @ up

@@ -49,10 +49,10 @@ def test_the_declared_order_is_that_of_the_families():
         "excitation",
         "sensor",
     )
-    assert len(EFFECTS) == 26
+    assert len(EFFECTS) == 29
 
 
-@pytest.mark.parametrize("name", OF_SUSPENSION)
+@pytest.mark.parametrize("name", [name for name in OF_SUSPENSION if EFFECTS[name].searched])
 def test_a_config_switches_it_on_and_its_range_is_allowed(name):
     values = {
         quantity.key: (quantity.search or (quantity.default or FOLLOWS,))[-1]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from tests.physics.effect_cases import tabulated
 from tests.physics.test_oscillator import AMPLITUDE, OMEGA_N, SOLVERS, K, M, coulomb, oscillator, steady
 from wedgesweep.effects import EFFECTS
 from wedgesweep.solvers import event_driven
@@ -29,6 +30,7 @@ STRENGTHS = {
     "backlash": {"clearance": 3e-4},
     "guide_friction": {"force": 0.2},
     "end_stop": {"clearance": 1e-3, "stiffness": 500.0},
+    "empirical_force": tabulated(2e-3, 0.1),
     "input_distortion": {"second": 0.1, "second_phase": 0.4, "third": 0.05, "third_phase": -1.0},
     "displacement_gain": {"scale": 1.02},
     "input_gain": {"scale": 1.05},

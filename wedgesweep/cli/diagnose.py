@@ -20,7 +20,7 @@ from wedgesweep.kinds import MEASURED
 if TYPE_CHECKING:
     from wedgesweep.diagnosis_result import DiagnosisResult
 
-DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain")
+DRAWN = ("misfit", "loops", "decays", "spectrogram", "candidates", "ladder", "gain", "missing-force")
 FIGURE_FILES = {kind: f"{kind}.png" for kind in DRAWN}
 # Marks a directory in which an earlier result is being replaced.
 REPLACING = ".unfinished-diagnosis"
@@ -52,6 +52,11 @@ OF_KIND = {"misfit": "steady", "loops": "loop", "decays": "transient", "spectrog
     help="Whether to write report.html and the figures (default) besides the data.",
 )
 @click.option("--calibrate", is_flag=True, help="Calibrate the thresholds by simulation (minutes).")
+@click.option(
+    "--empirical-force",
+    is_flag=True,
+    help="Fit the missing force as a table even if a name explains it; without this only where none does.",
+)
 @click.option(
     "--time-limit",
     type=Duration(),
@@ -86,7 +91,7 @@ def diagnose(
     try:
         found = api.diagnose_measurement(
             measurement,
-            effects=_names(options["effects"]),
+            effects=_names(options["effects"], options["empirical_force"]),
             n_jobs=processors,
             progress=progress.step,
             calibrate=options["calibrate"],
@@ -167,8 +172,14 @@ class Results:
         self._begun = True
 
 
-def _names(listed: str | None) -> list[str] | None:
-    return None if listed is None else [name.strip() for name in listed.split(",") if name.strip()]
+def _names(listed: str | None, with_force: bool) -> list[str] | None:
+    """Names of the candidates, and of the empirical force where it is wanted whatever the verdict is."""
+    from wedgesweep.effects import candidates, empirical_force
+
+    if listed is None and not with_force:
+        return None
+    names = candidates() if listed is None else (name.strip() for name in listed.split(","))
+    return [*filter(None, names), *[empirical_force.NAME] * with_force]
 
 
 def _name(measured: Path) -> str:
@@ -189,7 +200,8 @@ def _result_files() -> tuple[str, ...]:
     from wedgesweep import diagnosis_result, report
 
     data = (diagnosis_result.JSON, diagnosis_result.DATASET, diagnosis_result.EXTENDED)
-    return (*data, *diagnosis_result.PARTS.values(), report.PAGE, *FIGURE_FILES.values())
+    force = (diagnosis_result.FORCE_CONFIG, diagnosis_result.FORCE_TABLE)
+    return (*data, *force, *diagnosis_result.PARTS.values(), report.PAGE, *FIGURE_FILES.values())
 
 
 def _move(made: Path, directory: Path, renews: bool = False) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from wedgesweep import __version__, rotation, toml
-from wedgesweep.config import commented, sample
+from wedgesweep.config import commented, force_table, sample
 from wedgesweep.config.axes import ZIP, corners, is_model_key, with_nominal, with_numbers
 from wedgesweep.config.cases import NATURAL, AmplitudeUnit, Case, Cases, natural_frequency
 from wedgesweep.config.contradictions import contradictions
@@ -54,6 +54,7 @@ def parse(text: str, source: str = "<config>", directory: Path = Path()) -> Conf
 def from_document(given: Mapping[str, Any], source: str = "<config>", directory: Path = Path()) -> Config:
     """Check the tables and keys of a config; raises ConfigError with everything that is wrong with it."""
     problems: list[str] = []
+    given = force_table.expanded(given, directory, problems)
     if rotation.turns(given):
         turned, table = turned_root("input" in given)
         document = turned.back(table.read(given, "", problems))

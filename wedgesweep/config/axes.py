@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from wedgesweep.config.inputs import Levels
 from wedgesweep.config.keys import Key, Number, Whole
-from wedgesweep.config.series import Series
+from wedgesweep.config.series import Numbers, Series
 from wedgesweep.config.tables import Table
 from wedgesweep.hints import hint, show
 
@@ -242,7 +241,9 @@ class Axes(WithNumbers):
         # What goes together with another axis need not increase.
         follows = any(path.endswith(f'"{key}"') for group in read.get(ZIP, ()) for key in group[1:])
         kind = (
-            Levels(key=number.key, meaning="", item=number) if follows and isinstance(value, list) else series
+            Numbers(key=number.key, meaning="", item=number)
+            if follows and isinstance(value, list)
+            else series
         )
         return kind.read(value, path, problems)
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import nan, sqrt
 from typing import Any
 
+from wedgesweep.config import force_table
 from wedgesweep.config.axes import NO_NUMBER, TOGETHER, Axes, WithNumbers, numbers_of
 from wedgesweep.config.inputs import INPUT, SCALE
 from wedgesweep.config.keys import Choice, Flag, Number, Text, Whole
@@ -11,7 +12,7 @@ from wedgesweep.config.sample import KEYS as SAMPLE_KEYS
 from wedgesweep.config.sample import Sample
 from wedgesweep.config.series import Series, Several
 from wedgesweep.config.tables import GridOrList, Table, TableList, table
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, empirical_force
 from wedgesweep.effects.base import Effect
 from wedgesweep.friction import LAWS
 from wedgesweep.friction.names import LAW_NAMES
@@ -69,6 +70,8 @@ def _whole(key: str, default: int | None, meaning: str, minimum: int, maximum: i
 
 
 def _effect(effect: Effect) -> Table:
+    if effect.name == empirical_force.NAME:
+        return force_table.KEYS
     keys = (Number.of(each, example=_typical(each)) for each in effect.quantities)
     return table(effect.name, effect.described(), *keys, optional=True)
 

@@ -6,7 +6,7 @@ from math import nan
 from typing import Any
 
 from wedgesweep.config.keys import Choice, Flag, Key, Number, Text, Unit, Whole
-from wedgesweep.config.series import Series
+from wedgesweep.config.series import Numbers, Series
 from wedgesweep.config.tables import Table, table
 from wedgesweep.hints import hint, show
 from wedgesweep.inputs.units import RECORDED, UNITS
@@ -43,22 +43,6 @@ FADE = Number.of(
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Levels(Key):
-    """Levels of a power spectral density, one for each frequency."""
-
-    item: Number
-
-    def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
-        given = value if isinstance(value, list) else [value]
-        read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
-        known = [each for each in read if each is not None]
-        return known if len(known) == len(read) else None
-
-    def shape(self) -> dict[str, Any]:
-        return {"type": "array", "items": self.item.shape(), "minItems": 1}
-
-
 def _kind(name: str, meaning: str, *keys: Key | tuple[Key, ...]) -> Table:
     kind = Choice(key=KIND, meaning=meaning, choices=(name,), example=name)
     return table("input", meaning, kind, *keys, optional=True)
@@ -93,7 +77,7 @@ RANDOM = _kind(
         optional=True,
         example=[1.0, 10.0, 30.0],
     ),
-    Levels(
+    Numbers(
         key="level",
         meaning="the density at each of them, in any unit",
         item=_positive("level", "level"),

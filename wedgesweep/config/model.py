@@ -15,7 +15,7 @@ from wedgesweep.config.cases import UNIT_FREQUENCY, AmplitudeUnit, Case, Cases, 
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import numbers
 from wedgesweep.config.input_contradictions import is_force
-from wedgesweep.effects import EFFECTS, go_together, jamming, lift_off, of_system
+from wedgesweep.effects import EFFECTS, empirical_force, go_together, jamming, lift_off, of_system
 from wedgesweep.effects.base import OSCILLATOR
 from wedgesweep.friction import LAWS
 from wedgesweep.friction.quantities import FRICTION
@@ -173,7 +173,12 @@ class Config:
     @cached_property
     def effects(self) -> dict[str, dict[str, float]]:
         given = self.document["effects"]
-        return {name: _si(EFFECTS[name].quantities, values) for name, values in given.items()}
+        found: dict[str, dict[str, Any]] = {
+            name: _si(EFFECTS[name].quantities, values) for name, values in given.items()
+        }
+        if empirical_force.NAME in given:
+            found[empirical_force.NAME] |= empirical_force.table(given[empirical_force.NAME])
+        return found
 
     @cached_property
     def sweep(self) -> Cases:

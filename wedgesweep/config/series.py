@@ -114,3 +114,19 @@ class Series(Several):
 
     def shape(self) -> dict[str, Any]:
         return {"anyOf": [*super().shape()["anyOf"], self.range.shape()]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numbers(Key):
+    """Numbers that may repeat, in any order."""
+
+    item: Number
+
+    def read(self, value: Any, path: str, problems: list[str]) -> list[float] | None:
+        given = value if isinstance(value, list) else [value]
+        read = [self.item.read(each, f"{path}[{i}]", problems) for i, each in enumerate(given)]
+        known = [each for each in read if each is not None]
+        return known if len(known) == len(read) else None
+
+    def shape(self) -> dict[str, Any]:
+        return {"type": "array", "items": self.item.shape(), "minItems": 1}

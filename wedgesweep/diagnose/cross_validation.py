@@ -228,7 +228,7 @@ def _predicted(fit: Fit, scheme: str, rows: np.ndarray) -> Prediction:
     for _ in range(LOCAL):
         if not evaluation.found:
             break
-        evaluation = part.model.evaluate(_with_own_nuisances(part.model, evaluation))
+        evaluation = part.model.evaluate(with_own_nuisances(part.model, evaluation))
     return Prediction(scheme, rows, part.model.data, evaluation, trained.effects)
 
 
@@ -257,7 +257,7 @@ def undetermined(fit: Fit) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for name, is_loose in zip(names, loose, strict=True) if is_loose))
 
 
-def _with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:
+def with_own_nuisances(model: Model, evaluation: Evaluation) -> Point:
     """The point after a step of the nuisance parameters alone."""
     equations = normal_equations(model.holding(slice(None), evaluation.point.x), evaluation)
     nothing = np.zeros(len(evaluation.point.x))

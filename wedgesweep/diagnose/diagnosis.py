@@ -11,6 +11,7 @@ from wedgesweep.diagnose.calibration import calibrate
 from wedgesweep.diagnose.changes import Best, Change
 from wedgesweep.diagnose.concatenation import joined
 from wedgesweep.diagnose.cross_validation import Gain, Predictor, cross_validate
+from wedgesweep.diagnose.empirical.stage import EmpiricalForce, empirical_force
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.ladder import Level, ladder, rough_ladder
@@ -27,8 +28,9 @@ from wedgesweep.diagnose.steady.from_measurement import harmonic_data
 from wedgesweep.diagnose.transient.from_measurement import transient_data
 from wedgesweep.diagnose.verdict import Finding, Thresholds
 from wedgesweep.diagnose.work import Untried
-from wedgesweep.effects import EFFECTS, SCALES, acting
+from wedgesweep.effects import EFFECTS, SCALES, acting, candidates
 from wedgesweep.effects.base import OSCILLATOR
+from wedgesweep.effects.empirical_force import NAME as FORCE
 from wedgesweep.measured import Measurement
 from wedgesweep.measured.declarations import LOOP, STEADY, TRANSIENT
 
@@ -58,7 +60,8 @@ class Diagnosis:
     ``untried``: what the budget of the search left out; ``never_tried``: pairs of effects that were not
     fitted at all. ``unfinished``: steps without a result, with the reason; ``failed``: effects whose fits
     raised an error; ``ended``: the interrupt or time limit that ended the diagnosis early. ``changes``: what
-    each stage changed; ``without``: stages that were left out.
+    each stage changed; ``without``: stages that were left out; ``empirical``: the force that is missing where
+    no name explains it.
     """
 
     measurement: Measurement
@@ -79,6 +82,7 @@ class Diagnosis:
     ended: KeyboardInterrupt | None = None
     changes: tuple[Change, ...] = ()
     without: tuple[str, ...] = ()
+    empirical: EmpiricalForce | None = None
 
     @property
     def best(self) -> Best:
@@ -109,7 +113,7 @@ class Course:
     def __init__(
         self, measurement: Measurement, explained: Explained, steps: Sequence[str], reached: Reached
     ) -> None:
-        self.explained, self._reached = explained, reached
+        self.explained, self._reached, self.empirical_force = explained, reached, False
         self.predict = Predictor(explained.search.each)
         data, base = explained.search.data, explained.base
         thresholds = verdict.thresholds_for(data)
@@ -182,7 +186,7 @@ def _described(error: Exception) -> str:
 
 def diagnose(
     measurement: Measurement,
-    effects: Sequence[str] = tuple(EFFECTS),
+    effects: Sequence[str] | None = None,
     threads: int = 1,
     progress: Callable[[str], None] = quiet,
     calibrated: bool = False,
@@ -197,7 +201,8 @@ def diagnose(
     measurement : Measurement
         Tests of one rig, and the config of its base model.
     effects : sequence of str
-        Candidates. Effects that the base model already has are skipped, unless they scale a parameter.
+        Candidates, by default all. Effects that the base model already has are skipped, unless they scale a
+        parameter. "empirical_force" among them: fit one whatever the verdict is.
     threads : int
         Fits that run at the same time.
     progress : callable
@@ -220,11 +225,13 @@ def diagnose(
     KeyboardInterrupt
         Before the base model is fitted.
     """
-    effects = _candidates(effects, measurement, progress)
+    force_wanted = effects is not None and FORCE in effects
+    effects = _candidates(candidates() if effects is None else effects, measurement, progress)
     explained = base_model(Search.of(data_of(measurement), effects, threads, progress))
     left_out = {*explained.search.without, *(() if calibrated else ("calibration",))}
     steps = {name: step for name, step in STEPS.items() if name not in left_out}
     course = Course(measurement, explained, tuple(steps), reached)
+    course.empirical_force = force_wanted
     try:
         reached(course.found)
         with work.limited(time_used):
@@ -288,6 +295,14 @@ def _with_leading_effect(search: Search, found: Diagnosis, predict: Predictor) -
     return replace(found, decided=decided, explanations=known, gain=gain)
 
 
+def _with_empirical_force(course: Course) -> Diagnosis:
+    found = course.found
+    if found.finding.verdict not in (verdict.NONE, verdict.INSUFFICIENT) and not course.empirical_force:
+        return found
+    force = empirical_force(found.base.fit, found.ladder, course.search.each)
+    return replace(found, empirical=force)
+
+
 def _scored(course: Course) -> Diagnosis:
     scores = score_test.scores(course.search, course.found.base.fit, course.explained.scans)
     return replace(course.found, scores=tuple(scores))
@@ -309,7 +324,8 @@ def _candidates(
 ) -> tuple[str, ...]:
     """Effects that the base model may lack."""
     excluded = excluded_effects(measurement)
-    asked = set() if set(effects) == set(EFFECTS) else set(effects)
+    effects = [name for name in effects if EFFECTS[name].searched]
+    asked = set() if set(effects) == set(candidates()) else set(effects)
     for name in [
         name for name in effects if name in excluded and (name in asked or excluded[name] == IN_BASE)
     ]:
@@ -399,6 +415,7 @@ STEPS: dict[str, Callable[[Course], Diagnosis]] = {
     "intervals": _with_intervals,
     "held-out tests": _held_out,
     "accuracy": _rated,
+    "empirical force": _with_empirical_force,
     "scores": _scored,
     "next test": _with_next_test,
 }

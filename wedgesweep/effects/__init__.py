@@ -19,7 +19,7 @@ NAMES = (
     lift_off.NAME,
     *("jamming", "damper_play"),
     *("viscous_damping", "directional_damping", "quadratic_drag"),
-    *("cubic_stiffness", "backlash", "guide_friction", "end_stop"),
+    *("cubic_stiffness", "backlash", "guide_friction", "end_stop", "empirical_force"),
     *("input_distortion", "stray_vibration", "fixture_resonance"),
     *("velocity_lag", "displacement_gain", "input_gain", "force_gain", "channel_delay"),
 )
@@ -42,6 +42,11 @@ def register(module: ModuleType) -> None:
     kernels.register(module)
     REGISTERED[module.EFFECT.name] = module
     EFFECTS[module.EFFECT.name] = module.EFFECT
+
+
+def candidates() -> tuple[str, ...]:
+    """Names of the effects that a diagnosis looks for."""
+    return tuple(name for name, effect in EFFECTS.items() if effect.searched)
 
 
 def of_system(system: str) -> tuple[str, ...]:

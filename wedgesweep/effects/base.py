@@ -49,6 +49,11 @@ class Effect:
         """What the effect is, in words, on a system."""
         return self.meaning.format(**PARTS[system])
 
+    @property
+    def searched(self) -> bool:
+        """Whether a diagnosis looks for its numbers, so that it is a candidate."""
+        return any(each.search for each in self.quantities)
+
     @cached_property
     def off(self) -> Mapping[str, float]:
         """Numbers (SI units) at which the effect is absent."""

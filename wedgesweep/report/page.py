@@ -13,6 +13,7 @@ from wedgesweep.report import (
     limits,
     method,
     misfit,
+    missing_force,
     next_test,
     rivals,
     sampled,
@@ -27,6 +28,7 @@ CONTENTS = {
     "accuracy": "Accuracy",
     "model": "Extended model",
     "gain": "Gain",
+    "force": "Missing force",
     "limits": "What can be shown",
     "rivals": "Rivals",
     "next": "Next test",
@@ -46,6 +48,7 @@ def render(result: DiagnosisResult, n_jobs: int = 1) -> str:
             ladder.section(result, draw),
             extension.section(result),
             held_out.section(result, draw),
+            missing_force.section(result, draw),
             limits.section(result),
             rivals.section(result),
             next_test.section(result),
@@ -92,6 +95,8 @@ def _contents(result: DiagnosisResult) -> Markup:
     headings = {"misfit": misfit.heading(result), **CONTENTS}
     if not ladder.levels_of(result):
         del headings["accuracy"]
+    if not result.document.get("empirical_force"):
+        del headings["force"]
     links = (html.element("a", text, href=f"#{name}") for name, text in headings.items())
     return html.element("nav", html.items(links), aria_label="Contents")
 

@@ -34,7 +34,8 @@ def effect_parts(names: Iterable[str]) -> list[tuple]:
         if not hasattr(module, "adjust"):
             numbers = [quantity.name for quantity in known.EFFECTS[name].quantities]
             numbers += getattr(module, "DERIVED", ())
-            parts.append((name, [(each, np.float64) for each in numbers]))
+            more = getattr(module, "FIELDS", ())
+            parts.append((name, [*((each, np.float64) for each in numbers), *more]))
     return parts
 
 

@@ -17,6 +17,7 @@ from wedgesweep.diagnose.explanation import ADEQUATE, POSSIBLE, Explanation, par
 from wedgesweep.diagnose.ladder import Level, Rated
 from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.next_test.offer import SEPARATED, NextTest
+from wedgesweep.diagnose.result import missing_force
 from wedgesweep.diagnose.result.estimates import finite, parameters, uncertain
 from wedgesweep.diagnose.verdict import LARGER, p_where_it_shows
 from wedgesweep.diagnose.work import OutOfTime
@@ -49,6 +50,7 @@ def document(found: Diagnosis) -> dict[str, Any]:
         "excluded": excluded_effects(found.measurement),
         "next_test": _next_test(found.next_test),
         "ladder": [_level(each) for each in found.ladder],
+        "empirical_force": missing_force.document(found.empirical),
         "extended": list(best.effects),
         "never_steady": _never_steady(best.fit),
         "untried": [{"what": each.what, "left_out": each.left_out, "of": each.of} for each in found.untried],

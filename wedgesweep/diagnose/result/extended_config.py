@@ -8,18 +8,27 @@ from wedgesweep.config import Config
 from wedgesweep.config.keys import SMALLEST
 from wedgesweep.diagnose.diagnosis import Diagnosis
 from wedgesweep.diagnose.fit_data import INPUT_GAIN
+from wedgesweep.diagnose.model import Fit
 from wedgesweep.diagnose.result.estimates import uncertain_values
 
 
 def extended(found: Diagnosis) -> str:
     """The extended model as a config that runs the measured tests."""
-    best, data = found.extended, found.data
+    return _heading(found) + written(found, found.extended, found.extended.values)
+
+
+def written(
+    found: Diagnosis, fit: Fit, values: effects.Numbers, tables: Mapping[str, Any] | None = None
+) -> str:
+    """A config that runs the measured tests with a fit's effects, by their keys; ``tables``: as they are."""
+    data = found.data
     document = {**found.measurement.model.document, "title": f"{found.measurement.title}: extended model"}
-    nuisance = {name: each for name, each in uncertain_values(best).items() if name != INPUT_GAIN}
-    document["effects"] = _as_written(effects.merge(document["effects"], {**nuisance, **best.values}))
-    cases = [{"friction_law": data.law, **case} for case in data.cases(best)]
+    nuisance = {name: each for name, each in uncertain_values(fit).items() if name != INPUT_GAIN}
+    document["effects"] = _as_written(effects.merge(document["effects"], {**nuisance, **values}))
+    document["effects"] |= tables or {}
+    cases = [{"friction_law": data.law, **case} for case in data.cases(fit)]
     if not cases:
-        return _heading(found) + Config(document).to_toml()
+        return Config(document).to_toml()
     document["solver"] = _steady(document["solver"])
     document["sweep"] = {
         "omega_n_rad_per_s": data.model.sweep.omega_n,
@@ -27,7 +36,7 @@ def extended(found: Diagnosis) -> str:
         # Repeated tests are one case.
         "case": [case for place, case in enumerate(cases) if case not in cases[:place]],
     }
-    return _heading(found) + Config(document).to_toml()
+    return Config(document).to_toml()
 
 
 def _as_written(numbers: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:

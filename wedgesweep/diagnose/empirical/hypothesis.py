@@ -1,0 +1,63 @@
+"""A force at the nodes of a table as parameters of a fit, beside friction for its step at zero velocity."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from wedgesweep.config import Config
+from wedgesweep.diagnose.fit_parameters import FitParameter, Hypothesis, Values
+from wedgesweep.effects.empirical_force import FORCES, NAME, PLACES, SPEEDS, TABLE
+
+# Largest force of a node, in units of the largest force in the tests.
+LARGEST = 10.0
+# What changes the step of friction at zero velocity, the first one that a model may lack: where surfaces rub
+# already it is their level.
+STEPS = ("guide_friction", "friction_level")
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Displacement (m) about a centre and velocity (m/s) of the outermost nodes, and unit of forces (N)."""
+
+    displacement: float
+    velocity: float
+    force: float
+    centre: float = 0.0
+
+
+@dataclass(frozen=True)
+class EmpiricalHypothesis(Hypothesis):
+    """A step by friction where the model has any, then the forces at all nodes."""
+
+    ranges: Ranges = field(default_factory=lambda: Ranges(1.0, 1.0, 1.0))
+
+    @classmethod
+    def of(cls, model: Config, ranges: Ranges, **more: object) -> "EmpiricalHypothesis":
+        step = [name for name in STEPS if name in model.possible_effects][:1]
+        return cls((*step, NAME), wider=tuple(step), ranges=ranges, **more)  # type: ignore[arg-type]
+
+    @property
+    def step(self) -> str | None:
+        """The effect that makes the step."""
+        return self.effects[0] if len(self.effects) > 1 else None
+
+    @cached_property
+    def parameters(self) -> tuple[FitParameter, ...]:
+        others = Hypothesis(self.effects, self.fixed, self.units, self.wider).parameters
+        ends = (-LARGEST, LARGEST)
+        nodes = (FitParameter(f"{NAME}.{TABLE}.{i}", *ends, ends) for i in range(PLACES * SPEEDS))
+        return (*others, *nodes)
+
+    @property
+    def nodes(self) -> slice:
+        """Where the forces at the nodes stand among the parameters, in units of ``ranges.force``."""
+        size = len(self.parameters)
+        return slice(size - PLACES * SPEEDS, size)
+
+    def values(self, x: np.ndarray) -> Values:
+        found = super().values(x)
+        forces = tuple((self.ranges.force * x[self.nodes]).tolist())
+        own = self.ranges
+        table = {"displacement": own.displacement, "velocity": own.velocity, "centre": own.centre}
+        return {**found, NAME: {**table, FORCES: forces}}  # type: ignore[dict-item]

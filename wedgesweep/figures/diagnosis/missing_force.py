@@ -1,0 +1,63 @@
+"""The force that no named effect explains, as a person looks at forces."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from wedgesweep.diagnosis_result import DiagnosisResult
+from wedgesweep.figures import labels, style
+from wedgesweep.figures.panels import Panels, Target, panels
+
+NAME = "missing-force"
+DESCRIPTION = "empirical force that no name explains, over velocity, over displacement, and as a map"
+
+BAND = 1.96  # standard deviations
+
+
+def draw(target: Target, result: DiagnosisResult) -> Panels:
+    """Draw the empirical force of a diagnosis in which it predicts better than every named explanation.
+
+    To see: a step at zero velocity is friction, a slope over velocity a damper, one over displacement a
+    spring. The map is empty where no test has been; the bands are 95 % intervals.
+    """
+    data = result.data
+    if "missing_force" not in data:
+        message = "no empirical force was fitted that predicts better than what has a name"
+        raise ValueError(message)
+    words = labels.of(data)
+    made = panels(target, 3, size=(3.4, 2.9), share=False)
+    over_speed, over_place, both = made.axes
+    _curve(over_speed, data["force_speed"].values, *_pair(data, "speed"))
+    _curve(over_place, data["force_place"].values, *_pair(data, "place"))
+    over_speed.set_xlabel(f"${words.rate}$ [mm/s]")
+    over_place.set_xlabel(f"${words.motion}$ [mm]")
+    for ax in (over_speed, over_place):
+        ax.set_ylabel("missing force [N]")
+    force = data["missing_force"].values
+    largest = float(np.nanmax(np.abs(force)))
+    shown = both.pcolormesh(
+        data["force_place"].values * style.MM,
+        data["force_speed"].values * style.MM,
+        np.ma.masked_invalid(force).T,
+        cmap="RdBu_r",
+        vmin=-largest,
+        vmax=largest,
+        shading="nearest",
+    )
+    both.set_xlabel(f"${words.motion}$ [mm]")
+    both.set_ylabel(f"${words.rate}$ [mm/s]")
+    made.colorbar(shown, "missing force [N]", [both])
+    made.title(f"Force on the {words.body} that no name explains", "bands: 95 %; empty: not measured")
+    return made
+
+
+def _pair(data: object, over: str) -> tuple[np.ndarray, np.ndarray]:
+    name = f"missing_force_over_{over}"
+    return data[name].values, data[f"{name}_std"].values  # type: ignore[index]
+
+
+def _curve(ax: Axes, along: np.ndarray, force: np.ndarray, std: np.ndarray) -> None:
+    x = along * style.MM
+    ax.axhline(0.0, color=style.GREY, linewidth=0.8)
+    ax.fill_between(x, force - BAND * std, force + BAND * std, color=style.BLUE, alpha=0.25, linewidth=0)
+    ax.plot(x, force, color=style.BLUE, linewidth=1.6)
+    ax.locator_params(axis="x", nbins=5)
