@@ -1,75 +1,126 @@
-"""What each stage of a diagnosis is worth: ``PYTHONPATH=scripts python -m validation.ablation``.
+"""What each stage of a diagnosis is worth: ``PYTHONPATH=scripts python -m validation.ablation DIR ...``.
 
-Diagnoses data sets that a campaign has made, once whole and then without each stage that changed something
-there. Results stay in the output directory; the same command resumes it, and prints the table.
+Diagnoses data sets that a campaign has made (or that have a truth.json), once whole and then without each
+stage that changed something there, and prints a table. Results stay in the output directory: the same command
+resumes it. To save time, candidates are the hidden effects and some that are easily taken for them.
 """
 
 import argparse
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import wedgesweep
-from validation.run import DATA, DRAFT, write
+from validation import judge
+from validation.run import DATA, DRAFT, TRUTH, write
 from wedgesweep.ablation import without
+from wedgesweep.effects import EFFECTS
 
-# Steps of a diagnosis, whose stages are not counted twice.
+LOOK_ALIKES = (
+    *("friction_level", "preload", "viscous_damping", "bolster_stiffness", "guide_friction"),
+    "displacement_gain",
+)
+# Steps that change no verdict, and those whose work is compared; stages are parts of the latter.
+ASIDE = ("scores", "next test")
 STEPS = (
     *("single effects", "refinement of single effects", "pairs", "intervals", "held-out tests", "accuracy"),
 )
-# Steps that change no verdict; where a verdict is compared they are left out to save time.
-ASIDE = ("scores", "next test")
 WHOLE = "whole"
 # A stage may matter if it takes this much off the misfit of a fit: less is within the gap of a tie.
 MATTERS = 10.0
+# What is kept of a diagnosis: its truth and parts of its document.
 Outcome = dict[str, Any]
 
 
 def main(given: Sequence[str] | None = None) -> None:
-    """Diagnose sets without stages, or print the table of what was diagnosed."""
+    """Diagnose sets whole and without stages, and print the table."""
     parser = argparse.ArgumentParser(prog="python -m validation.ablation", description=__doc__)
-    parser.add_argument("sets", nargs="*", type=Path, help="directories of sets, each with measured.toml")
+    parser.add_argument("sets", nargs="*", type=Path, help="directories of sets")
     parser.add_argument("-o", "--output", type=Path, default=Path("out/ablation"))
-    parser.add_argument("--without", action="append", default=[], help="only this stage; repeatable")
-    parser.add_argument("--whole", action="store_true", help="only whole diagnoses")
+    parser.add_argument("--without", action="append", help="stage to leave out; default: all that matter")
+    parser.add_argument("--whole", action="store_true", help="leave nothing out")
     options = parser.parse_args(given)
+    rows: dict[str, list[tuple[Outcome, Outcome]]] = {}
     for one in options.sets:
         whole = outcome(one, options.output)
         print(f"{one.name}: {_told(whole)}", flush=True)
-        for stage in [] if options.whole else _to_leave_out(whole, options.without):
-            print(f"  without {stage}: {_told(outcome(one, options.output, stage))}", flush=True)
+        left_out = options.without or _that_matter(whole)
+        for stage in [] if options.whole else left_out:
+            less = outcome(one, options.output, stage)
+            print(f"  without {stage}: {_told(less)}", flush=True)
+            rows.setdefault(stage, []).append((whole, less))
+    print(table(rows), end="")
 
 
 def outcome(one: Path, out: Path, stage: str = "") -> Outcome:
-    """What is kept of the diagnosis of a set without a stage."""
+    """The diagnosis of a set without a stage: read if it is there, else made."""
     file = out / one.name / f"{stage or WHOLE}.json"
     if file.exists():
         return json.loads(file.read_text())
-    measured = one / DATA / "measured.toml"
-    measurement = wedgesweep.read_measurement(measured if measured.exists() else one / "measured.toml")
-    draft = json.loads((one / DRAFT).read_text()) if (one / DRAFT).exists() else {}
-    candidates = draft.get("candidates")
+    truth, candidates = _truth(one)
+    data = one / DATA if (one / DATA).exists() else one
     with without(*ASIDE, *([stage] if stage else [])):
+        measurement = wedgesweep.read_measurement(data / "measured.toml")
         found = wedgesweep.diagnose_measurement(measurement, effects=candidates, n_jobs=1).document
-    kept = {key: found[key] for key in ("verdict", "reason", "causes", "rivals", "stages", "ladder")}
+    kept = {key: found[key] for key in ("verdict", "reason", "causes", "rivals", "stages")}
     file.parent.mkdir(parents=True, exist_ok=True)
-    write(file, kept)
-    return kept
+    write(file, {"name": one.name, "truth": truth, **kept})
+    return json.loads(file.read_text())
 
 
-def _to_leave_out(whole: Outcome, only: Sequence[str]) -> Iterator[str]:
-    """Stages that may have changed the verdict."""
-    for each in whole["stages"]:
-        gained = each["most_gained"]
-        if each["stage"] in only or (not only and gained is not None and gained > MATTERS):
-            yield each["stage"]
+def _truth(one: Path) -> tuple[list[str], list[str]]:
+    """The hidden effects, and the candidates."""
+    if (one / DRAFT).exists():
+        draft = json.loads((one / DRAFT).read_text())
+        known = draft.get("candidates", list(EFFECTS))
+        truth = sorted(draft["hidden"])
+    else:
+        truths = json.loads((one.parent / TRUTH).read_text())
+        known, truth = list(EFFECTS), truths[one.name]["truth"]
+        if truths[one.name]["kind"] == "unknown":
+            known = [name for name in known if name not in truth]
+    return truth, [name for name in dict.fromkeys([*truth, *LOOK_ALIKES]) if name in known]
+
+
+def right(found: Outcome) -> bool:
+    """Whether the verdict names or ties the truth or, where nothing is hidden, finds nothing missing."""
+    return judge.exact_or_tied(found) if found["truth"] else judge.nothing_missing(found)
+
+
+def wrong(found: Outcome) -> bool:
+    """Whether the verdict names something else."""
+    return bool(judge.answer(found)) and not right(found)
+
+
+def table(rows: dict[str, list[tuple[Outcome, Outcome]]]) -> str:
+    """One line for each stage: sets on which it was left out, verdicts, and work."""
+    lines = [f"{'without':52} {'sets':>4} {'lost':>5} {'won':>4} {'work':>6}"]
+    for stage, pairs in rows.items():
+        lost = sum(_rank(whole) > _rank(less) for whole, less in pairs)
+        won = sum(_rank(whole) < _rank(less) for whole, less in pairs)
+        share = sum(_work(less) for _, less in pairs) / sum(_work(whole) for whole, _ in pairs)
+        lines.append(f"{stage:52} {len(pairs):4d} {lost:5d} {won:4d} {share:6.2f}")
+    return "\n".join(lines) + "\n"
+
+
+def _rank(found: Outcome) -> int:
+    """2 for a right verdict, 1 for an abstention, 0 for a wrong name."""
+    return 2 if right(found) else 0 if wrong(found) else 1
+
+
+def _that_matter(whole: Outcome) -> list[str]:
+    """Stages that improved some fit by what may decide a verdict."""
+    gained = {each["stage"]: each["most_gained"] for each in whole["stages"] if each["better"]}
+    return [
+        stage for stage, most in gained.items() if stage not in STEPS and (most is None or most > MATTERS)
+    ]
 
 
 def _told(found: Outcome) -> str:
-    causes = "+".join(each["effect"] for each in found["causes"])
     rivals = "; ".join("+".join(each["effects"]) for each in found["rivals"])
-    return f"{found['verdict']} {causes} (rivals {rivals}; work {_work(found):.0f})"
+    causes = "+".join(judge.causes(found))
+    return f"{found['verdict']} {causes} (rivals {rivals or 'none'}; work {_work(found):.0f})"
 
 
 def _work(found: Outcome) -> float:
