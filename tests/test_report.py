@@ -273,11 +273,11 @@ def test_the_reason_for_a_reservation_is_given(verdict, change, words, tmp_path)
 def test_sentence_says_what_the_budget_left_out(tmp_path):
     document, _ = fixture_diagnosis.write(tmp_path, "none-of-mine")
     complete = plain(report.sentence(tmp_path))
-    first = {"what": "best pairs with one effect exchanged", "left_out": 60, "of": 76}
-    then = {"what": "single effects from all starting points", "left_out": 20, "of": 20}
+    first = {"what": "pairs with one of the best single effects", "left_out": 60, "of": 76}
+    then = {"what": "pairs with an effect of the best pairs", "left_out": 20, "of": 20}
     for untried, words in (
-        ([first], "before it tried best pairs with one effect exchanged (60 of 76)."),
-        ([first, then], "tried 80 more fits, first of all best pairs with one effect exchanged (60 of 76)."),
+        ([first], f"before it tried {first['what']} (60 of 76)."),
+        ([first, then], f"tried 80 more fits, first of all {first['what']} (60 of 76)."),
     ):
         document["untried"] = untried
         (tmp_path / diagnosis_result.JSON).write_text(json.dumps(document), encoding="utf-8")

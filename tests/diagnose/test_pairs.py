@@ -3,7 +3,6 @@
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
 from tests.diagnose.synthetic import drawn, next_to_breakaway
 from wedgesweep.diagnose import pairs
@@ -25,35 +24,6 @@ def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatc
     assert best.fit.p > 1e-3
 
 
-def test_an_effect_keeps_its_numbers_beside_another_than_that_of_its_pair():
-    search, base = base_fit(Search.of(drawn(TRUTH), CANDIDATES))
-    search, singles, scans = single_fits(search, base.fit)
-    known = {
-        name: pairs.single_scan(base.fit, each.fit, scans[name])
-        for name, each in zip(CANDIDATES, singles, strict=True)
-    }
-    model = search.model("preload", "bolster_mass")
-    wrong = minimise(model, model.evaluate(model.start(base.fit, np.array([0.3, 1.0]))))
-    assert wrong.p < 1e-9
-    job = pairs.PairSearch(search, base.fit, known, [search.explanation(wrong)])
-    best = pairs.swapped_pairs(job)[0]
-    assert set(best.effects) == set(TRUTH)
-    assert best.fit.p > 1e-3
-
-
-def test_a_pair_that_stopped_in_a_local_minimum_is_fitted_again_from_the_whole_range():
-    """From any softer column the fit ends at 8 N/mm."""
-    truth = {"column_compliance": {"stiffness": 22461.0}, "displacement_gain": {"scale": 0.8827}}
-    search, base = base_fit(Search.of(drawn(truth, std=1e-3), tuple(truth)))
-    model = search.model(*truth)
-    wrong = minimise(model, model.evaluate(model.start(base.fit, np.array([np.log(9.0), 1.15]))))
-    assert wrong.p < 1e-9
-    job = pairs.PairSearch(search, base.fit, {}, [search.explanation(wrong)])
-    best = pairs.restarted_pairs(job)[0]
-    assert best.fit.p > 1e-3
-    assert best.fit.values["column_compliance"]["stiffness_N_per_mm"] == pytest.approx(22.461, rel=0.02)
-
-
 def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     """By every start of the damper that was tried a test sticks."""
     search, base = base_fit(Search.of(next_to_breakaway(), ("stribeck", "viscous_damping")))
@@ -62,7 +32,7 @@ def test_where_responses_do_not_add_the_second_effect_begins_with_nothing():
     stribeck = minimise(model, model.evaluate(model.start(base.fit, np.array([6e-3, -0.43]))), 3)
     first = pairs.single_scan(base.fit, stribeck, stribecks.scan)
     second = pairs.single_scan(base.fit, damper.explanation.fit, damper.scan)
-    (begun,) = pairs.starting_fits(search, pairs.Combination(first, second), False)
+    begun = pairs.starting_fit(search, pairs.Combination(first, second))
     assert begun.chi2 < pairs.BEHIND * first.subset.chi2
 
 
@@ -77,7 +47,7 @@ def fits(*misfits, p):
 def test_only_what_is_far_behind_a_pair_that_will_do_is_given_up():
     far = 2.0 * pairs.BEHIND * 100.0
     near = 0.9 * pairs.BEHIND * 100.0
-    several = fits(far, 100.0, *[near] * pairs.SEVERAL, far, p=0.5)
-    assert [fit.chi2 for fit in pairs.promising(several)] == [100.0, *[near] * pairs.SEVERAL]
-    assert len(pairs.promising(fits(100.0, *[far] * 9, p=0.5))) == pairs.SEVERAL
+    several = fits(far, 100.0, *[near] * pairs.LEADING, far, p=0.5)
+    assert [fit.chi2 for fit in pairs.promising(several)] == [100.0, *[near] * pairs.LEADING]
+    assert len(pairs.promising(fits(100.0, *[far] * 9, p=0.5))) == pairs.LEADING
     assert len(pairs.promising(fits(100.0, *[far] * 9, p=1e-6))) == 10

@@ -15,39 +15,9 @@ from wedgesweep.diagnose.search import (
     beside_stated,
     best_of,
     from_special_cases,
-    multistart,
     refit_base,
     single_fit,
 )
-
-CANDIDATES = ("displacement_gain", "velocity_lag")
-
-
-@pytest.mark.parametrize(
-    ("truth", "looked"),
-    [({"velocity_lag": {"time": 3e-4}}, False), ({"bolster_mass": {"scale": 1.05}}, True)],
-)
-def test_all_starts_are_followed_only_if_nothing_is_adequate(truth, looked, monkeypatch):
-    again = []
-
-    def recorded(search, scans):
-        again.extend(multistart(search, scans))
-        return again
-
-    monkeypatch.setattr(stages, "multistart", recorded)
-    found = stages.explain(Search.of(drawn(truth), CANDIDATES)).explanations
-    assert [each.effects for each in again] == [(name,) for name in CANDIDATES if looked]
-    single = {each.effects: each.fit.chi2 for each in found if len(each.effects) == 1}
-    for each in again:
-        assert single[each.effects] <= each.fit.chi2
-
-
-def test_the_right_way_is_found_though_its_start_looks_worst():
-    truth = 3e-4
-    search, base = base_fit(Search.of(drawn({"velocity_lag": {"time": truth}}), ("velocity_lag",)))
-    scan = single_fit(search, "velocity_lag", base.fit).scan
-    worst = {"velocity_lag": sorted(scan, key=lambda evaluation: evaluation.chi2)[-3:]}
-    assert multistart(search, worst)[0].fit.x[0] == pytest.approx(truth, rel=0.05)
 
 
 def test_a_rough_misfit_is_not_taken_for_that_of_a_fit():

@@ -4,13 +4,12 @@ A weak effect by itself may be one component of the right pair, so no effect is 
 every other effect is tried together with each of the best single fits. The second effect starts where it
 would fit best if responses added. The most promising pairs are then followed further, on more tests
 (successive halving). Where no pair is adequate, effects that only show in pairs are tried with every other
-as well, and the best pairs are fitted again from diverse starts.
+as well.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -19,17 +18,9 @@ from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.changes import NO_BEST, Best
 from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.least_squares import ITERATIONS, from_other_nuisances, minimise, subset_fit
+from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
-from wedgesweep.diagnose.search import (
-    MULTISTART_SCHEDULE,
-    OTHER_NUISANCES,
-    Scans,
-    Search,
-    best_of,
-    best_per_value,
-    refit_best,
-)
+from wedgesweep.diagnose.search import Scans, Search, refit_best
 from wedgesweep.effects import go_together
 
 # Best single fits with which every other effect is tried, and starting points of the other effect.
@@ -38,29 +29,18 @@ PARTNERS, STARTS = 8, 2
 # one as well if some pair is nearly adequate by then (chi-squared below NEARLY times the degrees of freedom).
 # The best COMPLETED pairs are then fitted to all tests.
 ROUNDS, ENTERING, NEARLY, COMPLETED = (1, 2, 5), 40, 2.0, 8
-# Once a pair is adequate, pairs with this many times its misfit are dropped, but the best SEVERAL never are.
+# Once a pair is adequate, pairs with this many times its misfit are dropped, but the LEADING ones never are.
 # A start of a pair is poor if its misfit is this many times that of the first effect by itself.
-BEHIND, SEVERAL = 5.0, 4
+BEHIND, LEADING = 5.0, 4
 # Tests on which pairs are fitted first.
 SUBSET = 6
-# Where no pair is adequate: diverse starts of the best pairs, and how many pairs are the best.
-DIVERSE_STARTS, LEADING = 4, 4
-# Best pairs that are fitted again from the whole range of their effects, where no pair is adequate.
-RESTARTED = 3
-# Best pairs whose effects are each combined with other effects, where no pair is adequate.
-SWAPPED = 2
-# Pairs whose chi-squared is this close to the best have their components fitted by themselves.
-NEAR_BEST = 50.0
 # Squared change of the whitened responses above which it is more than numerical noise.
 SEEN = 4.0
 # Range of the factor by which changes of the second effect may be scaled where its best start is looked for.
 SCALES = (0.1, 2.0)
-# What a spent budget leaves out, as reported.
+# Names of the stages, by which a spent budget tells what it left out.
 PAIRS = "pairs with one of the best single effects"
 FURTHER_PAIRS = "pairs with an effect of the best pairs"
-RESTARTS = "best pairs from the whole range of an effect"
-EXCHANGED = "best pairs with one effect exchanged"
-DIVERSE = "best pairs from diverse starting points"
 
 
 class SingleScan(NamedTuple):
@@ -142,65 +122,19 @@ def pairs_with_showing(job: PairSearch) -> list[Explanation]:
     return _fit_combinations(job, job.with_all_others(showing, job.leading), FURTHER_PAIRS)
 
 
-def diverse_pairs(job: PairSearch) -> list[Explanation]:
-    """The best pairs from several starts of the second effect, in either order."""
-    orders = [order for each in job.found[:COMPLETED] for order in permutations(each.effects)]
-    combinations = [Combination(job.singles[one], job.singles[other]) for one, other in orders]
-    return _fit_combinations(job, combinations, DIVERSE, diverse=True)
-
-
-def restarted_pairs(job: PairSearch) -> list[Explanation]:
-    """The best pairs fitted again from the whole range of either effect, the other one as it was fitted.
-
-    The first effect of a pair began where it fits best by itself: the pair may have a minimum there as well,
-    and a much deeper one elsewhere.
-    """
-    search = job.search
-    restarts = [(pair.fit, effect) for pair in job.found[:RESTARTED] for effect in pair.effects]
-    fits = search.each_affordable(
-        lambda one: _restarted(search, *one), restarts, RESTARTS, lambda one: one[0].effects
-    )
-    return refit_best(search, [search.explanation(fit) for fit in fits])
-
-
-def _restarted(search: Search, pair: Fit, effect: str) -> Fit:
-    """A pair, fitted from points over the range of one of its effects."""
-    rough, model = search.model(*pair.effects, tolerance=ROUGH), search.model(*pair.effects)
-    own = search.model(effect).hypothesis
-    points = [model.hypothesis.at({**pair.values, **own.in_key_units(x)}) for x in own.starts()]
-    evaluations = rough.evaluate_all([rough.start(pair, x) for x in points])
-    first = [each.effect for each in model.hypothesis.parameters].index(effect)
-    return best_of(model, best_per_value(evaluations, first), MULTISTART_SCHEDULE)
-
-
-def swapped_pairs(job: PairSearch) -> list[Explanation]:
-    """Pairs in which one effect is kept as in one of the best pairs, and the other is replaced."""
-    components = [(pair.fit, effect) for pair in job.found[:SWAPPED] for effect in pair.effects]
-    kept = job.search.each(lambda one: _as_in_pair(job.search, *one), components)
-    combinations = [
-        Combination(first, second)
-        for (pair, _), first in zip(components, kept, strict=True)
-        for effect, second in job.singles.items()
-        if effect not in pair.effects and first.fit.evaluation.found
-    ]
-    return _fit_combinations(job, combinations, EXCHANGED)
-
-
-def _fit_combinations(
-    job: PairSearch, combinations: Sequence[Combination], what: str, diverse: bool = False
-) -> list[Explanation]:
-    """Fits of combinations, the best first; ``diverse``: from several starts of each."""
+def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what: str) -> list[Explanation]:
+    """Fits of combinations, the best first."""
     search = job.search
     useful = [each for each in combinations if len(each.second.x) and go_together(each.effects)]
-    begun = search.each_affordable(lambda each: starting_fits(search, each, diverse), useful, what, _effects)
-    fits = [fit for some in begun for fit in some if np.isfinite(fit.chi2)]
+    begun = search.each_affordable(lambda each: starting_fit(search, each), useful, what, _effects)
     further = f"{what}, followed further"
-    fits = _continued(search, fits if diverse else _best_of_pairs(fits), ROUNDS[0], further)
+    fits = _best_of_pairs([fit for fit in begun if np.isfinite(fit.chi2)])
+    fits = _continued(search, fits, ROUNDS[0], further)
     if any(fit.chi2 < NEARLY * fit.dof for fit in fits):
         fits = _best_of_pairs(fits)[:ENTERING]
     fits = _continued(search, fits, ROUNDS[1], further)
-    fits = _continued(search, fits if diverse else promising(fits)[:ENTERING], ROUNDS[2], further)
-    completed = LEADING if diverse or search.budget.left <= 0.0 else COMPLETED
+    fits = _continued(search, promising(fits)[:ENTERING], ROUNDS[2], further)
+    completed = LEADING if search.budget.left <= 0.0 else COMPLETED
     found = search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
     return refit_best(search, found)
 
@@ -230,35 +164,7 @@ def promising(fits: Sequence[Fit]) -> list[Fit]:
     if not found or found[0].p < verdict.ADEQUATE:
         return found
     near = [fit for fit in found if fit.chi2 < BEHIND * found[0].chi2]
-    return found[: max(len(near), SEVERAL)]
-
-
-def component_fits(search: Search, pairs: Sequence[Explanation]) -> list[Explanation]:
-    """Fits of either component of the leading pairs by itself, from its parameters in the pair.
-
-    A pair whose other component does nothing reveals a minimum that the single fit had missed.
-    """
-    if not pairs:
-        return []
-    near = [each for each in pairs if each.fit.chi2 - pairs[0].fit.chi2 < NEAR_BEST]
-    components = [(pair.fit, effect) for pair in near for effect in pair.effects]
-    starts = search.each(lambda one: _component(search, *one), components)
-    ends = search.each(lambda fit: _followed(fit, ITERATIONS), starts)
-    fits = search.each(lambda fit: search.tried(OTHER_NUISANCES, fit, from_other_nuisances), ends)
-    return [search.explanation(fit) for fit in fits]
-
-
-def _component(search: Search, pair: Fit, effect: str) -> Fit:
-    """One effect of a pair by itself, with its parameters in the pair; not fitted yet."""
-    model = search.model(effect)
-    return unfitted(model, model.evaluate(model.start(pair, model.hypothesis.at(pair.values))))
-
-
-def _as_in_pair(search: Search, pair: Fit, effect: str) -> SingleScan:
-    """One effect of a pair with its parameters in the pair, to be the first of a combination."""
-    fit = _component(search, pair, effect)
-    nothing = np.zeros((0, fit.model.size))
-    return SingleScan(fit, _worst_tests(fit), nothing, nothing)
+    return found[: max(len(near), LEADING)]
 
 
 def _worst_tests(fit: Fit) -> Fit:
@@ -275,41 +181,32 @@ def single_scan(base: Fit, fit: Fit, scan: Sequence[Evaluation]) -> SingleScan:
     return SingleScan(fit, _worst_tests(fit), x[seen], changes[seen] if seen.any() else changes[:0])
 
 
-def _starts(first: Fit, second: SingleScan, diverse: bool) -> np.ndarray:
-    """Points (n, k) of the second effect that fit best beside the first if responses add, best first.
-
-    ``diverse``: only the best one at each value of its last parameter.
-    """
+def _starts(first: Fit, second: SingleScan) -> np.ndarray:
+    """Points (STARTS, k) of the second effect that fit best beside the first if responses add."""
     residual = first.evaluation.residual.ravel()
     size, along = (second.changes**2).sum(1), second.changes @ residual
     scale = np.clip(along / size, *SCALES)
-    points = second.x[np.argsort(scale**2 * size - 2.0 * scale * along)]
-    if diverse and points.shape[1] > 1:
-        _, at = np.unique(points[:, -1], return_index=True)
-        return points[np.sort(at)][:DIVERSE_STARTS]
-    return points[: DIVERSE_STARTS if diverse else STARTS]
+    return second.x[np.argsort(scale**2 * size - 2.0 * scale * along)][:STARTS]
 
 
-def starting_fits(search: Search, combination: Combination, diverse: bool) -> list[Fit]:
-    """Fits of a combination that have not begun, on a subset of the tests.
-
-    That from the best start, or if ``diverse`` from all starts.
-    """
+def starting_fit(search: Search, combination: Combination) -> Fit:
+    """The fit of a combination on a subset of the tests, before its first iteration."""
     fit, subset, second = combination.first.fit, combination.first.subset, combination.second
     model = search.model(*fit.effects, *second.fit.effects, tolerance=ROUGH)
     model = model.on(subset.model.data)
     first_x = fit.x[: fit.model.size]
 
-    def evaluated(points: np.ndarray) -> list[Evaluation]:
-        return model.evaluate_all([model.start(subset, np.r_[first_x, x]) for x in points])
+    def best(points: np.ndarray) -> Evaluation:
+        evaluations = model.evaluate_all([model.start(subset, np.r_[first_x, x]) for x in points])
+        return min(evaluations, key=lambda each: each.chi2)
 
-    evaluations = evaluated(_starts(fit, second, diverse))
-    if not diverse and min(each.chi2 for each in evaluations) > BEHIND * subset.chi2:
+    start = best(_starts(fit, second))
+    if start.chi2 > BEHIND * subset.chi2:
         # Responses do not add where a test sticks that had slid; a weak effect leaves them as they are.
         weakest = second.x[np.argmin((second.changes**2).sum(1))]
-        evaluations += evaluated(second.fit.model.hypothesis.near_neutral(weakest)[None])
-    chosen = evaluations if diverse else [min(evaluations, key=lambda each: each.chi2)]
-    return [unfitted(model, each) for each in chosen]
+        neutral = best(second.fit.model.hypothesis.near_neutral(weakest)[None])
+        start = min(start, neutral, key=lambda each: each.chi2)
+    return unfitted(model, start)
 
 
 def _complete(job: PairSearch, subset: Fit) -> Explanation:
@@ -327,11 +224,8 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     return found
 
 
-# Stages of the search for pairs; those after the first one are taken where no pair is adequate.
+# Stages of the search for pairs; the second one is taken where no pair is adequate.
 STAGES: dict[str, Callable[[PairSearch], list[Explanation]]] = {
     PAIRS: pairs_with_leading,
     FURTHER_PAIRS: pairs_with_showing,
-    RESTARTS: restarted_pairs,
-    EXCHANGED: swapped_pairs,
-    DIVERSE: diverse_pairs,
 }

@@ -37,15 +37,10 @@ class Round(NamedTuple):
 
 # Rounds from the starting points of an effect; the best fit of the last round is continued to its minimum.
 SCHEDULE = (Round(4, 3), Round(2, 4))
-# The same where some starting points are already fits, made beside a base model as stated (STATED_SCHEDULE),
-# or have made a step (_with_own_numbers).
-NEARER_SCHEDULE = (Round(3, 3), Round(1, 5))
 # The same where the base model is not impossible: a cause can only be weak then, and any start will do.
 SHORT_SCHEDULE = (Round(1, 3),)
 # Rounds from the starting points of the base model.
 BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
-# Rounds from all starting points, where nothing is adequate.
-MULTISTART_SCHEDULE = (Round(None, 3), Round(4, 5), Round(2, 8))
 # An effect is dropped after the first round if its misfit is this many times the base model's.
 CUT_OFF = 100.0
 # A fit is far off if it leaves so many times the squared noise in half of the tests.
@@ -54,8 +49,6 @@ FAR = 100.0
 REFITTED = 8
 # Iterations of a base fit whose nuisance parameters are held as stated.
 HELD_ITERATIONS = 8
-# Rounds of fits of an effect beside a base model in which everything is as stated.
-STATED_SCHEDULE = (Round(4, 3), Round(2, 5))
 # A test fits markedly better if its chi-squared is this much less.
 MARKED = 9.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
@@ -350,9 +343,8 @@ def single_fit(search: Search, effect: str, base: Fit) -> SingleFit:
         evaluations = evaluations + fresh
         if search.uses("fits beside stated numbers", implausible):
             evaluations = evaluations + beside_stated(model, fresh)
-    nearer = search.uses("fewer fits go on", implausible or own_numbers)
     short = search.uses("short rounds", base.p >= POSSIBLE)
-    schedule = SHORT_SCHEDULE if short else NEARER_SCHEDULE if nearer else SCHEDULE
+    schedule = SHORT_SCHEDULE if short else SCHEDULE
     rows = data.representative(base.evaluation)
     if not search.uses("worst windows first", rows.size < data.tests):
         rows = np.arange(data.tests)
@@ -463,22 +455,6 @@ def refit_best(search: Search, found: Sequence[Explanation]) -> list[Explanation
     return best_of_each([*search.each(refitted, best), *found], penalised)
 
 
-def multistart(search: Search, scans: Scans) -> list[Explanation]:
-    """Fit every effect from every value of its first parameter that was scanned.
-
-    Near breakaway a single test can make the right start look worse than all others.
-    """
-
-    def fitted(effect: str) -> Explanation:
-        evaluations = best_per_value(scans[effect])
-        return search.explanation(best_of(search.model(effect), evaluations, MULTISTART_SCHEDULE))
-
-    order = sorted(search.effects, key=lambda effect: min(map(_chi2, scans[effect])))
-    what = "single effects from all starting points"
-    found = search.each_affordable(fitted, order, what, lambda effect: (effect,))
-    return sorted(found, key=lambda each: search.effects.index(each.effects[0]))
-
-
 def best_of(
     model: Model,
     evaluations: Sequence[Evaluation],
@@ -554,9 +530,9 @@ def beside_stated(model: Model, evaluations: Sequence[Evaluation]) -> list[Evalu
     Evaluated by the model, in which all of these are free.
     """
     strict = replace(model, data=model.data.held_as_stated(), as_stated=True)
-    leading = [each.point for each in _leading(evaluations, STATED_SCHEDULE[0].entering)]
+    leading = [each.point for each in _leading(evaluations, SCHEDULE[0].entering)]
     found = strict.evaluate_all([replace(point, x=point.x[: model.size]) for point in leading])
-    for entering, iterations in STATED_SCHEDULE:
+    for entering, iterations in SCHEDULE:
         found = [minimise(strict, each, iterations).evaluation for each in _leading(found, entering)]
     x = [np.r_[each.point.x, model.uncertain.mean] for each in found]
     return model.evaluate_all([replace(each.point, x=own) for each, own in zip(found, x, strict=True)])

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.pairs import component_fits, fit_pairs
+from wedgesweep.diagnose.pairs import fit_pairs
 from wedgesweep.diagnose.renewal import with_renewed_covariance
 from wedgesweep.diagnose.search import (
     PAIRS_SHARE,
@@ -19,7 +19,6 @@ from wedgesweep.diagnose.search import (
     followed,
     from_shared_nuisances,
     from_special_cases,
-    multistart,
     refit_base,
     refit_best,
     single_fits,
@@ -91,15 +90,6 @@ def _pairs(known: Explained) -> list[Explanation]:
     return [*found, *fit_pairs(search, base.fit, found, scans)]
 
 
-def _components(known: Explained) -> list[Explanation]:
-    pairs = [each for each in known.explanations if len(each.effects) > 1]
-    return [*known.explanations, *component_fits(known.search, pairs)]
-
-
-def _all_starts(known: Explained) -> list[Explanation]:
-    return [*known.explanations, *multistart(known.search, known.scans)]
-
-
 def _found(
     function: Callable[[Search, Sequence[Explanation]], list[Explanation]],
 ) -> Callable[[Explained], Explained]:
@@ -136,9 +126,6 @@ PAIRS = (
     Stage("best refitted", _found(refit_best), lambda known: verdict.none_adequate([known.base])),
     Stage("beyond range", _beyond_range, _inadequate),
     Stage("best pairs", _explanations(_pairs), _for_pairs),
-    Stage("components", _explanations(_components), _for_pairs),
-    Stage("pairs beyond range", _beyond_range, _for_pairs),
-    Stage("all starts", _explanations(_all_starts), _for_pairs),
     Stage("best refitted again", _found(refit_best), _shared_and_inadequate),
     Stage("starts shared again", _found(from_shared_nuisances)),
     Stage("base model at last", _base_model_at_last),
