@@ -15,7 +15,7 @@ CANDIDATES = (*TRUTH, "bolster_mass")
 
 
 def test_an_effect_that_shows_only_beside_another_is_tried_beside_all(monkeypatch):
-    monkeypatch.setattr(pairs, "PARTNERS", 1)
+    monkeypatch.setattr(pairs, "LEADING", 1)
     search, base = base_fit(Search.of(drawn(TRUTH), CANDIDATES))
     search, singles, scans = single_fits(search, base.fit)
     assert min(singles, key=lambda each: each.fit.chi2).effects == ("bolster_mass",)
@@ -47,7 +47,7 @@ def fits(*misfits, p):
 def test_only_what_is_far_behind_a_pair_that_will_do_is_given_up():
     far = 2.0 * pairs.BEHIND * 100.0
     near = 0.9 * pairs.BEHIND * 100.0
-    several = fits(far, 100.0, *[near] * pairs.LEADING, far, p=0.5)
-    assert [fit.chi2 for fit in pairs.promising(several)] == [100.0, *[near] * pairs.LEADING]
-    assert len(pairs.promising(fits(100.0, *[far] * 9, p=0.5))) == pairs.LEADING
+    several = fits(far, 100.0, *[near] * pairs.SEVERAL, far, p=0.5)
+    assert [fit.chi2 for fit in pairs.promising(several)] == [100.0, *[near] * pairs.SEVERAL]
+    assert len(pairs.promising(fits(100.0, *[far] * 9, p=0.5))) == pairs.SEVERAL
     assert len(pairs.promising(fits(100.0, *[far] * 9, p=1e-6))) == 10

@@ -12,12 +12,8 @@ from wedgesweep.diagnose.changes import SLIGHT
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise
 from wedgesweep.diagnose.model import Fit
-from wedgesweep.diagnose.search import Search
+from wedgesweep.diagnose.search import LEADING, NOTABLE, Search
 
-# Number of best explanations that are followed beyond the range.
-FOLLOWED = 6
-# An explanation is followed only if it leaves less than this share of the base model's chi-squared.
-EXPLAINS = 0.9
 # A number is at an end of its range if it is closer to it than this share of the range's width.
 AT_END = 1e-3
 
@@ -32,8 +28,8 @@ def followed_beyond(
     """
     leading = [
         each
-        for each in sorted(found, key=penalised)[:FOLLOWED]
-        if each.fit.chi2 < EXPLAINS * base.fit.chi2 and effects_at_range_end(each.fit)
+        for each in sorted(found, key=penalised)[:LEADING]
+        if each.fit.chi2 < NOTABLE * base.fit.chi2 and effects_at_range_end(each.fit)
     ]
     better = [
         search.explanation(fit)

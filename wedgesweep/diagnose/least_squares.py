@@ -10,7 +10,8 @@ from wedgesweep.diagnose.jacobian import conservative_jacobian, jacobian
 from wedgesweep.diagnose.model import TIGHT, Fit, Model
 from wedgesweep.diagnose.normal_equations import NormalEquations, normal_equations
 
-ITERATIONS = 25
+# Iterations of a fit, and of one that begins near its minimum.
+ITERATIONS, BRIEF = 25, 8
 # A fit has converged when the next step is predicted to reduce chi-squared by less than this, or by less than
 # this share of its excess: far from the data the last digit is of no use.
 CONVERGED, CONVERGED_SHARE = 0.02, 1e-3

@@ -20,18 +20,18 @@ from wedgesweep.diagnose.evaluation import Evaluation
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.least_squares import minimise, subset_fit
 from wedgesweep.diagnose.model import ROUGH, Fit, unfitted
-from wedgesweep.diagnose.search import Scans, Search, refit_best
+from wedgesweep.diagnose.search import LEADING, Scans, Search, refit_best
 from wedgesweep.effects import go_together
 
-# Best single fits with which every other effect is tried, and starting points of the other effect.
-PARTNERS, STARTS = 8, 2
+# Starting points of the second effect.
+STARTS = 2
 # Iterations of each round on the subset of tests. At most ENTERING pairs enter the last round, and the second
 # one as well if some pair is nearly adequate by then (chi-squared below NEARLY times the degrees of freedom).
-# The best COMPLETED pairs are then fitted to all tests.
-ROUNDS, ENTERING, NEARLY, COMPLETED = (1, 2, 5), 40, 2.0, 8
-# Once a pair is adequate, pairs with this many times its misfit are dropped, but the LEADING ones never are.
+# The LEADING pairs are then fitted to all tests.
+ROUNDS, ENTERING, NEARLY = (1, 2, 5), 40, 2.0
+# Once a pair is adequate, pairs with this many times its misfit are dropped, but never SEVERAL of the best.
 # A start of a pair is poor if its misfit is this many times that of the first effect by itself.
-BEHIND, LEADING = 5.0, 4
+BEHIND, SEVERAL = 5.0, 4
 # Tests on which pairs are fitted first.
 SUBSET = 6
 # Squared change of the whitened responses above which it is more than numerical noise.
@@ -84,7 +84,7 @@ class PairSearch(NamedTuple):
     @property
     def leading(self) -> list[str]:
         """The effects that fit best by themselves."""
-        return sorted(self.singles, key=lambda effect: self.singles[effect].fit.chi2)[:PARTNERS]
+        return sorted(self.singles, key=lambda effect: self.singles[effect].fit.chi2)[:LEADING]
 
     def with_more(self, pairs: Callable[["PairSearch"], list[Explanation]]) -> "PairSearch":
         """The search after one more stage."""
@@ -118,7 +118,7 @@ def pairs_with_leading(job: PairSearch) -> list[Explanation]:
 
 def pairs_with_showing(job: PairSearch) -> list[Explanation]:
     """Effects that do not stand out by themselves may do so in a pair."""
-    showing = dict.fromkeys(effect for each in job.found[:LEADING] for effect in each.effects)
+    showing = dict.fromkeys(effect for each in job.found[:SEVERAL] for effect in each.effects)
     return _fit_combinations(job, job.with_all_others(showing, job.leading), FURTHER_PAIRS)
 
 
@@ -134,7 +134,7 @@ def _fit_combinations(job: PairSearch, combinations: Sequence[Combination], what
         fits = _best_of_pairs(fits)[:ENTERING]
     fits = _continued(search, fits, ROUNDS[1], further)
     fits = _continued(search, promising(fits)[:ENTERING], ROUNDS[2], further)
-    completed = LEADING if search.budget.left <= 0.0 else COMPLETED
+    completed = SEVERAL if search.budget.left <= 0.0 else LEADING
     found = search.each(lambda fit: _complete(job, fit), promising(fits)[:completed])
     return refit_best(search, found)
 
@@ -164,7 +164,7 @@ def promising(fits: Sequence[Fit]) -> list[Fit]:
     if not found or found[0].p < verdict.ADEQUATE:
         return found
     near = [fit for fit in found if fit.chi2 < BEHIND * found[0].chi2]
-    return found[: max(len(near), LEADING)]
+    return found[: max(len(near), SEVERAL)]
 
 
 def _worst_tests(fit: Fit) -> Fit:

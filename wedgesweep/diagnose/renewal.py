@@ -7,11 +7,8 @@ pass on much more, or much less, of it than the right model does.
 from dataclasses import replace
 
 from wedgesweep.diagnose.explanation import Explanation, penalised
-from wedgesweep.diagnose.least_squares import minimise
+from wedgesweep.diagnose.least_squares import BRIEF, minimise
 from wedgesweep.diagnose.search import Explained, Search, contenders
-
-# Iterations of the fits of those that are fitted again.
-ITERATIONS = 8
 
 
 def with_renewed_covariance(explained: Explained) -> Explained:
@@ -42,4 +39,4 @@ def _compared_again(search: Search, each: Explanation) -> Explanation:
 
 
 def _refitted(search: Search, each: Explanation) -> Explanation:
-    return search.explanation(minimise(each.fit.model, each.fit.evaluation, ITERATIONS))
+    return search.explanation(minimise(each.fit.model, each.fit.evaluation, BRIEF))

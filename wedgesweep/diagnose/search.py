@@ -21,7 +21,7 @@ from wedgesweep.diagnose.evaluation import Evaluation, Point
 from wedgesweep.diagnose.explanation import POSSIBLE, Explanation, best_of_each, parameter_penalty, penalised
 from wedgesweep.diagnose.fit_data import FitData
 from wedgesweep.diagnose.fit_parameters import Hypothesis
-from wedgesweep.diagnose.least_squares import from_other_nuisances, minimise
+from wedgesweep.diagnose.least_squares import BRIEF, from_other_nuisances, minimise
 from wedgesweep.diagnose.model import ROUGH, TOLERANCE, Fit, Model, unfitted
 from wedgesweep.diagnose.progress import Step
 from wedgesweep.diagnose.trimmed_refit import refit_without_influential_tests
@@ -45,10 +45,10 @@ BASE_SCHEDULE = (Round(None, 4), Round(3, 6))
 CUT_OFF = 100.0
 # A fit is far off if it leaves so many times the squared noise in half of the tests.
 FAR = 100.0
-# So many of the best explanations are refitted.
-REFITTED = 8
-# Iterations of a base fit whose nuisance parameters are held as stated.
-HELD_ITERATIONS = 8
+# So many of the best single effects, of pairs and of all explanations are looked at again.
+LEADING = 8
+# A fit explains something, or is far better, if it leaves less than this share of another one's chi-squared.
+NOTABLE = 0.9
 # A test fits markedly better if its chi-squared is this much less.
 MARKED = 9.0
 # Work (see work.py) that a search may spend for each test, of which it counts at least so many, and the share
@@ -376,7 +376,7 @@ def contenders(search: Search, found: Sequence[Explanation]) -> list[Explanation
 
     All of the best ones if they are far off together.
     """
-    best = sorted(found, key=penalised)[:REFITTED]
+    best = sorted(found, key=penalised)[:LEADING]
     if not (best and search.data.shares_nuisances) or far_off(best[0].fit):
         return best
     return [each for each in best if not far_off(each.fit)]
@@ -520,7 +520,7 @@ def _chi2(each: Fit | Evaluation) -> float:
 def _nuisances_held(model: Model, evaluation: Evaluation) -> Evaluation:
     """End of a fit from an evaluation while nuisance parameters stay as stated, evaluated by the model."""
     strict = model.on(model.data.held_as_stated())
-    found = minimise(strict, strict.evaluate(evaluation.point), HELD_ITERATIONS)
+    found = minimise(strict, strict.evaluate(evaluation.point), BRIEF)
     return model.evaluate(found.point)
 
 

@@ -12,6 +12,7 @@ from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
 from wedgesweep.diagnose.pairs import fit_pairs
 from wedgesweep.diagnose.renewal import with_renewed_covariance
 from wedgesweep.diagnose.search import (
+    NOTABLE,
     PAIRS_SHARE,
     Explained,
     Search,
@@ -23,9 +24,6 @@ from wedgesweep.diagnose.search import (
     refit_best,
     single_fits,
 )
-
-# Single effects are fitted again if a refit of the base model leaves less than this share of its chi-squared.
-REFIT_BELOW = 0.9
 
 
 class Stage(NamedTuple):
@@ -68,7 +66,7 @@ def _base_model_again(known: Explained) -> Explained:
     search, better = refit_base(search, base, found)
     # An adequate explanation hands its nuisance parameters on to the others, which need no better base then.
     handed_on = search.data.shares_nuisances and not verdict.none_adequate(found)
-    if better.fit.chi2 < REFIT_BELOW * base.fit.chi2 and not handed_on:
+    if better.fit.chi2 < NOTABLE * base.fit.chi2 and not handed_on:
         search, again, scans = single_fits(search, better.fit)
         found = best_of_each([*found, *again], penalised)
     return Explained(search, better, found, scans)
