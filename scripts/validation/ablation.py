@@ -41,16 +41,19 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("--without", action="append", help="stage to leave out; default: all that matter")
     parser.add_argument("--whole", action="store_true", help="leave nothing out")
     options = parser.parse_args(given)
+    wholes: list[Outcome] = []
     rows: dict[str, list[tuple[Outcome, Outcome]]] = {}
     for one in options.sets:
         whole = outcome(one, options.output)
         print(f"{one.name}: {_told(whole)}", flush=True)
-        left_out = options.without or _that_matter(whole)
+        wholes.append(whole)
+        that_matter = [each["stage"] for each in whole["stages"] if _matters(each)]
+        left_out = options.without or [stage for stage in that_matter if stage not in STEPS]
         for stage in [] if options.whole else left_out:
             less = outcome(one, options.output, stage)
             print(f"  without {stage}: {_told(less)}", flush=True)
             rows.setdefault(stage, []).append((whole, less))
-    print(table(rows), end="")
+    print(table(wholes, rows), end="")
 
 
 def outcome(one: Path, out: Path, stage: str = "") -> Outcome:
@@ -93,15 +96,32 @@ def wrong(found: Outcome) -> bool:
     return bool(judge.answer(found)) and not right(found)
 
 
-def table(rows: dict[str, list[tuple[Outcome, Outcome]]]) -> str:
-    """One line for each stage: sets on which it was left out, verdicts, and work."""
-    lines = [f"{'without':52} {'sets':>4} {'lost':>5} {'won':>4} {'work':>6}"]
-    for stage, pairs in rows.items():
-        lost = sum(_rank(whole) > _rank(less) for whole, less in pairs)
-        won = sum(_rank(whole) < _rank(less) for whole, less in pairs)
-        share = sum(_work(less) for _, less in pairs) / sum(_work(whole) for whole, _ in pairs)
-        lines.append(f"{stage:52} {len(pairs):4d} {lost:5d} {won:4d} {share:6.2f}")
+def table(wholes: Sequence[Outcome], left_out: dict[str, list[tuple[Outcome, Outcome]]]) -> str:
+    """One line for each stage: what it did in whole diagnoses, and what diagnoses without it lost and won.
+
+    Sets in which it was taken, and in which it took more than MATTERS off the misfit of a fit; its share of
+    their work. Sets diagnosed without it, those whose verdict was worse and better, and the share of work.
+    """
+    rows: dict[str, list[tuple[Outcome, dict[str, Any]]]] = {}
+    for whole in wholes:
+        for each in whole["stages"]:
+            rows.setdefault(each["stage"], []).append((whole, each))
+    heads = ("taken", "better", "work", "without", "worse", "better", "work")
+    lines = [f"{'stage':46}" + "".join(f"{head:>8}" for head in heads)]
+    for stage, own in rows.items():
+        better = sum(_matters(each) for _, each in own)
+        share = sum(each["work"] for _, each in own) / sum(_work(whole) for whole, _ in own)
+        lines.append(f"{stage:46}{len(own):8d}{better:8d}{share:8.2f}" + _without(left_out.get(stage, [])))
     return "\n".join(lines) + "\n"
+
+
+def _without(pairs: Sequence[tuple[Outcome, Outcome]]) -> str:
+    if not pairs:
+        return ""
+    worse = sum(_rank(whole) > _rank(less) for whole, less in pairs)
+    better = sum(_rank(whole) < _rank(less) for whole, less in pairs)
+    share = sum(_work(less) for _, less in pairs) / sum(_work(whole) for whole, _ in pairs)
+    return f"{len(pairs):8d}{worse:8d}{better:8d}{share:8.2f}"
 
 
 def _rank(found: Outcome) -> int:
@@ -109,12 +129,10 @@ def _rank(found: Outcome) -> int:
     return 2 if right(found) else 0 if wrong(found) else 1
 
 
-def _that_matter(whole: Outcome) -> list[str]:
-    """Stages that improved some fit by what may decide a verdict."""
-    gained = {each["stage"]: each["most_gained"] for each in whole["stages"] if each["better"]}
-    return [
-        stage for stage, most in gained.items() if stage not in STEPS and (most is None or most > MATTERS)
-    ]
+def _matters(stage: dict[str, Any]) -> bool:
+    """Whether a stage improved some fit by what may decide a verdict."""
+    most = stage["most_gained"]
+    return stage["better"] > 0 and (most is None or most > MATTERS)
 
 
 def _told(found: Outcome) -> str:
