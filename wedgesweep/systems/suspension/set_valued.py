@@ -63,6 +63,8 @@ def _verge(y, direction, segment, p):
 @term("jamming", off="0.0")
 def _locked_in(y, direction, segment, p):
     """Base acceleration (m/s^2) by which locked-in forces delay a breakaway."""
+    if p.jamming.locked_in == 0.0:
+        return 0.0
     load, column_mu, bolster_mu = _verge(y, direction, segment, p)
     least = _balance(load, column_mu, bolster_mu, p)[0]
     most = least
@@ -76,6 +78,8 @@ def _locked_in(y, direction, segment, p):
 @term("jamming", off="0.0")
 def _held_back(y, direction, segment, p):
     """Acceleration z'' (m/s^2) that locked-in forces take from a breakaway."""
+    if p.jamming.locked_in == 0.0:  # on a compliant table no base acceleration holds the bolster by itself
+        return 0.0
     load, column_mu, bolster_mu = _verge(y, direction, segment, p)
     return -_balance(load, column_mu, bolster_mu, p)[1] * _locked_in(y, direction, segment, p)
 
