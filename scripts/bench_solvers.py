@@ -163,6 +163,24 @@ def bench(law):
     ]
 
 
+def cost_of_effects(law):
+    """Print what effects cost: time of the event-driven loop over that without, at both accuracies."""
+    rates = {}
+    for name, effects in ({"none": {}} | workload.EFFECTS).items():
+        records = np.concatenate(workload.records(law, effects=effects))
+        exact = contenders.loop_alone(records, 1e-10)
+        loop = contenders.contenders(law)[contenders.LOOP]
+        found = down_to_accuracy(loop, records, exact)
+        rates[name] = [next((one.rate for one in found if one.error <= each), np.nan) for each in ACCURACIES]
+    print(f"\n{law}, cases/s of the loop alone with an effect, and its cost")
+    for name, reached in rates.items():
+        costs = [number(base / rate) for base, rate in zip(rates["none"], reached, strict=True)]
+        print(
+            f"{name:20}"
+            + "".join(f"{number(rate):>10} {cost:>6}" for rate, cost in zip(reached, costs, strict=True))
+        )
+
+
 def main():
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
@@ -170,6 +188,8 @@ def main():
     absent = libraries.installed()[1]
     print(f"\nabsent: {', '.join(absent) or 'none'}")
     goals = [line for law in ("coulomb", "static-dynamic", "exponential") for line in bench(law)]
+    for law in ("coulomb", "static-dynamic", "exponential"):
+        cost_of_effects(law)
     print("\nGoals (loop alone):")
     print("\n".join(goals))
 

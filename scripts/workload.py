@@ -1,6 +1,7 @@
 """What the benchmarks run: the cases, the sampled window and the amplitude ratio from its samples."""
 
 from itertools import product
+from types import MappingProxyType
 
 import numpy as np
 
@@ -15,10 +16,19 @@ SMOOTHING = 0.02e-3  # m/s, of Coulomb for solvers that need a continuous law: t
 BETAS, AMPLITUDES = np.linspace(0.3, 3.0, 11), (0.03e-3, 0.05e-3, 0.1e-3, 0.2e-3)
 
 
-def records(law, cases=None):
+# Effects (SI) whose cost is measured.
+EFFECTS = {
+    "viscous damper": {"viscous_damping": {"coefficient": 2.0}},
+    "Stribeck friction": {"stribeck": {"peak": 0.05, "velocity": 5e-3}},
+    "guide friction": {"guide_friction": {"force": 1.0}},
+    "compliant column": {"column_compliance": {"stiffness": 2e5}},
+}
+
+
+def records(law, cases=None, effects=MappingProxyType({})):
     """Parameter records of (beta, amplitude in m) pairs, each of shape (1,)."""
     cases = product(BETAS, AMPLITUDES) if cases is None else cases
-    return [parameters.record(law, amplitude, beta * OMEGA_N) for beta, amplitude in cases]
+    return [parameters.record(law, amplitude, beta * OMEGA_N, effects=effects) for beta, amplitude in cases]
 
 
 def numbers(record):
