@@ -379,7 +379,9 @@ def test_what_was_best_only_for_its_error_gives_way(monkeypatch):
     monkeypatch.setattr(diagnosis, "tight_refit", lambda fit: worse if fit is first.fit else fit)
     monkeypatch.setattr(diagnosis, "from_other_nuisances", lambda fit: fit)
     monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
-    search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
+    search = SimpleNamespace(
+        progress=lambda step: None, explanation=priced, each=map, tried=lambda stage, fit, refit: refit(fit)
+    )
     tied = verdict_of(base, first, second)
     assert tied.verdict == "tied"
     found, order = diagnosis.refit_cause(search, base, tied, [first, second], verdict.DEFAULT)
@@ -395,7 +397,9 @@ def test_a_rival_whose_fit_had_not_ended_is_followed_before_the_gap_to_it_counts
     for name in ("tight_refit", "from_other_nuisances"):
         monkeypatch.setattr(diagnosis, name, lambda fit: fit)
     monkeypatch.setattr(diagnosis, "profile_likelihood", lambda fit, each: fit)
-    search = SimpleNamespace(progress=lambda step: None, explanation=priced, each=map)
+    search = SimpleNamespace(
+        progress=lambda step: None, explanation=priced, each=map, tried=lambda stage, fit, refit: refit(fit)
+    )
     early = verdict_of(base, first, second)
     assert early.verdict != "tied"
     found, _ = diagnosis.refit_cause(search, base, early, [first, second], verdict.DEFAULT)
@@ -442,12 +446,12 @@ def rated(accuracy, *effects, held_out=None):
         ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
         ((np.inf, None), (0.004, 0.016), 0.26, 0.008, 0.003, "consistent-with"),
         ((0.62, 0.65), (0.056, 0.06), 0.18, 0.06, 0.03, "consistent-with"),
-        ((0.47, 0.70), (0.004, 0.016), 0.011, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.016), 0.009, 0.008, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, 0.016), 0.26, 0.003, 0.003, "none-of-mine"),
-        ((0.47, 0.70), (0.004, 0.3), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((0.47, 0.70), (0.004, 0.4), 0.26, 0.008, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, None), 0.26, 0.008, 0.003, "none-of-mine"),
         ((0.47, 0.70), (0.004, 0.016), 0.26, 0.008, 0.001, "none-of-mine"),
-        ((0.011, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "none-of-mine"),
+        ((0.009, 0.70), (0.004, 0.016), 0.26, 0.008, 0.003, "none-of-mine"),
         ((2.0, 2.0), (0.3, 0.3), 1.0, 0.8, 0.003, "none-of-mine"),
         ((0.011, 0.02), (0.0, 0.0), 0.0, 0.0, 0.0, "none-of-mine"),
     ],
