@@ -174,6 +174,8 @@ def objects(schema: object) -> list[dict]:
 def test_schema_describes_every_key_and_closes_every_table():
     tables = objects(config.schema())
     assert all(each["additionalProperties"] is False for each in tables)
-    assert all(key["description"] for each in tables for key in each["properties"].values())
+    parts = config.schema()["$defs"]
+    keys = [key for each in tables for key in each["properties"].values()]
+    assert all((parts[key["$ref"].split("/")[-1]] if "$ref" in key else key)["description"] for key in keys)
     described = {name for each in tables for name in each["properties"]}
     assert {quantity.key for quantity in (*SUSPENSION, *FRICTION)} <= described

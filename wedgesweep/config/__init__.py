@@ -13,6 +13,7 @@ from wedgesweep.config.cases import NATURAL, AmplitudeUnit, Case, Cases, natural
 from wedgesweep.config.contradictions import contradictions
 from wedgesweep.config.declarations import root
 from wedgesweep.config.model import OSCILLATOR, Config
+from wedgesweep.config.shared_parts import with_shared_parts
 from wedgesweep.config.turned import turned_root
 from wedgesweep.errors import ConfigError, InputError
 from wedgesweep.inputs import record
@@ -131,13 +132,14 @@ def _require_rest(found: Config, source: str, numbers: Mapping[str, float]) -> N
 
 def schema() -> dict[str, Any]:
     """JSON schema of a config (draft 2020-12), for editors."""
-    return {
+    whole = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": f"urn:wedgesweep:config:{__version__}",
         "version": __version__,
-        **root().schema(),
+        "description": root().meaning,
         "anyOf": [root().shape(), turned_root()[1].shape()],
     }
+    return with_shared_parts(whole)
 
 
 def template() -> str:
