@@ -61,6 +61,7 @@ def test_a_release_starts_where_it_is_told_to(tmp_path):
     assert second.velocity[0] == pytest.approx(0.05, rel=1e-3)
 
 
+@pytest.mark.acceptance
 def test_releases_a_sweep_and_a_loop_in_one_measurement(tmp_path):
     path = made(tmp_path, RELEASES + SWEEP + LOOP, HIDDEN, "--level", "0.01", "--sampling-hz", "250")
     measurement = read(path)

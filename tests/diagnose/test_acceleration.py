@@ -45,6 +45,7 @@ def write(folder, rig, tables, columns):
 LATER = [pytest.param(name, marks=pytest.mark.acceptance) if name == "wedge" else name for name in RIGS]
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("name", LATER)
 def test_a_cause_is_named_from_an_accelerometer_on_a_mass_that_is_released(tmp_path, name):
     rig, effects, travel, rate, noise = RIGS[name]

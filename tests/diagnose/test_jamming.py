@@ -14,6 +14,7 @@ FREQUENCIES = np.array([8.0, 12.0, 16.0, 20.0, 24.0, 30.0])
 AMPLITUDES = np.array([0.9, 1.1, 1.3, 1.6, 2.0, 2.4]) / (2.0 * np.pi * FREQUENCIES) ** 2
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("locked_in", [0.5])
 def test_it_is_named_with_its_share(locked_in):
     hidden = {"jamming": {"locked_in": locked_in}}

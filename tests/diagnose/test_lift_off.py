@@ -42,7 +42,7 @@ def test_it_is_named_with_its_restitution(law, restitution):
     assert high - low < 0.5
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("restitution", [0.0, 0.2])
 def test_its_fit_finds_uncertain_numbers_of_its_own(restitution):
     """Fitted without it, friction and stiffness end at other values than those which it needs."""

@@ -304,6 +304,7 @@ def test_a_hidden_effect_is_found(tmp_path, effect):
         assert estimate["value"] * unit == pytest.approx(true, rel=0.1), key
 
 
+@pytest.mark.acceptance
 def test_a_wedge_under_an_imposed_motion(tmp_path):
     model = '[sweep]\nfriction_law = "coulomb"\nbeta = [1.0]\namplitude_mm = [0.1]\n'
     hidden = {"friction_level": {"scale": 1.2}}

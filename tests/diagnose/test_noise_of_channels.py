@@ -119,7 +119,7 @@ def test_the_difference_of_two_channels_is_noise_of_both(pole):
     assert np.mean(measured, axis=0)[each.frequency < 2.0 * NATURAL].mean() == pytest.approx(1.0, abs=0.35)
 
 
-@pytest.mark.few(3)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("orders", [(0, 1), (0,), (1,)])
 @pytest.mark.parametrize("pole", POLES)
 def test_noise_is_told_at_the_frequencies_of_the_motion(pole, orders):

@@ -80,6 +80,7 @@ def test_coloured_noise_is_no_cause(tmp_path, seed):
     assert (found.verdict, found.causes) == ("nothing-missing", [])
 
 
+@pytest.mark.acceptance
 def test_repeats_tell_the_noise_and_do_not_hide_the_cause(tmp_path):
     path = write(tmp_path, effects={"viscous_damping": HIDDEN["viscous_damping"]}, pole=0.9, repeats=2)
     data = transient_data(read(path))

@@ -136,6 +136,7 @@ def test_the_time_limit_is_looked_at_in_every_simulation(bench):
     assert 0 == done[0] < done[1] < len(STEPS)
 
 
+@pytest.mark.acceptance
 def test_pairs_end_when_half_of_the_time_is_used_and_the_rest_is_done(bench, monkeypatch):
     """Steps that are done stay as they are when a later one is interrupted."""
     monkeypatch.setattr(diagnosis, "recommend", raising(KeyboardInterrupt))

@@ -208,6 +208,7 @@ def test_nothing_is_missing_where_nothing_is(tmp_path):
     assert diagnosed(write(tmp_path), ["viscous_damping", "friction_level"]).verdict == "nothing-missing"
 
 
+@pytest.mark.acceptance
 def test_a_wedge_that_is_dropped(tmp_path):
     starts = ((1e-3, 0.0), (-8e-4, 0.05), (6e-4, -0.04))
     path = write(

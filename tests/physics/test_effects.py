@@ -251,6 +251,7 @@ def test_a_locked_wedge_is_told(name):
         numbers(with_effect(law, name, **SELF_LOCKING), 5)
 
 
+@pytest.mark.acceptance
 def test_on_a_steep_ramp_a_self_locking_wedge_creeps_in_both_solvers():
     record = with_effect("coulomb", "column_compliance", **SELF_LOCKING)
     window = Window(float(record["input"]["omega"][0]), 3, 2, 256)

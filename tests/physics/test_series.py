@@ -3,6 +3,7 @@
 from math import inf, pi
 
 import numpy as np
+import pytest
 
 from tests.physics.cases import OMEGA_N
 from wedgesweep import excitation
@@ -69,6 +70,7 @@ def test_the_same_harmonics_as_an_effect_give_the_same_response():
     assert np.abs(here - steady(case(excitation.SINE))).max() > 0.1 * np.abs(there).max()
 
 
+@pytest.mark.acceptance
 def test_both_solvers_agree_under_set_valued_friction():
     record = case(law="coulomb")
     window = Window(0.5 * OMEGA_N, 20, 2, 128)

@@ -295,6 +295,7 @@ EFFECTS = {
 }
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("law", LAW_NAMES)
 def test_effects_act_on_joints_that_lift_off(law):
     settled = Settings(method="event-driven", rtol=1e-8, duration=None, settle_periods=60, kept_periods=2)

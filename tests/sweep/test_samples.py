@@ -72,6 +72,7 @@ def toy(n_jobs, fingerprint):
     yield Pool(solve, 1)
 
 
+@pytest.mark.acceptance
 def test_indices_of_the_ishigami_function_lie_in_their_intervals(tmp_path):
     ds = Sweep(config.parse(ISHIGAMI), tmp_path / "toy.nc").run(backend=toy)
     found = sobol_indices(ds["amplitude_ratio"].values.ravel(), 4096)

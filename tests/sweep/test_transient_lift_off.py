@@ -43,6 +43,7 @@ def test_both_solvers_agree(given):
         assert one[name].values == pytest.approx(other[name].values, rel=1e-5)
 
 
+@pytest.mark.acceptance
 @pytest.mark.parametrize("given", [RELEASE, SWEPT])
 def test_motions_that_keep_contact_are_those_of_bilateral_joints(given):
     held = solved(given, "bilateral", scale=0.02)

@@ -125,6 +125,7 @@ def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
         assert work == pytest.approx(2.0 * travel, rel=0.15)
 
 
+@pytest.mark.acceptance
 def test_the_force_is_that_of_spring_and_friction_whatever_shakes_the_base(folder):
     tone = "[effects.stray_vibration]\nacceleration_m_per_s2 = 3.0\nfrequency_hz = 9.0\n"
     (folder / "shaken.toml").write_text(HEAD + SWEPT + TAIL + tone)

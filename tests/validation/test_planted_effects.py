@@ -33,7 +33,7 @@ def test_in_clean_data_nothing_is_named(tmp_path):
     assert {file.name for file in again.directory.iterdir()} == {JSON, DATASET, EXTENDED}
 
 
-@pytest.mark.few(1)
+@pytest.mark.acceptance
 @pytest.mark.parametrize("candidates", [CANDIDATES, None], ids=["few", "all"])
 def test_two_tests_of_unknown_amplitude_ask_for_a_third(candidates, tmp_path):
     measured, _ = make(PAPER_TESTS, tmp_path)

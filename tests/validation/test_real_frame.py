@@ -16,6 +16,7 @@ ASKED = {250: (0.073, 0.058), 450: (0.102, 0.072)}
 here = pytest.mark.skipif(not DATA.is_dir(), reason="the recordings are not here")
 
 
+@pytest.mark.acceptance
 @here
 def test_wall_friction_leads(tmp_path):
     real_frame.copy(DATA, tmp_path)
