@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from wedgesweep import config
+from wedgesweep.config.physics import BREAKAWAY
 from wedgesweep.sweep.run import Sweep
 
 ROOT = Path(__file__).parent.parent
@@ -26,6 +27,8 @@ samples_per_period = 32
 """
 CASES = 24
 FAST = CONFIG.replace("[solver]", '[solver]\nmethod = "event-driven"')
+# Numbers of a locked case: its time, and what its model tells of rest.
+KNOWN_OF_LOCKED = ("wall_time", *BREAKAWAY)
 # Both cases lock: with this lean and friction the normal forces are not unique.
 LOCKED = """\
 title = "small"

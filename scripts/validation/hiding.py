@@ -8,7 +8,7 @@ from validation import ranges, rigs, strength, unmodelled
 from validation.benches import SAME_NOISE, draw_bench
 from validation.draft import Draft
 from validation.sets import DataSet
-from wedgesweep.effects import EFFECTS, go_together, lift_off, parts
+from wedgesweep.effects import EFFECTS, candidates, go_together, lift_off, parts
 
 # Attempts with other laws, tests and numbers.
 ATTEMPTS = 60
@@ -121,8 +121,8 @@ def _hide_unknown(one: DataSet, draft: Draft, random: np.random.Generator, attem
 
 
 def candidates_without(effect: str | None) -> tuple[str, ...]:
-    """All effects but one, and but those that contain it: to name one of these would be right."""
-    return tuple(name for name in EFFECTS if effect not in parts((name,)))
+    """All candidates but one, and but those that contain it: to name one of these would be right."""
+    return tuple(name for name in candidates() if effect not in parts((name,)))
 
 
 def _hide_unmodelled(turn: int, draft: Draft, target: float, random: np.random.Generator) -> bool:

@@ -92,7 +92,8 @@ def _drawn(one: DataSet, attempt: int) -> dict[str, Any] | None:
     hidden: dict[str, dict[str, float]] = {}
     if one.index % CLEAN_EACH != CLEAN_EACH - 1:
         left_out = NOT_IN_LOOPS if one.kind == LOOP else OF_A_SINE
-        possible = [name for name in EFFECTS if name in rig.possible_effects and name not in left_out]
+        known = set(rig.possible_effects).intersection(ranges.LEADING).difference(left_out)
+        possible = [name for name in EFFECTS if name in known]
         order = np.random.default_rng([one.seed, 101]).permutation(len(possible))
         effect = possible[order[(one.index + attempt // SAME_EFFECT) % len(possible)]]
         path, wanted = ranges.path(effect, random, rig.units), rigs.logarithmic(CHANGE, random)

@@ -186,7 +186,10 @@ KEYS = {
     "sign": ("sign = 0.5", "velocity.sign: 0.5 is out of range; it must be 1 or -1"),
     "scale": ("scale = 0", "velocity.scale: 0 is out of range; it must be another number than 0"),
     "missing": ('missing = "NA"', 'velocity.missing: "NA" is no list of strings'),
-    "delay_std_ms": ("delay_std_ms = 1", "velocity.delay_std_ms: unknown key"),
+    "delay_std_ms": (
+        "delay_std_ms = 0",
+        "velocity.delay_std_ms: 0 is out of range; it must be greater than 0",
+    ),
 }
 
 

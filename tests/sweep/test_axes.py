@@ -284,6 +284,8 @@ def test_figures_draw_any_axes_and_pick_the_rest(tmp_path):
     assert "wedge angle 30 deg" in lines.get_suptitle()
     with pytest.raises(ValueError, match="no axis wedge_angel_deg"):
         figures.draw(ds, "lines", x="wedge_angel_deg")
+    with pytest.raises(ValueError, match="friction_law: has names, no numbers; give it to --facet"):
+        figures.draw(ds, "map", y="friction_law")
     picked = figures.draw(ds, "amplitude-ratio", at={"friction_dynamic": 0.2})
     assert "friction.dynamic = 0.2" in picked.get_suptitle().replace("\n", " ")
 

@@ -67,6 +67,9 @@ def test_a_cluster_that_is_left_while_a_worker_starts(monkeypatch):
         def __exit__(self, *error):
             pass
 
+        def register_plugin(self, plugin):
+            pass
+
         def run(self, function, **options):
             return {"worker": function()}
 

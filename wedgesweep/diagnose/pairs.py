@@ -224,6 +224,21 @@ def _complete(job: PairSearch, subset: Fit) -> Explanation:
     return found
 
 
+def components(search: Search, found: Sequence[Explanation]) -> list[Explanation]:
+    """All explanations, and either effect of the best pair by itself, from its parameters in the pair.
+
+    A pair whose other effect does nothing reveals a minimum that the single fit had missed.
+    """
+    pair = min(found, key=penalised).fit
+
+    def alone(effect: str) -> Explanation:
+        model = search.model(effect)
+        start = model.start(pair, model.hypothesis.at(pair.values))
+        return search.explanation(minimise(model, model.evaluate(start)))
+
+    return [*found, *search.each(alone, pair.effects)]
+
+
 # Stages of the search for pairs; the second one is taken where no pair is adequate.
 STAGES: dict[str, Callable[[PairSearch], list[Explanation]]] = {
     PAIRS: pairs_with_leading,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from wedgesweep.diagnose import verdict
 from wedgesweep.diagnose.beyond_range import followed_beyond
 from wedgesweep.diagnose.explanation import Explanation, best_of_each, penalised
-from wedgesweep.diagnose.pairs import fit_pairs
+from wedgesweep.diagnose.pairs import components, fit_pairs
 from wedgesweep.diagnose.renewal import with_renewed_covariance
 from wedgesweep.diagnose.search import (
     NOTABLE,
@@ -109,6 +109,10 @@ def _for_pairs(known: Explained) -> bool:
     return _inadequate(known) and known.search.data.tests >= verdict.FEWEST_TESTS
 
 
+def _pair_leads(known: Explained) -> bool:
+    return bool(known.explanations) and len(known.explanations[0].effects) > 1
+
+
 def _shared_and_inadequate(known: Explained) -> bool:
     return known.search.data.shares_nuisances and verdict.none_adequate(known.explanations)
 
@@ -124,6 +128,7 @@ PAIRS = (
     Stage("best refitted", _found(refit_best), lambda known: verdict.none_adequate([known.base])),
     Stage("beyond range", _beyond_range, _inadequate),
     Stage("best pairs", _explanations(_pairs), _for_pairs),
+    Stage("components", _found(components), _pair_leads),
     Stage("best refitted again", _found(refit_best), _shared_and_inadequate),
     Stage("starts shared again", _found(from_shared_nuisances)),
     Stage("base model at last", _base_model_at_last),

@@ -39,7 +39,7 @@ def draw(
     at: Mapping[str, Any] = MappingProxyType({}),
 ) -> Panels:
     """Draw a variable over the axes ``x`` and ``y``; by default the two longest."""
-    ds, layout = over_axes.laid_out(ds, x, y, facet, at)
+    ds, layout = over_axes.laid_out(ds, x, y, facet, at, numbers=True)
     if layout.other is None:
         message = "needs two axes with several values"
         raise ValueError(message)

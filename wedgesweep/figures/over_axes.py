@@ -21,11 +21,17 @@ class Layout(NamedTuple):
 
 
 def laid_out(
-    ds: xr.Dataset, x: str | None, other: str | None, facet: str | None, at: Mapping[str, Any]
+    ds: xr.Dataset,
+    x: str | None,
+    other: str | None,
+    facet: str | None,
+    at: Mapping[str, Any],
+    numbers: bool = False,
 ) -> tuple[xr.Dataset, Layout]:
     """Choose axes, the longest first where none is asked for, and pick one value of all that are left.
 
-    Of a list of cases and of samples there are no axes; raises ValueError.
+    ``numbers``: ``x`` and ``other`` have numbers, no names as of laws. Of a list of cases and of samples
+    there are no axes; raises ValueError.
     """
     if "case" in ds.dims or "sample" in ds.dims:
         message = "needs axes; these are samples, or cases one by one"
@@ -40,20 +46,28 @@ def laid_out(
         if ds[name].ndim != 1:
             message = f"{name}: is no axis with several values here"
             raise ValueError(message)
+    for key, name in asked.items():
+        if numbers and key != "facet" and not _has_numbers(ds, name):
+            message = f"{name}: has names, no numbers; give it to --facet"
+            raise ValueError(message)
     taken = [ds[name].dims[0] for name in asked.values()]
     if len(set(taken)) < len(taken):
         message = f"{', '.join(asked.values())}: these go together along one axis; choose others"
         raise ValueError(message)
     left = sorted((dim for dim in ds["status"].dims if dim not in taken), key=lambda dim: -ds.sizes[dim])
-    free = iter(str(dim) for dim in left if ds.sizes[dim] > 1)
-    numeric = (str(dim) for dim in left if ds[dim].dtype.kind not in "OUT")
-    chosen: dict[str, str | None] = {"x": asked.get("x") or next(numeric, "beta")}
-    for name in ("other", "facet"):
-        chosen[name] = asked.get(name) or next((dim for dim in free if dim not in chosen.values()), None)
+    numeric = [str(dim) for dim in left if _has_numbers(ds, str(dim))]
+    chosen: dict[str, str | None] = {"x": asked.get("x") or next(iter(numeric), "beta")}
+    for name, dims in (("other", numeric if numbers else left), ("facet", left)):
+        free = (str(dim) for dim in dims if ds.sizes[dim] > 1 and dim not in chosen.values())
+        chosen[name] = asked.get(name) or next(free, None)
     layout = Layout(str(chosen["x"]), chosen["other"], chosen["facet"])
     drawn = {ds[name].dims[0] for name in layout if name and ds[name].ndim}
     rest = [str(dim) for dim in ds["status"].dims if dim not in drawn]
     return ds.isel(models.default(ds, rest)), layout
+
+
+def _has_numbers(ds: xr.Dataset, name: str) -> bool:
+    return ds[name].dtype.kind not in "OUT"
 
 
 def label(ds: xr.Dataset, name: str) -> str:

@@ -157,7 +157,8 @@ class Sweep:
             return Journal(path, self.dtype, self.journal_header)
 
     def _begin_with(self, kept: np.ndarray) -> None:
-        log.info("%s: %d of %d cases are there from an earlier run", self.out, len(kept), self.count)
+        if len(kept):
+            log.info("%s: %d of %d cases are there from an earlier run", self.out, len(kept), self.count)
         journal.rewrite(self.journal_path, kept, self.journal_header)
 
     def discard(self) -> None:
