@@ -15,7 +15,7 @@ import wedgesweep
 from validation import judge
 from validation.run import DATA, DRAFT, TRUTH, write
 from wedgesweep.ablation import without
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import candidates
 
 LOOK_ALIKES = (
     *("friction_level", "preload", "viscous_damping", "bolster_stiffness", "guide_friction"),
@@ -76,11 +76,11 @@ def _truth(one: Path) -> tuple[list[str], list[str]]:
     """The hidden effects, and the candidates."""
     if (one / DRAFT).exists():
         draft = json.loads((one / DRAFT).read_text())
-        known = draft.get("candidates", list(EFFECTS))
+        known = draft.get("candidates", list(candidates()))
         truth = sorted(draft["hidden"])
     else:
         truths = json.loads((one.parent / TRUTH).read_text())
-        known, truth = list(EFFECTS), truths[one.name]["truth"]
+        known, truth = list(candidates()), truths[one.name]["truth"]
         if truths[one.name]["kind"] == "unknown":
             known = [name for name in known if name not in truth]
     return truth, [name for name in dict.fromkeys([*truth, *LOOK_ALIKES]) if name in known]

@@ -10,7 +10,7 @@ from validation.imperfect import Errors
 from validation.response import Effects, System, Test
 from validation.rigs import Rig
 from validation.strength import SAMPLING_HZ, Bench
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import candidates
 
 
 @dataclass
@@ -29,7 +29,7 @@ class Draft:
     uncertain: dict[str, float]
     hidden: dict[str, dict[str, float]] = field(default_factory=dict)
     unmodelled: dict[str, float] = field(default_factory=dict)
-    candidates: tuple[str, ...] = tuple(EFFECTS)
+    candidates: tuple[str, ...] = candidates()
     expected: float = 0.0
     record_input: str | None = None
     model_error: float = 0.0
