@@ -2,12 +2,16 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from wedgesweep.config import Config
-from wedgesweep.effects import EFFECTS
+from wedgesweep.effects import EFFECTS, empirical_force
 from wedgesweep.friction.quantities import FRICTION
 from wedgesweep.natural_units import Dimension
 from wedgesweep.quantity import Quantity
 from wedgesweep.systems.suspension.parameters import SUSPENSION
+
+TABULATED = Quantity(empirical_force.TABLE, np.nan, "forces of a table")
 
 
 class Size(NamedTuple):
@@ -22,12 +26,12 @@ class Size(NamedTuple):
         return self.mass**dimension.mass * self.length**dimension.length * self.time**dimension.time
 
     def numbers(self, quantities, given):
-        """Given numbers by the names of quantities (SI) or by their keys.
+        """Given numbers, or arrays of them, by the names of quantities (SI) or by their keys.
 
         Gravity is multiplied as well: by 1 in both of the symmetries below.
         """
         by_name = {each.name: each for each in quantities} | {each.key: each for each in quantities}
-        return {name: self.factor(by_name[name].dimension) * value for name, value in given.items()}
+        return {name: self.factor(by_name[name].dimension) * np.array(value) for name, value in given.items()}
 
     def suspension(self, given=None):
         """SI numbers of a suspension, the bench's unless given."""
@@ -39,7 +43,10 @@ class Size(NamedTuple):
 
     def effects(self, given):
         """Numbers of effects, SI by name or in key units by key."""
-        return {name: self.numbers(EFFECTS[name].quantities, numbers) for name, numbers in given.items()}
+        return {
+            name: self.numbers((*EFFECTS[name].quantities, TABULATED), numbers)
+            for name, numbers in given.items()
+        }
 
     def config(self, model):
         """The config of a model at this size."""

@@ -64,8 +64,9 @@ def test_effects_with_mechanics_of_their_own_leave_no_force_to_tell():
     assert np.isnan(waveforms.residual_force(data, fit, data.measured)).all()
 
 
-def test_the_base_supplies_what_friction_takes():
-    data = drawn()
+@pytest.mark.parametrize("effects", ["", "[effects.input_gain]\nscale = 1.2\n"])
+def test_the_base_supplies_what_friction_takes(effects):
+    data = drawn(model=MODEL + effects)
     model = Model(data, Hypothesis(()))
     fit = Fit(model, model.evaluate(model.start(None, np.zeros(0))), np.zeros((0, 0)), True)
     supplied = waveforms.input_energy(data, fit, fit.evaluation.response.harmonics[:, 0, 0])

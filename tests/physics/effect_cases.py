@@ -3,6 +3,7 @@
 from math import cos, exp, hypot, log, sin
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from tests.physics.compiled_mechanics import owned
 from wedgesweep.effects import EFFECTS, empirical_force, of_system
@@ -21,6 +22,8 @@ EXTENDING = [name for name in OF_SUSPENSION if EFFECTS[name].extends and name !=
 
 def typical(name, place=PLACE):
     """SI numbers of an effect at typical strength."""
+    if name == empirical_force.NAME:
+        return tabulated(1e-3, 0.05, place)
     found = {}
     for quantity in EFFECTS[name].quantities:
         value = quantity.default
@@ -31,11 +34,20 @@ def typical(name, place=PLACE):
     return found
 
 
-def tabulated(displacement, velocity):
-    """SI numbers of an empirical force: a damper that grows with travel, and a spring that stiffens."""
-    z, v = np.meshgrid(*empirical_force.nodes(1.0, 1.0), indexing="ij")
-    forces = -0.3 * v * (1.0 + z**2) - 0.3 * z**3
-    return {"displacement": displacement, "velocity": velocity, "forces": tuple(forces.ravel())}
+def tabulated(displacement, velocity, place=PLACE):
+    """SI numbers of an empirical force: a damper that grows with travel, and a spring that stiffens.
+
+    The centre is a node away from rest, where the force is 0.
+    """
+    centre = 1.0 / 3.0
+    z, v = np.meshgrid(*empirical_force.nodes(1.0, 1.0, centre), indexing="ij")
+    forces = -0.5 * place * (v * (1.0 + z**2) + z**3)
+    return {
+        "displacement": displacement,
+        "velocity": velocity,
+        "centre": centre * displacement,
+        empirical_force.FORCES: tuple(forces.ravel()),
+    }
 
 
 def mild(name):
@@ -56,7 +68,6 @@ def mild(name):
         "cross_slip": {"velocity": 5e-3},
         "stribeck": {"peak": 0.05, "velocity": 5e-3},
         "ageing": {"rate": 0.05},
-        "empirical_force": tabulated(1e-3, 0.05),
     }
     return typical(name) | changes.get(name, {})
 
@@ -81,11 +92,17 @@ def coefficient(velocity, across, at_rest, p):
 
 
 def _tabulated(table, x, velocity):
-    """The force of a table; a suspension's counts displacement from rest."""
+    """The force of a table by scipy's cubics; a suspension's counts displacement from rest."""
     if table["velocity"] == 0.0:
         return 0.0
-    place, speed = np.array([x / table["displacement"]]), np.array([velocity / table["velocity"]])
-    return (empirical_force.interpolation(place, speed) @ table["forces"])[0]
+    counts = empirical_force.PLACES, empirical_force.SPEEDS
+    speed = velocity / table["velocity"]
+    graded = (1.0 + empirical_force.GRADING) * speed / (abs(speed) + empirical_force.GRADING)
+    force = table[empirical_force.FORCES].reshape(counts)
+    for at, count in zip(((x - table["centre"]) / table["displacement"], graded), counts, strict=True):
+        nodes = np.linspace(-1.0, 1.0, count)
+        force = CubicHermiteSpline(nodes, force, np.gradient(force, nodes, axis=0))(np.clip(at, -1.0, 1.0))
+    return force
 
 
 def base_acceleration(t, p):
@@ -96,7 +113,7 @@ def base_acceleration(t, p):
     stray = p["stray_vibration"]["acceleration"] * sin(
         2 * np.pi * p["stray_vibration"]["frequency"] * t + p["stray_vibration"]["phase"]
     )
-    return stray - p["input"]["amplitude"] * w**2 * wave
+    return stray - p["input_gain"]["scale"] * p["input"]["amplitude"] * w**2 * wave
 
 
 def residual(t, y, mode, p, result):

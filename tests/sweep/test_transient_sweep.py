@@ -128,7 +128,8 @@ def test_the_work_of_friction_is_the_energy_that_is_lost(folder):
 @pytest.mark.acceptance
 def test_the_force_is_that_of_spring_and_friction_whatever_shakes_the_base(folder):
     tone = "[effects.stray_vibration]\nacceleration_m_per_s2 = 3.0\nfrequency_hz = 9.0\n"
-    (folder / "shaken.toml").write_text(HEAD + SWEPT + TAIL + tone)
+    gain = "[effects.input_gain]\nscale = 1.5\n"
+    (folder / "shaken.toml").write_text(HEAD + SWEPT + TAIL + tone + gain)
     ds = Sweep(config.load("shaken.toml"), folder / "a.nc").run_here()
     friction = ds["force"] - 800.0 * ds["displacement"]
     # Coulomb and static friction are 2 N and 2.4 N; ten times as much would be left of the tone.

@@ -1,6 +1,7 @@
 """Where effects act: a hook combines the functions of its name in the files of all effects of a record.
 
-An effect takes part by a compiled function with the name and arguments of the hook in its own file. Code for
+An effect takes part by a compiled function with the name and arguments of the hook in its own file; after all
+others if it says ``LAST = True`` there. Code for
 records without the effect does not contain it. Units are SI.
 """
 
@@ -15,6 +16,7 @@ def _functions(name: str, fields: Mapping[str, Any]) -> list[Callable]:
     from wedgesweep.effects import REGISTERED
 
     modules = [module for owner, module in REGISTERED.items() if owner in fields]
+    modules.sort(key=lambda module: getattr(module, "LAST", False))
     return [getattr(module, name) for module in modules if hasattr(module, name)]
 
 

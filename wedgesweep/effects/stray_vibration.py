@@ -40,6 +40,8 @@ EFFECT = Effect(
 )
 
 
+# The tone is none of the input that was stated or recorded, so that a gain error of that leaves it as it is.
+LAST = True
 # ``phase`` (rad) is another one in every measurement.
 DERIVED = ("phase",)
 

@@ -51,7 +51,8 @@ def _force(case: np.ndarray, given: Transient, run: Trajectory) -> np.ndarray:
     """
     if any(name in (case.dtype.names or ()) and case[name][key][0] > 0.0 for name, key in DRIVING):
         return np.full(run.samples.t.shape, nan)
-    scale, inertia = float(case["input"]["amplitude"][0]), moving_mass(case)[0] * run.samples.acceleration
+    inertia = moving_mass(case)[0] * run.samples.acceleration
+    scale = float(case["input"]["amplitude"][0] * case["input_gain"]["scale"][0])
     if is_oscillator(case) and case["oscillator"]["forced"][0]:
         return inertia + scale * given.sampled(run.samples.t)
     if is_oscillator(case) and case["oscillator"]["absolute"][0]:

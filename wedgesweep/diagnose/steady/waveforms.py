@@ -82,14 +82,14 @@ def input_energy(data: "HarmonicData", fit: Fit, fundamental: np.ndarray) -> np.
     fundamental = fundamental / rows["displacement_gain"]["scale"]
     if "fixture_resonance" in (rows.dtype.names or ()):
         fundamental = np.where(rows["fixture_resonance"]["frequency"] > 0.0, np.nan, fundamental)
-    given = rows["input"]
-    force = driven_mass(rows) * given["amplitude"] * given["omega"] ** 2
+    amplitude = rows["input_gain"]["scale"] * rows["input"]["amplitude"]
+    force = driven_mass(rows) * amplitude * rows["input"]["omega"] ** 2
     if is_oscillator(rows):
         # Its displacement is that of the mass, and what rubs on the ground is not driven by inertia.
         forced = rows["oscillator"]["forced"] != 0
         driven = forced | (rows["oscillator"]["absolute"] == 0)
         fundamental = np.where(driven, -fundamental, np.nan)
-        force = np.where(forced, given["amplitude"], force)
+        force = np.where(forced, amplitude, force)
     return np.where(has_series(rows), np.nan, pi * force * fundamental.real)
 
 
