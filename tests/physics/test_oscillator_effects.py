@@ -34,7 +34,7 @@ STRENGTHS = {
     "input_distortion": {"second": 0.1, "second_phase": 0.4, "third": 0.05, "third_phase": -1.0},
     "displacement_gain": {"scale": 1.02},
     "input_gain": {"scale": 1.05},
-    "load_dependent_friction": {"exponent": 0.2, "reference": 1.0},
+    "load_dependent_friction": {"exponent": 0.2, "reference": 3.0},
 }
 # Those on what lies between mass and base are also tried where the mass rubs on something else.
 SENSORS = ("velocity_lag", "force_gain", "channel_delay")
