@@ -77,7 +77,7 @@ def test_draws_small_and_large_grids(kind, grid):
             figures.draw(grid, kind)
         return
     if grid["status"].size == 1 and kind == "map":
-        with pytest.raises(ValueError, match="^map: needs two axes with several values"):
+        with pytest.raises(ValueError, match=r"^map: needs two axes with several values"):
             figures.draw(grid, kind)
         return
     figures.draw(grid, kind).draw_without_rendering()
