@@ -209,7 +209,7 @@ def test_an_effect_of_a_few_times_the_noise_is_found(tmp_path, effect):
     data = loop_data(measurement)
     fit = base_fit(Search.of(data, [])).base.fit
     left = float(np.sqrt((fit.evaluation.residual**2).sum() / data.weight.sum()))
-    assert left < 6.0  # of the noise
+    assert left < 7.0  # of the noise
     found = api.diagnose_measurement(measurement, effects=("preload", "bolster_stiffness", *WEAK), n_jobs=2)
     assert found.verdict in ("named", "consistent-with")
     assert [cause["effect"] for cause in found.causes] == [effect]
